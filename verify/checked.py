@@ -1,0 +1,102 @@
+"""Plain data checked against a type, with errors that name the field, its value and the remedy."""
+
+import re
+from types import UnionType
+from typing import Any, TypeVar, Union, get_args, get_origin
+
+import msgspec
+
+from verify.errors import InputError, near_name
+
+T = TypeVar("T")
+
+_UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>.*)`")
+_MISSING = re.compile(r"Object missing required field `(?P<key>.*)`")
+_STEP = re.compile(r"\.([A-Za-z_][\w-]*)|\[(\d+|\.\.\.)\]")
+_PLAIN = {
+    "`int`": "a whole number",
+    "`float`": "a number",
+    "`str`": "a word",
+    "`bool`": "true or false",
+    "`array`": "a list",
+    "`object`": "a table",
+    "`null`": "nothing",
+}
+
+
+def checked(data: Any, kind: type[T], where: str = "") -> T:
+    """`data` (plain dicts, lists, numbers, strings) as a value of `kind`, unknown keys refused.
+
+    `where` heads the names of fields in messages. Raises InputError with one sentence.
+    """
+    try:
+        return msgspec.convert(data, kind, strict=True)
+    except msgspec.ValidationError as error:
+        if isinstance(error.__cause__, InputError):
+            raise error.__cause__ from None
+        raise InputError(_sentence(str(error), data, kind, where)) from None
+
+
+def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
+    """What msgspec found, as one sentence in the words of a scene file."""
+    what, _, path = message.partition(" - at `")
+    steps = [a or int(b) for a, b in _STEP.findall(path.rstrip("`").replace("[...]", "")) if a or b.isdigit()]
+    field = _dotted(where, steps)
+    if found := _UNKNOWN.match(what):
+        known = _keys_of(_type_at(kind, steps))
+        return f"{_dotted(where, [*steps, found['key']])} is not a known key: {near_name(found['key'], known)}"
+    if found := _MISSING.match(what):
+        return f"{_dotted(where, [*steps, found['key']])} is missing: give it a value"
+    value = _value_at(data, steps)
+    if what.startswith("Invalid enum value"):
+        words = tuple(str(word) for word in get_args(_bare(_type_at(kind, steps))))
+        return f"{field} = {value!r} is not known: {near_name(str(value), words)}"
+    return f"{field} = {value!r}: {_humane(what)}"
+
+
+def _humane(what: str) -> str:
+    """msgspec's 'Expected `int` >= 1' in plain words."""
+    text = what.split(", got ")[0]
+    for code, words in _PLAIN.items():
+        text = text.replace(code, words)
+    return text.replace("Expected", "give").replace("`", "").replace(" | nothing", "")
+
+
+def _dotted(where: str, steps: list[Any]) -> str:
+    text = where
+    for step in steps:
+        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else str(step)
+    return text or "the scene"
+
+
+def _value_at(data: Any, steps: list[Any]) -> Any:
+    for step in steps:
+        try:
+            data = data[step]
+        except (KeyError, IndexError, TypeError):
+            return data
+    return data
+
+
+def _bare(kind: Any) -> Any:
+    """The type without its None and without its annotations."""
+    if hasattr(kind, "__metadata__"):
+        return _bare(get_args(kind)[0])
+    if get_origin(kind) in (Union, UnionType):
+        return _bare(next(arm for arm in get_args(kind) if arm is not type(None)))
+    return kind
+
+
+def _type_at(kind: Any, steps: list[Any]) -> Any:
+    for step in steps:
+        kind = _bare(kind)
+        if isinstance(step, int):
+            arms = get_args(kind)
+            kind = arms[min(step, len(arms) - 1)] if arms and arms[-1] is not Ellipsis else arms[0]
+        else:
+            kind = next(f.type for f in msgspec.structs.fields(kind) if f.encode_name == step)
+    return _bare(kind)
+
+
+def _keys_of(kind: Any) -> tuple[str, ...]:
+    return tuple(f.encode_name for f in msgspec.structs.fields(kind))

@@ -1,0 +1,115 @@
+"""Judgement: modes paired, errors, observed order, two-sided bounds. Sees arrays, knows no model."""
+
+from collections.abc import Sequence
+from math import isfinite
+
+import msgspec
+import numpy as np
+
+from verify.errors import InputError, NoBracketError, PairingError
+from verify.modes import Array, Modes
+
+EIGENVALUE_FLOOR = 1e-13
+"""Relative frequency error that rounding may leave (measured: 1e-14 up to 10^4 segments or elements)."""
+ORDER_FLOOR = 100 * EIGENVALUE_FLOOR
+"""Below this an error is too close to rounding to speak of an order."""
+LIKENESS = 0.5
+"""A mode pairs with an exact one only above this MAC."""
+
+
+class Bracket(msgspec.Struct, frozen=True):
+    """Two-sided bound on an exact value."""
+
+    lower: float
+    upper: float
+
+    @property
+    def mean(self) -> float:
+        """The middle, an improved estimate: the leading errors of both sides cancel."""
+        return 0.5 * (self.lower + self.upper)
+
+    @property
+    def relative_width(self) -> float:
+        """Width over mean."""
+        return (self.upper - self.lower) / self.mean
+
+
+def relative_error(value: float, exact: float) -> float:
+    """(value - exact) / exact, signed."""
+    return (value - exact) / exact
+
+
+def mac(reference: Array, shapes: Array) -> Array:
+    """Modal assurance criterion of every pair, (n_reference, n_shapes), 0 to 1; shapes are (n, n_points).
+
+    Allemang, "The modal assurance criterion - twenty years of use and abuse", Sound and Vibration 37 (2003).
+    """
+    cross = reference @ shapes.T
+    squares = np.einsum("ij,ij->i", reference, reference)[:, None] * np.einsum("ij,ij->i", shapes, shapes)
+    return np.asarray(cross**2 / squares)
+
+
+def pair_modes(likeness: Array) -> tuple[Array, Array]:
+    """For every exact mode the index of its computed mode, one to one, and their MAC: (n_reference,) each.
+
+    The pairing with the largest sum of MAC values; `likeness` is (n_reference, n_shapes).
+    """
+    if (likeness.argmax(axis=1) == np.arange(len(likeness))).all():
+        index = np.arange(len(likeness))  # every mode is most like its own number: nothing to search
+    else:
+        from scipy.optimize import linear_sum_assignment
+
+        index = np.asarray(linear_sum_assignment(-likeness)[1])
+    return index, likeness[np.arange(len(index)), index]
+
+
+def paired_index(modes: Modes, exact_shapes: Array, mode: int, stride: int) -> int:
+    """The index in `modes` of the mode that looks like exact mode `mode`.
+
+    exact_shapes (n_modes, n_points) at modes.points[::stride]. Raises PairingError where none does.
+    """
+    index, likeness = pair_modes(mac(exact_shapes, modes.sampled()[:, ::stride]))
+    if likeness[mode - 1] < LIKENESS:
+        raise PairingError(
+            f"mode = {mode}: no {modes.model} mode at count = {modes.count} has its shape "
+            f"(best MAC {likeness[mode - 1]:.2f}), raise count"
+        )
+    return int(index[mode - 1])
+
+
+def shape_error(exact: Array, computed: Array) -> float:
+    """Relative L2 distance of two mass-normalised shapes at evenly spaced nodes, free of sign; both (n_nodes,)."""
+    weights = np.ones(len(exact))
+    weights[[0, -1]] = 0.5
+    distances = [float(weights @ (computed * sign - exact) ** 2) for sign in (1.0, -1.0)]
+    return float(np.sqrt(min(distances) / (weights @ exact**2)))
+
+
+def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:
+    """Minus the least-squares slope of log |error| over log count.
+
+    Raises InputError for fewer than three sizes, equal sizes, an error that changes its sign (then no power of
+    the count describes it), or one at the rounding floor.
+    """
+    sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=float)
+    if len(sizes) < 3 or len(set(counts)) != len(sizes):
+        raise InputError(f"counts = {list(counts)}: an observed order needs three or more different sizes")
+    if not np.isfinite(values).all() or (abs(values) < ORDER_FLOOR).any():
+        raise InputError(
+            f"counts = {list(counts)}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "
+            "use coarser sizes or a higher mode"
+        )
+    if len(set(np.sign(values))) > 1:
+        raise InputError(f"counts = {list(counts)}: the error changes sign between them, so it has no order there")
+    return float(-np.polyfit(np.log(sizes), np.log(abs(values)), 1)[0])
+
+
+def bracket(below: float, above: float) -> Bracket:
+    """The bound made of a value known to lie below and one known to lie above. Raises NoBracketError."""
+    width = (above - below) / above
+    if not isfinite(width) or width <= 10 * EIGENVALUE_FLOOR:
+        raise NoBracketError(
+            f"bracket from {below!r} to {above!r} is thinner than the eigenvalue error ({EIGENVALUE_FLOOR:.0e}) "
+            "allows: use a smaller count"
+        )
+    return Bracket(below, above)

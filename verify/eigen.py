@@ -1,0 +1,169 @@
+"""Eigenvalues of B^T diag(d) B against M, to rounding, at any size.
+
+An assembled K = B^T diag(d) B drowns its low eigenvalues in the rounding of its high ones, like n^4 eps for a
+beam. Here K stays factored: whatever finds the vectors, each eigenvalue is read from
+sum d (B v)^2 / (v^T M v) with B applied as differences of differences, each nearly exact.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.errors import InputError
+
+Array = NDArray[np.float64]
+
+DENSE_UNKNOWNS = 250
+"""Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
+_BYTES_PER_UNKNOWN = 1500
+"""Measured peak of the sparse factorisation and its matrices, per unknown, beside the Lanczos basis."""
+
+
+class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """K = B^T diag(d) B and M over n unknowns, in units of order one (element length, stiffness and mass 1)."""
+
+    n: int
+    """Unknowns."""
+    rigid_modes: int
+    """Zero eigenvalues, which are left out."""
+    strain: Callable[[Array], Array]
+    """v (n, k) -> B v (m, k), by differences of differences."""
+    stiffness: Array
+    """d, (m,), positive."""
+    strain_matrix: Callable[[], Any]
+    """() -> B as a sparse array (m, n); asked for only where a factorisation needs it."""
+    mass_matrix: Callable[[], Any]
+    """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
+
+
+class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Elastic eigenpairs, ascending."""
+
+    values: Array
+    """(k,), lambda = omega^2 in the pencil's units."""
+    vectors: Array
+    """(n, k), v^T M v = 1."""
+    method: str
+    """How they were found."""
+
+
+def check_size(n_unknowns: int, n_modes: int, available: int, field: str, count: int) -> None:
+    """Raise InputError, before anything large is allocated, where modes or memory do not suffice.
+
+    `available` is the number of elastic modes the model has; `field` and `count` name what the user chose.
+    """
+    if n_modes < 1:
+        raise InputError(f"n_modes = {n_modes!r}: ask for at least one mode")
+    if n_modes > available:
+        raise InputError(
+            f"n_modes = {n_modes!r} is more than the {available} elastic modes that {field} = {count} gives: "
+            f"ask for fewer modes or raise {field}"
+        )
+    needed = required_bytes(n_unknowns, n_modes)
+    if needed > (memory := _memory_bytes()):
+        raise InputError(
+            f"{field} = {count} needs about {needed / 2**30:.3g} GiB and this machine has "
+            f"{memory / 2**30:.3g} GiB: lower {field}"
+        )
+
+
+def uses_dense(n_unknowns: int, n_modes: int) -> bool:
+    """Whether a dense solver is used: few unknowns, or a good part of all modes wanted."""
+    return n_unknowns <= DENSE_UNKNOWNS or 4 * n_modes > n_unknowns
+
+
+def required_bytes(n_unknowns: int, n_modes: int) -> int:
+    """An estimate from above of the memory a solve takes."""
+    if uses_dense(n_unknowns, n_modes):
+        return 8 * 8 * n_unknowns**2
+    return n_unknowns * (_BYTES_PER_UNKNOWN + 8 * 4 * (2 * n_modes + 20))
+
+
+def _memory_bytes() -> int:
+    """Physical memory of this machine."""
+    import os
+
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+def method_name(n_unknowns: int, n_modes: int) -> str:
+    """What `lowest` will do, in words."""
+    if n_unknowns <= DENSE_UNKNOWNS:
+        return "dense, factored quotient"
+    return "dense SVD, factored quotient" if uses_dense(n_unknowns, n_modes) else "mixed shift-invert, factored quotient"
+
+
+def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
+    """The lowest `n_modes` elastic eigenpairs. The caller has checked the size with `check_size`."""
+    if pencil.n <= DENSE_UNKNOWNS:
+        vectors = _dense_vectors(pencil, n_modes)
+    elif uses_dense(pencil.n, n_modes):
+        vectors = _svd_vectors(pencil, n_modes)
+    else:
+        vectors = _sparse_vectors(pencil, n_modes)
+    values, vectors = factored_quotient(pencil, vectors)
+    order = np.argsort(values, kind="stable")
+    return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method_name(pencil.n, n_modes))
+
+
+def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Array]:
+    """Rayleigh quotients sum d (B v)^2 / v^T M v, (k,), and the vectors scaled to v^T M v = 1, (n, k)."""
+    strains = pencil.strain(vectors)
+    masses = np.einsum("ij,ij->j", vectors, pencil.mass_matrix() @ vectors)
+    values = np.einsum("i,ij,ij->j", pencil.stiffness, strains, strains) / masses
+    return values, vectors / np.sqrt(masses)
+
+
+def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+    """Vectors by LAPACK on the assembled pencil: their error enters the quotient squared."""
+    from scipy.linalg import eigh
+
+    strain = pencil.strain(np.eye(pencil.n))
+    stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
+    _, vectors = eigh(stiffness, pencil.mass_matrix(), driver="gvd", check_finite=False)
+    return np.asarray(vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes])
+
+
+def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+    """Vectors by the SVD of diag(d)^{1/2} B L^{-T}, M = L L^T: conditioned like n^2 where K is like n^4."""
+    from scipy.linalg import cholesky, solve_triangular, svd
+
+    mass = pencil.mass_matrix()
+    lower = cholesky(mass.toarray() if hasattr(mass, "toarray") else mass, lower=True)
+    strain = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(np.eye(pencil.n))
+    # full_matrices: where motions are rigid, B has fewer rows than columns, and those come last
+    right = svd(solve_triangular(lower, strain.T, lower=True).T, full_matrices=True)[2]
+    last = pencil.n - pencil.rigid_modes
+    wanted = right[last - n_modes : last][::-1].T
+    return np.asarray(solve_triangular(lower, wanted, lower=True, trans="T"))
+
+
+def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+    """Vectors by Lanczos on the inverse of [[-1/d, B], [B^T, -sigma M]], which never forms B^T diag(d) B.
+
+    Without rigid modes sigma is 0; with them it lies below zero, a little under the first elastic eigenvalue
+    in size. The start vector is fixed, so that runs repeat.
+    """
+    from scipy.sparse import block_array, diags_array
+    from scipy.sparse.linalg import LinearOperator, eigsh, splu
+
+    strain, mass = pencil.strain_matrix(), pencil.mass_matrix()
+    n_strains = strain.shape[0]
+    sigma = -1e3 / float(pencil.n) ** 4 if pencil.rigid_modes else 0.0
+    mixed = block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, -sigma * mass]], format="csc")
+    factor = splu(mixed)
+    right = np.zeros(n_strains + pencil.n)
+
+    def invert(b: Array) -> Array:
+        right[n_strains:] = b.ravel()
+        return np.asarray(factor.solve(right)[n_strains:])
+
+    operator = LinearOperator((pencil.n, pencil.n), matvec=invert, dtype=float)
+    start = np.random.default_rng(20081).standard_normal(pencil.n)
+    k = n_modes + pencil.rigid_modes
+    values, vectors = eigsh(operator, k=k, M=mass, sigma=sigma, OPinv=operator, v0=start, tol=0)
+    order = np.argsort(values)
+    return np.asarray(vectors[:, order[pencil.rigid_modes :]])

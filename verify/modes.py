@@ -1,0 +1,65 @@
+"""What every model's `solve_modes` returns."""
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Elastic modes of one model, ascending; mode n stands at index n - 1.
+
+    Shapes are normalised to unit modal mass (integral of rho A phi^2 dx = 1 kg m^2 / m^2, for a discrete
+    model with its own mass matrix) and positive where the beam first moves off its left end.
+    """
+
+    model: str
+    """analytic, fem or segment."""
+    count: int | None
+    """Elements or segments; None for the exact beam."""
+    length: float
+    """L, metres."""
+    frequencies_hz: Array
+    """(n_modes,), ascending."""
+    shapes: Callable[[Array, int], Array]
+    """(x, derivative) -> (n_modes, len(x)); x in metres."""
+    nodes: Array
+    """(n_nodes,), metres: joints or element ends, both ends of the beam included; empty for the exact beam."""
+    readings: dict[str, Callable[[], Array]] = {}
+    """Ways to read the deflection at `nodes`, by name, the default first: () -> (n_modes, n_nodes)."""
+    points: Array
+    """(n_points,), metres, evenly spaced: where this model knows its shape with nothing added."""
+    sampled: Callable[[], Array]
+    """() -> deflection at `points`, (n_modes, n_points)."""
+    method: str = "closed form"
+    """How the eigenvalues were found."""
+
+    @property
+    def n_modes(self) -> int:
+        """How many modes are here."""
+        return len(self.frequencies_hz)
+
+    def deflection(self, x: Any) -> Array:
+        """Mass-normalised deflection at x (metres), (n_modes, len(x)), in 1/sqrt(kg). Raises InputError."""
+        return self.shapes(self._on_beam(x), 0)
+
+    def slope(self, x: Any) -> Array:
+        """d/dx of `deflection`, (n_modes, len(x)), in 1/(m sqrt(kg)). Raises InputError."""
+        return self.shapes(self._on_beam(x), 1)
+
+    def _on_beam(self, x: Any) -> Array:
+        """X as a float array. Raises InputError where a position lies off the beam."""
+        x = np.atleast_1d(np.asarray(x, dtype=float))
+        slack = 1e-12 * self.length
+        bad = ~((x >= -slack) & (x <= self.length + slack))
+        if bad.any():
+            raise InputError(
+                f"x = {float(x[bad][0])!r} lies off the beam: give positions between 0 and {self.length!r} m"
+            )
+        return x

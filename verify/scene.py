@@ -1,0 +1,209 @@
+"""A scene file read, checked, and turned into values: what exists, and what is asked of it."""
+
+from pathlib import Path
+from typing import Annotated, Any, TypeAlias
+
+import msgspec
+from msgspec import Meta
+
+from verify.beam import Beam, PointForce, check_number
+from verify.checked import checked
+from verify.errors import InputError, near_name
+
+PACKAGED = Path(__file__).parent / "scenes"
+STARTER = PACKAGED / "starter.toml"
+
+Count: TypeAlias = Annotated[int, Meta(ge=1)]
+Counts: TypeAlias = Annotated[tuple[Count, ...], Meta(min_length=1)]
+
+
+class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What shakes the beam: harmonic point forces at one frequency."""
+
+    frequency_hz: float
+    force: tuple[PointForce, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)
+
+
+class Spectrum(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for the error of modes 1..modes of both discrete models at one size."""
+
+    modes: Count = 22
+    count: Count = 49
+
+
+class Convergence(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for the error of a few modes of both discrete models over several sizes."""
+
+    modes: Counts = (1, 5, 22)
+    counts: Counts = (10, 20, 49, 98)
+
+
+class Sensitivity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask how one exact frequency moves with modulus and density, beside a figure somebody published."""
+
+    mode: Count
+    published_hz: float | None = None
+    modulus_spread: float = 0.03
+    density_spread: float = 0.03
+
+    def __post_init__(self) -> None:
+        check_number("sensitivity.modulus_spread", self.modulus_spread, "relative", above=0, below=1)
+        check_number("sensitivity.density_spread", self.density_spread, "relative", above=0, below=1)
+        if self.published_hz is not None:
+            check_number("sensitivity.published_hz", self.published_hz, "hertz", above=0)
+
+
+class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One named figure and the band it has to lie in.
+
+    `expect` with `within` is a two-sided band; `at_least` and `at_most` bound one side each; a two-sided bound
+    (`mode.bracket`) needs `expect` alone, the value it has to contain. Raises InputError where the band is
+    none of these.
+    """
+
+    id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+    quantity: str
+    arguments: dict[str, Any] = {}
+    expect: float | None = None
+    within: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    why: Annotated[str, Meta(min_length=1)]
+
+    def __post_init__(self) -> None:
+        for name in ("expect", "within", "at_least", "at_most"):
+            if (value := getattr(self, name)) is not None:
+                check_number(f"gate.{self.id}.{name}", value, "in the quantity's own unit")
+        if self.within is not None and (self.expect is None or self.within <= 0):
+            raise InputError(f"gate.{self.id}.within = {self.within!r}: give it above 0 and together with expect")
+        bounded = self.at_least is not None or self.at_most is not None
+        if bounded == (self.expect is not None):
+            raise InputError(f"gate.{self.id} has no clear band: give expect with within, or at_least, at_most")
+        if self.at_least is not None and self.at_most is not None and self.at_least > self.at_most:
+            raise InputError(
+                f"gate.{self.id}.at_least = {self.at_least!r} is above at_most = {self.at_most!r}: exchange them"
+            )
+
+
+class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What exists (beam, drive) and what is asked (gates, tables, studies). What is not asked does not run."""
+
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
+    title: str = ""
+    description: str = ""
+    beam: Beam
+    drive: Drive | None = None
+    spectrum: Spectrum | None = None
+    convergence: Convergence | None = None
+    sensitivity: Sensitivity | None = None
+    gate: tuple[Gate, ...] = ()
+
+    def __post_init__(self) -> None:
+        seen: set[str] = set()
+        for gate in self.gate:
+            if gate.id in seen:
+                raise InputError(f"gate.{gate.id} stands twice: give every gate an id of its own")
+            seen.add(gate.id)
+        for force in self.drive.force if self.drive else ():
+            if force.position > self.beam.length:
+                raise InputError(
+                    f"drive.force.position = {force.position!r} lies off the beam: "
+                    f"give a position between 0 and {self.beam.length!r} m"
+                )
+
+
+def packaged_scenes() -> tuple[str, ...]:
+    """The names of the scenes that come with the package."""
+    return tuple(sorted(path.stem for path in PACKAGED.glob("*.toml") if path != STARTER))
+
+
+def scene_path(name_or_path: str) -> Path:
+    """The file of a packaged scene, or the path itself. Raises InputError for an unknown name."""
+    if name_or_path in packaged_scenes():
+        return PACKAGED / f"{name_or_path}.toml"
+    path = Path(name_or_path)
+    if path.exists() or path.suffix or len(path.parts) != 1:
+        return path
+    raise InputError(
+        f"scene = {name_or_path!r} is neither a packaged scene nor a file: "
+        f"{near_name(name_or_path, packaged_scenes())}"
+    )
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
+    import tomllib
+
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8"))
+    except OSError as error:
+        raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
+
+
+def literal(text: str) -> Any:
+    """A TOML literal; a bare word is a string; comma-separated values are a list."""
+    import tomllib
+
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, KeyError, RecursionError):
+        if "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
+            return [literal(part.strip()) for part in text.split(",") if part.strip()]
+        return text
+
+
+def split_assignment(text: str) -> tuple[str, Any]:
+    """'key=value' as key and literal. Raises InputError where there is no '='."""
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip() or not value.strip():
+        raise InputError(f"{text!r} is not an assignment: write key=value, for instance mode=22")
+    return key.strip(), literal(value.strip())
+
+
+def override(data: dict[str, Any], assignment: str) -> None:
+    """Set one value of a scene's tables in place: 'beam.length=0.4', 'gate.ID.within=1e-6'."""
+    key, value = split_assignment(assignment)
+    *parents, last = key.split(".")
+    here: Any = data
+    for depth, step in enumerate(parents):
+        here = _entry(here, step, ".".join(parents[: depth + 1]))
+    if isinstance(here, list):
+        here[_position(here, last, key)] = value
+    else:
+        here[last] = value
+
+
+def _entry(here: Any, step: str, field: str) -> Any:
+    """The table or list below `here`; a missing table is made, so that the checker can name it."""
+    if isinstance(here, list):
+        here = here[_position(here, step, field)]
+    else:
+        here = here.setdefault(step, {})
+    if not isinstance(here, dict | list):
+        raise InputError(f"--set {field} is a value, not a table: set {field} itself")
+    return here
+
+
+def _position(entries: list[Any], step: str, field: str) -> int:
+    """Where in a list an entry stands: by its id, or by its number from 0."""
+    names = [str(e.get("id", i)) if isinstance(e, dict) else str(i) for i, e in enumerate(entries)]
+    if step in names:
+        return names.index(step)
+    if step.isdigit() and int(step) < len(entries):
+        return int(step)
+    raise InputError(f"--set {field} names no entry: {near_name(step, names) if names else 'the list is empty'}")
+
+
+def load_scene(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> Scene:
+    """A packaged scene by name, any other by path, with 'key=value' overrides. Raises InputError."""
+    data = read_toml(scene_path(str(name_or_path)))
+    for assignment in overrides:
+        override(data, assignment)
+    return checked(data, Scene)
