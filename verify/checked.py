@@ -14,13 +14,12 @@ _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>.*)`")
 _MISSING = re.compile(r"Object missing required field `(?P<key>.*)`")
 _STEP = re.compile(r"\.([A-Za-z_][\w-]*)|\[(\d+|\.\.\.)\]")
 _PLAIN = {
-    "`int`": "a whole number",
-    "`float`": "a number",
-    "`str`": "a word",
-    "`bool`": "true or false",
-    "`array`": "a list",
-    "`object`": "a table",
-    "`null`": "nothing",
+    "int": "a whole number",
+    "float": "a number",
+    "str": "a word",
+    "bool": "true or false",
+    "array": "a list",
+    "object": "a table",
 }
 
 
@@ -56,10 +55,8 @@ def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
 
 def _humane(what: str) -> str:
     """msgspec's 'Expected `int` >= 1' in plain words."""
-    text = what.split(", got ")[0]
-    for code, words in _PLAIN.items():
-        text = text.replace(code, words)
-    return text.replace("Expected", "give").replace("`", "").replace(" | nothing", "")
+    text = what.split(", got ")[0].replace("Expected", "give").replace(" | null", "")
+    return re.sub(r"`(\w+)`", lambda found: _PLAIN.get(found[1], found[1]), text)
 
 
 def _dotted(where: str, steps: list[Any]) -> str:

@@ -9,9 +9,9 @@ import numpy as np
 from verify.errors import InputError, NoBracketError, PairingError
 from verify.modes import Array, Modes
 
-EIGENVALUE_FLOOR = 1e-13
-"""Relative frequency error that rounding may leave (measured: 1e-14 up to 10^4 segments or elements)."""
-ORDER_FLOOR = 100 * EIGENVALUE_FLOOR
+EIGENVALUE_FLOOR = 2e-14
+"""Relative frequency error that rounding may leave (measured: 1.1e-14 up to 10^4 segments or elements)."""
+ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
 """Below this an error is too close to rounding to speak of an order."""
 LIKENESS = 0.5
 """A mode pairs with an exact one only above this MAC."""

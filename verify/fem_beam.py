@@ -104,16 +104,18 @@ def _rigid(beam: Beam) -> int:
     return max(2 - sum(held[support] for support in beam.supports), 1 if slides else 0)
 
 
+def n_elastic(beam: Beam, n_elements: int) -> int:
+    """How many elastic modes the model has."""
+    return unknowns(beam, n_elements) - _rigid(beam)
+
+
 def solve_modes(beam: Beam, n_modes: int, n_elements: int) -> Modes:
     """The first `n_modes` elastic modes with `n_elements` equal cubic Hermite elements and consistent mass.
 
     Shapes are the elements' own cubics. Raises InputError for more modes than unknowns or sizes that do not
     fit into memory.
     """
-    if n_elements < 1:
-        raise InputError(f"{FIELD} = {n_elements!r}: give at least one element")
-    n = unknowns(beam, n_elements)
-    check_size(n, n_modes, n - _rigid(beam), FIELD, n_elements)
+    check(beam, n_modes, n_elements)
     free = free_unknowns(beam.supports, n_elements)
     pencil = element_pencil(beam, np.ones(n_elements), free)
     pairs = lowest(pencil, n_modes)
@@ -135,6 +137,13 @@ def solve_modes(beam: Beam, n_modes: int, n_elements: int) -> Modes:
     return Modes(model="fem", count=n_elements, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
                  nodes=nodes, readings={"nodal": lambda: nodal[:, ::2]}, points=points, sampled=sampled,
                  method=pairs.method)  # fmt: skip
+
+
+def check(beam: Beam, n_modes: int, n_elements: int) -> None:
+    """Raise InputError, before anything is allocated, where `solve_modes` would refuse."""
+    if n_elements < 1:
+        raise InputError(f"{FIELD} = {n_elements!r}: give at least one element")
+    check_size(unknowns(beam, n_elements), n_modes, n_elastic(beam, n_elements), FIELD, n_elements)
 
 
 def interpolate(nodal: Array, x: Array, derivative: int = 0) -> Array:
@@ -212,8 +221,3 @@ def dispersion_frequency_hz(beam: Beam, mode: int, n_elements: int) -> float:
 def method(beam: Beam, n_modes: int, n_elements: int) -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
     return method_name(unknowns(beam, n_elements), n_modes)
-
-
-def n_elastic(beam: Beam, n_elements: int) -> int:
-    """How many elastic modes the model has."""
-    return unknowns(beam, n_elements) - _rigid(beam)

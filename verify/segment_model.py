@@ -92,13 +92,14 @@ def solve_modes(beam: Beam, n_modes: int, n_segments: int) -> Modes:
     y + delta^2 y / 12 (order 4; the raw y, order 2, is the reading "raw") and through a cubic spline between.
     Raises InputError for more modes than the chain has or sizes that do not fit into memory.
     """
-    _check(beam, n_modes, n_segments)
+    check(beam, n_modes, n_segments)
     chain = uniform_chain(beam, n_segments)
     pairs = lowest(chain_pencil(chain), n_modes)
     return _modes(beam, chain, pairs)
 
 
-def _check(beam: Beam, n_modes: int, n_segments: int) -> None:
+def check(beam: Beam, n_modes: int, n_segments: int) -> None:
+    """Raise InputError, before anything is allocated, where `solve_modes` would refuse."""
     if n_segments < 2:
         raise InputError(f"{FIELD} = {n_segments!r}: a chain that bends needs at least 2 segments")
     if not set(beam.supports) <= {"pinned"}:

@@ -73,9 +73,13 @@ class Workbench:
 
     def _solve(self, model: str, count: int, n_wanted: int, n_needed: int) -> "Modes":
         module = model_module(model)
-        # what others wish for must not fail the one who asks for less
+        # what others wish for must not fail the one who asks for less, so theirs is cut to what there is
         available = module.n_elastic(self.beam, count)
-        n_modes = n_needed if n_needed > available else min(n_wanted, available)
+        if n_needed > available:
+            raise InputError(
+                f"mode = {n_needed}: the {model} model at count = {count} has {available} elastic modes, raise count"
+            )
+        n_modes = min(n_wanted, available)
         start = perf_counter()
         modes: Modes = module.solve_modes(self.beam, n_modes, count)
         seconds = perf_counter() - start

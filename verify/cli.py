@@ -1,0 +1,237 @@
+"""The command line. Every command imports what it needs when it runs, and nothing before."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from verify import __version__
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+BAD_INPUT, GATE_FAILED, INTERRUPTED = 2, 1, 130
+
+_overrides = click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a value of the scene: beam.length=0.4."
+)
+_as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
+_scene = click.argument("scene")
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, prog_name="verify")
+def cli() -> None:
+    """How far can a finite-segment model of a vibrating beam be trusted, and what does that cost in run time?
+
+    SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
+    Exit status: 0 all well, 1 a gate failed, 2 bad input.
+    """
+
+
+@cli.command()
+@_scene
+@_overrides
+@click.option("--reports", "folder", default="reports", show_default=True, type=click.Path(path_type=Path),
+              help="Folder for the HTML report.")  # fmt: skip
+@click.option("--no-report", is_flag=True, help="Judge only; write nothing.")
+@_as_json
+def run(scene: str, overrides: tuple[str, ...], folder: Path, no_report: bool, as_json: bool) -> None:
+    """Run everything SCENE asks for; write its report; exit 1 when a gate fails."""
+    from verify.files import writable_folder
+    from verify.run import n_steps, run_scene
+
+    asked = _load(scene, overrides)
+    target = None if no_report else writable_folder(folder, "reports") / f"{asked.name}.html"
+    with _progress(n_steps(asked), quiet=as_json) as step:
+        result = run_scene(asked, step)
+    if target is not None:
+        from verify.report import write_report
+
+        write_report(result, target, command=_command_line("run", scene, overrides))
+    if as_json:
+        from verify.plain import run_as_plain
+
+        _print_json(run_as_plain(result, target))
+    else:
+        from verify.console import print_run
+
+        print_run(result, target)
+    if not result.passed:
+        raise SystemExit(GATE_FAILED)
+
+
+@cli.command()
+@_scene
+@_overrides
+@click.option("--modes", metavar="LIST", help="Modes, for instance 1,5,22. Default: the scene's [convergence].")
+@click.option("--counts", metavar="LIST", help="Segments and elements, for instance 10,20,49,98.")
+@_as_json
+@click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
+@click.option("--markdown", "layout", flag_value="markdown", help="Print a Markdown table.")
+def table(
+    scene: str, overrides: tuple[str, ...], modes: str | None, counts: str | None, as_json: bool, layout: str | None
+) -> None:
+    """Both discrete models side by side: frequency, error, observed order, bracket width, run time."""
+    from verify.plain import table_request, table_text
+
+    asked = _load(scene, overrides)
+    request = table_request(asked, modes, counts)
+    from verify.studies import convergence
+    from verify.workbench import Workbench
+
+    with _progress(len(request.counts), quiet=as_json or bool(layout)) as step:
+        rows = convergence(Workbench(asked.beam), request, step)
+    if as_json or layout:
+        click.echo(table_text(rows, layout or "json"), nl=False)
+    else:
+        from verify.console import print_table
+
+        print_table(rows)
+
+
+@cli.command()
+@click.argument("quantity")
+@click.argument("arguments", nargs=-1, metavar="[KEY=VALUE]...")
+@click.option("--scene", default="paper", show_default=True, help="Whose beam and drive.")
+@_overrides
+@_as_json
+def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
+    from verify import quantities
+    from verify.scene import split_assignment
+    from verify.workbench import Workbench
+
+    found = quantities.quantity(quantity)
+    given = quantities.arguments_of(found, dict(split_assignment(text) for text in arguments))
+    asked = _load(scene, overrides)
+    value = quantities.evaluate(found, given, asked, Workbench(asked.beam))
+    plain = quantities.as_plain(value)
+    if as_json:
+        shown = quantities.arguments_as_plain(given)
+        _print_json({"quantity": quantity, "arguments": shown, "value": plain, "unit": found.unit})
+    else:
+        click.echo(f"{quantity} = {quantities.in_words(plain)} {found.unit}".removesuffix(" 1"))
+
+
+@cli.command("quantities")
+@_as_json
+def list_quantities(as_json: bool) -> None:
+    """List the named quantities with their arguments, units and defaults."""
+    from verify.quantities import described
+
+    listed = described()
+    if as_json:
+        _print_json(listed)
+        return
+    for one in listed:
+        click.secho(one["quantity"], bold=True, nl=False)
+        click.echo(f"  [{one['unit']}]  {one['summary']}")
+        for argument in one["arguments"]:
+            default = "required" if argument["required"] else f"default {argument['default']}"
+            click.echo(f"    {argument['name']:<13} {argument['type']}; {default}. {argument['meaning']}".rstrip())
+
+
+@cli.command()
+@_scene
+@_overrides
+@_as_json
+def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Print what SCENE will run, what is skipped, and why. Solves nothing."""
+    from verify.plan import plan_scene
+
+    planned = plan_scene(_load(scene, overrides))
+    if as_json:
+        import msgspec
+
+        _print_json(msgspec.to_builtins(planned))
+    else:
+        from verify.console import print_plan
+
+        print_plan(planned)
+
+
+@cli.command()
+@_as_json
+def scenes(as_json: bool) -> None:
+    """List the packaged scenes."""
+    from verify.scene import load_scene, packaged_scenes
+
+    found = [load_scene(name) for name in packaged_scenes()]
+    if as_json:
+        _print_json([{"scene": s.name, "title": s.title, "gates": len(s.gate)} for s in found])
+        return
+    for one in found:
+        click.secho(one.name, bold=True, nl=False)
+        click.echo(f"  {one.title} ({len(one.gate)} gates)")
+
+
+@cli.command()
+@click.argument("path", type=click.Path(path_type=Path))
+@click.option("--force", is_flag=True, help="Replace a file that is there.")
+def init(path: Path, force: bool) -> None:
+    """Write a commented scene to PATH to start from."""
+    from verify.files import write_whole
+    from verify.scene import STARTER
+
+    if path.exists() and not force:
+        raise InputError(f"path = {str(path)!r} exists: name another file, or replace it with --force")
+    write_whole(path, STARTER.read_text("utf-8"), "path")
+    click.echo(f"wrote {path}; next: verify run {path}")
+
+
+def _load(scene: str, overrides: tuple[str, ...]) -> "Scene":
+    from verify.scene import load_scene
+
+    return load_scene(scene, overrides)
+
+
+def _print_json(data: Any) -> None:
+    import json
+
+    click.echo(json.dumps(data, indent=2, allow_nan=False))
+
+
+def _command_line(command: str, scene: str, overrides: tuple[str, ...]) -> str:
+    from shlex import join
+
+    return join(["verify", command, scene, *(word for text in overrides for word in ("--set", text))])
+
+
+@contextmanager
+def _progress(n_steps: int, *, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """A bar on the error stream where somebody looks at it; silence elsewhere."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda step: None
+        return
+    from verify.console import progress_bar
+
+    with progress_bar(n_steps) as step:
+        yield step
+
+
+def status_of(argv: list[str] | None = None) -> int:
+    """Run a command line and return its exit status; messages go to the error stream."""
+    try:
+        result = cli.main(args=argv, prog_name="verify", standalone_mode=False)
+    except InputError as error:
+        click.echo(f"verify: {error}", err=True)
+        return BAD_INPUT
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("verify: interrupted; nothing half-written is left", err=True)
+        return INTERRUPTED
+    except SystemExit as stop:
+        return stop.code if isinstance(stop.code, int) else BAD_INPUT
+    return result if isinstance(result, int) else 0
+
+
+def main() -> NoReturn:
+    """Entry point of the command `verify`."""
+    sys.exit(status_of())

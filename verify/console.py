@@ -1,0 +1,151 @@
+"""What a person sees in the terminal: tables and progress, drawn with rich."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from verify.gates import GateResult
+    from verify.plan import Plan
+    from verify.run import RunResult
+    from verify.studies import Cell, Row
+
+
+def seconds_in_words(seconds: float | None) -> str:
+    """A duration with a unit that suits it."""
+    if seconds is None:
+        return "–"
+    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
+        if seconds < limit:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+def percent(value: float | None, *, sign: bool = True) -> str:
+    """A relative figure in per cent; small ones in powers of ten."""
+    if value is None:
+        return "–"
+    text = f"{100 * value:+.3g}" if abs(value) < 1e-5 else f"{100 * value:+.4f}"
+    return (text if sign else text.lstrip("+")) + " %"
+
+
+def figure(value: Any) -> str:
+    """A measured figure, short."""
+    if value is None:
+        return "–"
+    if isinstance(value, dict):
+        return " .. ".join(figure(part) for part in value.values())
+    return f"{value:.7g}"
+
+
+def print_run(result: "RunResult", report: Path | None) -> None:
+    """Verdict, gates, where the report lies."""
+    console = Console(highlight=False)
+    console.print(f"[bold]{result.scene.title or result.scene.name}[/]")
+    if result.gates:
+        console.print(_gate_table(result.gates))
+    for gate in result.gates:
+        if not gate.passed:
+            console.print(Text(f"gate {gate.id}: {gate.reason}", style="red"))
+    n_failed = sum(not gate.passed for gate in result.gates)
+    verdict = f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]" if n_failed else (
+        f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates"
+    )  # fmt: skip
+    console.print(f"{verdict} in {seconds_in_words(result.seconds)}, {len(result.solves)} solves")
+    if report is not None:
+        console.print(f"report: {report}", soft_wrap=True)
+
+
+def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    table.add_column("", no_wrap=True)
+    table.add_column("gate", overflow="fold")
+    table.add_column("measured", justify="right", overflow="fold")
+    table.add_column("expected", justify="right", overflow="fold")
+    table.add_column("unit", no_wrap=True)
+    table.add_column("of band", justify="right", no_wrap=True)
+    for gate in gates:
+        mark = Text("pass", style="green") if gate.passed else Text("FAIL", style="bold red")
+        share = "–" if gate.share is None else f"{100 * gate.share:.3g} %"
+        unit = "" if gate.unit == "1" else gate.unit
+        table.add_row(mark, gate.id, figure(gate.measured), gate.expected, unit, share)
+    return table
+
+
+def print_table(rows: "tuple[Row, ...]") -> None:
+    """The convergence table, one block for each mode."""
+    console = Console(highlight=False)
+    for mode, group in groupby(rows, key=lambda row: row.mode):
+        block = list(group)
+        console.print(f"[bold]mode {mode}[/]  exact {block[0].exact_hz:.4f} Hz")
+        console.print(_mode_table(block))
+        notes = dict.fromkeys(note for row in block for note in row.notes)
+        for note in notes:
+            console.print(Text(f"– {note}", style="dim"))
+        if notes:
+            console.print()
+    console.print("[dim]error against exact Euler-Bernoulli; order from the size before; time of a warm solve[/]")
+
+
+def _mode_table(rows: "list[Row]") -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    names = ("N", "segments Hz", "error", "order", "time", "Hermite Hz", "error", "order", "time", "bracket", "mean err.")
+    for name in names:
+        table.add_column(name, justify="right", overflow="fold")
+    for row in rows:
+        table.add_row(str(row.count), *_cells(row.segment), *_cells(row.fem),
+                      percent(row.bracket_width, sign=False), percent(row.mean_error))  # fmt: skip
+    return table
+
+
+def _cells(cell: "Cell") -> tuple[str, str, str, str]:
+    frequency = "–" if cell.frequency_hz is None else f"{cell.frequency_hz:.4f}"
+    order = "–" if cell.order is None else f"{cell.order:.2f}"
+    return frequency, percent(cell.error), order, seconds_in_words(cell.run_time_s)
+
+
+def print_plan(plan: "Plan") -> None:
+    """What will run, what is skipped, what cannot work."""
+    console = Console(highlight=False)
+    console.print(f"[bold]{plan.scene}[/] will run")
+    for solve in plan.solves:
+        console.print(
+            f"  {solve.model:<8} N = {solve.count:<6} {solve.n_modes} modes of {solve.unknowns} unknowns "
+            f"({solve.method}), for {_who(solve.asked_by)}"
+        )
+    if plan.closed_forms:
+        console.print(f"  closed forms, for {_who(plan.closed_forms)}")
+    console.print("[bold]skipped[/]")
+    for skipped in plan.skipped:
+        console.print(f"  {skipped.what}: {skipped.why}")
+    for problem in plan.problems:
+        console.print(Text(f"  cannot run: {problem.who}: {problem.why}", style="red"))
+
+
+def _who(names: tuple[str, ...]) -> str:
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+@contextmanager
+def progress_bar(n_steps: int) -> Iterator[Callable[[str], None]]:
+    """A bar on the error stream that disappears when done."""
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total}"))
+    with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("starting", total=n_steps)
+        started = False
+
+        def step(name: str) -> None:
+            nonlocal started
+            bar.update(task, description=name, advance=1 if started else 0)
+            started = True
+
+        yield step

@@ -1,0 +1,41 @@
+"""Files written whole or not at all."""
+
+import os
+import tempfile
+from pathlib import Path
+
+from verify.errors import InputError
+
+
+def writable_folder(folder: Path, field: str) -> Path:
+    """Make `folder` and prove that a file can be written there. Raises InputError naming `field`."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError as error:
+        raise InputError(
+            f"{field} = {str(folder)!r} cannot be written to ({error.strerror or error}): name another folder"
+        ) from None
+
+
+def write_whole(path: Path, text: str, field: str = "file") -> None:
+    """Write a text file through a neighbour and a rename, so that no reader ever sees half of it."""
+    handle = None
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, path)
+    except OSError as error:
+        raise InputError(f"{field} = {str(path)!r} cannot be written ({error.strerror or error})") from None
+    finally:
+        if handle is not None and os.path.exists(name):
+            os.unlink(name)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

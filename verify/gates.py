@@ -1,0 +1,116 @@
+"""Gates judged: expected, measured, band, reason."""
+
+from math import isfinite
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from verify.errors import InputError
+from verify.quantities import Quantity, arguments_of, as_plain, evaluate, needs_of, quantity
+
+if TYPE_CHECKING:
+    from verify.scene import Gate, Scene
+    from verify.workbench import Need, Workbench
+
+
+class GateResult(msgspec.Struct, frozen=True, kw_only=True):
+    """One gate's verdict: the same object is a test item, a row in the terminal and a row of the report."""
+
+    id: str
+    quantity: str
+    arguments: dict[str, Any]
+    why: str
+    unit: str
+    expected: str
+    """The expectation in words: '-0.00428024 ± 5e-09', 'at most 0.01', 'contains 4469.94'."""
+    measured: Any
+    """A number or {"lower", "upper"}; None where the gate could not be evaluated."""
+    passed: bool
+    share: float | None
+    """Share of the band used: 0 in its middle, 1 at its edge; None where the band has no width."""
+    reason: str
+    """Why it failed; empty where it passed."""
+    seconds: float
+
+
+def gate_needs(gate: "Gate", scene: "Scene") -> "tuple[Need, ...]":
+    """The solves a gate will ask for. Raises InputError where the gate itself is wrong."""
+    found = quantity(gate.quantity)
+    return needs_of(found, arguments_of(found, gate.arguments), scene)
+
+
+def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
+    """Evaluate one gate. Never raises on a wrong gate or a failing model: a gate that cannot be evaluated fails."""
+    start = perf_counter()
+    unit, value, reason = "", None, ""
+    try:
+        found = quantity(gate.quantity)
+        unit, value = found.unit, _evaluated(found, gate, scene, bench)
+    except InputError as error:
+        reason = f"cannot be evaluated: {error}"
+    except Exception as error:
+        reason = f"cannot be evaluated: {type(error).__name__}: {error}"
+    share = None
+    if not reason:
+        reason, share = _verdict(gate, value)
+    return GateResult(
+        id=gate.id, quantity=gate.quantity, arguments=gate.arguments, why=gate.why, unit=unit,
+        expected=expectation(gate), measured=as_plain(value), passed=not reason, share=share, reason=reason,
+        seconds=perf_counter() - start,
+    )  # fmt: skip
+
+
+def _evaluated(found: Quantity, gate: "Gate", scene: "Scene", bench: "Workbench") -> Any:
+    return evaluate(found, arguments_of(found, gate.arguments), scene, bench)
+
+
+def expectation(gate: "Gate") -> str:
+    """The band in words."""
+    if gate.expect is not None:
+        return f"{gate.expect!r} ± {gate.within:g}" if gate.within is not None else f"contains {gate.expect!r}"
+    sides = [f"at least {gate.at_least!r}"] * (gate.at_least is not None)
+    return ", ".join(sides + [f"at most {gate.at_most!r}"] * (gate.at_most is not None))
+
+
+def _verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
+    """(reason for failing or '', share of the band used)."""
+    if hasattr(value, "lower"):
+        return _bracket_verdict(gate, value)
+    if isinstance(value, complex) or not isfinite(value):
+        return f"measured {value!r}, which is not a finite real number", None
+    if gate.expect is not None and gate.within is None:
+        return f"measured {value!r}, and a number needs within beside expect = {gate.expect!r}", None
+    low, high = band(gate)
+    share = _share(value, low, high)
+    if low <= value <= high:
+        return "", share
+    side, edge = ("below", low) if value < low else ("above", high)
+    return f"measured {value!r} lies {side} {edge!r}", share
+
+
+def band(gate: "Gate") -> tuple[float, float]:
+    """The lowest and highest value that pass; infinite where a side is open."""
+    if gate.expect is not None and gate.within is not None:
+        return gate.expect - gate.within, gate.expect + gate.within
+    low = -float("inf") if gate.at_least is None else gate.at_least
+    return low, float("inf") if gate.at_most is None else gate.at_most
+
+
+def _share(value: float, low: float, high: float) -> float | None:
+    """How much of the band a value uses: its distance from the middle, or for a one-sided band its ratio."""
+    if isfinite(low) and isfinite(high):
+        half = 0.5 * (high - low)
+        return abs(value - 0.5 * (low + high)) / half if half > 0 else None
+    if isfinite(high) and high > 0:
+        return max(value, 0.0) / high
+    return low / value if isfinite(low) and low > 0 and value > 0 else None
+
+
+def _bracket_verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
+    if gate.expect is None or gate.within is not None:
+        return "a two-sided bound needs expect alone: the value it has to contain", None
+    share = _share(gate.expect, value.lower, value.upper)
+    if value.lower < gate.expect < value.upper:
+        return "", share
+    return f"measured {value.lower!r} to {value.upper!r}, which does not contain {gate.expect!r}", share

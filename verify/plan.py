@@ -1,0 +1,121 @@
+"""What a scene will run, what it will not, and why: known before anything is solved."""
+
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from verify.errors import InputError
+from verify.workbench import Need, merged, model_module
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+
+class Ask(msgspec.Struct, frozen=True):
+    """Somebody who wants figures, and the solves behind them."""
+
+    who: str
+    needs: tuple[Need, ...]
+    problem: str = ""
+    """Why it cannot be evaluated; empty where it can."""
+
+
+class PlannedSolve(msgspec.Struct, frozen=True, kw_only=True):
+    """One solve, done once for all who asked."""
+
+    model: str
+    count: int
+    n_modes: int
+    unknowns: int
+    method: str
+    asked_by: tuple[str, ...]
+
+
+class Skipped(msgspec.Struct, frozen=True):
+    """Something this scene does not pay for."""
+
+    what: str
+    why: str
+
+
+class Problem(msgspec.Struct, frozen=True):
+    """Something asked that will fail, known beforehand."""
+
+    who: str
+    why: str
+
+
+class Plan(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything `verify plan` prints."""
+
+    scene: str
+    solves: tuple[PlannedSolve, ...]
+    closed_forms: tuple[str, ...]
+    skipped: tuple[Skipped, ...]
+    problems: tuple[Problem, ...]
+
+
+def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
+    """Everything in a scene that wants a figure."""
+    asks = []
+    for gate in scene.gate:
+        from verify.gates import gate_needs
+
+        try:
+            asks.append(Ask(f"gate {gate.id}", gate_needs(gate, scene)))
+        except InputError as error:
+            asks.append(Ask(f"gate {gate.id}", (), str(error)))
+    return asks if gates_only else asks + _study_asks(scene)
+
+
+def _study_asks(scene: "Scene") -> list[Ask]:
+    asks = []
+    models = ("segment", "fem")
+    if scene.spectrum:
+        size = scene.spectrum
+        asks.append(Ask("spectrum", tuple(Need(m, size.count, size.modes) for m in models)))
+    if scene.convergence:
+        modes, counts = scene.convergence.modes, scene.convergence.counts
+        asks.append(Ask("convergence", tuple(Need(m, count, max(modes)) for count in counts for m in models)))
+    if scene.sensitivity:
+        asks.append(Ask("sensitivity", ()))
+    return asks
+
+
+def plan_scene(scene: "Scene") -> Plan:
+    """What will be solved, evaluated in closed form, or skipped."""
+    asks = asks_of(scene)
+    solves, problems = [], [(ask.who, ask.problem) for ask in asks if ask.problem]
+    for (model, count), n_wanted in sorted(merged(need for ask in asks for need in ask.needs).items()):
+        who = tuple(a.who for a in asks if any((n.model, n.count) == (model, count) for n in a.needs))
+        try:
+            solves.append(_planned(scene, model, count, n_wanted, who))
+        except InputError as error:
+            problems += [(one, str(error)) for one in who]
+    closed = tuple(ask.who for ask in asks if not ask.needs and not ask.problem)
+    return Plan(scene=scene.name, solves=tuple(solves), closed_forms=closed, skipped=_skipped(scene, asks),
+                problems=tuple(Problem(*pair) for pair in problems))  # fmt: skip
+
+
+def _planned(scene: "Scene", model: str, count: int, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
+    module = model_module(model)
+    n_modes = max(min(n_wanted, module.n_elastic(scene.beam, count)), 1)
+    module.check(scene.beam, n_modes, count)
+    return PlannedSolve(model=model, count=count, n_modes=n_modes, unknowns=module.unknowns(scene.beam, count),
+                        method=module.method(scene.beam, n_modes, count), asked_by=who)  # fmt: skip
+
+
+def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
+    """What this scene leaves out, with the reason."""
+    left = []
+    if not any(ask.needs for ask in asks):
+        left.append(Skipped("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
+    elif not any(need.model == "fem" for ask in asks for need in ask.needs):
+        left.append(Skipped("scikit-fem", "nothing asked needs the finite-element model"))
+    reason = "the scene has no drive" if scene.drive is None else "no gate and no table asks for the driven beam"
+    left.append(Skipped("harmonic response", reason))
+    left.append(Skipped("time stepping", "modal figures only: nothing here depends on time"))
+    left.append(Skipped("contact search", "the scene has no slider"))
+    studies = {"spectrum": scene.spectrum, "convergence": scene.convergence, "sensitivity": scene.sensitivity}
+    left += [Skipped(f"{name} study", f"the scene has no [{name}]") for name, asked in studies.items() if not asked]
+    return tuple(left)

@@ -1,0 +1,72 @@
+"""A scene run: whatever it asks for is evaluated once, and nothing else."""
+
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from verify.gates import GateResult, judge
+from verify.plan import asks_of
+from verify.scene import Scene, load_scene
+from verify.workbench import Solve, Workbench
+
+if TYPE_CHECKING:
+    from verify.studies import Row, SensitivityStudy, SpectrumStudy
+
+
+class RunResult(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything a scene asked for."""
+
+    scene: Scene
+    gates: tuple[GateResult, ...]
+    spectrum: "SpectrumStudy | None"
+    convergence: "tuple[Row, ...] | None"
+    sensitivity: "SensitivityStudy | None"
+    solves: tuple[Solve, ...]
+    seconds: float
+
+    @property
+    def passed(self) -> bool:
+        """Whether every gate passed."""
+        return all(gate.passed for gate in self.gates)
+
+
+def workbench_for(scene: Scene, *, gates_only: bool = False) -> Workbench:
+    """A workbench that knows everything the scene will ask for, so that each size is solved once."""
+    return Workbench(scene.beam, (need for ask in asks_of(scene, gates_only=gates_only) for need in ask.needs))
+
+
+def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambda step: None) -> RunResult:
+    """Run a scene (or a packaged name, or a path). `progress` is told each step before it starts.
+
+    Raises InputError where the scene is wrong; a gate that fails or cannot be evaluated is in the result.
+    """
+    found = scene if isinstance(scene, Scene) else load_scene(scene)
+    start = perf_counter()
+    bench = workbench_for(found)
+    gates = []
+    for gate in found.gate:
+        progress(f"gate {gate.id}")
+        gates.append(judge(gate, found, bench))
+    spectrum = convergence = sensitivity = None
+    if found.spectrum or found.convergence or found.sensitivity:
+        from verify import studies
+
+        if found.spectrum:
+            progress("error spectrum")
+            spectrum = studies.spectrum(bench, found.spectrum)
+        if found.convergence:
+            convergence = studies.convergence(bench, found.convergence, progress)
+        if found.sensitivity:
+            sensitivity = studies.sensitivity(found.beam, found.sensitivity)
+    return RunResult(
+        scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity,
+        solves=tuple(bench.solves), seconds=perf_counter() - start,
+    )  # fmt: skip
+
+
+def n_steps(scene: Scene) -> int:
+    """How many times `run_scene` reports progress."""
+    return len(scene.gate) + bool(scene.spectrum) + (len(scene.convergence.counts) if scene.convergence else 0)
