@@ -64,12 +64,12 @@ def print_run(result: "RunResult", report: Path | None) -> None:
 
 
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
     table.add_column("", no_wrap=True)
     table.add_column("gate", overflow="fold")
     table.add_column("measured", justify="right", overflow="fold")
     table.add_column("expected", justify="right", overflow="fold")
-    table.add_column("unit", no_wrap=True)
+    table.add_column("", no_wrap=True)
     table.add_column("of band", justify="right", no_wrap=True)
     for gate in gates:
         mark = Text("pass", style="green") if gate.passed else Text("FAIL", style="bold red")
@@ -85,52 +85,69 @@ def print_table(rows: "tuple[Row, ...]") -> None:
     for mode, group in groupby(rows, key=lambda row: row.mode):
         block = list(group)
         console.print(f"[bold]mode {mode}[/]  exact {block[0].exact_hz:.4f} Hz")
-        console.print(_mode_table(block))
+        console.print(_mode_table(block, wide=console.width >= 88))
         notes = dict.fromkeys(note for row in block for note in row.notes)
         for note in notes:
             console.print(Text(f"– {note}", style="dim"))
         if notes:
             console.print()
-    console.print("[dim]error against exact Euler-Bernoulli; order from the size before; time of a warm solve[/]")
+    console.print("[dim]frequencies in Hz, errors against exact Euler-Bernoulli and bracket width in %, order from the size "
+        "before, warm solve in ms[/]"
+    )
 
 
-def _mode_table(rows: "list[Row]") -> Table:
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-    names = ("N", "segments Hz", "error", "order", "time", "Hermite Hz", "error", "order", "time", "bracket", "mean err.")
-    for name in names:
-        table.add_column(name, justify="right", overflow="fold")
+def _mode_table(rows: "list[Row]", *, wide: bool) -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
+    model = ("error %", "order", "ms")
+    for name in ("N", "segments", *model, "Hermite", *model, "bracket", *(["mean %"] if wide else [])):
+        table.add_column(name, justify="right", no_wrap=True)
     for row in rows:
-        table.add_row(str(row.count), *_cells(row.segment), *_cells(row.fem),
-                      percent(row.bracket_width, sign=False), percent(row.mean_error))  # fmt: skip
+        mean = [_bare_percent(row.mean_error)] if wide else []
+        width = _bare_percent(row.bracket_width).lstrip("+")
+        table.add_row(str(row.count), *_cells(row.segment), *_cells(row.fem), width, *mean)
     return table
 
 
 def _cells(cell: "Cell") -> tuple[str, str, str, str]:
-    frequency = "–" if cell.frequency_hz is None else f"{cell.frequency_hz:.4f}"
+    frequency = "–" if cell.frequency_hz is None else f"{cell.frequency_hz:.7g}"
     order = "–" if cell.order is None else f"{cell.order:.2f}"
-    return frequency, percent(cell.error), order, seconds_in_words(cell.run_time_s)
+    time = "–" if cell.run_time_s is None else f"{1e3 * cell.run_time_s:.3g}"
+    return frequency, _bare_percent(cell.error), order, time
+
+
+def _bare_percent(value: float | None) -> str:
+    """A relative figure in per cent without the sign for it, at most nine characters."""
+    if value is None:
+        return "–"
+    return f"{100 * value:+.4f}" if abs(value) >= 1e-4 else f"{100 * value:+.2e}".replace("e-0", "e-")
 
 
 def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
     console = Console(highlight=False)
     console.print(f"[bold]{plan.scene}[/] will run")
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for name in ("model", "N", "modes", "unknowns"):
+        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
+    table.add_column("vectors by", no_wrap=True)
+    table.add_column("asked by", overflow="fold")
     for solve in plan.solves:
-        console.print(
-            f"  {solve.model:<8} N = {solve.count:<6} {solve.n_modes} modes of {solve.unknowns} unknowns "
-            f"({solve.method}), for {_who(solve.asked_by)}"
-        )
+        sizes = (str(n) for n in (solve.count, solve.n_modes, solve.unknowns))
+        table.add_row(solve.model, *sizes, solve.method, _who(solve.asked_by))
+    if plan.solves:
+        console.print(table)
     if plan.closed_forms:
-        console.print(f"  closed forms, for {_who(plan.closed_forms)}")
+        console.print(f"closed forms, for {_who(plan.closed_forms)}")
     console.print("[bold]skipped[/]")
     for skipped in plan.skipped:
         console.print(f"  {skipped.what}: {skipped.why}")
     for problem in plan.problems:
-        console.print(Text(f"  cannot run: {problem.who}: {problem.why}", style="red"))
+        console.print(Text(f"cannot run: {problem.who}: {problem.why}", style="red"))
 
 
 def _who(names: tuple[str, ...]) -> str:
-    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+    short = [name.removeprefix("gate ") for name in names]
+    return ", ".join(short[:2]) + (f" and {len(short) - 2} more" if len(short) > 2 else "")
 
 
 @contextmanager

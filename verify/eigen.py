@@ -90,10 +90,10 @@ def _memory_bytes() -> int:
 
 
 def method_name(n_unknowns: int, n_modes: int) -> str:
-    """What `lowest` will do, in words."""
+    """How `lowest` will find the vectors; every value is then read from the factored quotient."""
     if n_unknowns <= DENSE_UNKNOWNS:
-        return "dense, factored quotient"
-    return "dense SVD, factored quotient" if uses_dense(n_unknowns, n_modes) else "mixed shift-invert, factored quotient"
+        return "dense"
+    return "dense SVD" if uses_dense(n_unknowns, n_modes) else "sparse"
 
 
 def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:

@@ -122,7 +122,7 @@ def solve_modes(beam: Beam, n_modes: int, n_elements: int) -> Modes:
     scale = beam.length / n_elements
     frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / scale**2
     nodal = _all_values(n_elements, free, pairs.vectors)
-    nodal = nodal * np.where(nodal[:, :2].sum(axis=1) < 0, -1.0, 1.0)[:, None]
+    nodal = nodal * _sign(beam.supports[0], nodal)[:, None]
     nodal = nodal / sqrt(beam.mass_per_length * scale)
     nodes = np.arange(n_elements + 1) * scale
 
@@ -137,6 +137,12 @@ def solve_modes(beam: Beam, n_modes: int, n_elements: int) -> Modes:
     return Modes(model="fem", count=n_elements, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
                  nodes=nodes, readings={"nodal": lambda: nodal[:, ::2]}, points=points, sampled=sampled,
                  method=pairs.method)  # fmt: skip
+
+
+def _sign(support: str, nodal: Array) -> Array:
+    """+-1 for each mode, (k,): by the first of deflection, slope, curvature that the left end leaves free."""
+    derivative = {"free": 0, "guided": 0, "pinned": 1, "clamped": 2}[support]
+    return np.where(interpolate(nodal[:, :4], np.zeros(1), derivative)[:, 0] < 0, -1.0, 1.0)
 
 
 def check(beam: Beam, n_modes: int, n_elements: int) -> None:

@@ -1,0 +1,37 @@
+"""Start-up of the commands as ratios to a bare interpreter, medians of interleaved rounds.
+
+Run: python benchmarks/startup.py [rounds]
+"""
+
+import subprocess
+import sys
+from statistics import median
+from time import perf_counter
+
+COMMANDS = {
+    "bare interpreter": ["-c", "pass"],
+    "verify --help": ["-m", "verify", "--help"],
+    "closed-form figure": ["-m", "verify", "measure", "mode.frequency", "model=analytic", "mode=22"],
+    "verify quantities": ["-m", "verify", "quantities"],
+    "segment figure": ["-m", "verify", "measure", "mode.frequency", "model=segment", "mode=22", "count=49"],
+    "fem figure": ["-m", "verify", "measure", "mode.frequency", "model=fem", "mode=22", "count=49"],
+}
+
+
+def seconds(arguments: list[str]) -> float:
+    """Wall time of one fresh process."""
+    start = perf_counter()
+    subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
+    return perf_counter() - start
+
+
+def main(rounds: int) -> None:
+    """Print each command's median time and the median of its ratio to the bare interpreter of the same round."""
+    times = [{name: seconds(arguments) for name, arguments in COMMANDS.items()} for _ in range(rounds + 1)][1:]
+    for name in COMMANDS:
+        ratio = median(row[name] / row["bare interpreter"] for row in times)
+        print(f"{name:<20} {median(row[name] for row in times) * 1e3:7.1f} ms   {ratio:5.1f} x")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 15)

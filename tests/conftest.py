@@ -1,0 +1,17 @@
+"""Beams that no test value is symmetric in, and a way to plant faults."""
+
+import pytest
+
+from verify.beam import Beam
+
+pytest_plugins = ["pytester"]
+
+
+@pytest.fixture
+def paper_beam():
+    return Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+
+
+@pytest.fixture
+def titanium_strip():
+    return Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)

@@ -1,0 +1,222 @@
+"""Segments and Hermite elements against their own exact solutions, in exact or extended arithmetic."""
+
+from math import pi, sin, sqrt
+
+import mpmath
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import analytic_modes, closed_forms, eigen, fem_beam, segment_model
+from verify.errors import InputError
+
+MODELS = {"segment": segment_model, "fem": fem_beam}
+
+
+def test_two_links_swing_as_worked_out_by_hand(titanium_strip):
+    """One unknown y: spring (2 y / l)^2 k, kinetic energy 2 m y'^2 / 3, so omega^2 = 6 EI / (rho A l^4)."""
+    length = titanium_strip.length / 2
+    omega = sqrt(6) * titanium_strip.wave_constant / length**2
+    modes = segment_model.solve_modes(titanium_strip, 1, 2)
+    assert modes.frequencies_hz[0] == pytest.approx(omega / (2 * pi), rel=1e-15)
+
+
+def extended_precision_frequencies(beam, stiffness, mass, length):
+    """All elastic frequencies of a small pencil in element units, by mpmath at 40 digits."""
+    with mpmath.workdps(40):
+        lower = mpmath.cholesky(mpmath.matrix(mass))
+        inverse = lower**-1
+        values = mpmath.eigsy(inverse * mpmath.matrix(stiffness) * inverse.T, eigvals_only=True)
+        scale = mpmath.mpf(beam.wave_constant) / mpmath.mpf(length) ** 2 / (2 * mpmath.pi)
+        return [float(mpmath.sqrt(v) * scale) for v in values if v > 1e-12]
+
+
+def segment_matrices(n):
+    """K and M of a pinned chain with unit links, in fractions of small integers."""
+    k, m = mpmath.zeros(n - 1), mpmath.zeros(n - 1)
+    rows = [[(i - 1, 1), (i, -2), (i + 1, 1)] for i in range(n - 1)]
+    for row in rows:
+        for i, a in row:
+            for j, b in row:
+                if 0 <= i < n - 1 and 0 <= j < n - 1:
+                    k[i, j] += a * b
+    for link in range(n):
+        for i in (link - 1, link):
+            for j in (link - 1, link):
+                if 0 <= i < n - 1 and 0 <= j < n - 1:
+                    m[i, j] += mpmath.mpf(2 if i == j else 1) / 6
+    return k, m
+
+
+def hermite_matrices(n):
+    """K and M of pinned Hermite elements of unit length from the textbook's 4x4 matrices."""
+    ke = [[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]
+    me = [[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]
+    k, m = mpmath.zeros(2 * n + 2), mpmath.zeros(2 * n + 2)
+    for e in range(n):
+        for i in range(4):
+            for j in range(4):
+                k[2 * e + i, 2 * e + j] += ke[i][j]
+                m[2 * e + i, 2 * e + j] += mpmath.mpf(me[i][j]) / 420
+    keep = [i for i in range(2 * n + 2) if i not in (0, 2 * n)]
+    return (mpmath.matrix([[a[i, j] for j in keep] for i in keep]) for a in (k, m))
+
+
+@pytest.mark.parametrize(("model", "matrices"), [("segment", segment_matrices), ("fem", hermite_matrices)])
+def test_every_frequency_of_a_small_model_agrees_with_extended_precision(titanium_strip, model, matrices):
+    n = 7
+    with mpmath.workdps(40):
+        stiffness, mass = matrices(n)
+    expected = extended_precision_frequencies(titanium_strip, stiffness, mass, titanium_strip.length / n)
+    found = MODELS[model].solve_modes(titanium_strip, len(expected), n).frequencies_hz
+    assert found == pytest.approx(expected, rel=2e-14)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("count", [3, 8, 49, 130, 260, 700])
+def test_eigenvalues_are_those_of_the_exact_discrete_dispersion(titanium_strip, model, count):
+    n_modes = min(count - 1, 40)
+    found = MODELS[model].solve_modes(titanium_strip, n_modes, count).frequencies_hz
+    exact = [MODELS[model].dispersion_frequency_hz(titanium_strip, n, count) for n in range(1, n_modes + 1)]
+    assert found == pytest.approx(exact, rel=1e-13)
+
+
+def test_most_of_the_modes_of_a_long_chain_keep_their_digits(titanium_strip):
+    found = segment_model.solve_modes(titanium_strip, 250, 300)
+    assert found.method == "dense SVD"
+    exact = [segment_model.dispersion_frequency_hz(titanium_strip, n, 300) for n in range(1, 251)]
+    assert found.frequencies_hz == pytest.approx(exact, rel=1e-13)
+
+
+def test_an_assembled_stiffness_loses_what_the_factored_one_keeps(titanium_strip):
+    """The reason for eigen.py: at 2000 links LAPACK on K = B^T B is off by more than 1e-8 in mode 1."""
+    from scipy.linalg import eigh
+
+    chain = segment_model.uniform_chain(titanium_strip, 2000)
+    pencil = segment_model.chain_pencil(chain)
+    strain = pencil.strain_matrix()
+    plain = eigh((strain.T @ strain).toarray(), pencil.mass_matrix().toarray(), eigvals_only=True, subset_by_index=(0, 0))
+    exact = (2 * sin(pi / 4000) ** 2 * sqrt(12 / (3 - 2 * sin(pi / 4000) ** 2))) ** 2
+    assert abs(plain[0] / exact - 1) > 1e-8
+    assert eigen.lowest(pencil, 3).values[0] == pytest.approx(exact, rel=5e-14)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_runs_repeat_to_the_last_bit(titanium_strip, model):
+    first, second = (MODELS[model].solve_modes(titanium_strip, 9, 900).frequencies_hz for _ in range(2))
+    assert (first == second).all()
+
+
+def test_scikit_fems_assembly_equals_the_textbook_matrices_on_unequal_elements():
+    lengths, stiffness, mass = np.array([0.7, 1.9, 1.1]), np.array([2.0, 0.3, 5.0]), np.array([1.2, 0.4, 3.0])
+    found_k, found_m = (a.toarray() for a in fem_beam.assemble(lengths, stiffness, mass))
+    k, m = np.zeros((8, 8)), np.zeros((8, 8))
+    for e, h in enumerate(lengths):
+        scale = np.diag([1, h, 1, h])
+        ke = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
+        me = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
+        cell = slice(2 * e, 2 * e + 4)
+        k[cell, cell] += stiffness[e] / h**3 * scale @ ke @ scale
+        m[cell, cell] += mass[e] * h / 420 * scale @ me @ scale
+    assert found_k == pytest.approx(k, rel=1e-13, abs=1e-13)
+    assert found_m == pytest.approx(m, rel=1e-13, abs=1e-15)
+
+
+def test_the_factored_curvatures_are_scikit_fems_stiffness():
+    lengths, stiffness = np.array([0.7, 1.9, 1.1]), np.array([2.0, 0.3, 5.0])
+    assembled = fem_beam.assemble(lengths, stiffness, np.ones(3))[0].toarray()
+    rows = fem_beam.curvature_matrix(lengths).toarray()
+    weights = np.concatenate([stiffness / lengths, 3 * stiffness / lengths])
+    assert rows.T @ (weights[:, None] * rows) == pytest.approx(assembled, rel=1e-13, abs=1e-13)
+    assert fem_beam.element_curvatures(lengths, np.eye(8)) == pytest.approx(rows, abs=1e-15)
+
+
+@pytest.mark.parametrize("count", [3, 300])
+def test_the_sparse_strains_of_a_chain_are_its_joint_angles(titanium_strip, count):
+    chain = segment_model.uniform_chain(titanium_strip, count)
+    unknowns = np.random.default_rng(5).standard_normal((count - 1, 2))
+    by_matrix = segment_model._strain_matrix(chain) @ unknowns
+    assert by_matrix == pytest.approx(segment_model.joint_angles(chain, unknowns), abs=1e-14)
+    dense, sparse = (segment_model.mass_matrix(chain, dense=d) for d in (True, False))
+    assert (dense == sparse.toarray()).all()
+
+
+def test_segments_lie_below_and_hermite_elements_above_for_every_mode_a_chain_has(titanium_strip):
+    for count in range(2, 30):
+        exact = np.array([closed_forms.frequency_hz(titanium_strip, n) for n in range(1, count)])
+        below = segment_model.solve_modes(titanium_strip, count - 1, count).frequencies_hz
+        above = fem_beam.solve_modes(titanium_strip, count - 1, count).frequencies_hz
+        assert (below < exact).all(), count
+        assert (exact < above).all(), count
+
+
+@pytest.mark.parametrize(("model", "sign"), [("segment", -1), ("fem", 1)])
+def test_the_leading_error_is_mu_to_the_fourth_over_1440(titanium_strip, model, sign):
+    mode, count = 2, 60
+    exact = closed_forms.frequency_hz(titanium_strip, mode)
+    error = MODELS[model].solve_modes(titanium_strip, mode, count).frequencies_hz[-1] / exact - 1
+    assert error == pytest.approx(sign * (mode * pi / count) ** 4 / 1440, rel=6e-3)
+
+
+def test_frequencies_of_a_thick_links_own_inertia_belong_to_the_method_not_to_rayleigh(paper_beam):
+    error = segment_model.solve_modes(paper_beam, 22, 49).frequencies_hz[21] / closed_forms.frequency_hz(paper_beam, 22)
+    assert error - 1 == pytest.approx(-0.00428024, abs=5e-9)
+
+
+@pytest.mark.parametrize(("model", "bound"), [("segment", 6e-5), ("fem", 3e-5)])
+def test_deflection_and_slope_between_the_nodes_follow_the_exact_mode(titanium_strip, model, bound):
+    x = np.array([0.0, 0.0171, 0.2003, 0.4444, 0.73])
+    exact = analytic_modes.solve_modes(titanium_strip, 5)
+    found = MODELS[model].solve_modes(titanium_strip, 5, 49)
+    assert found.deflection(x) == pytest.approx(exact.deflection(x), rel=bound, abs=bound * exact.deflection(x).max())
+    slope = exact.slope(x)
+    assert found.slope(x) == pytest.approx(slope, rel=40 * bound, abs=40 * bound * abs(slope).max())
+
+
+def test_raw_joints_are_of_order_two_and_corrected_ones_of_order_four(titanium_strip):
+    mode = 3
+    for reading, leading in (("raw", 1 / 12), ("corrected", None)):
+        errors = []
+        for count in (30, 60):
+            modes = segment_model.solve_modes(titanium_strip, mode, count)
+            exact = analytic_modes.mode_shape(titanium_strip, mode, modes.nodes)
+            errors.append(np.linalg.norm(modes.readings[reading]()[mode - 1]) / np.linalg.norm(exact) - 1)
+        order = np.log2(errors[0] / errors[1])
+        assert order == pytest.approx(2 if leading else 4, abs=0.03)
+        if leading:
+            assert errors[1] == pytest.approx(leading * (mode * pi / 60) ** 2, rel=0.02)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_requests_no_model_can_meet_are_refused_before_anything_is_allocated(titanium_strip, model):
+    solve = MODELS[model].solve_modes
+    with pytest.raises(InputError, match="n_modes = 0"):
+        solve(titanium_strip, 0, 9)
+    with pytest.raises(InputError, match="more than the"):
+        solve(titanium_strip, 19, 9)
+    with pytest.raises(InputError, match="GiB"):
+        solve(titanium_strip, 5, 10**13)
+    with pytest.raises(InputError, match="GiB"):
+        solve(titanium_strip, 300_000, 1_000_000)
+    with pytest.raises(InputError, match="segment|element"):
+        solve(titanium_strip, 1, -3)
+
+
+def test_ends_the_segments_cannot_have_yet_are_refused(titanium_strip):
+    with pytest.raises(InputError, match="use fem or analytic"):
+        segment_model.solve_modes(replace(titanium_strip, supports=("clamped", "free")), 2, 9)
+
+
+@pytest.mark.parametrize(
+    "supports", [("clamped", "free"), ("free", "pinned"), ("guided", "clamped"), ("free", "free"), ("guided", "guided")]
+)
+@pytest.mark.parametrize("count", [12, 150])
+def test_hermite_elements_take_every_support(titanium_strip, supports, count):
+    beam = replace(titanium_strip, supports=supports)
+    exact = analytic_modes.solve_modes(beam, 4)
+    found = fem_beam.solve_modes(beam, 4, count)
+    mu = np.arange(1, 5) * pi / count
+    assert (found.frequencies_hz > exact.frequencies_hz * (1 - 1e-13)).all()
+    assert found.frequencies_hz == pytest.approx(exact.frequencies_hz, rel=3 * mu[-1] ** 4 / 1440)
+    x = np.array([0.0, 0.07, 0.31, 0.7, 0.73])
+    assert found.deflection(x) == pytest.approx(exact.deflection(x), abs=2e-3 * abs(exact.deflection(x)).max())
