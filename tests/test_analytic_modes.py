@@ -1,6 +1,6 @@
 """Exact modes against extended precision, and the other beam theories beside them."""
 
-from itertools import product
+from itertools import pairwise, product
 
 import mpmath
 import numpy as np
@@ -42,7 +42,7 @@ def test_modes_are_counted_from_the_first_elastic_one(supports):
     with mpmath.workdps(30):
         grid = np.linspace(0.3, roots[2] + 0.3, 400)
         signs = [mpmath.sign(characteristic(supports, mpmath.mpf(y))) for y in grid]
-    assert sum(a != b for a, b in zip(signs, signs[1:], strict=False)) == 3
+    assert sum(a != b for a, b in pairwise(signs)) == 3
 
 
 @pytest.mark.parametrize("supports", PAIRS, ids="-".join)

@@ -95,7 +95,9 @@ def test_an_assembled_stiffness_loses_what_the_factored_one_keeps(titanium_strip
     chain = segment_model.uniform_chain(titanium_strip, 2000)
     pencil = segment_model.chain_pencil(chain)
     strain = pencil.strain_matrix()
-    plain = eigh((strain.T @ strain).toarray(), pencil.mass_matrix().toarray(), eigvals_only=True, subset_by_index=(0, 0))
+    plain = eigh(
+        (strain.T @ strain).toarray(), pencil.mass_matrix().toarray(), eigvals_only=True, subset_by_index=(0, 0)
+    )
     exact = (2 * sin(pi / 4000) ** 2 * sqrt(12 / (3 - 2 * sin(pi / 4000) ** 2))) ** 2
     assert abs(plain[0] / exact - 1) > 1e-8
     assert eigen.lowest(pencil, 3).values[0] == pytest.approx(exact, rel=5e-14)
@@ -198,7 +200,7 @@ def test_requests_no_model_can_meet_are_refused_before_anything_is_allocated(tit
         solve(titanium_strip, 5, 10**13)
     with pytest.raises(InputError, match="GiB"):
         solve(titanium_strip, 300_000, 1_000_000)
-    with pytest.raises(InputError, match="segment|element"):
+    with pytest.raises(InputError, match=r"segment|element"):
         solve(titanium_strip, 1, -3)
 
 
@@ -215,8 +217,10 @@ def test_hermite_elements_take_every_support(titanium_strip, supports, count):
     beam = replace(titanium_strip, supports=supports)
     exact = analytic_modes.solve_modes(beam, 4)
     found = fem_beam.solve_modes(beam, 4, count)
-    mu = np.arange(1, 5) * pi / count
-    assert (found.frequencies_hz > exact.frequencies_hz * (1 - 1e-13)).all()
-    assert found.frequencies_hz == pytest.approx(exact.frequencies_hz, rel=3 * mu[-1] ** 4 / 1440)
+    mu = np.array([closed_forms.wavenumber_length(supports, n) for n in range(1, 5)]) / count
+    excess = found.frequencies_hz / exact.frequencies_hz - 1
+    assert (excess > -1e-13).all()
+    assert (excess < 1.2 * mu**4 / 1440 + 1e-13).all()
     x = np.array([0.0, 0.07, 0.31, 0.7, 0.73])
-    assert found.deflection(x) == pytest.approx(exact.deflection(x), abs=2e-3 * abs(exact.deflection(x)).max())
+    size = abs(exact.deflection(x)).max()
+    assert found.deflection(x) == pytest.approx(exact.deflection(x), abs=mu[-1] ** 4 / 500 * size)

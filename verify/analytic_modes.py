@@ -39,8 +39,8 @@ def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0) -> Array:
     xi = np.asarray(x, dtype=float) / beam.length
     left, right = beam.supports
     if (left, right) in _MIRRORED:
-        values = _mirror_sign(beam.supports, mode) * (-1.0) ** derivative
-        values = values * _unit_shape((right, left), mode, 1.0 - xi, xi, derivative)
+        sign = _mirror_sign(beam.supports, mode) * (-1.0) ** derivative
+        values = sign * _unit_shape((right, left), mode, 1.0 - xi, xi, derivative)
     else:
         values = _unit_shape((left, right), mode, xi, 1.0 - xi, derivative)
     return np.asarray(values / sqrt(beam.mass_per_length * beam.length) / beam.length**derivative)
@@ -53,7 +53,7 @@ def _mirror_sign(supports: tuple[str, str], mode: int) -> float:
 
 
 def _quarter_turns(turns: float, remainder: float, xi: Array) -> tuple[Array, Array]:
-    """cos and sin of ((n + c) pi + remainder) xi, the large part reduced exactly (two-product, fmod 2)."""
+    """Cos and sin of ((n + c) pi + remainder) xi, the large part reduced exactly (two-product, fmod 2)."""
     high = turns * xi
     low = _product_error(turns, xi, high)
     reduced = np.fmod(high, 2.0)
@@ -67,7 +67,7 @@ def _quarter_turns(turns: float, remainder: float, xi: Array) -> tuple[Array, Ar
 
 
 def _product_error(a: float, b: Array, product: Array) -> Array:
-    """a b - fl(a b) exactly (Dekker's two-product with Veltkamp splitting)."""
+    """A b - fl(a b) exactly (Dekker's two-product with Veltkamp splitting)."""
     split = 134217729.0
     a_high = a * split - (a * split - a)
     b_high = b * split - (b * split - b)

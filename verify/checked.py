@@ -54,8 +54,8 @@ def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
 
 
 def _humane(what: str) -> str:
-    """msgspec's 'Expected `int` >= 1' in plain words."""
-    text = what.split(", got ")[0].replace("Expected", "give").replace(" | null", "")
+    """Msgspec's 'Expected `int` >= 1' in plain words."""
+    text = what.split(", got ", maxsplit=1)[0].replace("Expected", "give").replace(" | null", "")
     return re.sub(r"`(\w+)`", lambda found: _PLAIN.get(found[1], found[1]), text)
 
 

@@ -27,7 +27,7 @@ _scene = click.argument("scene")
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="verify")
 def cli() -> None:
-    """How far can a finite-segment model of a vibrating beam be trusted, and what does that cost in run time?
+    """Say how far a finite-segment model of a vibrating beam can be trusted, and what that costs in run time.
 
     SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
     Exit status: 0 all well, 1 a gate failed, 2 bad input.

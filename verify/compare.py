@@ -5,6 +5,7 @@ from math import isfinite
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from verify.errors import InputError, NoBracketError, PairingError
 from verify.modes import Array, Modes
@@ -49,7 +50,7 @@ def mac(reference: Array, shapes: Array) -> Array:
     return np.asarray(cross**2 / squares)
 
 
-def pair_modes(likeness: Array) -> tuple[Array, Array]:
+def pair_modes(likeness: Array) -> tuple[NDArray[np.intp], Array]:
     """For every exact mode the index of its computed mode, one to one, and their MAC: (n_reference,) each.
 
     The pairing with the largest sum of MAC values; `likeness` is (n_reference, n_shapes).

@@ -91,7 +91,8 @@ def print_table(rows: "tuple[Row, ...]") -> None:
             console.print(Text(f"– {note}", style="dim"))
         if notes:
             console.print()
-    console.print("[dim]frequencies in Hz, errors against exact Euler-Bernoulli and bracket width in %, order from the size "
+    console.print(
+        "[dim]frequencies in Hz, errors against exact Euler-Bernoulli and bracket width in %, order from the size "
         "before, warm solve in ms[/]"
     )
 

@@ -48,7 +48,7 @@ def reference_basis(lengths: Array) -> Any:
         doflocs = np.array([[0.0], [0.0], [1.0], [1.0]])
         refdom = RefLine
 
-        def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:  # noqa: ARG002, N803
+        def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:  # noqa: N803
             scale = (lengths if i % 2 else np.ones_like(lengths))[:, None]
             value, slope, bend = (hermite(X[0], k)[i] * scale / lengths[:, None] ** k for k in range(3))
             return (DiscreteField(value=value, grad=slope[None], hess=bend[None, None]),)
@@ -124,12 +124,12 @@ def solve_modes(beam: Beam, n_modes: int, n_elements: int) -> Modes:
     nodal = _all_values(n_elements, free, pairs.vectors)
     nodal = nodal * _sign(beam.supports[0], nodal)[:, None]
     nodal = nodal / sqrt(beam.mass_per_length * scale)
-    nodes = np.arange(n_elements + 1) * scale
+    nodes: Array = np.arange(n_elements + 1.0) * scale
 
     def shapes(x: Array, derivative: int) -> Array:
         return interpolate(nodal, x / scale, derivative) / scale**derivative
 
-    points = np.arange(4 * n_elements + 1) * (scale / 4.0)
+    points: Array = np.arange(4.0 * n_elements + 1.0) * (scale / 4.0)
 
     def sampled() -> Array:
         return interpolate(nodal, np.arange(4 * n_elements + 1) / 4.0)

@@ -55,11 +55,9 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def _on_beam(self, x: Any) -> Array:
         """X as a float array. Raises InputError where a position lies off the beam."""
-        x = np.atleast_1d(np.asarray(x, dtype=float))
+        positions: Array = np.atleast_1d(np.asarray(x, dtype=float))
         slack = 1e-12 * self.length
-        bad = ~((x >= -slack) & (x <= self.length + slack))
-        if bad.any():
-            raise InputError(
-                f"x = {float(x[bad][0])!r} lies off the beam: give positions between 0 and {self.length!r} m"
-            )
-        return x
+        off = positions[~((positions >= -slack) & (positions <= self.length + slack))]
+        if off.size:
+            raise InputError(f"x = {float(off[0])!r} lies off the beam: give positions between 0 and {self.length!r} m")
+        return positions

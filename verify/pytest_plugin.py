@@ -78,9 +78,8 @@ class GateItem(pytest.Item):
         result = judge(self.gate, self.scene, self.bench)
         self.user_properties.extend(properties(result))
         if not result.passed:
-            raise GateFailedError(
-                f"gate {result.id}: {result.reason} (expected {result.expected} {result.unit}; {result.why})"
-            )
+            unit = "" if result.unit in ("", "1") else f" {result.unit}"
+            raise GateFailedError(f"gate {result.id}: {result.reason} (expected {result.expected}{unit}; {result.why})")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """A gate's own sentence instead of a traceback into this file."""
@@ -95,11 +94,12 @@ class GateItem(pytest.Item):
 
 def properties(result: "GateResult") -> list[tuple[str, object]]:
     """What JUnit keeps of a gate."""
+    expected, _, within = result.expected.partition(" ± ")
     return [
         ("measured", str(result.measured)),
-        ("expected", result.expected),
+        ("expected", expected),
+        ("band", f"± {within}" if within else result.expected),
         ("unit", result.unit),
-        ("band", result.expected.partition("± ")[2] or result.expected),
         ("share_of_band_used", "" if result.share is None else f"{result.share:.6g}"),
         ("seconds", f"{result.seconds:.6g}"),
     ]

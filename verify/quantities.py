@@ -15,7 +15,6 @@ from verify.errors import InputError, near_name
 from verify.workbench import Need, Workbench
 
 if TYPE_CHECKING:
-    from verify.compare import Bracket
     from verify.scene import Scene
 
 Value = "float | complex | Bracket"
@@ -40,7 +39,7 @@ class Arguments(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """Base of the typed arguments of a quantity."""
 
 
-class AtSize(Arguments):
+class AtSize(Arguments, frozen=True, kw_only=True):
     """One mode of one model at one size."""
 
     model: AnyModel
@@ -57,7 +56,7 @@ class AtSize(Arguments):
             )
 
 
-class ShapeAt(Arguments):
+class ShapeAt(Arguments, frozen=True, kw_only=True):
     """One shape of one discrete model."""
 
     model: DiscreteModel
@@ -66,7 +65,7 @@ class ShapeAt(Arguments):
     reading: Reading | None = None
 
 
-class OverSizes(Arguments):
+class OverSizes(Arguments, frozen=True, kw_only=True):
     """One mode of one model over several sizes."""
 
     model: Annotated[Literal["fem", "segment", "mean"], Meta(description="mean is the middle of the bracket")]
@@ -74,14 +73,14 @@ class OverSizes(Arguments):
     counts: Sizes
 
 
-class BracketAt(Arguments):
+class BracketAt(Arguments, frozen=True, kw_only=True):
     """One mode at one size, both discrete models."""
 
     mode: Mode
     count: Size
 
 
-class FirstModes(Arguments):
+class FirstModes(Arguments, frozen=True, kw_only=True):
     """The first modes of one discrete model at one size."""
 
     model: DiscreteModel
@@ -89,7 +88,7 @@ class FirstModes(Arguments):
     modes: Annotated[int, Meta(ge=1, description="how many modes, from the first")] = 22
 
 
-class ToError(Arguments):
+class ToError(Arguments, frozen=True, kw_only=True):
     """An accuracy wanted of one mode of one discrete model."""
 
     model: DiscreteModel
@@ -97,13 +96,13 @@ class ToError(Arguments):
     error: Annotated[float, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
 
 
-class NeighbourModes(Arguments):
+class NeighbourModes(Arguments, frozen=True, kw_only=True):
     """A mode and the one below it."""
 
     mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
 
 
-class AtFrequency(Arguments):
+class AtFrequency(Arguments, frozen=True, kw_only=True):
     """A frequency, the scene's drive unless given."""
 
     frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
@@ -150,8 +149,10 @@ def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
     from verify.workbench import model_module
 
     solved = bench.modes(a.model, a.count, a.modes).frequencies_hz
-    closed = [model_module(a.model).dispersion_frequency_hz(scene.beam, n, a.count) for n in range(1, a.modes + 1)]
-    return max(abs(float(f) - exact) / exact for f, exact in zip(solved, closed, strict=False))
+    closed: list[float] = [
+        model_module(a.model).dispersion_frequency_hz(scene.beam, n, a.count) for n in range(1, a.modes + 1)
+    ]
+    return max(abs(float(f) / exact - 1.0) for f, exact in zip(solved, closed, strict=False))
 
 
 def _order(a: OverSizes, scene: "Scene", bench: Workbench) -> float:
@@ -189,11 +190,13 @@ def _count_guess(a: ToError, scene: "Scene") -> int:
     def reached(count: int) -> bool:
         return abs(float(dispersion(scene.beam, a.mode, count)) - exact) <= a.error * exact
 
+    if a.error < 1e-12:
+        raise InputError(f"error = {a.error!r} is as small as rounding: ask for 1e-12 or more")
     low, high = a.mode, a.mode + 1
     while not reached(high):
         low, high = high, 2 * high
-        if high > 10_000_000:
-            raise InputError(f"error = {a.error!r} is below what rounding leaves: ask for more than 1e-12")
+        if high > 10**8:
+            raise InputError(f"error = {a.error!r}: the {a.model} model's dispersion does not reach it at any size")
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if reached(middle) else (middle, high)
@@ -301,7 +304,11 @@ def arguments_as_plain(arguments: Arguments) -> dict[str, Any]:
 def in_words(plain: Any) -> str:
     """A plain figure for a person."""
     if isinstance(plain, dict):
-        return " .. ".join(in_words(v) for v in plain.values()) if "lower" in plain else f"{plain['re']:.12g} {plain['im']:+.12g}i"
+        return (
+            " .. ".join(in_words(v) for v in plain.values())
+            if "lower" in plain
+            else f"{plain['re']:.12g} {plain['im']:+.12g}i"
+        )
     return f"{plain:.12g}"
 
 

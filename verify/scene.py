@@ -1,7 +1,7 @@
 """A scene file read, checked, and turned into values: what exists, and what is asked of it."""
 
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 import msgspec
 from msgspec import Meta
@@ -17,11 +17,32 @@ Count: TypeAlias = Annotated[int, Meta(ge=1)]
 Counts: TypeAlias = Annotated[tuple[Count, ...], Meta(min_length=1)]
 
 
+class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A point force as a scene states it: its distance from one end of the beam."""
+
+    position: float
+    """Metres from the end that `measured_from` names."""
+    measured_from: Literal["left", "right"] = "left"
+    amplitude: float = 1.0
+    phase_deg: float = 0.0
+
+    def on(self, beam: Beam) -> PointForce:
+        """The force in the beam's own coordinate. Raises InputError where it lies off the beam."""
+        check_number("drive.force.position", self.position, "metres")
+        if not 0 <= self.position <= beam.length:
+            raise InputError(
+                f"drive.force.position = {self.position!r} lies off the beam: "
+                f"give a position between 0 and {beam.length!r} m"
+            )
+        x = self.position if self.measured_from == "left" else beam.length - self.position
+        return PointForce(position=x, amplitude=self.amplitude, phase_deg=self.phase_deg)
+
+
 class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What shakes the beam: harmonic point forces at one frequency."""
 
     frequency_hz: float
-    force: tuple[PointForce, ...] = ()
+    force: tuple[SceneForce, ...] = ()
 
     def __post_init__(self) -> None:
         check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)
@@ -107,12 +128,12 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             if gate.id in seen:
                 raise InputError(f"gate.{gate.id} stands twice: give every gate an id of its own")
             seen.add(gate.id)
-        for force in self.drive.force if self.drive else ():
-            if force.position > self.beam.length:
-                raise InputError(
-                    f"drive.force.position = {force.position!r} lies off the beam: "
-                    f"give a position between 0 and {self.beam.length!r} m"
-                )
+        _ = self.forces
+
+    @property
+    def forces(self) -> tuple[PointForce, ...]:
+        """The driving forces in the beam's own coordinate."""
+        return tuple(force.on(self.beam) for force in self.drive.force) if self.drive else ()
 
 
 def packaged_scenes() -> tuple[str, ...]:
@@ -128,8 +149,7 @@ def scene_path(name_or_path: str) -> Path:
     if path.exists() or path.suffix or len(path.parts) != 1:
         return path
     raise InputError(
-        f"scene = {name_or_path!r} is neither a packaged scene nor a file: "
-        f"{near_name(name_or_path, packaged_scenes())}"
+        f"scene = {name_or_path!r} is neither a packaged scene nor a file: {near_name(name_or_path, packaged_scenes())}"
     )
 
 
@@ -182,10 +202,7 @@ def override(data: dict[str, Any], assignment: str) -> None:
 
 def _entry(here: Any, step: str, field: str) -> Any:
     """The table or list below `here`; a missing table is made, so that the checker can name it."""
-    if isinstance(here, list):
-        here = here[_position(here, step, field)]
-    else:
-        here = here.setdefault(step, {})
+    here = here[_position(here, step, field)] if isinstance(here, list) else here.setdefault(step, {})
     if not isinstance(here, dict | list):
         raise InputError(f"--set {field} is a value, not a table: set {field} itself")
     return here

@@ -60,7 +60,7 @@ def joint_compliance(length_i: Any, stiffness_i: Any, length_j: Any, stiffness_j
 
 
 def link_inertia(mass: Any, length: Any) -> Any:
-    """m l^2 / 12: a uniform thin link about its middle."""
+    """M l^2 / 12: a uniform thin link about its middle."""
     return mass * length**2 / 12.0
 
 
@@ -112,7 +112,7 @@ def check(beam: Beam, n_modes: int, n_segments: int) -> None:
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     n = chain.n_segments
     frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) * (n / beam.length) ** 2
-    nodes = np.arange(n + 1) * (beam.length / n)
+    nodes: Array = np.arange(n + 1.0) * (beam.length / n)
     raw = _with_ends(chain, pairs.vectors).T * _sign(chain, pairs.vectors)[:, None]
     raw /= sqrt(beam.mass_per_length * beam.length / n)
 
@@ -128,7 +128,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
 
 
 def corrected_reading(joints: Array) -> Array:
-    """y + delta^2 y / 12 at every joint, (n_modes, N + 1); at a pinned end delta^2 y = 0 by odd reflection."""
+    """Y + delta^2 y / 12 at every joint, (n_modes, N + 1); at a pinned end delta^2 y = 0 by odd reflection."""
     corrected = joints.copy()
     corrected[:, 1:-1] += np.diff(joints, 2, axis=1) / 12.0
     return corrected

@@ -182,7 +182,7 @@ def _local_order(count_1: int, error_1: float | None, count_2: int, error_2: flo
 
 def sensitivity(beam: "Beam", asked: "Sensitivity", steps: int = 25) -> SensitivityStudy:
     """The exact frequency over modulus (`steps` values) for five densities around the scene's."""
-    import msgspec.structs as structs
+    from msgspec import structs
 
     def spread(value: float, part: float, n: int) -> Iterator[float]:
         return (value * (1.0 + part * (2.0 * i / (n - 1) - 1.0)) for i in range(n))

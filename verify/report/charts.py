@@ -12,10 +12,11 @@ if TYPE_CHECKING:
 
 Figure = dict[str, Any]
 
-COLOUR = {"segment": "#2f80ed", "fem": "#e8760c", "mean": "#2a9d5c", "rayleigh": "#9b6bdf", "timoshenko": "#d6427a"}
-NAME = {"segment": "segments", "fem": "Hermite elements", "mean": "mean of both",
-        "rayleigh": "Rayleigh", "timoshenko": "Timoshenko"}  # fmt: skip
 GREY = "#8a8f98"
+COLOUR = {"segment": "#2f80ed", "fem": "#e8760c", "mean": "#2a9d5c", "rayleigh": "#9b6bdf", "timoshenko": "#d6427a",
+          "key": GREY}  # fmt: skip
+NAME = {"segment": "segments", "fem": "Hermite elements", "mean": "mean of both", "rayleigh": "Rayleigh",
+        "timoshenko": "Timoshenko", "key": "key"}  # fmt: skip
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash")
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x")
 
@@ -59,7 +60,7 @@ def _signed_errors(study: "SpectrumStudy") -> dict[str, Any]:
     data = [_line(m, study.modes, _percent(getattr(study, m))) for m in ("segment", "fem")]
     return _chart(
         "mode-errors", f"Frequency error over mode number, N = {study.count}",
-        "Signed, against exact Euler-Bernoulli: rigid links with their rotary inertia lie below, Hermite elements above.",
+        "Signed, against exact Euler-Bernoulli: rigid links with rotary inertia lie below, Hermite elements above.",
         data, _axes("mode number", "frequency error, %"),
     )  # fmt: skip
 
@@ -70,8 +71,8 @@ def _model_form(study: "SpectrumStudy") -> dict[str, Any]:
         data.append(_line(theory, study.modes, _percent(errors, size=True), line={"dash": "dash"}))
     return _chart(
         "model-form", f"Discretisation beside model form, N = {study.count}",
-        "Solid: what dividing the beam costs. Dashed: what Euler-Bernoulli theory leaves out, rotary inertia (Rayleigh) "
-        "and shear as well (Timoshenko). Below the dashed lines a finer model answers a question nobody asked.",
+        "Solid: what dividing the beam costs. Dashed: what Euler-Bernoulli theory leaves out, rotary inertia "
+        "(Rayleigh) and shear as well (Timoshenko). Below the dashed lines a finer model answers a question nobody asked.",
         data, _axes("mode number", "size of the frequency error, %", yaxis={"type": "log", "exponentformat": "power"}),
     )  # fmt: skip
 
@@ -88,8 +89,7 @@ def _mode_styles(rows: "tuple[Row, ...]") -> list[tuple[list[Any], Figure, Figur
     styles = []
     for i, (mode, group) in enumerate(_by_mode(rows).items()):
         style: Figure = {"line": {"dash": DASHES[i % 5]}, "marker": {"symbol": SYMBOLS[i % 5]}}
-        key: Figure = {"type": "scatter", "mode": "lines+markers", "name": f"mode {mode}", "x": [None], "y": [None],
-                       "line": {"color": GREY} | style["line"], "marker": {"color": GREY} | style["marker"]}  # fmt: skip
+        key = _line("key", [None], [None], **style) | {"name": f"mode {mode}"}
         styles.append((group, style, key))
     return styles
 

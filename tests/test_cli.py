@@ -1,0 +1,235 @@
+"""The command line as its users meet it."""
+
+import csv
+import io
+import json
+import subprocess
+import sys
+
+import pytest
+
+from verify.cli import status_of
+
+
+@pytest.fixture
+def verify(capsys, tmp_path, monkeypatch):
+    """Run a command line in an empty folder: (status, standard output, error output)."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words):
+        capsys.readouterr()
+        status = status_of([str(word) for word in words])
+        out, err = capsys.readouterr()
+        return status, out, err
+
+    return call
+
+
+def test_run_paper_passes_and_writes_its_report(verify, tmp_path):
+    status, out, err = verify("run", "paper")
+    assert status == 0
+    assert "all 20 gates passed" in out
+    assert err == ""
+    assert [p.name for p in (tmp_path / "reports").iterdir()] == ["paper.html"]
+
+
+def test_run_as_json_holds_the_gates_and_nothing_else_is_printed(verify):
+    status, out, _ = verify("run", "paper", "--json", "--no-report")
+    data = json.loads(out)
+    assert status == 0
+    assert data["passed"] is True
+    assert data["report"] is None
+    gate = next(g for g in data["gates"] if g["id"] == "segment-mode-22")
+    assert gate["measured"] == pytest.approx(-0.00428024, abs=5e-9)
+    assert gate["expected"] == "-0.00428024 ± 5e-09"
+
+
+def test_a_failing_gate_exits_with_1_and_says_which_and_why(verify, tmp_path):
+    status, out, _ = verify("run", "paper", "--set", "gate.segment-mode-22.expect=-0.005")
+    assert status == 1
+    assert "1 of 20 gates failed" in out
+    assert "gate segment-mode-22: measured -0.00428" in out
+    assert "failed" in (tmp_path / "reports" / "paper.html").read_text("utf-8")[:600]
+
+
+def test_a_closed_form_figure(verify):
+    assert verify("measure", "mode.frequency", "model=analytic", "mode=22")[:2] == (
+        0,
+        "mode.frequency = 4469.94052769 Hz\n",
+    )
+
+
+def test_a_measured_bracket_as_json(verify):
+    _, out, _ = verify("measure", "mode.bracket", "mode=5", "count=13", "--json")
+    data = json.loads(out)
+    assert data["quantity"] == "mode.bracket"
+    assert data["arguments"] == {"mode": 5, "count": 13}
+    assert data["unit"] == "Hz"
+    assert data["value"]["lower"] < 230.88535783517 < data["value"]["upper"]
+
+
+def test_a_measured_order_takes_a_comma_separated_list(verify):
+    _, out, _ = verify("measure", "mode.order", "model=fem", "mode=5", "counts=40,80,160", "--json")
+    data = json.loads(out)
+    assert data["arguments"]["counts"] == [40, 80, 160]
+    assert data["value"] == pytest.approx(3.997, abs=1e-3)
+
+
+def test_an_override_reaches_measure_table_and_plan(verify):
+    _, out, _ = verify("measure", "mode.frequency", "model=analytic", "mode=22", "--set", "beam.length=0.25", "--json")
+    assert json.loads(out)["value"] == pytest.approx(4 * 4469.94052769, rel=1e-11)
+    _, out, _ = verify("table", "paper", "--modes", "3", "--counts", "8,16", "--set", "beam.length=0.25", "--json")
+    assert json.loads(out)[0]["exact_hz"] == pytest.approx(4 * 9 / 484 * 4469.94052769, rel=1e-11)
+    _, out, _ = verify("plan", "paper", "--set", "spectrum.count=57", "--json")
+    assert any(solve["count"] == 57 for solve in json.loads(out)["solves"])
+
+
+def test_a_single_mode_and_a_single_count_make_a_table(verify):
+    status, out, _ = verify("table", "paper", "--modes", "5", "--counts", "49")
+    assert status == 0
+    assert "mode 5" in out
+    assert "230.883" in out
+
+
+def test_the_table_fits_into_eighty_columns(verify, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    _, out, _ = verify("table", "paper", "--modes", "1,22", "--counts", "10,49,98")
+    assert max(len(line.rstrip()) for line in out.splitlines()) <= 80
+    assert "4450.808" in out
+    assert "-0.4280" in out
+
+
+def test_csv_and_markdown_hold_the_json_table(verify):
+    arguments = ("table", "paper", "--modes", "5,22", "--counts", "20,49,98")
+    rows = json.loads(verify(*arguments, "--json")[1])
+    table = list(csv.DictReader(io.StringIO(verify(*arguments, "--csv")[1])))
+    assert [float(r["exact_hz"]) for r in table] == [r["exact_hz"] for r in rows]
+    assert [r["segment_error"] and float(r["segment_error"]) for r in table] == [
+        "" if r["segment_error"] is None else r["segment_error"] for r in rows
+    ]
+    assert table[3]["segment_frequency_hz"] == ""  # mode 22 of 20 segments does not exist
+    lines = verify(*arguments, "--markdown")[1].splitlines()
+    assert len(lines) == 2 + len(rows)
+    assert set(lines[1]) <= set("|-: ")
+
+
+def test_the_table_says_why_a_cell_is_empty(verify):
+    rows = json.loads(verify("table", "paper", "--modes", "22", "--counts", "20,49", "--json")[1])
+    assert rows[0]["segment_frequency_hz"] is None
+    assert rows[0]["notes"] == ["mode = 22: the segment model at count = 20 has 19 elastic modes, raise count"]
+    assert rows[1]["segment_error"] == pytest.approx(-0.00428024, abs=5e-9)
+    assert rows[1]["bracket_width"] == pytest.approx(0.00688618, abs=1e-7)
+    assert rows[1]["fem_run_time_s"] > 0
+
+
+def test_plan_names_what_runs_what_is_skipped_and_what_cannot_work(verify):
+    _, out, _ = verify("plan", "paper", "--set", "gate.segment-order.quantity=mode.ordr")
+    assert "did you mean 'mode.order'" in out.replace("\n", " ").replace("  ", " ")
+    assert "contact search: the scene has no slider" in out
+    data = json.loads(verify("plan", "paper", "--json")[1])
+    at_49 = [s for s in data["solves"] if s["count"] == 49]
+    assert {s["model"] for s in at_49} == {"segment", "fem"}
+    assert "gate exact-mode-22" in data["closed_forms"]
+
+
+def test_plan_of_a_size_that_does_not_fit_says_so_without_allocating(verify):
+    status, out, _ = verify("plan", "paper", "--set", "spectrum.count=10000000000000")
+    assert status == 0
+    assert "cannot run: spectrum" in out
+
+
+def test_quantities_and_scenes_are_listed(verify):
+    out = verify("quantities")[1]
+    assert "mode.frequency_error" in out
+    assert "analytic | fem | segment | mean; required" in out
+    listed = json.loads(verify("quantities", "--json")[1])
+    assert {q["quantity"] for q in listed} >= {"mode.frequency", "mode.order", "mode.bracket", "mode.shape_error"}
+    assert "paper" in verify("scenes")[1]
+    assert json.loads(verify("scenes", "--json")[1])[0]["gates"] > 0
+
+
+def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
+    assert verify("init", "my.toml")[0] == 0
+    assert "# " in (tmp_path / "my.toml").read_text("utf-8")
+    assert verify("run", "my.toml")[0] == 0
+    (tmp_path / "my.toml").write_text("mine")
+    status, _, err = verify("init", "my.toml")
+    assert (status, (tmp_path / "my.toml").read_text("utf-8")) == (2, "mine")
+    assert "--force" in err
+    assert verify("init", "my.toml", "--force")[0] == 0
+
+
+BAD = [
+    ("run", "papr"), ("run", "none.toml"), ("run", "."), ("table", "paper", "--modes", "0"), ("table", "paper", "--counts", "x"),
+    ("table", "paper", "--counts", "1e3"), ("table", "paper", "--counts", "10000000000000"), ("table", "paper", "--modes", ""),
+    ("table", "paper", "--counts", "1,2"), ("measure", "mode.frequncy"), ("measure", "mode.frequency", "model=segmnt", "mode=1"),
+    ("measure", "mode.frequency", "model=segment", "mode=0", "count=9"),
+    ("measure", "mode.frequency", "model=segment", "mode=9", "count=9"),
+    ("measure", "mode.frequency", "model=fem", "mode=19", "count=9"),
+    ("measure", "mode.frequency", "model=segment", "mode=1", "count=10000000000000"),
+    ("measure", "mode.frequency", "model=segment", "mode=1", "count=-4"),
+    ("measure", "mode.frequency", "model=segment", "mode=nan", "count=9"),
+    ("measure", "mode.frequency", "mode"), ("measure", "mode.frequency"), ("measure", "mode.frequency", "model=analytic", "mode=1", "extra=2"),
+    ("measure", "mode.frequency", "model=analytic", "mode=1", "--scene", "nowhere"),
+    ("measure", "mode.frequency", "model=analytic", "mode=1", "--set", "beam.length=nan"),
+    ("measure", "mode.frequency", "model=analytic", "mode=1", "--set", "beam.thickness=0"),
+    ("measure", "mode.frequency", "model=analytic", "mode=1", "--set", "beam.density=-inf"),
+    ("measure", "mode.frequency", "model=analytic", "mode=1", "--set", "beam.lenght=1"),
+    ("measure", "mode.bracket", "mode=3", "count=9", "--set", "beam.supports=clamped,free"),
+    ("measure", "mode.count_needed", "model=segment", "mode=3", "error=0"),
+    ("measure", "mode.count_needed", "model=segment", "mode=3", "error=1e-30"),
+    ("measure", "drive.quarter_wavelength", "frequency_hz=0"), ("measure", "drive.rule_frequency", "mode=1"),
+    ("plan", "papr"), ("nosuch",), ("run",), ("init", "no/such/folder/my.toml"), ("run", "paper", "--set", "beam"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("words", BAD, ids=" ".join)
+def test_bad_input_is_one_sentence_and_exit_2(verify, tmp_path, words):
+    status, out, err = verify(*words)
+    assert status == 2
+    assert out == ""
+    assert "Traceback" not in err
+    assert err.strip()
+    assert err.startswith("Usage") or len(err.strip().splitlines()) == 1
+    assert not list(tmp_path.rglob("*.html"))
+
+
+def test_an_unwritable_report_folder_is_refused_before_anything_is_run(verify, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    status, out, err = verify("run", "paper", "--reports", "file/below")
+    assert (status, out) == (2, "")
+    assert "reports = 'file/below' cannot be written to" in err
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_an_interrupt_leaves_nothing_half_written(verify, tmp_path, monkeypatch):
+    from verify.report import html
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(html, "page", interrupted)
+    status, _, err = verify("run", "paper")
+    assert status == 130
+    assert "interrupted" in err
+    assert list((tmp_path / "reports").iterdir()) == []
+
+
+def test_a_write_that_fails_midway_keeps_the_old_file(tmp_path, monkeypatch):
+    import os
+
+    from verify.errors import InputError
+    from verify.files import write_whole
+
+    target = tmp_path / "r.html"
+    target.write_text("old")
+    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    with pytest.raises(InputError, match="No space left"):
+        write_whole(target, "new")
+    assert [p.name for p in tmp_path.iterdir()] == ["r.html"]
+    assert target.read_text() == "old"
+
+
+def test_the_module_runs_as_a_program():
+    done = subprocess.run([sys.executable, "-m", "verify", "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("verify, version ")

@@ -1,0 +1,99 @@
+"""Judgement on arrays whose answer is known."""
+
+import numpy as np
+import pytest
+
+from verify import compare
+from verify.errors import InputError, NoBracketError, PairingError
+from verify.modes import Modes
+from verify.workbench import Need, Workbench, merged
+
+X = np.linspace(0, 1, 41)
+SINES = np.array([np.sin(n * np.pi * X) for n in (1, 2, 3, 4)])
+
+
+def fake_modes(shapes):
+    return Modes(model="segment", count=40, length=1.0, frequencies_hz=np.arange(1.0, len(shapes) + 1), nodes=X,
+                 shapes=lambda x, k: shapes, points=X, sampled=lambda: shapes)  # fmt: skip
+
+
+def test_mac_is_one_for_a_scaled_turned_shape_and_zero_for_an_orthogonal_one():
+    likeness = compare.mac(SINES[:2], np.array([-3.7 * SINES[0], SINES[2]]))
+    assert likeness == pytest.approx(np.array([[1, 0], [0, 0]]), abs=1e-14)
+
+
+def test_exchanged_modes_are_paired_by_shape_not_by_rank():
+    modes = fake_modes(SINES[[0, 2, 1, 3]])
+    assert [compare.paired_index(modes, SINES, n, 1) for n in (1, 2, 3, 4)] == [0, 2, 1, 3]
+
+
+def test_a_close_pair_that_mixed_a_little_is_still_paired_one_to_one():
+    turned = SINES.copy()
+    turned[1], turned[2] = 0.9 * SINES[1] + 0.44 * SINES[2], 0.9 * SINES[2] - 0.44 * SINES[1]
+    index, likeness = compare.pair_modes(compare.mac(SINES, turned))
+    assert list(index) == [0, 1, 2, 3]
+    assert likeness[1] == pytest.approx(0.81 / (0.81 + 0.44**2), abs=1e-12)
+
+
+def test_a_shape_that_no_mode_has_is_said_to_have_no_partner():
+    lost = SINES.copy()
+    lost[2] = np.sin(9 * np.pi * X)
+    with pytest.raises(PairingError, match=r"mode = 3: no segment mode at count = 40 .* raise count"):
+        compare.paired_index(fake_modes(lost), SINES, 3, 1)
+
+
+def test_shape_error_is_free_of_sign_and_counts_the_amplitude():
+    assert compare.shape_error(SINES[2], -SINES[2]) == 0
+    assert compare.shape_error(SINES[2], -1.07 * SINES[2]) == pytest.approx(0.07, rel=1e-12)
+    assert compare.shape_error(SINES[0], SINES[1]) == pytest.approx(np.sqrt(2), rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [0.7, 2.0, 4.0, 6.1])
+def test_the_observed_order_of_an_exact_power_is_that_power(order):
+    counts = (11, 19, 53, 101)
+    assert compare.observed_order(counts, [-33.0 * n**-order for n in counts]) == pytest.approx(order, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("counts", "errors", "message"),
+    [
+        ((10, 20), (1e-3, 1e-4), "three or more"),
+        ((10, 20, 20), (1e-3, 1e-4, 1e-4), "three or more"),
+        ((10, 20, 40), (1e-3, -1e-4, -1e-5), "changes sign"),
+        ((10, 20, 40), (1e-9, 1e-11, 3e-13), "is rounding"),
+        ((10, 20, 40), (1e-3, float("nan"), 1e-5), "is rounding"),
+    ],
+)
+def test_an_order_is_refused_where_there_is_none(counts, errors, message):
+    with pytest.raises(InputError, match=message):
+        compare.observed_order(counts, errors)
+
+
+def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():
+    found = compare.bracket(99.0, 101.0)
+    assert (found.mean, found.relative_width) == (100.0, 0.02)
+    for below, above in ((100.0, 100.0 + 1e-12), (101.0, 99.0), (float("nan"), 1.0)):
+        with pytest.raises(NoBracketError):
+            compare.bracket(below, above)
+
+
+def test_who_wants_the_same_size_shares_one_solve(titanium_strip):
+    needs = [Need("segment", 31, 4), Need("segment", 31, 9), Need("fem", 31, 2)]
+    assert merged(needs) == {("segment", 31): 9, ("fem", 31): 2}
+    bench = Workbench(titanium_strip, needs)
+    bench.frequency_error("segment", 31, 4)
+    bench.frequency_error("segment", 31, 9)
+    bench.shape_error("segment", 31, 7)
+    assert [(s.model, s.count, s.n_modes) for s in bench.solves] == [("segment", 31, 9)]
+
+
+def test_wishes_of_others_do_not_fail_the_one_who_asks_for_less(titanium_strip):
+    bench = Workbench(titanium_strip, [Need("segment", 8, 50)])
+    assert bench.modes("segment", 8, 3).n_modes == 7
+    with pytest.raises(InputError, match="mode = 50: the segment model at count = 8 has 7 elastic modes"):
+        bench.modes("segment", 8, 50)
+
+
+def test_an_unknown_reading_is_refused_with_those_there_are(titanium_strip):
+    with pytest.raises(InputError, match="corrected, raw"):
+        Workbench(titanium_strip).shape_error("segment", 8, 3, "spline")

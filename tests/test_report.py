@@ -1,0 +1,95 @@
+"""The report: one file, offline, drawn in a real browser."""
+
+import json
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from verify import run_scene
+from verify.report.html import environment, page, write_report
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+QUIET = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+         "--disable-background-networking", "--disable-component-update"]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def result():
+    return run_scene("paper")
+
+
+@pytest.fixture(scope="module")
+def html(result):
+    return page(result, "verify run paper")
+
+
+def without_plotly(html):
+    return re.sub(r"<script>/\*\*.*?</script>", "", html, flags=re.DOTALL)
+
+
+def test_the_verdict_stands_before_the_gates_and_the_gates_before_the_figures(html):
+    body = html[html.index("<body>") :]
+    marks = [body.index(text) for text in ("Passed: all 20 gates", "<h2>Gates", "<h2>Figures", "How this was made")]
+    assert marks == sorted(marks)
+
+
+def test_every_gate_is_a_row_with_its_figures_and_its_reason(html, result):
+    from markupsafe import escape
+
+    for gate in result.gates:
+        assert f"<b>{gate.id}</b>" in html
+        assert str(escape(gate.expected)) in html
+        assert str(escape(gate.why)) in html
+
+
+def test_the_page_asks_no_network_and_shows_no_path_of_this_machine(html, tmp_path):
+    ours = without_plotly(html)
+    assert not re.search(r"(src|href)=\"(?!data:)", ours)
+    assert "http" not in ours
+    assert str(tmp_path.parts[1]) + "/" not in ours
+
+
+def test_the_figures_are_plain_data(html):
+    figures = json.loads(re.search(r'id="figures">(.*?)</script>', html, re.DOTALL)[1])
+    assert set(figures) == {"mode-errors", "model-form", "convergence", "bracket", "work-precision", "sensitivity"}
+    segments = figures["mode-errors"]["data"][0]
+    assert segments["x"][-1] == 22
+    assert segments["y"][-1] == pytest.approx(-0.428024, abs=1e-6)
+    timoshenko = next(t for t in figures["model-form"]["data"] if t["name"] == "Timoshenko")
+    assert timoshenko["y"][-1] == pytest.approx(0.3317, abs=1e-4)
+
+
+def test_a_title_cannot_break_out_of_the_page(result):
+    from msgspec.structs import replace
+
+    hostile = replace(result, scene=replace(result.scene, title="</script><script>alert(1)</script>"))
+    assert "<script>alert" not in page(hostile, "verify run x")
+
+
+def test_a_scene_without_studies_or_gates_still_has_a_page(result):
+    from msgspec.structs import replace
+
+    bare = replace(result, gates=(), spectrum=None, convergence=None, sensitivity=None)
+    text = page(bare, "verify run x")
+    assert "No gates" in text
+    assert "Plotly" not in text
+
+
+def test_the_environment_names_versions():
+    assert {"Python", "numpy", "scipy", "scikit-fem", "processors"} <= set(environment())
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine: the report was not opened in a browser")
+def test_a_real_browser_draws_every_chart(result, tmp_path):
+    path = tmp_path / "paper.html"
+    write_report(result, path, "verify run paper")
+    profile = f"--user-data-dir={tmp_path / 'profile'}"
+    done = subprocess.run(
+        [CHROMIUM, *QUIET, profile, "--virtual-time-budget=20000", "--dump-dom", path.as_uri()],
+        capture_output=True, text=True, timeout=180, check=True,
+    )  # fmt: skip
+    assert 'data-drawn="6"' in done.stdout
+    assert done.stdout.count('class="main-svg"') >= 6
+    assert done.stdout.count("scatterlayer") >= 6
