@@ -111,8 +111,14 @@ def _convergence(rows: "tuple[Row, ...]") -> dict[str, Any]:
         "convergence", "Convergence with the number of segments or elements",
         "Both models are of order 4; their mean, where the leading errors cancel, of order 6. Grey lines: reference "
         "slopes. At about 10⁻¹² % rounding takes over.",
-        data, _axes("segments or elements N", "size of the frequency error, %", xaxis=log, yaxis=log),
+        data, _axes("segments or elements N", "size of the frequency error, %", xaxis=_sizes(rows), yaxis=log),
     )  # fmt: skip
+
+
+def _sizes(rows: "Iterable[Row]") -> Figure:
+    """A logarithmic axis with a tick at every size that was solved."""
+    counts = sorted({row.count for row in rows})
+    return {"type": "log", "tickvals": counts, "ticktext": [str(n) for n in counts]}
 
 
 def _slope(rows: "tuple[Row, ...]", order: int) -> Figure:
@@ -140,7 +146,7 @@ def _bracket(rows: "tuple[Row, ...]") -> dict[str, Any]:
         "bracket", f"Two-sided bound on mode {mode}",
         "The exact frequency (zero) lies in the grey band for every N: no reference solution is needed to know that.",
         [upper, lower, mean] if group else [],
-        _axes("segments or elements N", "against the exact frequency, %", xaxis={"type": "log"}),
+        _axes("segments or elements N", "against the exact frequency, %", xaxis=_sizes(group)),
     )  # fmt: skip
 
 
