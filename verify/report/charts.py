@@ -72,7 +72,7 @@ def _model_form(study: "SpectrumStudy") -> dict[str, Any]:
     return _chart(
         "model-form", f"Discretisation beside model form, N = {study.count}",
         "Solid: what dividing the beam costs. Dashed: what Euler-Bernoulli theory leaves out, rotary inertia "
-        "(Rayleigh) and shear as well (Timoshenko). Below the dashed lines a finer model answers a question nobody asked.",
+        "(Rayleigh) and shear as well (Timoshenko). A mesh finer than that answers a question nobody asked.",
         data, _axes("mode number", "size of the frequency error, %", yaxis={"type": "log", "exponentformat": "power"}),
     )  # fmt: skip
 
