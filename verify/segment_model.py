@@ -142,8 +142,14 @@ def _spline(nodes: Array, values: Array, x: Array, derivative: int) -> Array:
 
 def _with_ends(chain: Chain, free: Array) -> Array:
     """Positions of all joints, (N + 1, k): the unknowns with zeros at held ends."""
-    left, right = chain.held
-    return np.pad(free, ((int(left), int(right)), (0, 0)))
+    return _between_zeros(free, *chain.held)
+
+
+def _between_zeros(rows: Array, left: bool, right: bool) -> Array:
+    """`rows` with a row of zeros before and after where asked (np.pad costs more than the whole product)."""
+    padded = np.zeros((len(rows) + left + right, rows.shape[1]))
+    padded[int(left) : len(padded) - right] = rows
+    return padded
 
 
 def _sign(chain: Chain, free: Array) -> Array:
@@ -171,8 +177,7 @@ def chain_pencil(chain: Chain) -> FactoredPencil:
 def joint_angles(chain: Chain, free: Array) -> Array:
     """Relative angles at the joints, wall joints included, (m, k): differences of link slopes, nearly exact."""
     slopes = np.diff(_with_ends(chain, free), axis=0) / chain.lengths[:, None]
-    left, right = chain.walls
-    return np.diff(np.pad(slopes, ((int(left), int(right)), (0, 0))), axis=0)
+    return np.diff(_between_zeros(slopes, *chain.walls), axis=0)
 
 
 def _strain_matrix(chain: Chain) -> Any:
