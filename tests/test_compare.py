@@ -14,7 +14,8 @@ SINES = np.array([np.sin(n * np.pi * X) for n in (1, 2, 3, 4)])
 
 def fake_modes(shapes):
     return Modes(model="segment", count=40, length=1.0, frequencies_hz=np.arange(1.0, len(shapes) + 1), nodes=X,
-                 shapes=lambda x, k: shapes, points=X, sampled=lambda: shapes)  # fmt: skip
+                 shapes=lambda x, k: shapes, points=X, sampled=lambda: shapes,
+                 curvature_points=X, curvatures=lambda: shapes)  # fmt: skip
 
 
 def test_mac_is_one_for_a_scaled_turned_shape_and_zero_for_an_orthogonal_one():
@@ -43,9 +44,10 @@ def test_a_shape_that_no_mode_has_is_said_to_have_no_partner():
 
 
 def test_shape_error_is_free_of_sign_and_counts_the_amplitude():
-    assert compare.shape_error(SINES[2], -SINES[2]) == 0
-    assert compare.shape_error(SINES[2], -1.07 * SINES[2]) == pytest.approx(0.07, rel=1e-12)
-    assert compare.shape_error(SINES[0], SINES[1]) == pytest.approx(np.sqrt(2), rel=1e-12)
+    weights = compare.node_weights(X)
+    assert compare.shape_error(SINES[2], -SINES[2], weights) == 0
+    assert compare.shape_error(SINES[2], -1.07 * SINES[2], weights) == pytest.approx(0.07, rel=1e-12)
+    assert compare.shape_error(SINES[0], SINES[1], weights) == pytest.approx(np.sqrt(2), rel=1e-12)
 
 
 @pytest.mark.parametrize("order", [0.7, 2.0, 4.0, 6.1])
@@ -79,7 +81,7 @@ def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():
 
 def test_who_wants_the_same_size_shares_one_solve(titanium_strip):
     needs = [Need("segment", 31, 4), Need("segment", 31, 9), Need("fem", 31, 2)]
-    assert merged(needs) == {("segment", 31): 9, ("fem", 31): 2}
+    assert merged(needs) == {("segment", 31, ()): 9, ("fem", 31, ()): 2}
     bench = Workbench(titanium_strip, needs)
     bench.frequency_error("segment", 31, 4)
     bench.frequency_error("segment", 31, 9)

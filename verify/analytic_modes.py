@@ -1,11 +1,14 @@
-"""Exact Euler-Bernoulli modes of a uniform beam with any pair of supports, free of overflow at any mode."""
+"""Exact Euler-Bernoulli modes: uniform beams with any pair of supports, free of overflow at any mode.
 
-from math import pi, sqrt
+For stepped beams the exact frequencies, from the transfer of the end conditions through the sections.
+"""
+
+from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
 
 from verify.beam import Beam
-from verify.closed_forms import frequency_hz, root_parts
+from verify.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.errors import InputError
 from verify.modes import Array, Modes
 
@@ -26,9 +29,12 @@ def solve_modes(beam: Beam, n_modes: int) -> Modes:
     def shapes(x: Array, derivative: int) -> Array:
         return np.array([mode_shape(beam, n, x, derivative) for n in range(1, n_modes + 1)])
 
+    def nowhere() -> Array:
+        return np.empty((n_modes, 0))
+
     empty = np.empty(0)
     return Modes(model="analytic", count=None, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
-                 nodes=empty, points=empty, sampled=lambda: np.empty((n_modes, 0)))  # fmt: skip
+                 nodes=empty, points=empty, sampled=nowhere, curvature_points=empty, curvatures=nowhere)  # fmt: skip
 
 
 def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0) -> Array:
@@ -36,6 +42,7 @@ def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0) -> Array:
 
     x in metres. Positive where the beam first moves off its left end. Raises InputError.
     """
+    check_uniform(beam)
     xi = np.asarray(x, dtype=float) / beam.length
     left, right = beam.supports
     if (left, right) in _MIRRORED:
@@ -59,11 +66,9 @@ def _quarter_turns(turns: float, remainder: float, xi: Array) -> tuple[Array, Ar
     reduced = np.fmod(high, 2.0)
     nearest = np.round(2.0 * reduced)
     angle = (reduced - nearest / 2.0 + low) * pi + remainder * xi
-    cos, sin = np.cos(angle), np.sin(angle)
+    c, s = np.cos(angle), np.sin(angle)
     quarter = nearest.astype(int) % 4
-    table_c = np.choose(quarter, [cos, -sin, -cos, sin])
-    table_s = np.choose(quarter, [sin, cos, -sin, -cos])
-    return table_c, table_s
+    return np.choose(quarter, [c, -s, -c, s]), np.choose(quarter, [s, c, -s, -c])
 
 
 def _product_error(a: float, b: Array, product: Array) -> Array:
@@ -79,10 +84,11 @@ def _unit_shape(supports: tuple[str, str], mode: int, xi: Array, eta: Array, der
     """Shape over xi = x / L with integral of phi^2 over the unit length 1; eta = 1 - xi. (len(xi),)."""
     turns, remainder = root_parts(supports, mode)
     y = turns * pi + remainder
-    cos, sin = _quarter_turns(turns, remainder, xi)
+    cosine, sine = _quarter_turns(turns, remainder, xi)
     c, s, a, b = _coefficients(supports, y, turns, remainder)
     # derivative k of c cos + s sin + a e^{-y xi} + b e^{-y eta}, each divided by y^k
-    waves = [c * cos + s * sin, s * cos - c * sin, -c * cos - s * sin, c * sin - s * cos][derivative]
+    turned = [c * cosine + s * sine, s * cosine - c * sine]
+    waves = turned[derivative % 2] * (1.0 if derivative < 2 else -1.0)
     decay = a * (-1.0) ** derivative * np.exp(-y * xi) + b * np.exp(-y * eta)
     return np.asarray((waves + decay) * y**derivative)
 
@@ -95,16 +101,99 @@ def _coefficients(
     if pair <= {"pinned", "guided"}:
         wave = sqrt(2.0)
         return (0.0, wave, 0.0, 0.0) if supports[0] == "pinned" else (wave, 0.0, 0.0, 0.0)
-    cos, sin = (float(part[0]) for part in _quarter_turns(turns, remainder, np.array([1.0])))
-    tail = np.exp(-y)
+    c, s = (float(part[0]) for part in _quarter_turns(turns, remainder, np.array([1.0])))
+    tail = exp(-y)
     if supports[1] == supports[0]:
-        b = (cos - sin - tail) / (1.0 - tail * tail - 2.0 * tail * sin)
+        b = (c - s - tail) / (1.0 - tail * tail - 2.0 * tail * s)
     elif pair == {"clamped", "free"}:
-        b = (tail + cos + sin) / (1.0 + tail * tail + 2.0 * tail * cos)
+        b = (tail + c + s) / (1.0 + tail * tail + 2.0 * tail * c)
     elif supports[1] == "pinned":
         b = -tail / (1.0 - tail * tail)
     else:
         b = tail / (1.0 + tail * tail)
     sigma, a = 1.0 - 2.0 * b * tail, 1.0 - b * tail
     side = -1.0 if supports[0] == "clamped" else 1.0
-    return side, -side * sigma, float(a), float(b)
+    return side, -side * sigma, a, b
+
+
+def exact_frequency_hz(beam: Beam, mode: int) -> float:
+    """The exact Euler-Bernoulli frequency of a uniform or stepped beam, Hz. Raises InputError."""
+    return stepped_frequency_hz(beam, mode) if beam.stepped else frequency_hz(beam, mode)
+
+
+def stepped_frequency_hz(beam: Beam, mode: int) -> float:
+    """The exact frequency of one elastic mode of a beam of any number of sections, Hz, to about 1e-13.
+
+    The transfer matrix of each section is rearranged into its dynamic stiffness, which does not overflow, and
+    frequencies below a trial value are counted (Wittrick and Williams, Q. J. Mech. Appl. Math. 24, 1971), so
+    that none is missed; the count is bisected to rest. Raises InputError for mode < 1.
+    """
+    check_mode(mode)
+    wanted = mode + beam.rigid_motions
+    low, high = 0.0, 1.0
+    while modes_below(beam, high) < wanted:
+        low, high = high, 2.0 * high
+    while low < (middle := 0.5 * (low + high)) < high:
+        low, high = (low, middle) if modes_below(beam, middle) >= wanted else (middle, high)
+    return high * high * beam.wave_constant / (2.0 * pi * beam.length**2)
+
+
+def modes_below(beam: Beam, beta_length: float) -> int:
+    """How many frequencies, rigid ones included, lie below omega = beta^2 sqrt(EI / rho A), by beta L.
+
+    Every section counts its own with both ends clamped; the assembled dynamic stiffness adds its negative
+    eigenvalues.
+    """
+    stretches = _stretches(beam)
+    stiffness, below = np.zeros((2 * len(stretches) + 2, 2 * len(stretches) + 2)), 0
+    for i, (length, bending, mass) in enumerate(stretches):
+        beta = beta_length * (mass / bending) ** 0.25
+        ends = slice(2 * i, 2 * i + 4)
+        stiffness[ends, ends] += bending * _dynamic_stiffness(beta, length)
+        below += _clamped_below(beta * length)
+    free = [k for k in range(len(stiffness)) if k not in _held(beam, 2 * len(stretches))]
+    return below + int((np.linalg.eigvalsh(stiffness[np.ix_(free, free)]) < 0).sum())
+
+
+def _stretches(beam: Beam) -> list[tuple[float, float, float]]:
+    """(length, EI, rho A) of stretches of constant section, relative to the beam's.
+
+    Each section is cut once where no symmetry cuts it: at a frequency of the beam that is also one of a section
+    with both ends clamped, its dynamic stiffness would be infinite and the count there uncertain.
+    """
+    pieces = [
+        (p.length / beam.length, p.bending_stiffness / beam.bending_stiffness, p.mass_per_length / beam.mass_per_length)
+        for p in beam.pieces
+    ]
+    return [(part * length, ei, mass) for length, ei, mass in pieces for part in (0.4307, 0.5693)]
+
+
+def _held(beam: Beam, right: int) -> set[int]:
+    """Which of deflection and slope at both ends the supports hold, as rows of the dynamic stiffness."""
+    held = set()
+    for first, support in zip((0, right), beam.supports, strict=True):
+        held |= {first} if support in ("pinned", "clamped") else set()
+        held |= {first + 1} if support in ("clamped", "guided") else set()
+    return held
+
+
+def _clamped_below(y: float) -> int:
+    """How many roots of cos y cosh y = 1 lie below y."""
+    n = max(int(y / pi - 0.5), 1)
+    while n > 0 and wavenumber_length(("clamped", "clamped"), n) >= y:
+        n -= 1
+    return n + int(wavenumber_length(("clamped", "clamped"), n + 1) < y)
+
+
+def _dynamic_stiffness(beta: float, length: float) -> Array:
+    """Forces and moments at both ends of a section by end deflections and slopes, EI = 1, (4, 4).
+
+    Numerator and denominator carry the same e^{-beta l}.
+    """
+    y = beta * length
+    c, s, tail = cos(y), sin(y), exp(-y)
+    ch, sh = 0.5 * (1.0 + tail * tail), 0.5 * (1.0 - tail * tail)
+    scale = 1.0 / (tail - c * ch)
+    ww, wt, tt = beta**3 * (s * ch + c * sh), beta**2 * s * sh, beta * (s * ch - c * sh)
+    ww2, wt2, tt2 = -(beta**3) * (sh + s * tail), beta**2 * (ch - c * tail), beta * (sh - s * tail)
+    return scale * np.array([[ww, wt, ww2, wt2], [wt, tt, -wt2, tt2], [ww2, -wt2, ww, -wt], [wt2, tt2, -wt, tt]])

@@ -21,8 +21,42 @@ def check_number(field: str, value: object, unit: str, *, above: float = -inf, b
     raise InputError(f"{field} = {value!r}: give {wanted} ({unit})")
 
 
+class Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A piece of a stepped beam. What it leaves out is as in the beam it belongs to. SI."""
+
+    length: float
+    """Metres."""
+    width: float | None = None
+    thickness: float | None = None
+    youngs_modulus: float | None = None
+    density: float | None = None
+
+    def __post_init__(self) -> None:
+        for field in ("length", "width", "thickness", "youngs_modulus", "density"):
+            if (value := getattr(self, field)) is not None:
+                check_number(f"beam.section.{field}", value, "SI", above=0)
+
+
+class Piece(msgspec.Struct, frozen=True, kw_only=True):
+    """A stretch of constant section, everything stated."""
+
+    length: float
+    """Metres."""
+    youngs_modulus: float
+    """Pascals."""
+    second_moment: float
+    """I, metres to the fourth."""
+    mass_per_length: float
+    """Rho A, kg/m."""
+
+    @property
+    def bending_stiffness(self) -> float:
+        """EI, N m^2."""
+        return self.youngs_modulus * self.second_moment
+
+
 class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A straight uniform beam of rectangular section, vibrating across its thickness.
+    """A straight beam of rectangular section, uniform or stepped, vibrating across its thickness.
 
     All values are SI: metres, pascals, kilograms per cubic metre. Raises InputError where a size is not a
     finite positive number or a support is unknown.
@@ -44,6 +78,8 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """nu; used by Timoshenko's theory alone."""
     shear_coefficient: float = 5.0 / 6.0
     """kappa of a rectangle; used by Timoshenko's theory alone."""
+    section: tuple[Section, ...] = ()
+    """Pieces from left to right where the beam is stepped; their lengths add up to `length`."""
 
     def __post_init__(self) -> None:
         check_number("beam.length", self.length, "metres", above=0)
@@ -58,8 +94,46 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         for support in self.supports:
             if support not in SUPPORTS:
                 raise InputError(f"beam.supports has {support!r}: {near_name(str(support), SUPPORTS)}")
+        self._check_sections()
         if self._decades() > 200:
             raise InputError("beam: its sizes lie too many powers of ten apart for floating point, check their units")
+
+    def _check_sections(self) -> None:
+        total = sum(section.length for section in self.section)
+        if self.section and abs(total - self.length) > 1e-9 * self.length:
+            raise InputError(
+                f"beam.section lengths add up to {total!r} m and beam.length = {self.length!r} m: make them equal"
+            )
+
+    @property
+    def stepped(self) -> bool:
+        """Whether the section changes along the beam."""
+        return len({(p.youngs_modulus, p.second_moment, p.mass_per_length) for p in self.pieces}) > 1
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The stretches of constant section from left to right; one for a uniform beam."""
+        return tuple(self._piece(section) for section in self.section or (Section(length=self.length),))
+
+    def _piece(self, section: Section) -> Piece:
+        width = self.width if section.width is None else section.width
+        thickness = self.thickness if section.thickness is None else section.thickness
+        modulus = self.youngs_modulus if section.youngs_modulus is None else section.youngs_modulus
+        density = self.density if section.density is None else section.density
+        return Piece(length=section.length, youngs_modulus=modulus, second_moment=width * thickness**3 / 12.0,
+                     mass_per_length=density * width * thickness)  # fmt: skip
+
+    @property
+    def rigid_motions(self) -> int:
+        """How many rigid motions the supports leave: 0, 1 or 2."""
+        held = sum(support in ("pinned", "clamped") for support in self.supports)
+        turned = any(support in ("clamped", "guided") for support in self.supports)
+        return int(held == 0) + int(held <= 1 and not turned)
+
+    def mirrored(self) -> "Beam":
+        """The same beam seen from the other side."""
+        left, right = self.supports
+        return msgspec.structs.replace(self, supports=(right, left), section=self.section[::-1])
 
     def _decades(self) -> float:
         """The largest power of ten, up or down, among EI, rho A and EI / (rho A L^4)."""
@@ -70,7 +144,7 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     @property
     def area(self) -> float:
-        """A, square metres."""
+        """A, square metres, where no section says otherwise; so for the following."""
         return self.width * self.thickness
 
     @property

@@ -108,15 +108,41 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
     from verify.workbench import Workbench
 
     found = quantities.quantity(quantity)
-    given = quantities.arguments_of(found, dict(split_assignment(text) for text in arguments))
+    given = dict(split_assignment(text) for text in arguments)
+    checked = quantities.arguments_of(found, given)
     asked = _load(scene, overrides)
-    value = quantities.evaluate(found, given, asked, Workbench(asked.beam))
+    value = quantities.evaluate(found, checked, asked, Workbench(asked.beam))
     plain = quantities.as_plain(value)
     if as_json:
-        shown = quantities.arguments_as_plain(given)
+        shown = quantities.arguments_as_plain(checked, given)
         _print_json({"quantity": quantity, "arguments": shown, "value": plain, "unit": found.unit})
     else:
         click.echo(f"{quantity} = {quantities.in_words(plain)} {found.unit}".removesuffix(" 1"))
+
+
+@cli.command()
+@click.option("--mode", required=True, metavar="N", help="Mode number from 1.")
+@click.option("--error", required=True, metavar="E", help="Largest frequency error: 1% or 0.01.")
+@click.option("--scene", default="paper", show_default=True, help="Whose beam.")
+@_overrides
+@_as_json
+def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """How many segments or elements an accuracy takes, confirmed by solves, with the time each costs."""
+    from verify.plain import accuracy, choice_as_plain, mode_number
+    from verify.workbench import Workbench
+
+    wanted, number = accuracy(error), mode_number(mode)
+    beam = _load(scene, overrides).beam
+    from verify.sizing import choose as chosen
+
+    bench = Workbench(beam)
+    choices = chosen(bench, number, wanted)
+    if as_json:
+        _print_json(choice_as_plain(bench, number, wanted, choices))
+    else:
+        from verify.console import print_choices
+
+        print_choices(bench.exact_hz(number), number, wanted, choices)
 
 
 @cli.command("quantities")

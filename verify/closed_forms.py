@@ -25,12 +25,6 @@ _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
     frozenset({"clamped", "guided"}): (-0.25, 1, 1),
     frozenset({"guided", "free"}): (-0.25, 1, 1),
 }
-_RIGID = {
-    frozenset({"free"}): 2,
-    frozenset({"free", "pinned"}): 1,
-    frozenset({"guided"}): 1,
-    frozenset({"guided", "free"}): 1,
-}
 
 
 def check_mode(mode: int) -> None:
@@ -39,9 +33,12 @@ def check_mode(mode: int) -> None:
         raise InputError(f"mode = {mode!r}: modes are numbered from 1, elastic modes only")
 
 
-def rigid_modes(supports: tuple[str, str]) -> int:
-    """How many rigid motions the supports leave: 0, 1 or 2."""
-    return _RIGID.get(frozenset(supports), 0)
+def check_uniform(beam: Beam) -> None:
+    """Raise InputError where the beam is stepped, naming the models that can."""
+    if beam.stepped:
+        raise InputError(
+            f"beam.section: a beam of {len(beam.pieces)} sections has no closed form here, use the fem or segment model"
+        )
 
 
 def root_parts(supports: tuple[str, str], mode: int) -> tuple[float, float]:
@@ -73,6 +70,7 @@ def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> floa
     """
     if theory not in THEORIES:
         raise InputError(f"theory = {theory!r} is not known: {near_name(theory, THEORIES)}")
+    check_uniform(beam)
     beta = wavenumber_length(beam.supports, mode) / beam.length
     omega = beta * beta * beam.wave_constant
     if theory != "euler-bernoulli":

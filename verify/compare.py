@@ -1,6 +1,6 @@
 """Judgement: modes paired, errors, observed order, two-sided bounds. Sees arrays, knows no model."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import isfinite
 
 import msgspec
@@ -78,12 +78,37 @@ def paired_index(modes: Modes, exact_shapes: Array, mode: int, stride: int) -> i
     return int(index[mode - 1])
 
 
-def shape_error(exact: Array, computed: Array) -> float:
-    """Relative L2 distance of two mass-normalised shapes at evenly spaced nodes, free of sign; both (n_nodes,)."""
-    weights = np.ones(len(exact))
-    weights[[0, -1]] = 0.5
+def node_weights(nodes: Array) -> Array:
+    """Trapezoidal weights of positions in ascending order, (n_nodes,)."""
+    gaps = np.diff(nodes)
+    weights = np.zeros(len(nodes))
+    weights[:-1] += 0.5 * gaps
+    weights[1:] += 0.5 * gaps
+    return weights
+
+
+def shape_error(exact: Array, computed: Array, weights: Array) -> float:
+    """Relative L2 distance of two mass-normalised shapes, free of sign; all (n_nodes,)."""
     distances = [float(weights @ (computed * sign - exact) ** 2) for sign in (1.0, -1.0)]
     return float(np.sqrt(min(distances) / (weights @ exact**2)))
+
+
+def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
+    """Where a shape crosses zero between the ends of the beam, (n_zeros,), metres, ascending.
+
+    `shape` takes (n,) positions. Sampled 40 times per mode number, then Brent's method.
+    """
+    from scipy.optimize import brentq
+
+    margin = 1e-4 / mode  # the ends themselves are supports, not nodes
+    x = np.linspace(margin * length, (1.0 - margin) * length, 40 * mode + 1)
+    values = shape(x)
+    turns = np.flatnonzero(values[:-1] * values[1:] < 0)
+
+    def at(position: float) -> float:
+        return float(shape(np.array([position]))[0])
+
+    return np.array([brentq(at, x[i], x[i + 1], xtol=1e-14 * length, rtol=1e-14) for i in turns])
 
 
 def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:

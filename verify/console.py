@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from verify.gates import GateResult
     from verify.plan import Plan
     from verify.run import RunResult
+    from verify.sizing import Choice
     from verify.studies import Cell, Row
 
 
@@ -123,6 +124,21 @@ def _bare_percent(value: float | None) -> str:
     return f"{100 * value:+.4f}" if abs(value) >= 1e-4 else f"{100 * value:+.2e}".replace("e-0", "e-")
 
 
+def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]") -> None:
+    """What `verify choose` found, and which of the models costs less."""
+    console = Console(highlight=False)
+    console.print(f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact_hz:.4f} Hz takes")
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_header=True)
+    for name in ("model", "N", "unknowns", "error", "error law", "time"):
+        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
+    names = {"segment": "segments", "fem": "Hermite elements"}
+    for one in choices:
+        table.add_row(names[one.model], str(one.count), str(one.unknowns), percent(one.error),
+                      percent(one.expected_error), seconds_in_words(one.run_time_s))  # fmt: skip
+    console.print(table)
+    console.print("[dim]solved at N; one part less is not enough; time of a warm solve, set-up included[/]")
+
+
 def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
     console = Console(highlight=False)
@@ -134,7 +150,8 @@ def print_plan(plan: "Plan") -> None:
     table.add_column("asked by", overflow="fold")
     for solve in plan.solves:
         sizes = (str(n) for n in (solve.count, solve.n_modes, solve.unknowns))
-        table.add_row(solve.model, *sizes, solve.method, _who(solve.asked_by))
+        model = " ".join([solve.model, *(f"{name}={value}" for name, value in solve.settings)])
+        table.add_row(model, *sizes, solve.method, _who(solve.asked_by))
     if plan.solves:
         console.print(table)
     if plan.closed_forms:

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 DENSE_UNKNOWNS = 250
 """Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
+_LANCZOS = 1e-10
+"""Where Lanczos stops: the error of a vector enters the quotient squared."""
 _BYTES_PER_UNKNOWN = 1500
 """Measured peak of the sparse factorisation and its matrices, per unknown, beside the Lanczos basis."""
 
@@ -153,7 +155,8 @@ def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     strain, mass = pencil.strain_matrix(), pencil.mass_matrix()
     n_strains = strain.shape[0]
     sigma = -1e3 / float(pencil.n) ** 4 if pencil.rigid_modes else 0.0
-    mixed = block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, -sigma * mass]], format="csc")
+    shift = -sigma * mass if sigma else None  # a block of stored zeros would cost three times the solve
+    mixed = block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, shift]], format="csc")
     factor = splu(mixed)
     right = np.zeros(n_strains + pencil.n)
 
@@ -164,6 +167,7 @@ def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     operator = LinearOperator((pencil.n, pencil.n), matvec=invert, dtype=float)
     start = np.random.default_rng(20081).standard_normal(pencil.n)
     k = n_modes + pencil.rigid_modes
-    values, vectors = eigsh(operator, k=k, M=mass, sigma=sigma, OPinv=operator, v0=start, tol=0)
+    basis = min(k + 30, pencil.n)
+    values, vectors = eigsh(operator, k=k, M=mass, sigma=sigma, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis)
     order = np.argsort(values)
     return np.asarray(vectors[:, order[pencil.rigid_modes :]])

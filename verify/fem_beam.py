@@ -1,16 +1,17 @@
 """Hermite beam elements, assembled by scikit-fem with an element defined on the reference cell.
 
-Inside, a length is measured in mean element lengths L/N, a stiffness and a mass in those of the beam; the
-mesh has the integers for nodes, so that element lengths are exact at any size.
+Inside, a length is measured in mean element lengths L/N, a stiffness and a mass in those of the beam. The mesh
+has the integers for nodes and each element its length beside it, so that lengths are exact at any size.
 """
 
-from math import cos, pi, sin, sqrt
+from math import pi, sqrt
 from typing import Any
 
 import numpy as np
 
 from verify.beam import Beam
-from verify.eigen import DENSE_UNKNOWNS, Array, FactoredPencil, check_size, lowest, method_name
+from verify.division import Parts, check_division, divide
+from verify.eigen import DENSE_UNKNOWNS, Array, Eigenpairs, FactoredPencil, check_size, lowest, method_name
 from verify.errors import InputError
 from verify.modes import Modes
 
@@ -98,65 +99,75 @@ def unknowns(beam: Beam, n_elements: int) -> int:
     return 2 * n_elements + 2 - sum(held[support] for support in beam.supports)
 
 
-def _rigid(beam: Beam) -> int:
-    held = {"pinned": 1, "clamped": 2, "guided": 1, "free": 0}
-    slides = not {"pinned", "clamped"} & set(beam.supports)
-    return max(2 - sum(held[support] for support in beam.supports), 1 if slides else 0)
-
-
 def n_elastic(beam: Beam, n_elements: int) -> int:
     """How many elastic modes the model has."""
-    return unknowns(beam, n_elements) - _rigid(beam)
+    return unknowns(beam, n_elements) - beam.rigid_motions
 
 
-def solve_modes(beam: Beam, n_modes: int, n_elements: int) -> Modes:
-    """The first `n_modes` elastic modes with `n_elements` equal cubic Hermite elements and consistent mass.
+def solve_modes(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0) -> Modes:
+    """The first `n_modes` elastic modes with `n_elements` cubic Hermite elements and consistent mass.
 
-    Shapes are the elements' own cubics. Raises InputError for more modes than unknowns or sizes that do not
-    fit into memory.
+    Elements end on the steps of the beam; `grading` is the length of a section's last element over its first.
+    Shapes are the elements' own cubics. Raises InputError for a wrong grading, more modes than unknowns or
+    sizes that do not fit into memory.
     """
-    check(beam, n_modes, n_elements)
+    check(beam, n_modes, n_elements, grading=grading)
+    parts = divide(beam, n_elements, grading)
     free = free_unknowns(beam.supports, n_elements)
-    pencil = element_pencil(beam, np.ones(n_elements), free)
-    pairs = lowest(pencil, n_modes)
-    scale = beam.length / n_elements
-    frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / scale**2
+    pairs = lowest(element_pencil(parts, free, beam.rigid_motions), n_modes)
     nodal = _all_values(n_elements, free, pairs.vectors)
-    nodal = nodal * _sign(beam.supports[0], nodal)[:, None]
-    nodal = nodal / sqrt(beam.mass_per_length * scale)
-    nodes: Array = np.arange(n_elements + 1.0) * scale
-
-    def shapes(x: Array, derivative: int) -> Array:
-        return interpolate(nodal, x / scale, derivative) / scale**derivative
-
-    points: Array = np.arange(4.0 * n_elements + 1.0) * (scale / 4.0)
-
-    def sampled() -> Array:
-        return interpolate(nodal, np.arange(4 * n_elements + 1) / 4.0)
-
-    return Modes(model="fem", count=n_elements, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
-                 nodes=nodes, readings={"nodal": lambda: nodal[:, ::2]}, points=points, sampled=sampled,
-                 method=pairs.method)  # fmt: skip
+    nodal = nodal * _sign(beam.supports[0], parts.lengths, nodal)[:, None]
+    nodal = nodal / sqrt(beam.mass_per_length * parts.unit)
+    return _modes(beam, parts, nodal, pairs)
 
 
-def _sign(support: str, nodal: Array) -> Array:
-    """+-1 for each mode, (k,): by the first of deflection, slope, curvature that the left end leaves free."""
-    derivative = {"free": 0, "guided": 0, "pinned": 1, "clamped": 2}[support]
-    return np.where(interpolate(nodal[:, :4], np.zeros(1), derivative)[:, 0] < 0, -1.0, 1.0)
-
-
-def check(beam: Beam, n_modes: int, n_elements: int) -> None:
+def check(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0) -> None:
     """Raise InputError, before anything is allocated, where `solve_modes` would refuse."""
     if n_elements < 1:
         raise InputError(f"{FIELD} = {n_elements!r}: give at least one element")
+    check_division(beam, n_elements, grading)
     check_size(unknowns(beam, n_elements), n_modes, n_elastic(beam, n_elements), FIELD, n_elements)
 
 
-def interpolate(nodal: Array, x: Array, derivative: int = 0) -> Array:
-    """The elements' cubics at x (in element lengths), (k, len(x)); nodal (k, 2N + 2) is w_0, w_0', ..."""
-    n_elements = nodal.shape[1] // 2 - 1
-    element = np.clip(x.astype(int), 0, n_elements - 1)
-    weights = hermite(x - element, derivative)
+def _modes(beam: Beam, parts: Parts, nodal: Array, pairs: Eigenpairs) -> Modes:
+    unit = parts.unit
+    frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / unit**2
+
+    def shapes(x: Array, derivative: int) -> Array:
+        return interpolate(parts.lengths, nodal, x / unit, derivative) / unit**derivative
+
+    quarters = _inside(parts, np.arange(4) / 4.0)
+    points = np.append(quarters, parts.nodes[-1])
+    gauss = _inside(parts, np.array([0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0)]))
+    return Modes(
+        model="fem", count=len(parts.lengths), length=beam.length, frequencies_hz=frequencies, shapes=shapes,
+        nodes=parts.nodes * unit, readings={"nodal": lambda: nodal[:, ::2]}, points=points * unit,
+        sampled=lambda: interpolate(parts.lengths, nodal, points), curvature_points=gauss * unit,
+        curvatures=lambda: interpolate(parts.lengths, nodal, gauss, 2) / unit**2, method=pairs.method,
+    )  # fmt: skip
+
+
+def _inside(parts: Parts, xi: Array) -> Array:
+    """The points xi of every element, in units from the left end, (N len(xi),)."""
+    return np.asarray((parts.nodes[:-1, None] + parts.lengths[:, None] * xi).ravel())
+
+
+def _sign(support: str, lengths: Array, nodal: Array) -> Array:
+    """+-1 for each mode, (k,): by the first of deflection, slope, curvature that the left end leaves free."""
+    derivative = {"free": 0, "guided": 0, "pinned": 1, "clamped": 2}[support]
+    return np.where(interpolate(lengths[:1], nodal[:, :4], np.zeros(1), derivative)[:, 0] < 0, -1.0, 1.0)
+
+
+def interpolate(lengths: Array, nodal: Array, x: Array, derivative: int = 0) -> Array:
+    """The elements' cubics or a derivative at x (in the unit of lengths), (k, len(x)).
+
+    nodal is (k, 2N + 2): w_0, w_0', w_1, w_1', ...
+    """
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    element = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(lengths) - 1)
+    h = lengths[element]
+    weights = hermite((x - ends[element]) / h, derivative) / h**derivative
+    weights[1::2] *= h
     return np.asarray(sum(nodal[:, 2 * element + j] * weights[j] for j in range(4)))
 
 
@@ -166,17 +177,18 @@ def _all_values(n_elements: int, free: Array, vectors: Array) -> Array:
     return nodal
 
 
-def element_pencil(beam: Beam, lengths: Array, free: Array) -> FactoredPencil:
+def element_pencil(parts: Parts, free: Array, rigid_motions: int) -> FactoredPencil:
     """K = B^T diag(d) B over two curvatures of each element, and M by scikit-fem."""
-    n_elements = len(lengths)
-    mass = assemble_mass(lengths, np.ones(n_elements))[free][:, free].tocsc()
+    lengths, n_elements = parts.lengths, len(parts.lengths)
+    mass = assemble_mass(lengths, parts.masses_per_length)[free][:, free].tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
+    stiffness = parts.stiffnesses / lengths
     return FactoredPencil(
         n=len(free),
-        rigid_modes=_rigid(beam),
+        rigid_modes=rigid_motions,
         strain=lambda values: element_curvatures(lengths, _all_values(n_elements, free, values).T),
-        stiffness=np.concatenate([1.0 / lengths, 3.0 / lengths]),
+        stiffness=np.concatenate([stiffness, 3.0 * stiffness]),
         strain_matrix=lambda: curvature_matrix(lengths)[:, free],
         mass_matrix=lambda: mass,
     )
@@ -203,25 +215,6 @@ def curvature_matrix(lengths: Array) -> Any:
     columns = np.concatenate([2 * e + 1, 2 * e + 3, 2 * e, 2 * e + 1, 2 * e + 2, 2 * e + 3])
     values = np.concatenate([-one, one, 2.0 / lengths, one, -2.0 / lengths, one])
     return csc_array((values, (rows, columns)), shape=(2 * n, 2 * n + 2))
-
-
-def dispersion_frequency_hz(beam: Beam, mode: int, n_elements: int) -> float:
-    """The exact frequency of mode `mode` of equal Hermite elements, pinned-pinned, Hz, in closed form.
-
-    Sine deflections and cosine slopes at the nodes leave two equations; their lower root. Raises InputError
-    for other supports and for modes from `n_elements` on, where that branch ends.
-    """
-    if beam.supports != ("pinned", "pinned"):
-        raise InputError(f"beam.supports = {beam.supports!r}: the discrete dispersion is for pinned-pinned beams")
-    if not 1 <= mode < n_elements:
-        raise InputError(f"mode = {mode!r}: the closed form covers modes 1 to {n_elements - 1} of {n_elements}")
-    mu = mode * pi / n_elements
-    c, s, fall = cos(mu), sin(mu), sin(mu / 2.0) ** 2  # fall = (1 - cos mu) / 2
-    k11, k12, k22 = 48.0 * fall, -12.0 * s, 8.0 + 4.0 * c
-    m11, m12, m22 = (312.0 + 108.0 * c) / 420.0, 26.0 * s / 420.0, (8.0 - 6.0 * c) / 420.0
-    a, b, det = m11 * m22 - m12**2, k11 * m22 + k22 * m11 - 2.0 * k12 * m12, 192.0 * fall**2
-    root = 2.0 * det / (b + sqrt(b * b - 4.0 * a * det))
-    return sqrt(root) * beam.wave_constant * (n_elements / beam.length) ** 2 / (2.0 * pi)
 
 
 def method(beam: Beam, n_modes: int, n_elements: int) -> str:

@@ -37,6 +37,10 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n_points,), metres, evenly spaced: where this model knows its shape with nothing added."""
     sampled: Callable[[], Array]
     """() -> deflection at `points`, (n_modes, n_points)."""
+    curvature_points: Array
+    """(n_curvatures,), metres: where this model knows its curvature best."""
+    curvatures: Callable[[], Array]
+    """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg))."""
     method: str = "closed form"
     """How the eigenvalues were found."""
 

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.checked import checked
+from verify.errors import InputError
 from verify.scene import Convergence, Scene, literal
 
 if TYPE_CHECKING:
     from verify.run import RunResult
+    from verify.sizing import Choice
     from verify.studies import Row
+    from verify.workbench import Workbench
 
 
 def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
@@ -59,3 +62,26 @@ def table_text(rows: "tuple[Row, ...]", layout: str) -> str:
         return "".join(",".join(line) + "\n" for line in [columns, *cells])
     rule = ["---:"] * len(columns)
     return "".join("| " + " | ".join(line) + " |\n" for line in [columns, rule, *cells])
+
+
+def mode_number(text: str) -> int:
+    """A mode number as typed. Raises InputError."""
+    value = literal(text)
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError(f"mode = {text!r}: give a whole number from 1")
+    return value
+
+
+def accuracy(text: str) -> float:
+    """A relative error as typed, '1%' or '0.01'. Raises InputError unless it lies between 1e-12 and 1."""
+    value = literal(text.strip().removesuffix("%"))
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    error = float(value) / (100.0 if text.strip().endswith("%") else 1.0) if number else 0.0
+    if not 1e-12 <= error < 1.0:
+        raise InputError(f"error = {text!r}: give a relative error from 1e-12 up to 1, for instance 1% or 0.01")
+    return error
+
+
+def choice_as_plain(bench: "Workbench", mode: int, error: float, choices: "list[Choice]") -> dict[str, Any]:
+    """An answer of `verify choose --json`."""
+    return {"mode": mode, "error": error, "exact_hz": bench.exact_hz(mode), "choices": msgspec.to_builtins(choices)}

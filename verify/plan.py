@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.errors import InputError
-from verify.workbench import Need, merged, model_module
+from verify.workbench import Key, Need, Settings, merged, model_module
 
 if TYPE_CHECKING:
     from verify.scene import Scene
@@ -25,6 +25,7 @@ class PlannedSolve(msgspec.Struct, frozen=True, kw_only=True):
 
     model: str
     count: int
+    settings: Settings
     n_modes: int
     unknowns: int
     method: str
@@ -86,10 +87,10 @@ def plan_scene(scene: "Scene") -> Plan:
     """What will be solved, evaluated in closed form, or skipped."""
     asks = asks_of(scene)
     solves, problems = [], [(ask.who, ask.problem) for ask in asks if ask.problem]
-    for (model, count), n_wanted in sorted(merged(need for ask in asks for need in ask.needs).items()):
-        who = tuple(a.who for a in asks if any((n.model, n.count) == (model, count) for n in a.needs))
+    for key, n_wanted in sorted(merged(need for ask in asks for need in ask.needs).items()):
+        who = tuple(a.who for a in asks if any((n.model, n.count, n.settings) == key for n in a.needs))
         try:
-            solves.append(_planned(scene, model, count, n_wanted, who))
+            solves.append(_planned(scene, key, n_wanted, who))
         except InputError as error:
             problems += [(one, str(error)) for one in who]
     closed = tuple(ask.who for ask in asks if not ask.needs and not ask.problem)
@@ -97,12 +98,14 @@ def plan_scene(scene: "Scene") -> Plan:
                 problems=tuple(Problem(*pair) for pair in problems))  # fmt: skip
 
 
-def _planned(scene: "Scene", model: str, count: int, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
+def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
+    model, count, settings = key
     module = model_module(model)
     n_modes = max(min(n_wanted, module.n_elastic(scene.beam, count)), 1)
-    module.check(scene.beam, n_modes, count)
-    return PlannedSolve(model=model, count=count, n_modes=n_modes, unknowns=module.unknowns(scene.beam, count),
-                        method=module.method(scene.beam, n_modes, count), asked_by=who)  # fmt: skip
+    module.check(scene.beam, n_modes, count, **dict(settings))
+    return PlannedSolve(model=model, count=count, settings=settings, n_modes=n_modes,
+                        unknowns=module.unknowns(scene.beam, count), asked_by=who,
+                        method=module.method(scene.beam, n_modes, count))  # fmt: skip
 
 
 def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:

@@ -12,7 +12,7 @@ from msgspec import Meta
 
 from verify.checked import checked
 from verify.errors import InputError, near_name
-from verify.workbench import Need, Workbench
+from verify.workbench import Need, Settings, Workbench, for_model
 
 if TYPE_CHECKING:
     from verify.scene import Scene
@@ -33,13 +33,44 @@ Theory = Annotated[
 Reading = Annotated[
     str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default the first")
 ]
+Wall = Annotated[
+    Literal["gregory", "half", "welded", "third-order", "five-joint"],
+    Meta(description="how segments are held at a clamped end; half is the literature's k = 2EI/l"),
+]
+Joints = Annotated[
+    Literal["series", "printed"], Meta(description="Eq. (1) of the segments' joints: put right, or as printed")
+]
+Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
 
 
 class Arguments(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Base of the typed arguments of a quantity."""
 
 
-class AtSize(Arguments, frozen=True, kw_only=True):
+class Divided(Arguments, frozen=True, kw_only=True):
+    """Arguments with the settings of the discrete models."""
+
+    wall: Wall = "gregory"
+    joints: Joints = "series"
+    grading: Grading = 1.0
+
+    @property
+    def settings(self) -> Settings:
+        """Those that are not the default."""
+        chosen: list[tuple[str, str | float]] = []
+        chosen += [("wall", self.wall)] if self.wall != "gregory" else []
+        chosen += [("joints", self.joints)] if self.joints != "series" else []
+        chosen += [("grading", self.grading)] if self.grading != 1.0 else []
+        return tuple(chosen)
+
+    def check_settings(self, model: str) -> None:
+        """Raise InputError for a setting that the model does not have."""
+        for name, _ in self.settings:
+            if model in ("analytic", "fem") and (name != "grading" or model == "analytic"):
+                raise InputError(f"{name} = {getattr(self, name)!r} is a setting of model = segment, not of {model}")
+
+
+class AtSize(Divided, frozen=True, kw_only=True):
     """One mode of one model at one size."""
 
     model: AnyModel
@@ -54,26 +85,59 @@ class AtSize(Arguments, frozen=True, kw_only=True):
             raise InputError(
                 f"theory = {self.theory!r} belongs to model = analytic: the {self.model} model is Euler-Bernoulli"
             )
+        self.check_settings(self.model)
 
 
-class ShapeAt(Arguments, frozen=True, kw_only=True):
-    """One shape of one discrete model."""
+class DiscreteAtSize(Divided, frozen=True, kw_only=True):
+    """One mode of one discrete model at one size."""
 
     model: DiscreteModel
     mode: Mode
     count: Size
+
+    def __post_init__(self) -> None:
+        self.check_settings(self.model)
+
+
+class ShapeAt(DiscreteAtSize, frozen=True, kw_only=True):
+    """One shape of one discrete model."""
+
     reading: Reading | None = None
 
 
-class OverSizes(Arguments, frozen=True, kw_only=True):
+class NodeAt(Divided, frozen=True, kw_only=True):
+    """One node of one shape of one model."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")]
+    mode: Mode
+    node: Annotated[int, Meta(ge=1, description="which node, from the left, ends not counted")] = 1
+    count: Size | None = None
+
+    def __post_init__(self) -> None:
+        if self.model != "analytic" and self.count is None:
+            raise InputError(f"count is missing: give the number of segments or elements for model = {self.model}")
+        self.check_settings(self.model)
+
+
+class OverSizes(Divided, frozen=True, kw_only=True):
     """One mode of one model over several sizes."""
 
     model: Annotated[Literal["fem", "segment", "mean"], Meta(description="mean is the middle of the bracket")]
     mode: Mode
     counts: Sizes
 
+    def __post_init__(self) -> None:
+        self.check_settings(self.model)
 
-class BracketAt(Arguments, frozen=True, kw_only=True):
+
+class ShapesOverSizes(OverSizes, frozen=True, kw_only=True):
+    """One shape of one discrete model over several sizes."""
+
+    model: DiscreteModel
+    reading: Reading | None = None
+
+
+class BracketAt(Divided, frozen=True, kw_only=True):
     """One mode at one size, both discrete models."""
 
     mode: Mode
@@ -88,12 +152,15 @@ class FirstModes(Arguments, frozen=True, kw_only=True):
     modes: Annotated[int, Meta(ge=1, description="how many modes, from the first")] = 22
 
 
-class ToError(Arguments, frozen=True, kw_only=True):
+class ToError(Divided, frozen=True, kw_only=True):
     """An accuracy wanted of one mode of one discrete model."""
 
     model: DiscreteModel
     mode: Mode
     error: Annotated[float, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
+
+    def __post_init__(self) -> None:
+        self.check_settings(self.model)
 
 
 class NeighbourModes(Arguments, frozen=True, kw_only=True):
@@ -120,12 +187,20 @@ class Quantity(msgspec.Struct, frozen=True):
     evaluate: Callable[[Any, "Scene", Workbench], Any]
 
 
-def _solved(model: str, count: int | None, n_modes: int) -> tuple[Need, ...]:
+def _solved(model: str, count: int | None, n_modes: int, settings: Settings = ()) -> tuple[Need, ...]:
     """The solves behind one figure; the mean of both models takes both."""
     if model == "analytic" or count is None:
         return ()
     models = ("segment", "fem") if model == "mean" else (model,)
-    return tuple(Need(m, count, n_modes) for m in models)
+    return tuple(Need(m, count, n_modes, for_model(m, settings)) for m in models)
+
+
+def _at_size(a: Any, scene: "Scene") -> tuple[Need, ...]:
+    return _solved(a.model, a.count, a.mode, a.settings)
+
+
+def _over_sizes(a: Any, scene: "Scene") -> tuple[Need, ...]:
+    return tuple(need for count in a.counts for need in _solved(a.model, count, a.mode, a.settings))
 
 
 def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
@@ -133,7 +208,7 @@ def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
         from verify.closed_forms import frequency_hz
 
         return frequency_hz(scene.beam, a.mode, a.theory)
-    return bench.frequency_hz(a.model, a.count, a.mode)
+    return bench.frequency_hz(a.model, a.count, a.mode, a.settings)
 
 
 def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
@@ -142,65 +217,56 @@ def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
 
         exact = frequency_hz(scene.beam, a.mode)
         return (frequency_hz(scene.beam, a.mode, a.theory) - exact) / exact
-    return bench.frequency_error(a.model, a.count, a.mode)
+    return bench.frequency_error(a.model, a.count, a.mode, a.settings)
 
 
 def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
-    from verify.workbench import model_module
+    from verify.error_laws import dispersion_frequency_hz
 
     solved = bench.modes(a.model, a.count, a.modes).frequencies_hz
-    closed: list[float] = [
-        model_module(a.model).dispersion_frequency_hz(scene.beam, n, a.count) for n in range(1, a.modes + 1)
-    ]
+    closed = [dispersion_frequency_hz(a.model, scene.beam, n, a.count) for n in range(1, a.modes + 1)]
     return max(abs(float(f) / exact - 1.0) for f, exact in zip(solved, closed, strict=False))
+
+
+def _law_ratio(a: DiscreteAtSize, scene: "Scene", bench: Workbench) -> float:
+    from verify.closed_forms import check_uniform
+    from verify.error_laws import leading_error
+
+    check_uniform(scene.beam)
+    law = leading_error(a.model, scene.beam.supports, a.mode, a.count)
+    return bench.frequency_error(a.model, a.count, a.mode, a.settings) / law
 
 
 def _order(a: OverSizes, scene: "Scene", bench: Workbench) -> float:
     from verify.compare import observed_order
 
-    return observed_order(a.counts, [bench.frequency_error(a.model, count, a.mode) for count in a.counts])
+    return observed_order(a.counts, [bench.frequency_error(a.model, n, a.mode, a.settings) for n in a.counts])
+
+
+def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
+    from verify.compare import observed_order
+
+    errors = [bench.shape_error(a.model, n, a.mode, a.reading, a.settings) for n in a.counts]
+    return observed_order(a.counts, errors)
 
 
 def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
-    """The smallest count that a solve confirms, from the closed form's guess and its neighbours."""
+    from verify.sizing import count_needed
 
-    def reached(count: int) -> bool:
-        return abs(bench.frequency_error(a.model, count, a.mode)) <= a.error
-
-    count = guess = _count_guess(a, scene)
-    while not reached(count):
-        count += 1
-        if count > 2 * guess + 10:
-            raise InputError(
-                f"error = {a.error!r}: the {a.model} model does not reach it up to count = {count}, although its "
-                f"dispersion says {guess}; one of the two is wrong"
-            )
-    while count - 1 > a.mode and reached(count - 1):
-        count -= 1
-    return count
+    return count_needed(bench, a.model, a.mode, a.error, a.settings)
 
 
-def _count_guess(a: ToError, scene: "Scene") -> int:
-    """The smallest count of the discrete dispersion's error: doubling, then halving the interval."""
-    from verify.closed_forms import frequency_hz
-    from verify.workbench import model_module
+def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
+    from verify.sizing import count_guess
 
-    dispersion, exact = model_module(a.model).dispersion_frequency_hz, frequency_hz(scene.beam, a.mode)
+    return _solved(a.model, count_guess(a.model, scene.beam, a.mode, a.error), a.mode, a.settings)
 
-    def reached(count: int) -> bool:
-        return abs(float(dispersion(scene.beam, a.mode, count)) - exact) <= a.error * exact
 
-    if a.error < 1e-12:
-        raise InputError(f"error = {a.error!r} is as small as rounding: ask for 1e-12 or more")
-    low, high = a.mode, a.mode + 1
-    while not reached(high):
-        low, high = high, 2 * high
-        if high > 10**8:
-            raise InputError(f"error = {a.error!r}: the {a.model} model's dispersion does not reach it at any size")
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high
+def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:
+    positions = bench.node_positions(a.model, a.count, a.mode, a.settings)
+    if a.node > len(positions):
+        raise InputError(f"node = {a.node}: mode {a.mode} has {len(positions)} nodes between the ends")
+    return float(positions[a.node - 1])
 
 
 def _rule_frequency(a: NeighbourModes, scene: "Scene", bench: Workbench) -> float:
@@ -220,35 +286,49 @@ def _quarter_wavelength(a: AtFrequency, scene: "Scene", bench: Workbench) -> flo
 QUANTITIES: dict[str, Quantity] = {
     q.name: q
     for q in (
-        Quantity(
-            "mode.frequency", "Hz", "Frequency of one mode.",
-            AtSize, lambda a, s: _solved(a.model, a.count, a.mode), _frequency,
-        ),
+        Quantity("mode.frequency", "Hz", "Frequency of one mode.", AtSize, _at_size, _frequency),
         Quantity(
             "mode.frequency_error", "1", "Signed error relative to the exact Euler-Bernoulli frequency.",
-            AtSize, lambda a, s: _solved(a.model, a.count, a.mode), _frequency_error,
+            AtSize, _at_size, _frequency_error,
         ),
         Quantity(
             "mode.dispersion_error", "1", "Largest deviation of the solver from the model's own exact dispersion.",
             FirstModes, lambda a, s: _solved(a.model, a.count, a.modes), _dispersion_error,
         ),
         Quantity(
+            "mode.law_ratio", "1", "Frequency error over its leading law, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)).",
+            DiscreteAtSize, _at_size, _law_ratio,
+        ),
+        Quantity(
             "mode.shape_error", "1", "Relative L2 error of the mass-normalised deflection at the model's nodes.",
-            ShapeAt, lambda a, s: _solved(a.model, a.count, a.mode),
-            lambda a, s, bench: bench.shape_error(a.model, a.count, a.mode, a.reading),
+            ShapeAt, _at_size,
+            lambda a, s, bench: bench.shape_error(a.model, a.count, a.mode, a.reading, a.settings),
+        ),
+        Quantity(
+            "mode.curvature_error", "1", "Relative L2 error of the curvature at joints or Gauss points.",
+            DiscreteAtSize, _at_size,
+            lambda a, s, bench: bench.curvature_error(a.model, a.count, a.mode, a.settings),
+        ),
+        Quantity(
+            "mode.node_position", "m", "Where a mode stands still, from the left end.",
+            NodeAt, _at_size, _node_position,
         ),
         Quantity(
             "mode.order", "1", "Observed order of the frequency error over sizes.",
-            OverSizes, lambda a, s: tuple(n for c in a.counts for n in _solved(a.model, c, a.mode)), _order,
+            OverSizes, _over_sizes, _order,
+        ),
+        Quantity(
+            "mode.shape_order", "1", "Observed order of the shape error over sizes.",
+            ShapesOverSizes, _over_sizes, _shape_order,
         ),
         Quantity(
             "mode.bracket", "Hz", "Two-sided bound on the exact frequency: segments below, Hermite above.",
-            BracketAt, lambda a, s: _solved("mean", a.count, a.mode),
-            lambda a, s, bench: bench.bracket(a.mode, a.count),
+            BracketAt, lambda a, s: _solved("mean", a.count, a.mode, a.settings),
+            lambda a, s, bench: bench.bracket(a.mode, a.count, a.settings),
         ),
         Quantity(
             "mode.count_needed", "1", "Fewest segments or elements whose frequency error is within `error`.",
-            ToError, lambda a, s: _solved(a.model, _count_guess(a, s), a.mode), _count_needed,
+            ToError, _count_guess, _count_needed,
         ),
         Quantity(
             "drive.rule_frequency", "Hz", "The paper's drive rule: root mean square of two exact neighbours.",
@@ -295,10 +375,10 @@ def as_plain(value: Any) -> Any:
     return value
 
 
-def arguments_as_plain(arguments: Arguments) -> dict[str, Any]:
-    """What was asked, without what was left open."""
+def arguments_as_plain(arguments: Arguments, given: dict[str, Any]) -> dict[str, Any]:
+    """What was asked, as it was understood."""
     plain: dict[str, Any] = msgspec.to_builtins(arguments)
-    return {key: value for key, value in plain.items() if value is not None}
+    return {key: plain[key] for key in given}
 
 
 def in_words(plain: Any) -> str:

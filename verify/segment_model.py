@@ -1,28 +1,38 @@
 """Finite segments: rigid links, revolute joints with torsion springs, linearised about the straight chain.
 
 Unknowns are the transverse positions of the joints, which keep the mass matrix well conditioned. Inside, a
-length is measured in mean link lengths L/N, a stiffness and a mass in those of the beam, so that equal links
-have length 1 exactly.
+length is measured in mean link lengths, a stiffness and a mass in those of the beam, so that equal links have
+length 1 exactly.
 """
 
-from math import pi, sin, sqrt
-from typing import Any
+from math import pi, sqrt
+from typing import Any, Literal, get_args
 
 import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.chain_walls import WALLS, Wall, wall_factors, welded_halves
+from verify.division import Parts, check_division, divide
 from verify.eigen import DENSE_UNKNOWNS, Array, Eigenpairs, FactoredPencil, check_size, lowest, method_name
-from verify.errors import InputError
+from verify.errors import InputError, near_name
 from verify.modes import Modes
 
 FIELD = "n_segments"
+Joints = Literal["series", "printed"]
+JOINTS: tuple[str, ...] = get_args(Joints)
 
 
 class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A straight chain of N links in units of the mean link length and of the beam's EI and rho A."""
+    """A straight chain of N links in units of a mean link length and of the beam's EI and rho A."""
 
     supports: tuple[str, str]
+    rigid_motions: int
+    """0, 1 or 2."""
+    unit: float
+    """Metres: the unit of length."""
+    start: float
+    """Where the first joint stands, in units from the left end: 0, or 1/2 behind a welded half segment."""
     lengths: Array
     """(N,), link lengths."""
     compliances: Array
@@ -49,14 +59,29 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         left, right = (support in ("clamped", "guided") for support in self.supports)
         return left, right
 
+    @property
+    def nodes(self) -> Array:
+        """Joint positions, (N + 1,), metres."""
+        steps = np.concatenate([[self.start], self.lengths])
+        return np.asarray(np.cumsum(steps) * self.unit)
+
 
 def joint_compliance(length_i: Any, stiffness_i: Any, length_j: Any, stiffness_j: Any) -> Any:
     """1/k of the joint between links i and j: two half links in series, l_i/(2 E_i I_i) + l_j/(2 E_j I_j).
 
-    k = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i), the paper's Eq. (1) with its indices put right: as
-    printed, E_i I_j l_j + E_j I_i l_i, it is no series connection unless the links are alike.
+    k = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i), the paper's Eq. (1) with its indices put right.
     """
     return length_i / (2.0 * stiffness_i) + length_j / (2.0 * stiffness_j)
+
+
+def printed_compliance(parts: Parts) -> Array:
+    """1/k of the inner joints by Eq. (1) as the paper prints it, (N - 1,).
+
+    k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i): right units, wrong pairing. It is no series connection
+    where both E I and E / l differ, and drops the convergence to order 1 there.
+    """
+    e, i, length = parts.moduli, parts.second_moments, parts.lengths
+    return np.asarray(length[1:] / (2.0 * e[1:] * i[:-1]) + length[:-1] / (2.0 * e[:-1] * i[1:]))
 
 
 def link_inertia(mass: Any, length: Any) -> Any:
@@ -64,14 +89,31 @@ def link_inertia(mass: Any, length: Any) -> Any:
     return mass * length**2 / 12.0
 
 
-def uniform_chain(beam: Beam, n_segments: int) -> Chain:
-    """N equal links of a uniform beam."""
-    lengths, ones = np.ones(n_segments), np.ones(n_segments)
-    compliances = np.full(n_segments + 1, np.inf)
-    compliances[1:-1] = joint_compliance(lengths[:-1], ones[:-1], lengths[1:], ones[1:])
-    masses = ones * lengths
-    return Chain(supports=beam.supports, lengths=lengths, compliances=compliances, masses=masses,
-                 inertias=link_inertia(masses, lengths))  # fmt: skip
+def build_chain(
+    beam: Beam, n_segments: int, *, wall: Wall = "gregory", joints: Joints = "series", grading: float = 1.0
+) -> Chain:
+    """The chain of a beam: links of its sections, joints between, joints at the walls. See `solve_modes`."""
+    parts = divide(beam, n_segments, grading)
+    lengths, stiffness = parts.lengths, parts.stiffnesses
+    if joints == "printed":
+        inner = printed_compliance(parts)
+    else:
+        inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
+    # an end joint as if the end link went on beyond it; the factors of the walls say how much of it is there
+    compliances = np.concatenate([[lengths[0] / stiffness[0]], inner, [lengths[-1] / stiffness[-1]]])
+    compliances *= wall_factors(beam.supports, n_segments, wall)
+    halves = welded_halves(beam.supports) if wall == "welded" else (0, 0)
+    masses = lengths * parts.masses_per_length
+    return Chain(
+        supports=beam.supports,
+        rigid_motions=beam.rigid_motions,
+        unit=beam.length / (n_segments + 0.5 * sum(halves)),
+        start=0.5 * halves[0],
+        lengths=lengths,
+        compliances=compliances,
+        masses=masses,
+        inertias=link_inertia(masses, lengths),
+    )
 
 
 def unknowns(beam: Beam, n_segments: int) -> int:
@@ -80,64 +122,129 @@ def unknowns(beam: Beam, n_segments: int) -> int:
 
 
 def n_elastic(beam: Beam, n_segments: int) -> int:
-    """How many elastic modes the chain has: one for each joint spring, at most one for each unknown."""
-    return max(n_segments - 1 + sum(support in ("clamped", "guided") for support in beam.supports), 0)
+    """How many elastic modes the chain has: unknowns less rigid motions."""
+    return max(unknowns(beam, n_segments) - beam.rigid_motions, 0)
 
 
-def solve_modes(beam: Beam, n_modes: int, n_segments: int) -> Modes:
-    """The first `n_modes` elastic modes of the beam as `n_segments` equal rigid links.
+def solve_modes(
+    beam: Beam,
+    n_modes: int,
+    n_segments: int,
+    *,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+) -> Modes:
+    """The first `n_modes` elastic modes of the beam as `n_segments` rigid links.
 
-    Joints by Eq. (1) in its series form, links with their own rotary inertia m l^2/12 (the paper, Section
-    II.A). Frequencies are those of the chain to rounding. Shapes are read at the joints with the correction
-    y + delta^2 y / 12 (order 4; the raw y, order 2, is the reading "raw") and through a cubic spline between.
-    Raises InputError for more modes than the chain has or sizes that do not fit into memory.
+    Links have their own rotary inertia m l^2/12 (the paper, Section II.A). `joints` is Eq. (1) in its
+    "series" form or as "printed"; `wall` says how a clamped end is held (`chain_walls.WALLS`); `grading` is the
+    length of a section's last link over its first. Frequencies are those of the chain to rounding. Shapes are
+    read at the joints with the correction y + delta^2 y / 12 (order 4, next to a clamped wall 2; the raw y,
+    order 2, is the reading "raw") and through a cubic spline between. Raises InputError for unknown settings,
+    more modes than the chain has or sizes that do not fit into memory.
     """
-    check(beam, n_modes, n_segments)
-    chain = uniform_chain(beam, n_segments)
-    pairs = lowest(chain_pencil(chain), n_modes)
-    return _modes(beam, chain, pairs)
+    check(beam, n_modes, n_segments, wall=wall, joints=joints, grading=grading)
+    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
+    return _modes(beam, chain, lowest(chain_pencil(chain), n_modes))
 
 
-def check(beam: Beam, n_modes: int, n_segments: int) -> None:
+def check(
+    beam: Beam,
+    n_modes: int,
+    n_segments: int,
+    *,
+    wall: str = "gregory",
+    joints: str = "series",
+    grading: float = 1.0,
+) -> None:
     """Raise InputError, before anything is allocated, where `solve_modes` would refuse."""
+    if wall not in WALLS:
+        raise InputError(f"wall = {wall!r} is not known: {near_name(wall, WALLS)}")
+    if joints not in JOINTS:
+        raise InputError(f"joints = {joints!r} is not known: {near_name(joints, JOINTS)}")
     if n_segments < 2:
         raise InputError(f"{FIELD} = {n_segments!r}: a chain that bends needs at least 2 segments")
-    if not set(beam.supports) <= {"pinned"}:
-        raise InputError(
-            f"beam.supports = {beam.supports!r}: the segment model takes pinned ends so far, use fem or analytic"
-        )
+    if wall == "welded" and (beam.section or grading != 1.0):
+        raise InputError("wall = 'welded' is for uniform beams of equal segments: choose another wall")
+    check_division(beam, n_segments, grading)
     check_size(unknowns(beam, n_segments), n_modes, n_elastic(beam, n_segments), FIELD, n_segments)
 
 
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
-    n = chain.n_segments
-    frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) * (n / beam.length) ** 2
-    nodes: Array = np.arange(n + 1.0) * (beam.length / n)
+    frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / chain.unit**2
     raw = _with_ends(chain, pairs.vectors).T * _sign(chain, pairs.vectors)[:, None]
-    raw /= sqrt(beam.mass_per_length * beam.length / n)
+    raw /= sqrt(beam.mass_per_length * chain.unit)
 
     def corrected() -> Array:
-        return corrected_reading(raw)
+        return corrected_reading(chain, raw)
 
     def shapes(x: Array, derivative: int) -> Array:
-        return _spline(nodes, corrected(), x, derivative)
+        return _spline(chain, corrected(), x, derivative)
 
-    return Modes(model="segment", count=n, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
-                 nodes=nodes, readings={"corrected": corrected, "raw": lambda: raw}, points=nodes,
-                 sampled=corrected, method=pairs.method)  # fmt: skip
+    def curvatures() -> Array:
+        return joint_curvatures(chain, raw)
 
-
-def corrected_reading(joints: Array) -> Array:
-    """Y + delta^2 y / 12 at every joint, (n_modes, N + 1); at a pinned end delta^2 y = 0 by odd reflection."""
-    corrected = joints.copy()
-    corrected[:, 1:-1] += np.diff(joints, 2, axis=1) / 12.0
-    return corrected
+    nodes = chain.nodes
+    return Modes(model="segment", count=chain.n_segments, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
+                 nodes=nodes, readings={"corrected": corrected, "raw": lambda: raw}, points=nodes, sampled=corrected,
+                 curvature_points=nodes, curvatures=curvatures, method=pairs.method)  # fmt: skip
 
 
-def _spline(nodes: Array, values: Array, x: Array, derivative: int) -> Array:
+def _node_curvatures(chain: Chain, joints: Array) -> Array:
+    """Change of slope over the mean of the adjoining links at every joint, (k, N + 1), in 1/unit.
+
+    At a wall the chain goes on by reflection (guided even, clamped even); zero at pinned and free ends.
+    """
+    slopes = np.diff(joints, axis=1) / chain.lengths
+    curvatures = np.zeros_like(joints)
+    curvatures[:, 1:-1] = np.diff(slopes, axis=1) / (0.5 * (chain.lengths[1:] + chain.lengths[:-1]))
+    left, right = chain.walls
+    if left:
+        curvatures[:, 0] = 2.0 * slopes[:, 0] / chain.lengths[0]
+    if right:
+        curvatures[:, -1] = -2.0 * slopes[:, -1] / chain.lengths[-1]
+    return curvatures
+
+
+def corrected_reading(chain: Chain, joints: Array) -> Array:
+    """Y + delta^2 y / 12 at every joint, (k, N + 1); ends that keep their position keep it.
+
+    For unequal links (l_i^2 + l_j^2)/24 times the curvature, which is the same for equal ones.
+    """
+    squares = np.zeros(chain.n_segments + 1)
+    squares[:-1] += chain.lengths**2
+    squares[1:] += chain.lengths**2
+    squares[[0, -1]] *= 2.0
+    left, right = chain.held
+    squares[0] *= not left
+    squares[-1] *= not right
+    return np.asarray(joints + squares / 24.0 * _node_curvatures(chain, joints))
+
+
+def joint_curvatures(chain: Chain, joints: Array) -> Array:
+    """Curvature of the beam at every joint from the joint's moment over EI there, (k, N + 1), 1/m of `joints`.
+
+    The joint's angle over its compliance is the moment; over the beam's own EI between the links it is the
+    curvature. Zero at ends without a joint.
+    """
+    angles = np.zeros_like(joints)
+    slopes = np.diff(joints, axis=1) / chain.lengths
+    angles[:, 1:-1] = np.diff(slopes, axis=1)
+    left, right = chain.walls
+    angles[:, 0] = slopes[:, 0] * left
+    angles[:, -1] = -slopes[:, -1] * right
+    return np.asarray(angles / chain.compliances / chain.unit**2)
+
+
+def _spline(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
+    """Cubic spline through the joints: no moment at pinned and free ends, no slope at walls."""
     from scipy.interpolate import CubicSpline
 
-    return np.asarray(CubicSpline(nodes, values, axis=1, bc_type="natural")(x, derivative))
+    ends = tuple((1 if wall else 2, np.zeros(len(values))) for wall in chain.walls)
+    nodes = chain.nodes
+    inside = np.clip(x, nodes[0], nodes[-1])  # a welded half segment stands still
+    return np.asarray(CubicSpline(nodes, values, axis=1, bc_type=ends)(inside, derivative))
 
 
 def _with_ends(chain: Chain, free: Array) -> Array:
@@ -162,11 +269,10 @@ def chain_pencil(chain: Chain) -> FactoredPencil:
     left, right = chain.walls
     has_joint = np.concatenate([[left], np.ones(chain.n_segments - 1, dtype=bool), [right]])
     n = chain.n_segments + 1 - sum(chain.held)
-    rigid = max(n - int(has_joint.sum()), 0)
     mass = mass_matrix(chain) if n > DENSE_UNKNOWNS else mass_matrix(chain, dense=True)
     return FactoredPencil(
         n=n,
-        rigid_modes=rigid,
+        rigid_modes=chain.rigid_motions,
         strain=lambda free: joint_angles(chain, free),
         stiffness=1.0 / chain.compliances[has_joint],
         strain_matrix=lambda: _strain_matrix(chain),
@@ -211,23 +317,6 @@ def mass_matrix(chain: Chain, *, dense: bool = False) -> Any:
     from scipy.sparse import diags_array
 
     return diags_array([off, diagonal, off], offsets=[-1, 0, 1]).tocsc()
-
-
-def dispersion_frequency_hz(beam: Beam, mode: int, n_segments: int) -> float:
-    """The exact frequency of mode `mode` of a pinned-pinned chain of equal links, Hz, in closed form.
-
-    omega^2 = 48 s^4 / (3 - 2 s^2) EI / (rho A l^4), s = sin(n pi / 2N): a sine at the joints solves the
-    chain's difference equations. Raises InputError for other supports or a mode the chain does not have.
-    """
-    if beam.supports != ("pinned", "pinned"):
-        raise InputError(f"beam.supports = {beam.supports!r}: the discrete dispersion is for pinned-pinned beams")
-    if not 1 <= mode < n_segments:
-        raise InputError(
-            f"mode = {mode!r}: a pinned-pinned chain of {n_segments} segments has modes 1 to {n_segments - 1}"
-        )
-    s2 = sin(mode * pi / (2 * n_segments)) ** 2
-    omega = s2 * sqrt(48.0 / (3.0 - 2.0 * s2)) * (n_segments / beam.length) ** 2 * beam.wave_constant
-    return omega / (2.0 * pi)
 
 
 def method(beam: Beam, n_modes: int, n_segments: int) -> str:

@@ -1,15 +1,14 @@
 """Figures over many modes or sizes: the error spectrum, convergence with run time, sensitivity to material."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from math import log
-from statistics import median
-from time import perf_counter
 from typing import TYPE_CHECKING
 
 import msgspec
 
 from verify.closed_forms import THEORIES, frequency_hz
 from verify.errors import InputError
+from verify.timing import interleaved_medians
 from verify.workbench import Workbench, model_module
 
 if TYPE_CHECKING:
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
     from verify.scene import Convergence, Sensitivity, Spectrum
 
 MODELS = ("segment", "fem")
-_TIMING_BUDGET_S = 0.06
-"""Time spent on repeats of one size, beside the first run."""
 
 
 class Cell(msgspec.Struct, frozen=True, kw_only=True):
@@ -79,7 +76,7 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumStudy:
 
 
 def _theory_errors(beam: "Beam", modes: tuple[int, ...]) -> dict[str, tuple[float, ...]]:
-    if beam.supports != ("pinned", "pinned"):
+    if beam.supports != ("pinned", "pinned") or beam.stepped:
         return {}
     return {t: tuple(frequency_hz(beam, n, t) / frequency_hz(beam, n) - 1.0 for n in modes) for t in THEORIES[1:]}
 
@@ -129,21 +126,6 @@ def _timed_pair(bench: Workbench, count: int, n_modes: int) -> dict[str, float]:
     return dict(zip(MODELS, interleaved_medians(list(solves.values())), strict=True))
 
 
-def interleaved_medians(jobs: Sequence[Callable[[], object]], budget_s: float = _TIMING_BUDGET_S) -> list[float]:
-    """Median seconds of each job over rounds in which all take turns; at least one round, at most 15."""
-    rounds: list[list[float]] = []
-    start = perf_counter()
-    while len(rounds) < 15 and (not rounds or perf_counter() - start < budget_s):
-        rounds.append([_seconds(job) for job in jobs])
-    return [median(times) for times in zip(*rounds, strict=True)]
-
-
-def _seconds(job: Callable[[], object]) -> float:
-    start = perf_counter()
-    job()
-    return perf_counter() - start
-
-
 def _row(bench: Workbench, mode: int, count: int, seconds: dict[str, float], previous: Row | None) -> Row:
     cells, notes = {}, []
     for model in MODELS:
@@ -156,7 +138,7 @@ def _row(bench: Workbench, mode: int, count: int, seconds: dict[str, float], pre
         width, mean_error = found.relative_width, bench.frequency_error("mean", count, mode)
     except InputError as error:
         notes += [str(error)] if not notes else []
-    return Row(mode=mode, count=count, exact_hz=frequency_hz(bench.beam, mode), segment=cells["segment"],
+    return Row(mode=mode, count=count, exact_hz=bench.exact_hz(mode), segment=cells["segment"],
                fem=cells["fem"], bracket_width=width, mean_error=mean_error, notes=tuple(notes))  # fmt: skip
 
 

@@ -1,0 +1,53 @@
+"""How a chain of rigid links is held at a clamped or guided end.
+
+The compliances of the joints are the weights of a quadrature of M^2 / EI over the beam. Inside, a joint stands
+for one link length (the trapezoidal rule); at a clamped wall that rule needs an end correction.
+"""
+
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
+WALLS: tuple[str, ...] = get_args(Wall)
+
+# What a clamped end adds to the weights 1 of its joints, from the wall on, in l/EI.
+_CORRECTIONS: dict[str, tuple[float, ...]] = {
+    # Gregory's end correction of the trapezoidal rule: weights 3/8, 7/6, 23/24; frequencies of order 4
+    "gregory": (-5 / 8, 1 / 6, -1 / 24),
+    # the literature's wall joint k = 2EI/l, Eq. (1) with a rigid neighbour: order 2
+    "half": (-1 / 2,),
+    # half a segment is part of the wall, and a whole joint EI/l follows it: order 2
+    "welded": (),
+    # weights 5/12, 13/12: order 3
+    "third-order": (-7 / 12, 1 / 12),
+    # weights 95/288, 317/240, 23/30, 793/720, 157/160: order 4 and a little more for low modes
+    "five-joint": (95 / 288 - 1, 317 / 240 - 1, 23 / 30 - 1, 793 / 720 - 1, 157 / 160 - 1),
+}
+
+
+def wall_factors(supports: tuple[str, str], n_segments: int, wall: str) -> NDArray[np.float64]:
+    """What to multiply the compliances of joints 0..N with, (N + 1,); infinite where an end has no joint.
+
+    A guided wall has half a joint, which is exact by reflection. On short chains the corrections of both
+    clamped ends overlap and add up; what falls on an end without a moment is dropped, because there is none.
+    """
+    factors = np.ones(n_segments + 1)
+    for end, support in zip((0, n_segments), supports, strict=True):
+        if support == "guided":
+            factors[end] = 0.5
+    for end, support in zip((0, n_segments), supports, strict=True):
+        if support == "clamped":
+            for depth, correction in enumerate(_CORRECTIONS[wall][: n_segments + 1]):
+                factors[abs(end - depth)] += correction
+    for end, support in zip((0, n_segments), supports, strict=True):
+        if support in ("pinned", "free"):
+            factors[end] = np.inf
+    return factors
+
+
+def welded_halves(supports: tuple[str, str]) -> tuple[int, int]:
+    """Which ends have half a segment welded to the wall."""
+    left, right = (int(support == "clamped") for support in supports)
+    return left, right

@@ -1,0 +1,83 @@
+"""How a beam is divided into segments or elements: lengths and properties of the parts. Geometry, no mechanics."""
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.beam import Beam, check_number
+from verify.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """N parts from left to right, each (N,), relative to the beam's own E, I, rho A and to `unit` of length."""
+
+    unit: float
+    """Metres: the mean length of a part, so that equal parts have length 1 exactly."""
+    lengths: Array
+    moduli: Array
+    second_moments: Array
+    masses_per_length: Array
+    equal: bool
+    """Whether all parts are alike."""
+
+    @property
+    def stiffnesses(self) -> Array:
+        """EI, (N,)."""
+        return self.moduli * self.second_moments
+
+    @property
+    def nodes(self) -> Array:
+        """Ends of the parts, (N + 1,), in units from the left end."""
+        return np.concatenate([[0.0], np.cumsum(self.lengths)])
+
+
+def divide(beam: Beam, count: int, grading: float = 1.0) -> Parts:
+    """Divide a beam into `count` parts whose ends fall on its steps.
+
+    Every section gets parts in proportion to its length, at least one. `grading` is the length of a section's
+    last part over that of its first, in geometric progression. Raises InputError for fewer parts than sections
+    or a grading that is not positive and finite.
+    """
+    check_division(beam, count, grading)
+    pieces = beam.pieces
+    unit = beam.length / count
+    if len(pieces) == 1 and grading == 1.0:
+        one = np.ones(count)
+        return Parts(unit=unit, lengths=one, moduli=one, second_moments=one, masses_per_length=one, equal=True)
+    shares = part_counts([piece.length for piece in pieces], count)
+    lengths = [_graded(piece.length / unit, n, grading) for piece, n in zip(pieces, shares, strict=True)]
+    base = beam.youngs_modulus, beam.second_moment, beam.mass_per_length
+    ratios = [(p.youngs_modulus / base[0], p.second_moment / base[1], p.mass_per_length / base[2]) for p in pieces]
+    moduli, moments, masses = np.repeat(np.array(ratios), shares, axis=0).T
+    return Parts(unit=unit, lengths=np.concatenate(lengths), moduli=moduli, second_moments=moments,
+                 masses_per_length=masses, equal=False)  # fmt: skip
+
+
+def check_division(beam: Beam, count: int, grading: float = 1.0) -> None:
+    """Raise InputError where `divide` would."""
+    check_number("grading", grading, "last over first length", above=0)
+    if not 1e-3 <= grading <= 1e3:
+        raise InputError(f"grading = {grading!r}: give a ratio of last to first length between 0.001 and 1000")
+    if count < len(beam.pieces):
+        raise InputError(f"count = {count}: a beam of {len(beam.pieces)} sections needs at least as many parts")
+
+
+def part_counts(lengths: list[float], count: int) -> list[int]:
+    """How many of `count` parts each section gets: in proportion to length by largest remainders, at least one."""
+    shares = np.array(lengths) / sum(lengths) * count
+    counts = np.maximum(np.floor(shares + 1e-9), 1.0)
+    while counts.sum() != count:
+        step = 1.0 if counts.sum() < count else -1.0
+        wanting = np.where((counts + step >= 1.0), step * (shares - counts), -np.inf)
+        counts[int(np.argmax(wanting))] += step
+    return [int(n) for n in counts]
+
+
+def _graded(length: float, n: int, grading: float) -> Array:
+    """N lengths in geometric progression that add up to `length`, the last `grading` times the first."""
+    if grading == 1.0 or n == 1:
+        return np.full(n, length / n)
+    steps = grading ** (np.arange(n) / (n - 1))
+    return np.asarray(steps * (length / steps.sum()))

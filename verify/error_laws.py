@@ -1,0 +1,101 @@
+"""Frequencies and errors of both discrete models known without solving them, in plain floating point.
+
+Exact discrete dispersion where a sine fits the ends (pinned and guided), leading error laws for the others.
+The models are not asked: this is what they are checked against.
+"""
+
+from math import cos, pi, sin, sqrt
+
+from verify.beam import Beam
+from verify.closed_forms import check_mode, check_uniform, wavenumber_length
+from verify.errors import InputError
+
+MODELS = ("segment", "fem")
+
+
+def sine_fits(supports: tuple[str, str]) -> bool:
+    """Whether both ends are pinned or guided, where discrete modes are samples of a sine."""
+    return set(supports) <= {"pinned", "guided"}
+
+
+def dispersion_frequency_hz(model: str, beam: Beam, mode: int, count: int) -> float:
+    """The exact frequency of a discrete model of equal parts with pinned or guided ends, Hz.
+
+    Raises InputError for other ends, for stepped beams and for modes beyond the lower branch.
+    """
+    check_mode(mode)
+    check_uniform(beam)
+    if not sine_fits(beam.supports):
+        raise InputError(f"beam.supports = {beam.supports!r}: the discrete dispersion is for pinned and guided ends")
+    mu = wavenumber_length(beam.supports, mode) / count
+    if mu >= pi:
+        raise InputError(f"mode = {mode!r}: the dispersion of {count} parts ends below it, raise count")
+    omega = sqrt(_segment_root(mu) if model == "segment" else _hermite_root(mu))
+    return omega * beam.wave_constant * (count / beam.length) ** 2 / (2.0 * pi)
+
+
+def _segment_root(mu: float) -> float:
+    """omega^2 rho A l^4 / EI of rigid links: 48 s^4 / (3 - 2 s^2), s = sin(mu/2)."""
+    s2 = sin(mu / 2.0) ** 2
+    return 48.0 * s2 * s2 / (3.0 - 2.0 * s2)
+
+
+def _hermite_root(mu: float) -> float:
+    """omega^2 rho A l^4 / EI of Hermite elements: the lower root of two nodal equations.
+
+    Sine deflections and cosine slopes at the nodes satisfy them exactly.
+    """
+    c, s, fall = cos(mu), sin(mu), sin(mu / 2.0) ** 2  # fall = (1 - cos mu) / 2
+    k11, k12, k22 = 48.0 * fall, -12.0 * s, 8.0 + 4.0 * c
+    m11, m12, m22 = (312.0 + 108.0 * c) / 420.0, 26.0 * s / 420.0, (8.0 - 6.0 * c) / 420.0
+    a, b, det = m11 * m22 - m12**2, k11 * m22 + k22 * m11 - 2.0 * k12 * m12, 192.0 * fall**2
+    return 2.0 * det / (b + sqrt(b * b - 4.0 * a * det))
+
+
+def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) -> float:
+    """The leading relative frequency error of a uniform beam of equal parts.
+
+    +mu^4/1440 for Hermite elements; mu^4 (-1/1440 + c / (12 N)) for segments with Gregory's joints at their c
+    clamped ends; mu = beta L / N.
+    """
+    mu4 = (wavenumber_length(supports, mode) / count) ** 4
+    if model == "fem":
+        return mu4 / 1440.0
+    return mu4 * (-1.0 / 1440.0 + supports.count("clamped") / (12.0 * count))
+
+
+def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
+    """What error to expect: the exact one where the dispersion is known, else the leading law."""
+    if not sine_fits(beam.supports):
+        return leading_error(model, beam.supports, mode, count)
+    exact = wavenumber_length(beam.supports, mode) / count
+    root = _segment_root(exact) if model == "segment" else _hermite_root(exact)
+    return sqrt(root) / exact**2 - 1.0
+
+
+def fewest_parts(model: str, beam: Beam, mode: int, error: float) -> int:
+    """The fewest parts whose expected error is within `error`: doubling, then halving the interval.
+
+    Raises InputError for an error that is as small as rounding.
+    """
+    if error < 1e-12:
+        raise InputError(f"error = {error!r} is as small as rounding: ask for 1e-12 or more")
+
+    def reached(count: int) -> bool:
+        return abs(expected_error(model, beam, mode, count)) <= error
+
+    low = smallest_count(model, beam, mode) - 1
+    high = low + 1
+    while not reached(high):
+        low, high = high, 2 * high
+        if high > 10**9:
+            raise InputError(f"error = {error!r}: the {model} model does not reach it at any size")
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if reached(middle) else (middle, high)
+    return high
+
+
+def smallest_count(model: str, beam: Beam, mode: int) -> int:
+    """The fewest parts that have the mode on their lower branch."""
+    return max(int(wavenumber_length(beam.supports, mode) / pi) + 1, mode + 1, 2)

@@ -1,0 +1,23 @@
+"""Run times that can be compared: jobs take turns, medians are kept."""
+
+from collections.abc import Callable, Sequence
+from statistics import median
+from time import perf_counter
+
+_BUDGET_S = 0.06
+"""Time spent on rounds, beside the first."""
+
+
+def interleaved_medians(jobs: Sequence[Callable[[], object]], budget_s: float = _BUDGET_S) -> list[float]:
+    """Median seconds of each job over rounds in which all take turns; at least one round, at most 15."""
+    rounds: list[list[float]] = []
+    start = perf_counter()
+    while len(rounds) < 15 and (not rounds or perf_counter() - start < budget_s):
+        rounds.append([_seconds(job) for job in jobs])
+    return [median(times) for times in zip(*rounds, strict=True)]
+
+
+def _seconds(job: Callable[[], object]) -> float:
+    start = perf_counter()
+    job()
+    return perf_counter() - start
