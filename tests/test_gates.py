@@ -4,8 +4,9 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+from msgspec import structs
 
-from verify import closed_forms, compare, eigen, fem_beam, segment_model, workbench
+from verify import chain_walls, closed_forms, compare, division, eigen, fem_beam, segment_model, workbench
 from verify.beam import Beam
 from verify.checked import checked
 from verify.compare import Bracket
@@ -19,9 +20,9 @@ from verify.scene import Gate, load_scene, packaged_scenes
 PAPER = load_scene("paper")
 
 
-def failed_gates():
-    bench = workbench_for(PAPER, gates_only=True)
-    return {gate.id for gate in PAPER.gate if not judge(gate, PAPER, bench).passed}
+def failed_gates(scene=PAPER):
+    bench = workbench_for(scene, gates_only=True)
+    return {gate.id for gate in scene.gate if not judge(gate, scene, bench).passed}
 
 
 def link_inertia_left_out(patch):
@@ -140,6 +141,126 @@ def count_one_too_high(patch):
     patch.setitem(quantities.QUANTITIES, "mode.count_needed", wrong)
 
 
+def wall_joint_as_stiff_as_any_other(patch):
+    patch.setattr(chain_walls, "_CORRECTIONS", dict.fromkeys(chain_walls.WALLS, ()))
+
+
+def gregorys_weights_turned_round(patch):
+    patch.setitem(chain_walls._CORRECTIONS, "gregory", (-5 / 8, -1 / 24, 1 / 6))
+
+
+def orders_of_the_other_walls_exchanged(patch):
+    walls = chain_walls._CORRECTIONS
+    patch.setattr(
+        chain_walls, "_CORRECTIONS", {**walls, "third-order": walls["half"], "five-joint": walls["third-order"]}
+    )
+
+
+def welded_half_forgotten(patch):
+    patch.setattr(segment_model, "welded_halves", lambda supports: (0, 0))
+
+
+def mirrored(beam):
+    return structs.replace(beam, supports=beam.supports[::-1])
+
+
+def clamped_end_on_the_wrong_side(patch):
+    true_chain, true_free = segment_model.build_chain, fem_beam.free_unknowns
+    patch.setattr(segment_model, "build_chain", lambda beam, *given, **more: true_chain(mirrored(beam), *given, **more))
+    patch.setattr(fem_beam, "free_unknowns", lambda supports, n: true_free(supports[::-1], n))
+
+
+def section_order_reversed(patch):
+    true = segment_model.divide
+
+    def reversed_sections(beam, *given):
+        return true(structs.replace(beam, section=beam.section[::-1]), *given)
+
+    patch.setattr(segment_model, "divide", reversed_sections)
+    patch.setattr(fem_beam, "divide", reversed_sections)
+
+
+def printed_equation_for_the_series_form(patch):
+    true = segment_model.build_chain
+    patch.setattr(segment_model, "build_chain", lambda *given, **more: true(*given, **{**more, "joints": "printed"}))
+
+
+def series_form_for_the_printed_equation(patch):
+    true = segment_model.build_chain
+    patch.setattr(segment_model, "build_chain", lambda *given, **more: true(*given, **{**more, "joints": "series"}))
+
+
+def elements_that_ignore_the_step(patch):
+    true = fem_beam.divide
+
+    def uniform(beam, *given):
+        parts = true(beam, *given)
+        return structs.replace(parts, moduli=np.ones_like(parts.moduli))
+
+    patch.setattr(fem_beam, "divide", uniform)
+
+
+def grading_that_stretches_the_last_part_alone(patch):
+    true = division._graded
+
+    def stretched(length, n, grading):
+        lengths = true(length, n, 1.0)
+        lengths[-1] *= 1.0 + 0.5 * (grading != 1.0)
+        return lengths
+
+    patch.setattr(division, "_graded", stretched)
+
+
+def link_curvature_for_the_joints_moment(patch):
+    true = segment_model.joint_curvatures
+    patch.setattr(segment_model, "joint_curvatures", lambda chain, joints: true(chain, joints) * chain.compliances)
+
+
+def one_rigid_motion_too_few(patch):
+    patch.setattr(Beam, "rigid_motions", property(lambda beam: 1))
+
+
+def nodes_counted_from_the_other_end_of_the_shape(patch):
+    true = compare.zeros
+    patch.setattr(compare, "zeros", lambda shape, length, mode: true(lambda x: shape(0.99 * x), length, mode))
+
+
+FAULTS_ELSEWHERE = {
+    "steel-cantilever": {
+        link_inertia_left_out: {"gregory-mode-10", "gregory-law", "gregory-law-after-the-sign-change"},
+        wall_joint_as_stiff_as_any_other: {
+            "gregory-mode-1", "gregory-mode-5", "gregory-law", "half-wall-order", "third-order-wall-order",
+            "five-joint-error", "curvature-order-of-size", "segments-for-a-tenth-of-a-per-cent",
+        },
+        gregorys_weights_turned_round: {"gregory-mode-1", "gregory-mode-5", "gregory-law"},
+        orders_of_the_other_walls_exchanged: {"third-order-wall-order", "five-joint-error"},
+        welded_half_forgotten: {"welded-wall-order"},
+        clamped_end_on_the_wrong_side: {"gregory-mode-1", "shape-at-the-wall-is-of-order-two"},
+        joint_stiffness_doubled: {"gregory-mode-1", "half-wall-bracket"},
+        lumped_element_mass: {"fem-order", "fem-law"},
+        link_curvature_for_the_joints_moment: {"curvature-order-of-size"},
+        roots_of_a_beam_with_one_half_wave_too_many: {"exact-mode-1", "gregory-mode-1"},
+    },
+    "free-free-bar": {
+        link_inertia_left_out: {"segment-order", "segment-law", "mean-order", "bracket-mode-7", "shape-order"},
+        lumped_element_mass: {"fem-order", "mean-order"},
+        one_rigid_motion_too_few: {"segment-order", "fem-order", "bracket-mode-7", "node-by-segments", "node-by-elements"},
+        joints_read_raw: {"shape-order"},
+        shapes_with_unit_amplitude_instead_of_unit_mass: {"raw-shape-order", "shape-order"},
+        nodes_counted_from_the_other_end_of_the_shape: {"node-of-the-first-mode", "node-by-segments", "node-by-elements"},
+        section_turned_on_its_side: {"exact-mode-1", "bracket-mode-7"},
+    },
+    "stepped-beam": {
+        section_order_reversed: {"series-order", "fem-order", "fem-error", "series-error", "graded-elements", "graded-segments"},
+        printed_equation_for_the_series_form: {"series-order", "series-error", "graded-segments"},
+        series_form_for_the_printed_equation: {"printed-order"},
+        elements_that_ignore_the_step: {"fem-order", "fem-error", "graded-elements"},
+        lumped_element_mass: {"fem-order", "fem-error", "graded-elements"},
+        clamped_end_on_the_wrong_side: {"series-order", "series-error", "fem-error", "printed-order"},
+    },
+}  # fmt: skip
+
+
 FAULTS = {
     link_inertia_left_out: {
         "segment-dispersion", "segment-mode-22", "first-under-one-percent", "segment-order", "bracket-mode-22",
@@ -178,6 +299,20 @@ def test_a_planted_fault_turns_its_gates_red(fault, monkeypatch):
 
 def test_no_gate_of_the_paper_is_without_a_fault_that_turns_it_red():
     assert {gate.id for gate in PAPER.gate} == set().union(*FAULTS.values())
+
+
+ELSEWHERE = [(scene, fault) for scene, faults in FAULTS_ELSEWHERE.items() for fault in faults]
+
+
+@pytest.mark.parametrize(("scene", "fault"), ELSEWHERE, ids=lambda part: getattr(part, "__name__", part))
+def test_a_planted_fault_turns_gates_of_other_scenes_red(scene, fault, monkeypatch):
+    fault(monkeypatch)
+    assert failed_gates(load_scene(scene)) >= FAULTS_ELSEWHERE[scene][fault]
+
+
+@pytest.mark.parametrize("scene", sorted(set(packaged_scenes()) - {"paper"}))
+def test_every_gate_of_a_scene_has_a_fault_that_turns_it_red(scene):
+    assert {gate.id for gate in load_scene(scene).gate} == set().union(*FAULTS_ELSEWHERE[scene].values())
 
 
 def test_no_quantity_is_without_a_gate_in_a_packaged_scene():
