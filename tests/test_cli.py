@@ -148,6 +148,28 @@ def test_quantities_and_scenes_are_listed(verify):
     assert json.loads(verify("scenes", "--json")[1])[0]["gates"] > 0
 
 
+def test_choose_answers_for_both_models_and_one_part_less_is_not_enough(verify):
+    data = json.loads(verify("choose", "--mode", "22", "--error", "1%", "--json")[1])
+    assert {c["model"]: c["count"] for c in data["choices"]} == {"segment": 42, "fem": 35}
+    segment = data["choices"][0]
+    assert segment["error"] == pytest.approx(-0.00917, abs=1e-5)
+    assert segment["expected_error"] == pytest.approx(segment["error"], rel=1e-9)
+    assert segment["run_time_s"] > 0
+    assert "42" in verify("choose", "--mode", "22", "--error", "0.01")[1]
+
+
+@pytest.mark.parametrize("scene", ["steel-cantilever", "stepped-beam", "free-free-bar"])
+def test_choose_confirms_its_answer_by_solves_for_any_beam(verify, scene):
+    from verify import load_scene
+    from verify.workbench import Workbench
+
+    data = json.loads(verify("choose", "--mode", "5", "--error", "0.2%", "--scene", scene, "--json")[1])
+    bench = Workbench(load_scene(scene).beam)
+    for choice in data["choices"]:
+        here, less = (abs(bench.frequency_error(choice["model"], choice["count"] - k, 5)) for k in (0, 1))
+        assert here <= 0.002 < less
+
+
 def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
     assert verify("init", "my.toml")[0] == 0
     assert "# " in (tmp_path / "my.toml").read_text("utf-8")
@@ -179,6 +201,18 @@ BAD = [
     ("measure", "mode.count_needed", "model=segment", "mode=3", "error=0"),
     ("measure", "mode.count_needed", "model=segment", "mode=3", "error=1e-30"),
     ("measure", "drive.quarter_wavelength", "frequency_hz=0"), ("measure", "drive.rule_frequency", "mode=1"),
+    ("choose", "--mode", "0", "--error", "1%"),
+    ("choose", "--mode", "x", "--error", "1%"),
+    ("choose", "--mode", "3", "--error", "0"),
+    ("choose", "--mode", "3", "--error", "nan"),
+    ("choose", "--mode", "3", "--error", "-1%"),
+    ("choose", "--mode", "3"),
+    ("measure", "mode.frequency", "model=fem", "mode=3", "count=9", "wall=half"),
+    ("measure", "mode.frequency", "model=segment", "mode=3", "count=9", "wall=hlf"),
+    ("measure", "mode.frequency", "model=analytic", "mode=3", "--scene", "stepped-beam"),
+    ("measure", "mode.bracket", "mode=3", "count=9", "--scene", "steel-cantilever"),
+    ("run", "stepped-beam", "--set", "beam.section.0.length=0.3"),
+    ("run", "stepped-beam", "--set", "beam.section.0.lenght=0.3"),
     ("plan", "papr"), ("nosuch",), ("run",), ("init", "no/such/folder/my.toml"), ("run", "paper", "--set", "beam"),
 ]  # fmt: skip
 

@@ -15,7 +15,7 @@ MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
     {"errors", "timing"}, {"beam", "checked", "files"}, {"modes", "closed_forms", "eigen", "division", "chain_walls"},
-    {"error_laws"}, set(MODELS), {"compare"}, {"workbench"}, {"sizing"}, {"quantities"}, {"scene"}, {"gates"},
+    {"error_laws", "extended_precision"}, set(MODELS), {"compare"}, {"workbench"}, {"sizing"}, {"quantities"}, {"scene"}, {"gates"},
     {"plan", "studies"}, {"run"}, {"plain", "console"}, {"report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 

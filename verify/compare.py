@@ -102,8 +102,8 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
 
     margin = 1e-4 / mode  # the ends themselves are supports, not nodes
     x = np.linspace(margin * length, (1.0 - margin) * length, 40 * mode + 1)
-    values = shape(x)
-    turns = np.flatnonzero(values[:-1] * values[1:] < 0)
+    above = shape(x) >= 0
+    turns = np.flatnonzero(above[:-1] != above[1:])
 
     def at(position: float) -> float:
         return float(shape(np.array([position]))[0])

@@ -29,8 +29,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     n: int
     """Unknowns."""
-    rigid_modes: int
-    """Zero eigenvalues, which are left out."""
+    rigid: Array
+    """(n, r), r independent motions without strain; their zero eigenvalues are left out."""
     strain: Callable[[Array], Array]
     """v (n, k) -> B v (m, k), by differences of differences."""
     stiffness: Array
@@ -39,6 +39,11 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """() -> B as a sparse array (m, n); asked for only where a factorisation needs it."""
     mass_matrix: Callable[[], Any]
     """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
+
+    @property
+    def rigid_modes(self) -> int:
+        """R, how many motions have no strain."""
+        return int(self.rigid.shape[1])
 
 
 class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -143,31 +148,52 @@ def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     return np.asarray(solve_triangular(lower, wanted, lower=True, trans="T"))
 
 
-def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
-    """Vectors by Lanczos on the inverse of [[-1/d, B], [B^T, -sigma M]], which never forms B^T diag(d) B.
+def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, NDArray[np.intp]]:
+    """([[-1/d, B], [B^T, 0]] as a sparse array, the unknowns in it): K with its strains kept as unknowns.
 
-    Without rigid modes sigma is 0; with them it lies below zero, a little under the first elastic eigenvalue
-    in size. The start vector is fixed, so that runs repeat.
+    Where motions are rigid, as many unknowns are grounded as make the matrix regular.
     """
     from scipy.sparse import block_array, diags_array
+
+    free: NDArray[np.intp] = np.delete(np.arange(pencil.n, dtype=np.intp), _grounds(pencil.rigid))
+    strain = pencil.strain_matrix()[:, free]
+    # None, not stored zeros: they would cost three times the solve
+    return block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, None]], format="csc"), free
+
+
+def _grounds(rigid: Array) -> list[int]:
+    """Unknowns that, held, leave no rigid motion: the largest entry of each motion, the earlier ones taken out."""
+    motions, grounds = rigid.copy(), []
+    for j in range(motions.shape[1]):
+        ground = int(abs(motions[:, j]).argmax())
+        grounds.append(ground)
+        motions[:, j + 1 :] -= np.outer(motions[:, j] / motions[ground, j], motions[ground, j + 1 :])
+    return grounds
+
+
+def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+    """Vectors by Lanczos on the inverse of the mixed matrix, which never forms B^T diag(d) B.
+
+    Rigid motions are projected out of load and answer, which makes it the pseudo-inverse. The start vector is
+    fixed, so that runs repeat.
+    """
     from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-    strain, mass = pencil.strain_matrix(), pencil.mass_matrix()
-    n_strains = strain.shape[0]
-    sigma = -1e3 / float(pencil.n) ** 4 if pencil.rigid_modes else 0.0
-    shift = -sigma * mass if sigma else None  # a block of stored zeros would cost three times the solve
-    mixed = block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, shift]], format="csc")
-    factor = splu(mixed)
-    right = np.zeros(n_strains + pencil.n)
+    mixed, free = mixed_matrix(pencil)
+    factor, mass, n_strains = splu(mixed), pencil.mass_matrix(), len(pencil.stiffness)
+    load, answer = np.zeros(n_strains + len(free)), np.zeros(pencil.n)
+    inertia = mass @ pencil.rigid
+    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
 
     def invert(b: Array) -> Array:
-        right[n_strains:] = b.ravel()
-        return np.asarray(factor.solve(right)[n_strains:])
+        balanced = b.ravel() - inertia @ (motions.T @ b.ravel())
+        load[n_strains:] = balanced[free]
+        answer[free] = factor.solve(load)[n_strains:]
+        return np.asarray(answer - motions @ (inertia.T @ answer))  # a new array: eigsh keeps what it is given
 
     operator = LinearOperator((pencil.n, pencil.n), matvec=invert, dtype=float)
     start = np.random.default_rng(20081).standard_normal(pencil.n)
-    k = n_modes + pencil.rigid_modes
-    basis = min(k + 30, pencil.n)
-    values, vectors = eigsh(operator, k=k, M=mass, sigma=sigma, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis)
-    order = np.argsort(values)
-    return np.asarray(vectors[:, order[pencil.rigid_modes :]])
+    start -= motions @ (inertia.T @ start)
+    basis = min(n_modes + 30, pencil.n)
+    values, vectors = eigsh(operator, k=n_modes, M=mass, sigma=0, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis)
+    return np.asarray(vectors[:, np.argsort(values)])

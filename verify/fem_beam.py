@@ -114,7 +114,7 @@ def solve_modes(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1
     check(beam, n_modes, n_elements, grading=grading)
     parts = divide(beam, n_elements, grading)
     free = free_unknowns(beam.supports, n_elements)
-    pairs = lowest(element_pencil(parts, free, beam.rigid_motions), n_modes)
+    pairs = lowest(element_pencil(beam, parts, free), n_modes)
     nodal = _all_values(n_elements, free, pairs.vectors)
     nodal = nodal * _sign(beam.supports[0], parts.lengths, nodal)[:, None]
     nodal = nodal / sqrt(beam.mass_per_length * parts.unit)
@@ -177,7 +177,7 @@ def _all_values(n_elements: int, free: Array, vectors: Array) -> Array:
     return nodal
 
 
-def element_pencil(parts: Parts, free: Array, rigid_motions: int) -> FactoredPencil:
+def element_pencil(beam: Beam, parts: Parts, free: Array) -> FactoredPencil:
     """K = B^T diag(d) B over two curvatures of each element, and M by scikit-fem."""
     lengths, n_elements = parts.lengths, len(parts.lengths)
     mass = assemble_mass(lengths, parts.masses_per_length)[free][:, free].tocsc()
@@ -186,12 +186,23 @@ def element_pencil(parts: Parts, free: Array, rigid_motions: int) -> FactoredPen
     stiffness = parts.stiffnesses / lengths
     return FactoredPencil(
         n=len(free),
-        rigid_modes=rigid_motions,
+        rigid=rigid_shapes(beam, parts)[free],
         strain=lambda values: element_curvatures(lengths, _all_values(n_elements, free, values).T),
         stiffness=np.concatenate([stiffness, 3.0 * stiffness]),
         strain_matrix=lambda: curvature_matrix(lengths)[:, free],
         mass_matrix=lambda: mass,
     )
+
+
+def rigid_shapes(beam: Beam, parts: Parts) -> Array:
+    """The motions without strain that the supports leave, over all nodal values, (2N + 2, 0 to 2)."""
+    x = parts.nodes
+    held = [end for end, support in zip((x[0], x[-1]), beam.supports, strict=True) if support in ("pinned", "clamped")]
+    lift, turn = np.zeros((2, 2 * len(x)))
+    lift[::2], turn[1::2] = 1.0, 1.0
+    turn[::2] = x - (held[0] if held else 0.5 * x[-1])
+    shapes = [lift] * (not held) + [turn] * (beam.rigid_motions > (not held))
+    return np.array(shapes).reshape(len(shapes), len(lift)).T
 
 
 def element_curvatures(lengths: Array, nodal: Array) -> Array:

@@ -272,12 +272,22 @@ def chain_pencil(chain: Chain) -> FactoredPencil:
     mass = mass_matrix(chain) if n > DENSE_UNKNOWNS else mass_matrix(chain, dense=True)
     return FactoredPencil(
         n=n,
-        rigid_modes=chain.rigid_motions,
+        rigid=rigid_shapes(chain),
         strain=lambda free: joint_angles(chain, free),
         stiffness=1.0 / chain.compliances[has_joint],
         strain_matrix=lambda: _strain_matrix(chain),
         mass_matrix=lambda: mass,
     )
+
+
+def rigid_shapes(chain: Chain) -> Array:
+    """The motions without strain that the supports leave, over the free joint positions, (n, 0 to 2)."""
+    x = np.concatenate([[0.0], np.cumsum(chain.lengths)])
+    left, right = chain.held
+    centre = x[0] if left else x[-1] if right else 0.5 * x[-1]
+    shapes = [np.ones_like(x)] * (not left and not right)
+    shapes += [x - centre] * (chain.rigid_motions > len(shapes))
+    return np.array(shapes).reshape(len(shapes), len(x)).T[_free_slice(chain)]
 
 
 def joint_angles(chain: Chain, free: Array) -> Array:

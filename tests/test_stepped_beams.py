@@ -1,0 +1,150 @@
+"""Stepped beams and unequal parts against the exact transfer through the sections."""
+
+import mpmath
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import analytic_modes, closed_forms, fem_beam, segment_model
+from verify.beam import Beam, Section
+from verify.division import divide, part_counts
+from verify.errors import InputError
+
+STEPPED = Beam(
+    length=0.6, width=0.02, thickness=0.004, youngs_modulus=70e9, density=2700.0, supports=("clamped", "pinned"),
+    section=(Section(length=0.25), Section(length=0.35, thickness=0.002, youngs_modulus=210e9, density=7850.0)),
+)  # fmt: skip
+CONDITIONS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
+
+
+def transfer_determinant(beam, omega):
+    """End conditions carried through the sections by transfer matrices of (w, w', M, Q), in extended precision."""
+    transfer = mpmath.eye(4)
+    for piece in beam.pieces:
+        ei, mass = mpmath.mpf(piece.bending_stiffness), mpmath.mpf(piece.mass_per_length)
+        b = (mass * omega**2 / ei) ** mpmath.mpf("0.25")
+        y = b * mpmath.mpf(piece.length)
+        ch, sh, c, s = mpmath.cosh(y), mpmath.sinh(y), mpmath.cos(y), mpmath.sin(y)
+        a0, a1, a2, a3 = (ch + c) / 2, (sh + s) / (2 * b), (ch - c) / (2 * b**2), (sh - s) / (2 * b**3)
+        b4 = b**4
+        step = mpmath.matrix([
+            [a0, a1, a2 / ei, a3 / ei],
+            [b4 * a3, a0, a1 / ei, a2 / ei],
+            [ei * b4 * a2, ei * b4 * a3, a0, a1],
+            [ei * b4 * a1, ei * b4 * a2, b4 * a3, a0],
+        ])  # fmt: skip
+        transfer = step * transfer
+    free = [k for k in range(4) if k not in CONDITIONS[beam.supports[0]]]
+    held = CONDITIONS[beam.supports[1]]
+    return mpmath.det(mpmath.matrix([[transfer[i, j] for j in free] for i in held]))
+
+
+@pytest.mark.parametrize(
+    "supports", [("clamped", "pinned"), ("clamped", "free"), ("free", "free"), ("guided", "pinned"), ("free", "guided")]
+)
+@pytest.mark.parametrize("mode", [1, 2, 6, 17])
+def test_exact_stepped_frequencies_solve_the_transfer_equation(supports, mode):
+    beam = replace(STEPPED, supports=supports)
+    found = analytic_modes.stepped_frequency_hz(beam, mode)
+    with mpmath.workdps(60):
+        omega = mpmath.findroot(
+            lambda w: transfer_determinant(beam, w),
+            (2 * mpmath.pi * found * (1 - mpmath.mpf("1e-9")), 2 * mpmath.pi * found),
+            tol=1e-20,
+            verify=False,
+        )
+        exact = float(omega / (2 * mpmath.pi))
+    assert found == pytest.approx(exact, rel=2e-12)
+
+
+@pytest.mark.parametrize(
+    "supports",
+    [("clamped", "pinned"), ("clamped", "free"), ("free", "free"), ("guided", "guided"), ("pinned", "pinned")],
+)
+def test_counting_finds_the_closed_form_of_a_beam_that_is_not_stepped(titanium_strip, supports):
+    beam = replace(titanium_strip, supports=supports)
+    pieces = replace(beam, section=(Section(length=0.1), Section(length=0.4), Section(length=0.23)))
+    assert not pieces.stepped
+    for mode in (1, 3, 11, 40):
+        assert analytic_modes.stepped_frequency_hz(pieces, mode) == pytest.approx(
+            closed_forms.frequency_hz(beam, mode), rel=3e-12
+        )
+
+
+def test_no_stepped_frequency_is_missed():
+    beam = replace(STEPPED, supports=("free", "free"))
+    elements = fem_beam.solve_modes(beam, 25, 240).frequencies_hz
+    exact = [analytic_modes.stepped_frequency_hz(beam, n) for n in range(1, 26)]
+    assert elements == pytest.approx(exact, rel=1e-4)
+    assert (elements > exact).all()
+
+
+def order(solve, mode, counts, **settings):
+    exact = analytic_modes.stepped_frequency_hz(STEPPED, mode)
+    first, second = (abs(solve(STEPPED, mode, n, **settings).frequencies_hz[mode - 1] / exact - 1) for n in counts)
+    return np.log(first / second) / np.log(counts[1] / counts[0])
+
+
+def test_eq_1_put_right_is_of_order_two_and_as_printed_of_order_one():
+    assert order(segment_model.solve_modes, 2, (96, 192)) == pytest.approx(2.0, abs=0.03)
+    assert order(segment_model.solve_modes, 2, (384, 768), joints="printed") == pytest.approx(1.0, abs=0.03)
+
+
+def test_elements_that_end_on_the_steps_keep_order_four():
+    assert order(fem_beam.solve_modes, 4, (24, 48)) == pytest.approx(4.0, abs=0.06)
+    assert order(fem_beam.solve_modes, 4, (24, 48), grading=0.6) == pytest.approx(4.0, abs=0.06)
+
+
+def test_unequal_segments_are_of_order_two(titanium_strip):
+    exact = closed_forms.frequency_hz(titanium_strip, 3)
+    first, second = (
+        segment_model.solve_modes(titanium_strip, 3, n, grading=2.5).frequencies_hz[2] / exact - 1 for n in (60, 120)
+    )
+    assert np.log2(abs(first / second)) == pytest.approx(2.0, abs=0.05)
+
+
+def test_printed_and_series_agree_where_the_paper_needs_them(titanium_strip):
+    for beam in (
+        titanium_strip,
+        replace(titanium_strip, section=(Section(length=0.3), Section(length=0.43, density=1000.0))),
+    ):
+        printed, series = (
+            segment_model.solve_modes(beam, 5, 20, joints=j).frequencies_hz for j in ("printed", "series")
+        )
+        assert printed == pytest.approx(series, rel=1e-13)
+
+
+def test_the_series_joint_is_two_half_links_one_after_the_other():
+    """Against the definition: the angle under a unit moment, half of each link bending in turn."""
+    assert segment_model.joint_compliance(2.0, 8.0, 3.0, 5.0) == pytest.approx(1.0 / 8.0 + 1.5 / 5.0, rel=1e-15)
+    k = 2 * 8.0 * 5.0 / (8.0 * 3.0 + 5.0 * 2.0)
+    assert 1 / segment_model.joint_compliance(2.0, 8.0, 3.0, 5.0) == pytest.approx(k, rel=1e-15)
+
+
+def test_parts_follow_the_sections():
+    parts = divide(STEPPED, 12)
+    assert parts.lengths.sum() == pytest.approx(12.0, rel=1e-14)
+    assert sum(parts.moduli == 1.0) == 5
+    assert parts.stiffnesses[-1] == pytest.approx(3 / 8, rel=1e-14)
+    assert parts.masses_per_length[-1] == pytest.approx(7850 / 2700 / 2, rel=1e-14)
+    assert part_counts([0.25, 0.35], 12) == [5, 7]
+    assert part_counts([0.001, 1.0, 0.001], 5) == [1, 3, 1]
+    graded = divide(STEPPED, 12, 3.0)
+    assert graded.lengths[4] / graded.lengths[0] == pytest.approx(3.0, rel=1e-14)
+    assert graded.nodes[5] == pytest.approx(5.0, rel=1e-13)
+
+
+def test_what_has_no_closed_form_is_refused_with_the_models_that_can():
+    for ask in (
+        lambda: analytic_modes.solve_modes(STEPPED, 3),
+        lambda: closed_forms.frequency_hz(STEPPED, 3),
+        lambda: analytic_modes.mode_shape(STEPPED, 1, np.zeros(1)),
+    ):
+        with pytest.raises(InputError, match="use the fem or segment model"):
+            ask()
+    with pytest.raises(InputError, match="2 sections needs at least as many"):
+        fem_beam.solve_modes(STEPPED, 1, 1)
+    with pytest.raises(InputError, match="add up to"):
+        replace(STEPPED, length=0.61)
+    with pytest.raises(InputError, match=r"beam\.section\.length = -0\.25"):
+        Section(length=-0.25)
