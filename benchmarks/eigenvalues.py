@@ -1,7 +1,8 @@
 """Rounding error and run time of the eigenvalues of both models, from 10^2 to 10^5 parts.
 
 Errors are bounds counted in 50-digit arithmetic against the model itself; time is one solve for 50 modes, and its
-ratio to one sparse factorisation of the mixed matrix. Run: OMP_NUM_THREADS=1 python benchmarks/eigenvalues.py [largest count]
+ratio to one sparse factorisation of the mixed matrix.
+Run: OMP_NUM_THREADS=1 python benchmarks/eigenvalues.py [largest count]
 """
 
 import sys

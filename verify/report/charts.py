@@ -25,12 +25,24 @@ def charts_of(result: "RunResult") -> list[dict[str, Any]]:
     """Every chart the scene asked for: {"id", "title", "caption", "figure"}."""
     charts = []
     if result.spectrum:
-        charts += [_signed_errors(result.spectrum), _model_form(result.spectrum)]
+        charts += [_signed_errors(result.spectrum, bracketed(result)), _model_form(result.spectrum)]
     if result.convergence:
         charts += [_convergence(result.convergence), _bracket(result.convergence), _work(result.convergence)]
     if result.sensitivity:
         charts.append(_sensitivity(result.sensitivity))
     return [chart for chart in charts if chart["figure"]["data"]]
+
+
+def bracketed(result: "RunResult") -> bool:
+    """Whether segments lie below and elements above for this beam."""
+    from verify.errors import NoBracketError
+    from verify.workbench import check_bracket
+
+    try:
+        check_bracket(result.scene.beam, ())
+    except NoBracketError:
+        return False
+    return True
 
 
 def _chart(name: str, title: str, caption: str, data: list[Figure], layout: Figure) -> dict[str, Any]:
@@ -56,17 +68,19 @@ def _percent(values: Iterable[float | None], *, size: bool = False) -> list[floa
     return [None if v is None else 100.0 * (abs(v) if size else v) for v in values]
 
 
-def _signed_errors(study: "SpectrumStudy") -> dict[str, Any]:
+def _signed_errors(study: "SpectrumStudy", two_sided: bool) -> dict[str, Any]:
+    below = " Rigid links with rotary inertia lie below, Hermite elements above." if two_sided else ""
     data = [_line(m, study.modes, _percent(getattr(study, m))) for m in ("segment", "fem")]
     return _chart(
         "mode-errors", f"Frequency error over mode number, N = {study.count}",
-        "Signed, against exact Euler-Bernoulli: rigid links with rotary inertia lie below, Hermite elements above.",
+        f"Signed, against exact Euler-Bernoulli.{below}",
         data, _axes("mode number", "frequency error, %"),
     )  # fmt: skip
 
 
 def _model_form(study: "SpectrumStudy") -> dict[str, Any]:
-    data = [_line(m, study.modes, _percent(getattr(study, m), size=True)) for m in ("segment", "fem")]
+    models = ("segment", "fem") if study.theories else ()  # without a theory beside them they say nothing new
+    data = [_line(m, study.modes, _percent(getattr(study, m), size=True)) for m in models]
     for theory, errors in study.theories.items():
         data.append(_line(theory, study.modes, _percent(errors, size=True), line={"dash": "dash"}))
     return _chart(
@@ -105,12 +119,13 @@ def _convergence(rows: "tuple[Row, ...]") -> dict[str, Any]:
                 data.append(trace | {"showlegend": model not in named, "legendgroup": model})
                 named.add(model)
         keys.append(key)
-    data += [_slope(rows, 4), _slope(rows, 6), *keys]
+    means = "mean" in named
+    data += [_slope(rows, 4), *([_slope(rows, 6)] if means else []), *keys]
     log = {"type": "log", "exponentformat": "power"}
     return _chart(
         "convergence", "Convergence with the number of segments or elements",
-        "Both models are of order 4; their mean, where the leading errors cancel, of order 6. Grey lines: reference "
-        "slopes. At about 10⁻¹² % rounding takes over.",
+        ("The mean of both is of order 6, because the leading errors cancel. " if means else "")
+        + "Grey: reference slopes. At about 10⁻¹² % rounding takes over.",
         data, _axes("segments or elements N", "size of the frequency error, %", xaxis=_sizes(rows), yaxis=log),
     )  # fmt: skip
 

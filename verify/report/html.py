@@ -38,6 +38,7 @@ def page(result: "RunResult", command: str) -> str:
         result=result,
         failed=[gate for gate in result.gates if not gate.passed],
         charts=charts,
+        notes=dict.fromkeys(note for row in result.convergence or () for note in row.notes),
         figures=_safe_json({chart["id"]: chart["figure"] for chart in charts}),
         plotly=_plotly_script() if charts else "",
         environment=environment(),
