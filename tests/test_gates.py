@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from verify import chain_walls, closed_forms, compare, division, eigen, fem_beam, segment_model, workbench
+from verify import chain, chain_walls, closed_forms, compare, division, eigen, fem_beam, segment_model, workbench
 from verify.beam import Beam
 from verify.checked import checked
 from verify.compare import Bracket
@@ -26,12 +26,12 @@ def failed_gates(scene=PAPER):
 
 
 def link_inertia_left_out(patch):
-    patch.setattr(segment_model, "link_inertia", lambda mass, length: 0.0 * mass)
+    patch.setattr(chain, "link_inertia", lambda mass, length: 0.0 * mass)
 
 
 def joint_stiffness_doubled(patch):
-    true = segment_model.joint_compliance
-    patch.setattr(segment_model, "joint_compliance", lambda *links: true(*links) / 2)
+    true = chain.joint_compliance
+    patch.setattr(chain, "joint_compliance", lambda *links: true(*links) / 2)
 
 
 def lumped_element_mass(patch):
@@ -68,7 +68,7 @@ def modes_21_and_22_exchanged(patch):
 
 
 def joints_read_raw(patch):
-    patch.setattr(segment_model, "corrected_reading", lambda chain, joints: joints)
+    patch.setattr(segment_model, "corrected_reading", lambda links, joints: joints)
 
 
 def shapes_with_unit_amplitude_instead_of_unit_mass(patch):
@@ -157,7 +157,7 @@ def orders_of_the_other_walls_exchanged(patch):
 
 
 def welded_half_forgotten(patch):
-    patch.setattr(segment_model, "welded_halves", lambda supports: (0, 0))
+    patch.setattr(chain, "welded_halves", lambda supports: (0, 0))
 
 
 def mirrored(beam):
@@ -171,12 +171,12 @@ def clamped_end_on_the_wrong_side(patch):
 
 
 def section_order_reversed(patch):
-    true = segment_model.divide
+    true = chain.divide
 
     def reversed_sections(beam, *given):
         return true(structs.replace(beam, section=beam.section[::-1]), *given)
 
-    patch.setattr(segment_model, "divide", reversed_sections)
+    patch.setattr(chain, "divide", reversed_sections)
     patch.setattr(fem_beam, "divide", reversed_sections)
 
 
@@ -213,7 +213,7 @@ def grading_that_stretches_the_last_part_alone(patch):
 
 def link_curvature_for_the_joints_moment(patch):
     true = segment_model.joint_curvatures
-    patch.setattr(segment_model, "joint_curvatures", lambda chain, joints: true(chain, joints) * chain.compliances)
+    patch.setattr(segment_model, "joint_curvatures", lambda links, joints: true(links, joints) * links.compliances)
 
 
 def one_rigid_motion_too_few(patch):

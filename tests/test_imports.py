@@ -15,7 +15,7 @@ MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
     {"errors", "timing"}, {"beam", "checked", "files"}, {"modes", "closed_forms", "eigen", "division", "chain_walls"},
-    {"error_laws", "extended_precision"}, set(MODELS), {"compare"}, {"workbench"}, {"sizing"}, {"quantities"}, {"scene"}, {"gates"},
+    {"error_laws", "extended_precision", "chain"}, set(MODELS), {"compare"}, {"workbench"}, {"sizing"}, {"quantities"}, {"scene"}, {"gates"},
     {"plan", "studies"}, {"run"}, {"plain", "console"}, {"report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 
@@ -47,7 +47,7 @@ def modules():
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_model_imports_no_other_model_and_no_judge(model):
-    own = {"analytic_modes": {"closed_forms"}, "fem_beam": set(), "segment_model": {"chain_walls"}}
+    own = {"analytic_modes": {"closed_forms"}, "fem_beam": set(), "segment_model": {"chain", "chain_walls"}}
     allowed = {"beam", "division", "modes", "errors", "eigen"} | own[model]
     assert imports_of(PACKAGE / f"{model}.py", typing_too=True) <= allowed
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes, closed_forms, fem_beam, segment_model
+from verify import analytic_modes, chain, closed_forms, fem_beam, segment_model
 from verify.beam import Beam, Section
 from verify.division import divide, part_counts
 from verify.errors import InputError
@@ -116,9 +116,9 @@ def test_printed_and_series_agree_where_the_paper_needs_them(titanium_strip):
 
 def test_the_series_joint_is_two_half_links_one_after_the_other():
     """Against the definition: the angle under a unit moment, half of each link bending in turn."""
-    assert segment_model.joint_compliance(2.0, 8.0, 3.0, 5.0) == pytest.approx(1.0 / 8.0 + 1.5 / 5.0, rel=1e-15)
+    assert chain.joint_compliance(2.0, 8.0, 3.0, 5.0) == pytest.approx(1.0 / 8.0 + 1.5 / 5.0, rel=1e-15)
     k = 2 * 8.0 * 5.0 / (8.0 * 3.0 + 5.0 * 2.0)
-    assert 1 / segment_model.joint_compliance(2.0, 8.0, 3.0, 5.0) == pytest.approx(k, rel=1e-15)
+    assert 1 / chain.joint_compliance(2.0, 8.0, 3.0, 5.0) == pytest.approx(k, rel=1e-15)
 
 
 def test_parts_follow_the_sections():

@@ -7,10 +7,20 @@ from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
 
+from verify.analytic_harmonic import solve_harmonic, unit_responses
 from verify.beam import Beam
 from verify.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.errors import InputError
 from verify.modes import Array, Modes
+
+__all__ = [
+    "exact_frequency_hz",
+    "mode_shape",
+    "solve_harmonic",
+    "solve_modes",
+    "stepped_frequency_hz",
+    "unit_responses",
+]
 
 _MIRRORED = {("pinned", "clamped"), ("pinned", "free"), ("free", "clamped"), ("guided", "clamped"),
              ("guided", "free"), ("pinned", "guided")}  # fmt: skip

@@ -11,12 +11,15 @@ Support = Literal["pinned", "clamped", "free", "guided"]
 SUPPORTS: tuple[str, ...] = get_args(Support)
 
 
-def check_number(field: str, value: object, unit: str, *, above: float = -inf, below: float = inf) -> None:
-    """Raise InputError unless `value` is a finite number strictly between `above` and `below`."""
+def check_number(
+    field: str, value: object, unit: str, *, above: float = -inf, below: float = inf, at_least: float = -inf
+) -> None:
+    """Raise InputError unless `value` is a finite number, at least `at_least`, strictly between `above` and `below`."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if number and isfinite(value) and above < value < below:  # type: ignore[arg-type, operator]
+    if number and isfinite(value) and above < value < below and value >= at_least:  # type: ignore[arg-type, operator]
         return
-    limits = [f"above {above:g}"] * (above > -inf) + [f"below {below:g}"] * (below < inf)
+    limits = [f"above {above:g}"] * (above > -inf) + [f"of at least {at_least:g}"] * (at_least > -inf)
+    limits += [f"below {below:g}"] * (below < inf)
     wanted = " ".join(["a finite number", " and ".join(limits)]).strip()
     raise InputError(f"{field} = {value!r}: give {wanted} ({unit})")
 
@@ -78,6 +81,8 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """nu; used by Timoshenko's theory alone."""
     shear_coefficient: float = 5.0 / 6.0
     """kappa of a rectangle; used by Timoshenko's theory alone."""
+    loss_factor: float = 0.0
+    """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2."""
     section: tuple[Section, ...] = ()
     """Pieces from left to right where the beam is stepped; their lengths add up to `length`."""
 
@@ -89,6 +94,7 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         check_number("beam.density", self.density, "kg/m^3", above=0)
         check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, below=0.5000001)
         check_number("beam.shear_coefficient", self.shear_coefficient, "dimensionless", above=0)
+        check_number("beam.loss_factor", self.loss_factor, "0 means undamped", at_least=0, below=10)
         if len(self.supports) != 2:
             raise InputError(f"beam.supports = {self.supports!r}: give two, for the left and the right end")
         for support in self.supports:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from verify.errors import InputError
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 DENSE_UNKNOWNS = 250
 """Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
@@ -197,3 +198,39 @@ def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     basis = min(n_modes + 30, pencil.n)
     values, vectors = eigsh(operator, k=n_modes, M=mass, sigma=0, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis)
     return np.asarray(vectors[:, np.argsort(values)])
+
+
+def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
+    """V with (B^T diag(stiffness) B - omega^2 M) v = load, through the mixed matrix, (n, k) complex.
+
+    `loads` is (n, k); `stiffness` (m,) is complex where there is damping.
+    """
+    from scipy.sparse import block_array, csc_array, diags_array
+    from scipy.sparse.linalg import splu
+
+    strain = csc_array(pencil.strain_matrix())
+    blocks = [[diags_array(-1.0 / stiffness), strain], [strain.T, -omega2 * csc_array(pencil.mass_matrix())]]
+    right = np.zeros((len(stiffness) + pencil.n, loads.shape[1]), dtype=complex)
+    right[len(stiffness) :] = loads
+    return np.asarray(splu(block_array(blocks, format="csc", dtype=complex)).solve(right)[len(stiffness) :])
+
+
+def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:
+    """How far the nearest eigenvalue lies from omega^2, signed and relative: one step of inverse iteration.
+
+    Exact where it is small, which is where it matters; far from a resonance an estimate.
+    """
+    start = np.random.default_rng(4276).standard_normal((pencil.n, 1))
+    inertia = np.asarray(pencil.mass_matrix() @ start)
+    vector = forced_response(pencil, inertia, omega2, pencil.stiffness.astype(complex)).real
+    return float(vector[:, 0] @ inertia[:, 0] / (vector[:, 0] @ (pencil.mass_matrix() @ vector[:, 0])) / omega2)
+
+
+def modal_basis(pencil: FactoredPencil) -> tuple[Array, Array]:
+    """All eigenvalues, (n,), rigid ones first as zeros, and M-orthonormal vectors, (n, n). For dense sizes."""
+    pairs = lowest(pencil, pencil.n - pencil.rigid_modes)
+    rigid: Array = pencil.rigid
+    if rigid.shape[1]:
+        gram = rigid.T @ (pencil.mass_matrix() @ rigid)
+        rigid = np.asarray(np.linalg.solve(np.linalg.cholesky(gram), rigid.T).T, dtype=float)
+    return np.append(np.zeros(rigid.shape[1]), pairs.values), np.hstack([rigid, pairs.vectors])

@@ -4,6 +4,8 @@ Exact discrete dispersion where a sine fits the ends (pinned and guided), leadin
 The models are not asked: this is what they are checked against.
 """
 
+from cmath import acos
+from cmath import sqrt as csqrt
 from math import cos, pi, sin, sqrt
 
 from verify.beam import Beam
@@ -50,6 +52,37 @@ def _hermite_root(mu: float) -> float:
     m11, m12, m22 = (312.0 + 108.0 * c) / 420.0, 26.0 * s / 420.0, (8.0 - 6.0 * c) / 420.0
     a, b, det = m11 * m22 - m12**2, k11 * m22 + k22 * m11 - 2.0 * k12 * m12, 192.0 * fall**2
     return 2.0 * det / (b + sqrt(b * b - 4.0 * a * det))
+
+
+def discrete_wavenumber(model: str, beam: Beam, count: int, frequency_hz: float) -> complex:
+    """The wavenumber at which a wave runs along a discrete model of equal parts, 1/m, with the loss factor.
+
+    The inverse of the discrete dispersion; beyond the model's cut-off it is complex. Raises InputError for
+    stepped beams.
+    """
+    check_uniform(beam)
+    length = beam.length / count
+    root = (2.0 * pi * frequency_hz / beam.wave_constant * length**2) ** 2 / (1.0 + 1j * beam.loss_factor)
+    cosine = _segment_cosine(root) if model == "segment" else _hermite_cosine(root)
+    mu = acos(cosine)
+    return (mu if mu.imag <= 0 else mu.conjugate()) / length
+
+
+def _segment_cosine(root: complex) -> complex:
+    """The cosine of mu of rigid links from 48 s^4 = root (3 - 2 s^2)."""
+    s2 = (csqrt(root * root + 144.0 * root) - root) / 48.0
+    return 1.0 - 2.0 * s2
+
+
+def _hermite_cosine(root: complex) -> complex:
+    """The cosine of mu of Hermite elements: the two nodal equations' determinant is a quadratic in it."""
+    k, m = 12.0 + 26.0 * root / 420.0, root / 420.0
+    # (24 - 312 m - (24 + 108 m) c) (8 - 8 m + (4 + 6 m) c) - (1 - c^2) k^2 = 0
+    a0, a1, b0, b1 = 24.0 - 312.0 * m, -(24.0 + 108.0 * m), 8.0 - 8.0 * m, 4.0 + 6.0 * m
+    a, b, c = a1 * b1 + k * k, a0 * b1 + a1 * b0, a0 * b0 - k * k
+    half = csqrt(b * b - 4.0 * a * c)
+    roots = ((-b + half) / (2.0 * a), (-b - half) / (2.0 * a))
+    return min(roots, key=lambda value: abs(value.imag) + max(abs(value.real) - 1.0, 0.0))
 
 
 def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) -> float:

@@ -4,15 +4,27 @@ Inside, a length is measured in mean element lengths L/N, a stiffness and a mass
 has the integers for nodes and each element its length beside it, so that lengths are exact at any size.
 """
 
+from collections.abc import Sequence
 from math import pi, sqrt
 from typing import Any
 
 import numpy as np
 
-from verify.beam import Beam
+from verify.beam import Beam, PointForce, check_number
 from verify.division import Parts, check_division, divide
-from verify.eigen import DENSE_UNKNOWNS, Array, Eigenpairs, FactoredPencil, check_size, lowest, method_name
+from verify.eigen import (
+    DENSE_UNKNOWNS,
+    Array,
+    ComplexArray,
+    Eigenpairs,
+    FactoredPencil,
+    check_size,
+    lowest,
+    method_name,
+)
 from verify.errors import InputError
+from verify.fields import HarmonicField, check_drive, phasor
+from verify.harmonic_solvers import damped_response, modal_receptance, refuse_near_resonance
 from verify.modes import Modes
 
 FIELD = "n_elements"
@@ -171,8 +183,8 @@ def interpolate(lengths: Array, nodal: Array, x: Array, derivative: int = 0) -> 
     return np.asarray(sum(nodal[:, 2 * element + j] * weights[j] for j in range(4)))
 
 
-def _all_values(n_elements: int, free: Array, vectors: Array) -> Array:
-    nodal = np.zeros((vectors.shape[1], 2 * n_elements + 2))
+def _all_values(n_elements: int, free: Array, vectors: Any) -> Any:
+    nodal = np.zeros((vectors.shape[1], 2 * n_elements + 2), dtype=vectors.dtype)
     nodal[:, free] = vectors.T
     return nodal
 
@@ -226,6 +238,73 @@ def curvature_matrix(lengths: Array) -> Any:
     columns = np.concatenate([2 * e + 1, 2 * e + 3, 2 * e, 2 * e + 1, 2 * e + 2, 2 * e + 3])
     values = np.concatenate([-one, one, 2.0 / lengths, one, -2.0 / lengths, one])
     return csc_array((values, (rows, columns)), shape=(2 * n, 2 * n + 2))
+
+
+def solve_harmonic(
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    n_elements: int,
+    *,
+    modal_damping: float = 0.0,
+    grading: float = 1.0,
+) -> HarmonicField:
+    """The steady field of the Hermite elements under harmonic point forces, e^{+i omega t}.
+
+    Stiffness stays factored, so the error has no floor that grows with the mesh. Damping: the beam's loss
+    factor, or `modal_damping` zeta of every mode (near a resonance eta = 2 zeta). Raises InputError; an
+    undamped resonance of the mesh is refused.
+    """
+    check(beam, 1, n_elements, grading=grading)
+    check_drive(beam, forces, frequency_hz)
+    check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
+    parts = divide(beam, n_elements, grading)
+    free = free_unknowns(beam.supports, n_elements)
+    pencil = element_pencil(beam, parts, free)
+    omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * parts.unit**4
+    if not (beam.loss_factor or modal_damping):
+        refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, solve_modes, n_elements)
+    total = sum(phasor(force) * nodal_weights(parts, force.position / parts.unit) for force in forces)
+    loads = np.array(total, dtype=np.complex128)[free, None] * (parts.unit**3 / beam.bending_stiffness)
+    stiffness: ComplexArray = np.asarray(pencil.stiffness * (1.0 + 1j * beam.loss_factor), dtype=complex)
+    nodal = _all_values(n_elements, free, damped_response(pencil, loads, omega2, stiffness, modal_damping))
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        values: ComplexArray = interpolate(parts.lengths, nodal, x / parts.unit, derivative)[0]
+        return values / parts.unit**derivative
+
+    return HarmonicField(model="fem", count=n_elements, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces),
+                         shapes=shapes)  # fmt: skip
+
+
+def nodal_weights(parts: Parts, x: float) -> Array:
+    """Nodal values' weights of a unit force at x (in units from the left end), (2N + 2,): Hermite polynomials."""
+    n = len(parts.lengths)
+    element = int(np.clip(np.searchsorted(parts.nodes, x, side="right") - 1, 0, n - 1))
+    h = parts.lengths[element]
+    weights = hermite(np.array([(x - parts.nodes[element]) / h]))[:, 0]
+    weights[1::2] *= h
+    loads = np.zeros(2 * n + 2)
+    loads[2 * element : 2 * element + 4] = weights
+    return loads
+
+
+def unit_responses(
+    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, n_elements: int
+) -> ComplexArray:
+    """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
+
+    All modes of the mesh are solved once and summed exactly for every frequency. Raises InputError for meshes
+    beyond the dense size.
+    """
+    check(beam, 1, n_elements)
+    parts, free = divide(beam, n_elements), free_unknowns(beam.supports, n_elements)
+    pencil = element_pencil(beam, parts, free)
+    weights = np.array([nodal_weights(parts, p / parts.unit)[free] for p in positions]).T
+    omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * parts.unit**4
+    modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
+    shapes = interpolate(parts.lengths, _all_values(n_elements, free, modes), x / parts.unit)
+    return np.asarray(receptance @ shapes) * (parts.unit**3 / beam.bending_stiffness)
 
 
 def method(beam: Beam, n_modes: int, n_elements: int) -> str:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities import Quantity, arguments_of, as_plain, evaluate, needs_of, quantity
+from verify.quantities import arguments_of, as_plain, evaluate, needs_of, quantity
+from verify.quantity_types import Quantity
 
 if TYPE_CHECKING:
     from verify.scene import Gate, Scene

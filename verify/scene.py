@@ -39,9 +39,11 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What shakes the beam: harmonic point forces at one frequency."""
+    """What shakes the beam at one frequency: harmonic point forces, or displacements imposed at points."""
 
     frequency_hz: float
+    kind: Literal["force", "displacement"] = "force"
+    """What the amplitudes mean: newton, or metres. The paper does not say; its frequency rule fits forces."""
     force: tuple[SceneForce, ...] = ()
 
     def __post_init__(self) -> None:

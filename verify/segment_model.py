@@ -1,119 +1,35 @@
-"""Finite segments: rigid links, revolute joints with torsion springs, linearised about the straight chain.
+"""Finite segments: rigid links and joint springs, linearised about the straight chain. Modes and harmonic field."""
 
-Unknowns are the transverse positions of the joints, which keep the mass matrix well conditioned. Inside, a
-length is measured in mean link lengths, a stiffness and a mass in those of the beam, so that equal links have
-length 1 exactly.
-"""
-
+from collections.abc import Callable, Sequence
 from math import pi, sqrt
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
-import msgspec
 import numpy as np
 
-from verify.beam import Beam
-from verify.chain_walls import WALLS, Wall, wall_factors, welded_halves
-from verify.division import Parts, check_division, divide
-from verify.eigen import DENSE_UNKNOWNS, Array, Eigenpairs, FactoredPencil, check_size, lowest, method_name
+from verify.beam import Beam, PointForce, check_number
+from verify.chain import (
+    JOINTS,
+    Chain,
+    Joints,
+    build_chain,
+    chain_pencil,
+    corrected_reading,
+    free_joints,
+    joint_curvatures,
+    with_ends,
+)
+from verify.chain_walls import WALLS, Wall
+from verify.division import check_division
+from verify.eigen import Array, ComplexArray, Eigenpairs, check_size, lowest, method_name
 from verify.errors import InputError, near_name
+from verify.fields import HarmonicField, check_drive, phasor
+from verify.harmonic_solvers import damped_response, modal_receptance, refuse_near_resonance
 from verify.modes import Modes
+from verify.point_loads import LOADS, Load, joint_weights
 
 FIELD = "n_segments"
-Joints = Literal["series", "printed"]
-JOINTS: tuple[str, ...] = get_args(Joints)
-
-
-class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A straight chain of N links in units of a mean link length and of the beam's EI and rho A."""
-
-    supports: tuple[str, str]
-    rigid_motions: int
-    """0, 1 or 2."""
-    unit: float
-    """Metres: the unit of length."""
-    start: float
-    """Where the first joint stands, in units from the left end: 0, or 1/2 behind a welded half segment."""
-    lengths: Array
-    """(N,), link lengths."""
-    compliances: Array
-    """(N + 1,), 1/k of each joint; infinite where an end has none (pinned, free)."""
-    masses: Array
-    """(N,)."""
-    inertias: Array
-    """(N,), about each link's middle."""
-
-    @property
-    def n_segments(self) -> int:
-        """N."""
-        return len(self.lengths)
-
-    @property
-    def held(self) -> tuple[bool, bool]:
-        """Whether the left and the right end keep their transverse position."""
-        left, right = (support in ("pinned", "clamped") for support in self.supports)
-        return left, right
-
-    @property
-    def walls(self) -> tuple[bool, bool]:
-        """Whether the left and the right end keep their slope, through a joint at the wall."""
-        left, right = (support in ("clamped", "guided") for support in self.supports)
-        return left, right
-
-    @property
-    def nodes(self) -> Array:
-        """Joint positions, (N + 1,), metres."""
-        steps = np.concatenate([[self.start], self.lengths])
-        return np.asarray(np.cumsum(steps) * self.unit)
-
-
-def joint_compliance(length_i: Any, stiffness_i: Any, length_j: Any, stiffness_j: Any) -> Any:
-    """1/k of the joint between links i and j: two half links in series, l_i/(2 E_i I_i) + l_j/(2 E_j I_j).
-
-    k = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i), the paper's Eq. (1) with its indices put right.
-    """
-    return length_i / (2.0 * stiffness_i) + length_j / (2.0 * stiffness_j)
-
-
-def printed_compliance(parts: Parts) -> Array:
-    """1/k of the inner joints by Eq. (1) as the paper prints it, (N - 1,).
-
-    k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i): right units, wrong pairing. It is no series connection
-    where both E I and E / l differ, and drops the convergence to order 1 there.
-    """
-    e, i, length = parts.moduli, parts.second_moments, parts.lengths
-    return np.asarray(length[1:] / (2.0 * e[1:] * i[:-1]) + length[:-1] / (2.0 * e[:-1] * i[1:]))
-
-
-def link_inertia(mass: Any, length: Any) -> Any:
-    """M l^2 / 12: a uniform thin link about its middle."""
-    return mass * length**2 / 12.0
-
-
-def build_chain(
-    beam: Beam, n_segments: int, *, wall: Wall = "gregory", joints: Joints = "series", grading: float = 1.0
-) -> Chain:
-    """The chain of a beam: links of its sections, joints between, joints at the walls. See `solve_modes`."""
-    parts = divide(beam, n_segments, grading)
-    lengths, stiffness = parts.lengths, parts.stiffnesses
-    if joints == "printed":
-        inner = printed_compliance(parts)
-    else:
-        inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
-    # an end joint as if the end link went on beyond it; the factors of the walls say how much of it is there
-    compliances = np.concatenate([[lengths[0] / stiffness[0]], inner, [lengths[-1] / stiffness[-1]]])
-    compliances *= wall_factors(beam.supports, n_segments, wall)
-    halves = welded_halves(beam.supports) if wall == "welded" else (0, 0)
-    masses = lengths * parts.masses_per_length
-    return Chain(
-        supports=beam.supports,
-        rigid_motions=beam.rigid_motions,
-        unit=beam.length / (n_segments + 0.5 * sum(halves)),
-        start=0.5 * halves[0],
-        lengths=lengths,
-        compliances=compliances,
-        masses=masses,
-        inertias=link_inertia(masses, lengths),
-    )
+Reading = Literal["corrected", "raw", "links"]
+READINGS: tuple[str, ...] = get_args(Reading)
 
 
 def unknowns(beam: Beam, n_segments: int) -> int:
@@ -173,7 +89,7 @@ def check(
 
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / chain.unit**2
-    raw = _with_ends(chain, pairs.vectors).T * _sign(chain, pairs.vectors)[:, None]
+    raw = with_ends(chain, pairs.vectors).T * _sign(chain, pairs.vectors)[:, None]
     raw /= sqrt(beam.mass_per_length * chain.unit)
 
     def corrected() -> Array:
@@ -191,52 +107,6 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
                  curvature_points=nodes, curvatures=curvatures, method=pairs.method)  # fmt: skip
 
 
-def _node_curvatures(chain: Chain, joints: Array) -> Array:
-    """Change of slope over the mean of the adjoining links at every joint, (k, N + 1), in 1/unit.
-
-    At a wall the chain goes on by reflection (guided even, clamped even); zero at pinned and free ends.
-    """
-    slopes = np.diff(joints, axis=1) / chain.lengths
-    curvatures = np.zeros_like(joints)
-    curvatures[:, 1:-1] = np.diff(slopes, axis=1) / (0.5 * (chain.lengths[1:] + chain.lengths[:-1]))
-    left, right = chain.walls
-    if left:
-        curvatures[:, 0] = 2.0 * slopes[:, 0] / chain.lengths[0]
-    if right:
-        curvatures[:, -1] = -2.0 * slopes[:, -1] / chain.lengths[-1]
-    return curvatures
-
-
-def corrected_reading(chain: Chain, joints: Array) -> Array:
-    """Y + delta^2 y / 12 at every joint, (k, N + 1); ends that keep their position keep it.
-
-    For unequal links (l_i^2 + l_j^2)/24 times the curvature, which is the same for equal ones.
-    """
-    squares = np.zeros(chain.n_segments + 1)
-    squares[:-1] += chain.lengths**2
-    squares[1:] += chain.lengths**2
-    squares[[0, -1]] *= 2.0
-    left, right = chain.held
-    squares[0] *= not left
-    squares[-1] *= not right
-    return np.asarray(joints + squares / 24.0 * _node_curvatures(chain, joints))
-
-
-def joint_curvatures(chain: Chain, joints: Array) -> Array:
-    """Curvature of the beam at every joint from the joint's moment over EI there, (k, N + 1), 1/m of `joints`.
-
-    The joint's angle over its compliance is the moment; over the beam's own EI between the links it is the
-    curvature. Zero at ends without a joint.
-    """
-    angles = np.zeros_like(joints)
-    slopes = np.diff(joints, axis=1) / chain.lengths
-    angles[:, 1:-1] = np.diff(slopes, axis=1)
-    left, right = chain.walls
-    angles[:, 0] = slopes[:, 0] * left
-    angles[:, -1] = -slopes[:, -1] * right
-    return np.asarray(angles / chain.compliances / chain.unit**2)
-
-
 def _spline(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
     """Cubic spline through the joints: no moment at pinned and free ends, no slope at walls."""
     from scipy.interpolate import CubicSpline
@@ -247,86 +117,113 @@ def _spline(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
     return np.asarray(CubicSpline(nodes, values, axis=1, bc_type=ends)(inside, derivative))
 
 
-def _with_ends(chain: Chain, free: Array) -> Array:
-    """Positions of all joints, (N + 1, k): the unknowns with zeros at held ends."""
-    return _between_zeros(free, *chain.held)
-
-
-def _between_zeros(rows: Array, left: bool, right: bool) -> Array:
-    """`rows` with a row of zeros before and after where asked (np.pad costs more than the whole product)."""
-    padded = np.zeros((len(rows) + left + right, rows.shape[1]))
-    padded[int(left) : len(padded) - right] = rows
-    return padded
-
-
 def _sign(chain: Chain, free: Array) -> Array:
     """+-1 for each mode, (k,): positive where the chain first moves off its left end."""
     return np.where(free[0] < 0, -1.0, 1.0)
 
 
-def chain_pencil(chain: Chain) -> FactoredPencil:
-    """K = B^T diag(k) B over the joint angles, and M."""
-    left, right = chain.walls
-    has_joint = np.concatenate([[left], np.ones(chain.n_segments - 1, dtype=bool), [right]])
-    n = chain.n_segments + 1 - sum(chain.held)
-    mass = mass_matrix(chain) if n > DENSE_UNKNOWNS else mass_matrix(chain, dense=True)
-    return FactoredPencil(
-        n=n,
-        rigid=rigid_shapes(chain),
-        strain=lambda free: joint_angles(chain, free),
-        stiffness=1.0 / chain.compliances[has_joint],
-        strain_matrix=lambda: _strain_matrix(chain),
-        mass_matrix=lambda: mass,
+def solve_harmonic(
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    n_segments: int,
+    *,
+    load: Load = "reciprocal",
+    reading: Reading = "corrected",
+    modal_damping: float = 0.0,
+    joint_dashpot: float = 0.0,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+) -> HarmonicField:
+    """The steady field of the chain under harmonic point forces, e^{+i omega t}.
+
+    `load` shares a force among the joints (`point_loads`). The field between the joints is the C2 spline of the
+    paper's contact line (Section II.B) through the "corrected" or the "raw" joints, or that of the rigid "links"
+    themselves: straight, its slope the link's, the mean of both at a joint. Damping: the beam's loss factor;
+    `modal_damping` zeta of every mode (equivalent near a resonance: eta = 2 zeta); `joint_dashpot` c in N m s
+    at every joint (eta = omega c / k). Raises InputError; an undamped resonance of the chain is refused.
+    """
+    check(beam, 1, n_segments, wall=wall, joints=joints, grading=grading)
+    _check_harmonic(beam, forces, frequency_hz, load, reading, modal_damping, joint_dashpot)
+    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
+    pencil = chain_pencil(chain)
+    omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * chain.unit**4
+    if not (beam.loss_factor or modal_damping or joint_dashpot):
+        refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve_modes, n_segments)
+    loads = _loads(chain, forces, load) * (chain.unit**3 / beam.bending_stiffness)
+    dashpot = 2.0 * pi * frequency_hz * joint_dashpot * chain.unit / beam.bending_stiffness
+    damped = pencil.stiffness * (1.0 + 1j * beam.loss_factor) + 1j * dashpot
+    stiffness: ComplexArray = np.asarray(damped, dtype=complex)
+    free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
+    raw = with_ends(chain, free).T
+    return HarmonicField(model="segment", count=n_segments, beam=beam, frequency_hz=frequency_hz,
+                         forces=tuple(forces), shapes=_field_shapes(chain, raw, reading))  # fmt: skip
+
+
+def _check_harmonic(
+    beam: Beam, forces: Sequence[PointForce], frequency_hz: float, load: str, reading: str, zeta: float, dashpot: float
+) -> None:
+    check_drive(beam, forces, frequency_hz)
+    if load not in LOADS:
+        raise InputError(f"load = {load!r} is not known: {near_name(load, LOADS)}")
+    if reading not in READINGS:
+        raise InputError(f"reading = {reading!r} is not known: {near_name(reading, READINGS)}")
+    check_number("modal_damping", zeta, "0 means none", at_least=0, below=1)
+    check_number("joint_dashpot", dashpot, "N m s, 0 means none", at_least=0)
+
+
+def _loads(chain: Chain, forces: Sequence[PointForce], rule: str) -> ComplexArray:
+    """The forces on the free joints, (n, 1), newton."""
+    total = sum(phasor(force) * joint_weights(chain, force.position, rule) for force in forces)
+    return np.asarray(total, dtype=complex)[free_joints(chain), None]
+
+
+def _field_shapes(chain: Chain, raw: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
+    """The field between the joints; raw is (1, N + 1) complex."""
+    if reading == "links":
+        return lambda x, derivative: _link_reading(chain, raw[0], x, derivative)
+    parts = np.vstack([raw.real, raw.imag])
+    values = corrected_reading(chain, parts) if reading == "corrected" else parts
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        real, imaginary = _spline(chain, values, x, derivative)
+        return np.asarray(real + 1j * imaginary)
+
+    return shapes
+
+
+def _link_reading(chain: Chain, joints: ComplexArray, x: Array, derivative: int) -> ComplexArray:
+    """The rigid links as they stand: deflection straight between the joints, slope of the link or links at x."""
+    nodes = chain.nodes
+    if derivative == 0:
+        return np.asarray(np.interp(x, nodes, joints.real) + 1j * np.interp(x, nodes, joints.imag))
+    if derivative > 1:
+        return np.zeros(len(x), dtype=complex)
+    slopes = np.diff(joints) / (chain.lengths * chain.unit)
+    slack = 1e-9 * chain.unit
+    before, after = (
+        np.clip(np.searchsorted(nodes, x + side, side="right") - 1, 0, chain.n_segments - 1) for side in (-slack, slack)
     )
+    return np.asarray(0.5 * (slopes[before] + slopes[after]))
 
 
-def rigid_shapes(chain: Chain) -> Array:
-    """The motions without strain that the supports leave, over the free joint positions, (n, 0 to 2)."""
-    x = np.concatenate([[0.0], np.cumsum(chain.lengths)])
-    left, right = chain.held
-    centre = x[0] if left else x[-1] if right else 0.5 * x[-1]
-    shapes = [np.ones_like(x)] * (not left and not right)
-    shapes += [x - centre] * (chain.rigid_motions > len(shapes))
-    return np.array(shapes).reshape(len(shapes), len(x)).T[_free_slice(chain)]
+def unit_responses(
+    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, n_segments: int
+) -> ComplexArray:
+    """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
-
-def joint_angles(chain: Chain, free: Array) -> Array:
-    """Relative angles at the joints, wall joints included, (m, k): differences of link slopes, nearly exact."""
-    slopes = np.diff(_with_ends(chain, free), axis=0) / chain.lengths[:, None]
-    return np.diff(_between_zeros(slopes, *chain.walls), axis=0)
-
-
-def _strain_matrix(chain: Chain) -> Any:
-    """B of `joint_angles` as a sparse array (m, n)."""
-    from scipy.sparse import diags_array
-
-    n = chain.n_segments
-    slopes = diags_array([-1.0 / chain.lengths, 1.0 / chain.lengths], offsets=[0, 1], shape=(n, n + 1)).tocsc()
-    joints = diags_array([np.ones(n), -np.ones(n)], offsets=[0, -1], shape=(n + 1, n)).tocsr()
-    left, right = chain.walls
-    rows = slice(0 if left else 1, n + 1 if right else n)
-    return joints[rows] @ slopes[:, _free_slice(chain)]
-
-
-def _free_slice(chain: Chain) -> slice:
-    left, right = chain.held
-    return slice(int(left), chain.n_segments + 1 - int(right))
-
-
-def mass_matrix(chain: Chain, *, dense: bool = False) -> Any:
-    """M over the free joint positions, tridiagonal: each link m/4 (y_i + y_j)^2 + J/l^2 (y_j - y_i)^2, halved."""
-    spin = chain.inertias / chain.lengths**2
-    own, shared = chain.masses / 4.0 + spin, chain.masses / 4.0 - spin
-    diagonal = np.zeros(chain.n_segments + 1)
-    diagonal[:-1] += own
-    diagonal[1:] += own
-    free = _free_slice(chain)
-    diagonal, off = diagonal[free], shared[free.start : free.stop - 1]
-    if dense:
-        return np.diag(diagonal) + np.diag(off, 1) + np.diag(off, -1)
-    from scipy.sparse import diags_array
-
-    return diags_array([off, diagonal, off], offsets=[-1, 0, 1]).tocsc()
+    All modes of the chain are solved once and summed exactly for every frequency. Load and reading are the
+    defaults of `solve_harmonic`. Raises InputError for chains beyond the dense size.
+    """
+    check(beam, 1, n_segments)
+    chain = build_chain(beam, n_segments)
+    pencil = chain_pencil(chain)
+    weights = np.array([joint_weights(chain, p, "reciprocal")[free_joints(chain)] for p in positions]).T
+    omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * chain.unit**4
+    modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
+    shapes = _spline(chain, corrected_reading(chain, with_ends(chain, modes).T), x, 0)
+    return np.asarray(receptance @ shapes) * (chain.unit**3 / beam.bending_stiffness)
 
 
 def method(beam: Beam, n_modes: int, n_segments: int) -> str:

@@ -11,6 +11,7 @@ from verify.errors import InputError, NoBracketError
 
 if TYPE_CHECKING:
     from verify.compare import Bracket
+    from verify.fields import HarmonicField
     from verify.modes import Array, Modes
 
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
@@ -91,6 +92,8 @@ class Workbench:
         self._modes: dict[Key, Modes] = {}
         self._index: dict[tuple[Key, int], int] = {}
         self._exact: dict[int, float] = {}
+        self.fields: dict[Any, HarmonicField] = {}
+        """Harmonic fields by everything that makes them."""
 
     def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> "Modes":
         """At least `n_modes` modes of a discrete model. Raises InputError."""

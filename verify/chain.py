@@ -1,0 +1,236 @@
+"""The chain of rigid links itself: links, joints, walls, and what it does in small motion about straight.
+
+Unknowns are the transverse positions of the joints, which keep the mass matrix well conditioned. Inside, a
+length is measured in mean link lengths, a stiffness and a mass in those of the beam, so that equal links have
+length 1 exactly.
+"""
+
+from typing import Any, Literal, get_args
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam
+from verify.chain_walls import Wall, wall_factors, welded_halves
+from verify.division import Parts, divide
+from verify.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
+
+Joints = Literal["series", "printed"]
+JOINTS: tuple[str, ...] = get_args(Joints)
+
+
+class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A straight chain of N links in units of a mean link length and of the beam's EI and rho A."""
+
+    supports: tuple[str, str]
+    rigid_motions: int
+    """0, 1 or 2."""
+    unit: float
+    """Metres: the unit of length."""
+    start: float
+    """Where the first joint stands, in units from the left end: 0, or 1/2 behind a welded half segment."""
+    lengths: Array
+    """(N,), link lengths."""
+    compliances: Array
+    """(N + 1,), 1/k of each joint; infinite where an end has none (pinned, free)."""
+    masses: Array
+    """(N,)."""
+    inertias: Array
+    """(N,), about each link's middle."""
+
+    @property
+    def n_segments(self) -> int:
+        """N."""
+        return len(self.lengths)
+
+    @property
+    def held(self) -> tuple[bool, bool]:
+        """Whether the left and the right end keep their transverse position."""
+        left, right = (support in ("pinned", "clamped") for support in self.supports)
+        return left, right
+
+    @property
+    def walls(self) -> tuple[bool, bool]:
+        """Whether the left and the right end keep their slope, through a joint at the wall."""
+        left, right = (support in ("clamped", "guided") for support in self.supports)
+        return left, right
+
+    @property
+    def nodes(self) -> Array:
+        """Joint positions, (N + 1,), metres."""
+        steps = np.concatenate([[self.start], self.lengths])
+        return np.asarray(np.cumsum(steps) * self.unit)
+
+
+def joint_compliance(length_i: Any, stiffness_i: Any, length_j: Any, stiffness_j: Any) -> Any:
+    """1/k of the joint between links i and j: two half links in series, l_i/(2 E_i I_i) + l_j/(2 E_j I_j).
+
+    k = 2 E_i I_i E_j I_j / (E_i I_i l_j + E_j I_j l_i), the paper's Eq. (1) with its indices put right.
+    """
+    return length_i / (2.0 * stiffness_i) + length_j / (2.0 * stiffness_j)
+
+
+def printed_compliance(parts: Parts) -> Array:
+    """1/k of the inner joints by Eq. (1) as the paper prints it, (N - 1,).
+
+    k = 2 E_i E_j I_i I_j / (E_i I_j l_j + E_j I_i l_i): right units, wrong pairing. It is no series connection
+    where both E I and E / l differ, and drops the convergence to order 1 there.
+    """
+    e, i, length = parts.moduli, parts.second_moments, parts.lengths
+    return np.asarray(length[1:] / (2.0 * e[1:] * i[:-1]) + length[:-1] / (2.0 * e[:-1] * i[1:]))
+
+
+def link_inertia(mass: Any, length: Any) -> Any:
+    """M l^2 / 12: a uniform thin link about its middle."""
+    return mass * length**2 / 12.0
+
+
+def build_chain(
+    beam: Beam, n_segments: int, *, wall: Wall = "gregory", joints: Joints = "series", grading: float = 1.0
+) -> Chain:
+    """The chain of a beam: links of its sections, joints between and at the walls (see `segment_model`)."""
+    parts = divide(beam, n_segments, grading)
+    lengths, stiffness = parts.lengths, parts.stiffnesses
+    if joints == "printed":
+        inner = printed_compliance(parts)
+    else:
+        inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
+    # an end joint as if the end link went on beyond it; the factors of the walls say how much of it is there
+    compliances = np.concatenate([[lengths[0] / stiffness[0]], inner, [lengths[-1] / stiffness[-1]]])
+    compliances *= wall_factors(beam.supports, n_segments, wall)
+    halves = welded_halves(beam.supports) if wall == "welded" else (0, 0)
+    masses = lengths * parts.masses_per_length
+    return Chain(
+        supports=beam.supports,
+        rigid_motions=beam.rigid_motions,
+        unit=beam.length / (n_segments + 0.5 * sum(halves)),
+        start=0.5 * halves[0],
+        lengths=lengths,
+        compliances=compliances,
+        masses=masses,
+        inertias=link_inertia(masses, lengths),
+    )
+
+
+def chain_pencil(chain: Chain) -> FactoredPencil:
+    """K = B^T diag(k) B over the joint angles, and M."""
+    left, right = chain.walls
+    has_joint = np.concatenate([[left], np.ones(chain.n_segments - 1, dtype=bool), [right]])
+    n = chain.n_segments + 1 - sum(chain.held)
+    mass = mass_matrix(chain) if n > DENSE_UNKNOWNS else mass_matrix(chain, dense=True)
+    return FactoredPencil(
+        n=n,
+        rigid=rigid_shapes(chain),
+        strain=lambda free: joint_angles(chain, free),
+        stiffness=1.0 / chain.compliances[has_joint],
+        strain_matrix=lambda: _strain_matrix(chain),
+        mass_matrix=lambda: mass,
+    )
+
+
+def rigid_shapes(chain: Chain) -> Array:
+    """The motions without strain that the supports leave, over the free joint positions, (n, 0 to 2)."""
+    x = np.concatenate([[0.0], np.cumsum(chain.lengths)])
+    left, right = chain.held
+    centre = x[0] if left else x[-1] if right else 0.5 * x[-1]
+    shapes = [np.ones_like(x)] * (not left and not right)
+    shapes += [x - centre] * (chain.rigid_motions > len(shapes))
+    return np.array(shapes).reshape(len(shapes), len(x)).T[free_joints(chain)]
+
+
+def joint_angles(chain: Chain, free: Array) -> Array:
+    """Relative angles at the joints, wall joints included, (m, k): differences of link slopes, nearly exact."""
+    slopes = np.diff(with_ends(chain, free), axis=0) / chain.lengths[:, None]
+    return np.diff(_between_zeros(slopes, *chain.walls), axis=0)
+
+
+def _strain_matrix(chain: Chain) -> Any:
+    """B of `joint_angles` as a sparse array (m, n)."""
+    from scipy.sparse import diags_array
+
+    n = chain.n_segments
+    slopes = diags_array([-1.0 / chain.lengths, 1.0 / chain.lengths], offsets=[0, 1], shape=(n, n + 1)).tocsc()
+    joints = diags_array([np.ones(n), -np.ones(n)], offsets=[0, -1], shape=(n + 1, n)).tocsr()
+    left, right = chain.walls
+    rows = slice(0 if left else 1, n + 1 if right else n)
+    return joints[rows] @ slopes[:, free_joints(chain)]
+
+
+def free_joints(chain: Chain) -> slice:
+    """Which of joints 0..N the supports leave free."""
+    left, right = chain.held
+    return slice(int(left), chain.n_segments + 1 - int(right))
+
+
+def mass_matrix(chain: Chain, *, dense: bool = False) -> Any:
+    """M over the free joint positions, tridiagonal: each link m/4 (y_i + y_j)^2 + J/l^2 (y_j - y_i)^2, halved."""
+    spin = chain.inertias / chain.lengths**2
+    own, shared = chain.masses / 4.0 + spin, chain.masses / 4.0 - spin
+    diagonal = np.zeros(chain.n_segments + 1)
+    diagonal[:-1] += own
+    diagonal[1:] += own
+    free = free_joints(chain)
+    diagonal, off = diagonal[free], shared[free.start : free.stop - 1]
+    if dense:
+        return np.diag(diagonal) + np.diag(off, 1) + np.diag(off, -1)
+    from scipy.sparse import diags_array
+
+    return diags_array([off, diagonal, off], offsets=[-1, 0, 1]).tocsc()
+
+
+def with_ends(chain: Chain, free: Any) -> Any:
+    """Positions of all joints, (N + 1, k): the unknowns with zeros at held ends."""
+    return _between_zeros(free, *chain.held)
+
+
+def _between_zeros(rows: Any, left: bool, right: bool) -> Any:
+    """`rows` with a row of zeros before and after where asked (np.pad costs more than the whole product)."""
+    padded = np.zeros((len(rows) + left + right, rows.shape[1]), dtype=rows.dtype)
+    padded[int(left) : len(padded) - right] = rows
+    return padded
+
+
+def node_curvatures(chain: Chain, joints: Array) -> Array:
+    """Change of slope over the mean of the adjoining links at every joint, (k, N + 1), in 1/unit.
+
+    At a wall the chain goes on by reflection (guided even, clamped even); zero at pinned and free ends.
+    """
+    slopes = np.diff(joints, axis=1) / chain.lengths
+    curvatures = np.zeros_like(joints)
+    curvatures[:, 1:-1] = np.diff(slopes, axis=1) / (0.5 * (chain.lengths[1:] + chain.lengths[:-1]))
+    left, right = chain.walls
+    if left:
+        curvatures[:, 0] = 2.0 * slopes[:, 0] / chain.lengths[0]
+    if right:
+        curvatures[:, -1] = -2.0 * slopes[:, -1] / chain.lengths[-1]
+    return curvatures
+
+
+def corrected_reading(chain: Chain, joints: Array) -> Array:
+    """Y + delta^2 y / 12 at every joint, (k, N + 1); ends that keep their position keep it.
+
+    For unequal links (l_i^2 + l_j^2)/24 times the curvature, which is the same for equal ones.
+    """
+    squares = np.zeros(chain.n_segments + 1)
+    squares[:-1] += chain.lengths**2
+    squares[1:] += chain.lengths**2
+    squares[[0, -1]] *= 2.0
+    left, right = chain.held
+    squares[0] *= not left
+    squares[-1] *= not right
+    return np.asarray(joints + squares / 24.0 * node_curvatures(chain, joints))
+
+
+def joint_curvatures(chain: Chain, joints: Array) -> Array:
+    """Curvature of the beam at every joint from the joint's moment over EI there, (k, N + 1), 1/m of `joints`.
+
+    The joint's angle over its compliance is the moment; over the beam's own EI between the links it is the
+    curvature. Zero at ends without a joint.
+    """
+    angles = np.zeros_like(joints)
+    slopes = np.diff(joints, axis=1) / chain.lengths
+    angles[:, 1:-1] = np.diff(slopes, axis=1)
+    left, right = chain.walls
+    angles[:, 0] = slopes[:, 0] * left
+    angles[:, -1] = -slopes[:, -1] * right
+    return np.asarray(angles / chain.compliances / chain.unit**2)

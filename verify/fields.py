@@ -1,0 +1,91 @@
+"""What every model's `solve_harmonic` returns, and what it refuses."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.beam import Beam, PointForce, check_number
+from verify.errors import InputError
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+RESONANCE = 1e-9
+"""An undamped beam is not driven closer than this (relative) to a resonance: the answer would be rounding."""
+
+
+class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Steady motion Re(w(x) e^{+i omega t}) of one model under harmonic point forces."""
+
+    model: str
+    """analytic, fem or segment."""
+    count: int | None
+    """Elements or segments; None for the exact beam."""
+    beam: Beam
+    frequency_hz: float
+    forces: tuple[PointForce, ...]
+    shapes: Callable[[Array, int], ComplexArray]
+    """(x, derivative) -> (len(x),) complex, metres per metre^derivative."""
+
+    @property
+    def omega(self) -> float:
+        """2 pi f, rad/s."""
+        return 2.0 * np.pi * self.frequency_hz
+
+    @property
+    def wavenumber(self) -> complex:
+        """Of the exact beam, (rho A omega^2 / (EI (1 + i eta)))^{1/4}, 1/m; its imaginary part is never positive."""
+        return wavenumber(self.beam, self.frequency_hz)
+
+    def deflection(self, x: Any) -> ComplexArray:
+        """Complex deflection at x (metres), (len(x),), metres. Raises InputError off the beam."""
+        return self.shapes(self._on_beam(x), 0)
+
+    def slope(self, x: Any) -> ComplexArray:
+        """Complex slope at x (metres), (len(x),), radians. Raises InputError off the beam."""
+        return self.shapes(self._on_beam(x), 1)
+
+    def _on_beam(self, x: Any) -> Array:
+        positions: Array = np.atleast_1d(np.asarray(x, dtype=float))
+        off = positions[~((positions >= 0.0) & (positions <= self.beam.length * (1.0 + 1e-12)))]
+        if off.size:
+            raise InputError(
+                f"x = {float(off[0])!r} lies off the beam: give positions between 0 and {self.beam.length!r} m"
+            )
+        return positions
+
+
+def wavenumber(beam: Beam, frequency_hz: float) -> complex:
+    """(rho A omega^2 / (EI (1 + i eta)))^{1/4} of a uniform beam, 1/m."""
+    real = np.sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant)
+    return complex(real * (1.0 + 1j * beam.loss_factor) ** -0.25)
+
+
+def check_drive(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> None:
+    """Raise InputError for a frequency that is not finite and positive, no force, or a force off the beam."""
+    check_number("frequency_hz", frequency_hz, "hertz", above=0)
+    if not forces:
+        raise InputError("forces is empty: give at least one PointForce")
+    for force in forces:
+        if force.position > beam.length:
+            raise InputError(
+                f"force.position = {force.position!r} lies off the beam: "
+                f"give a position between 0 and {beam.length!r} m"
+            )
+
+
+def phasor(force: PointForce) -> complex:
+    """Amplitude and phase as one complex number, newton."""
+    return complex(force.amplitude * np.exp(1j * np.deg2rad(force.phase_deg)))
+
+
+def refuse_resonance(model: str, frequency_hz: float, mode: int, resonance_hz: float) -> None:
+    """Raise InputError naming the mode of an undamped resonance and the distance to it."""
+    distance = abs(frequency_hz / resonance_hz - 1.0)
+    raise InputError(
+        f"frequency_hz = {frequency_hz!r} lies {distance:.1e} (relative) from the undamped resonance of mode {mode} "
+        f"of the {model} model at {resonance_hz!r} Hz: give the beam a loss_factor or choose another frequency"
+    )

@@ -1,0 +1,77 @@
+"""Linear algebra of driven pencils, the same for whoever brings one: direct, modal, and the refusal of resonances."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.eigen import (
+    DENSE_UNKNOWNS,
+    Array,
+    ComplexArray,
+    FactoredPencil,
+    forced_response,
+    modal_basis,
+    resonance_distance,
+)
+from verify.errors import InputError
+from verify.fields import RESONANCE, refuse_resonance
+from verify.modes import Modes
+
+
+def damped_response(
+    pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray, modal_damping: float
+) -> ComplexArray:
+    """The response (n, 1) with complex stiffnesses (m,), or with the same damping ratio in every mode.
+
+    Modal damping takes all modes of the pencil. Raises InputError where it is asked for beyond the dense size
+    or together with dashpots that couple the modes.
+    """
+    if not modal_damping:
+        return forced_response(pencil, loads, omega2, stiffness)
+    factors = stiffness / pencil.stiffness
+    if np.ptp(factors.imag) > 1e-9 * abs(factors).max():
+        raise InputError("joint_dashpot and modal_damping together: dashpots couple the modes, give one of the two")
+    check_dense(pencil, "modal_damping")
+    values, vectors = modal_basis(pencil)
+    denominators = values * factors[0] - omega2 + 2j * modal_damping * np.sqrt(values * omega2)
+    return np.asarray(vectors @ ((vectors.T @ loads) / denominators[:, None]))
+
+
+def modal_receptance(
+    pencil: FactoredPencil, weights: Array, omega2: Array, loss_factor: float
+) -> tuple[Array, ComplexArray]:
+    """(modes (n, n), their share in the response to each load at each frequency (n_frequencies, n_loads, n)).
+
+    Exact with a loss factor, which leaves the modes as they are. Raises InputError beyond the dense size.
+    """
+    check_dense(pencil, "a map over frequency")
+    values, vectors = modal_basis(pencil)
+    denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None]
+    return vectors, np.asarray((vectors.T @ weights).T / denominators[:, None, :])
+
+
+def check_dense(pencil: FactoredPencil, what: str) -> None:
+    """Raise InputError where all modes of a pencil would be too many."""
+    if pencil.n > 4 * DENSE_UNKNOWNS:
+        raise InputError(f"{what} takes all {pencil.n} modes of the model: lower count to {DENSE_UNKNOWNS} or less")
+
+
+def refuse_near_resonance(
+    model: str,
+    beam: Beam,
+    pencil: FactoredPencil,
+    omega2: float,
+    frequency_hz: float,
+    solve_modes: Callable[[Beam, int, int], Modes],
+    count: int,
+) -> None:
+    """Raise InputError where an undamped pencil is driven at one of its own frequencies."""
+    if abs(resonance_distance(pencil, omega2)) > 2.0 * RESONANCE:
+        return
+    n_modes = pencil.n - pencil.rigid_modes
+    guess = int(np.sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant) * beam.length / np.pi) + 4
+    frequencies = solve_modes(beam, min(guess, n_modes), count).frequencies_hz
+    nearest = int(abs(frequencies - frequency_hz).argmin())
+    refuse_resonance(model, frequency_hz, nearest + 1, float(frequencies[nearest]))

@@ -1,0 +1,175 @@
+"""Named figures of modes: frequencies, shapes, their errors and orders, bounds; and of the paper's drive rule."""
+
+from typing import TYPE_CHECKING, Any
+
+from verify.errors import InputError
+from verify.quantity_types import (
+    AtFrequency,
+    AtSize,
+    BracketAt,
+    DiscreteAtSize,
+    FirstModes,
+    NeighbourModes,
+    NodeAt,
+    OverSizes,
+    Quantity,
+    ShapeAt,
+    ShapesOverSizes,
+    ToError,
+)
+from verify.workbench import Need, Settings, Workbench, for_model
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+
+def _solved(model: str, count: int | None, n_modes: int, settings: Settings = ()) -> tuple[Need, ...]:
+    """The solves behind one figure; the mean of both models takes both."""
+    if model == "analytic" or count is None:
+        return ()
+    models = ("segment", "fem") if model == "mean" else (model,)
+    return tuple(Need(m, count, n_modes, for_model(m, settings)) for m in models)
+
+
+def _at_size(a: Any, scene: "Scene") -> tuple[Need, ...]:
+    return _solved(a.model, a.count, a.mode, a.settings)
+
+
+def _over_sizes(a: Any, scene: "Scene") -> tuple[Need, ...]:
+    return tuple(need for count in a.counts for need in _solved(a.model, count, a.mode, a.settings))
+
+
+def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
+    if a.model == "analytic" or a.count is None:
+        from verify.closed_forms import frequency_hz
+
+        return frequency_hz(scene.beam, a.mode, a.theory)
+    return bench.frequency_hz(a.model, a.count, a.mode, a.settings)
+
+
+def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
+    if a.model == "analytic" or a.count is None:
+        from verify.closed_forms import frequency_hz
+
+        exact = frequency_hz(scene.beam, a.mode)
+        return (frequency_hz(scene.beam, a.mode, a.theory) - exact) / exact
+    return bench.frequency_error(a.model, a.count, a.mode, a.settings)
+
+
+def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
+    from verify.error_laws import dispersion_frequency_hz
+
+    solved = bench.modes(a.model, a.count, a.modes).frequencies_hz
+    closed = [dispersion_frequency_hz(a.model, scene.beam, n, a.count) for n in range(1, a.modes + 1)]
+    return max(abs(float(f) / exact - 1.0) for f, exact in zip(solved, closed, strict=False))
+
+
+def _law_ratio(a: DiscreteAtSize, scene: "Scene", bench: Workbench) -> float:
+    from verify.closed_forms import check_uniform
+    from verify.error_laws import leading_error
+
+    check_uniform(scene.beam)
+    law = leading_error(a.model, scene.beam.supports, a.mode, a.count)
+    return bench.frequency_error(a.model, a.count, a.mode, a.settings) / law
+
+
+def _order(a: OverSizes, scene: "Scene", bench: Workbench) -> float:
+    from verify.compare import observed_order
+
+    return observed_order(a.counts, [bench.frequency_error(a.model, n, a.mode, a.settings) for n in a.counts])
+
+
+def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
+    from verify.compare import observed_order
+
+    errors = [bench.shape_error(a.model, n, a.mode, a.reading, a.settings) for n in a.counts]
+    return observed_order(a.counts, errors)
+
+
+def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
+    from verify.sizing import count_needed
+
+    return count_needed(bench, a.model, a.mode, a.error, a.settings)
+
+
+def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
+    from verify.sizing import count_guess
+
+    return _solved(a.model, count_guess(a.model, scene.beam, a.mode, a.error), a.mode, a.settings)
+
+
+def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:
+    positions = bench.node_positions(a.model, a.count, a.mode, a.settings)
+    if a.node > len(positions):
+        raise InputError(f"node = {a.node}: mode {a.mode} has {len(positions)} nodes between the ends")
+    return float(positions[a.node - 1])
+
+
+def _rule_frequency(a: NeighbourModes, scene: "Scene", bench: Workbench) -> float:
+    from verify.closed_forms import rule_frequency_hz
+
+    return rule_frequency_hz(scene.beam, a.mode - 1, a.mode)
+
+
+def _quarter_wavelength(a: AtFrequency, scene: "Scene", bench: Workbench) -> float:
+    from verify.closed_forms import quarter_wavelength
+
+    if a.frequency_hz is None and scene.drive is None:
+        raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")
+    return quarter_wavelength(scene.beam, a.frequency_hz or scene.drive.frequency_hz)  # type: ignore[union-attr]
+
+
+MODE_QUANTITIES = (
+        Quantity("mode.frequency", "Hz", "Frequency of one mode.", AtSize, _at_size, _frequency),
+        Quantity(
+            "mode.frequency_error", "1", "Signed error relative to the exact Euler-Bernoulli frequency.",
+            AtSize, _at_size, _frequency_error,
+        ),
+        Quantity(
+            "mode.dispersion_error", "1", "Largest deviation of the solver from the model's own exact dispersion.",
+            FirstModes, lambda a, s: _solved(a.model, a.count, a.modes), _dispersion_error,
+        ),
+        Quantity(
+            "mode.law_ratio", "1", "Frequency error over its leading law, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)).",
+            DiscreteAtSize, _at_size, _law_ratio,
+        ),
+        Quantity(
+            "mode.shape_error", "1", "Relative L2 error of the mass-normalised deflection at the model's nodes.",
+            ShapeAt, _at_size,
+            lambda a, s, bench: bench.shape_error(a.model, a.count, a.mode, a.reading, a.settings),
+        ),
+        Quantity(
+            "mode.curvature_error", "1", "Relative L2 error of the curvature at joints or Gauss points.",
+            DiscreteAtSize, _at_size,
+            lambda a, s, bench: bench.curvature_error(a.model, a.count, a.mode, a.settings),
+        ),
+        Quantity(
+            "mode.node_position", "m", "Where a mode stands still, from the left end.",
+            NodeAt, _at_size, _node_position,
+        ),
+        Quantity(
+            "mode.order", "1", "Observed order of the frequency error over sizes.",
+            OverSizes, _over_sizes, _order,
+        ),
+        Quantity(
+            "mode.shape_order", "1", "Observed order of the shape error over sizes.",
+            ShapesOverSizes, _over_sizes, _shape_order,
+        ),
+        Quantity(
+            "mode.bracket", "Hz", "Two-sided bound on the exact frequency: segments below, Hermite above.",
+            BracketAt, lambda a, s: _solved("mean", a.count, a.mode, a.settings),
+            lambda a, s, bench: bench.bracket(a.mode, a.count, a.settings),
+        ),
+        Quantity(
+            "mode.count_needed", "1", "Fewest segments or elements whose frequency error is within `error`.",
+            ToError, _count_guess, _count_needed,
+        ),
+        Quantity(
+            "drive.rule_frequency", "Hz", "The paper's drive rule: root mean square of two exact neighbours.",
+            NeighbourModes, lambda a, s: (), _rule_frequency,
+        ),
+        Quantity(
+            "drive.quarter_wavelength", "m", "A quarter of the bending wavelength: the paper's actuator distance d.",
+            AtFrequency, lambda a, s: (), _quarter_wavelength,
+        ),
+)  # fmt: skip

@@ -1,0 +1,267 @@
+"""A field in, wave measures and surface ellipses out.
+
+Conventions: e^{+i omega t}; a wave towards +x is e^{-ikx}. A surface point moves by u_x = -(h/2) w', u_y = w;
+its ellipse has the signed area S3 = 2 Im(conj(u_x) u_y) (times pi/2), negative for a wave towards +x, whose
+surface points turn counter-clockwise and move backwards at the crest.
+"""
+
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.beam import Beam
+from verify.errors import InputError
+from verify.fields import Array, ComplexArray, HarmonicField, wavenumber
+
+SHARPNESS = 24
+"""Sample points for each half wavelength of the window."""
+
+
+class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
+
+    wavenumber: complex
+    """k, 1/m, the one used."""
+    forward: complex
+    """A+ of e^{-ik(x - middle)}, metres."""
+    backward: complex
+    """A- of e^{+ik(x - middle)}, metres."""
+    residual: float
+    """What the two waves leave unexplained, rms over rms."""
+
+    @property
+    def direction(self) -> int:
+        """+1 where the stronger wave runs towards +x, else -1."""
+        return 1 if abs(self.forward) >= abs(self.backward) else -1
+
+    @property
+    def reflection(self) -> float:
+        """Gamma, the weaker amplitude over the stronger, 0 to 1."""
+        weak, strong = sorted((abs(self.forward), abs(self.backward)))
+        return float(weak / strong) if strong > 0 else 0.0
+
+    @property
+    def standing_wave_ratio(self) -> float:
+        """(1 + Gamma) / (1 - Gamma), 1 for a pure travelling wave, infinite for a standing one."""
+        gamma = self.reflection
+        return (1.0 + gamma) / (1.0 - gamma) if gamma < 1.0 else float("inf")
+
+
+class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What kind of wave a field carries in a window, and what the surface does there."""
+
+    window: tuple[float, float]
+    """Metres."""
+    waves: TwoWaves
+    envelope: float
+    """(max - min) / (max + min) of |w|: equals Gamma for two waves, but under-reads at high Gamma."""
+    travelling_index: float
+    """1 / cond([Re W, Im W]) (Feeny's complex orthogonal decomposition): 1 travelling, 0 standing."""
+    x: Array
+    """(n,), metres: where the surface quantities are given."""
+    axis_ratio: Array
+    """(n,), signed ratio of the ellipse's axes, tan chi; k h/2 for a pure wave, negative towards +x."""
+    tilt_deg: Array
+    """(n,), angle of the long axis from x, degrees."""
+    signed_area: Array
+    """(n,), S3, m^2."""
+    ideal_axis_ratio: float
+    """k h / 2."""
+    crest_speed: float
+    """Of the surface at the crests, m/s along +x: -omega (h/2) k (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2)."""
+    energy_flux: float
+    """Power carried towards +x through the middle of the window, watt."""
+
+    @property
+    def reflection(self) -> float:
+        """Gamma, 0 to 1."""
+        return self.waves.reflection
+
+    @property
+    def standing_wave_ratio(self) -> float:
+        """(1 + Gamma) / (1 - Gamma)."""
+        return self.waves.standing_wave_ratio
+
+    @property
+    def signed_area_spread(self) -> float:
+        """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends."""
+        return float(np.ptp(self.signed_area) / abs(self.signed_area.mean()))
+
+    @property
+    def rotation(self) -> str:
+        """The sense in which most surface points turn, in (x, y)."""
+        return "counter-clockwise" if self.signed_area.mean() < 0 else "clockwise"
+
+
+def measure(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> WaveMeasures:
+    """Measure the wave that a field carries in a window (a, b) between the forces, metres.
+
+    The wavenumber is stated (complex for a damped wave), or fitted where it is None. Raises InputError for a
+    window that leaves the span between two forces or is shorter than half a wavelength.
+    """
+    check_window(field, window)
+    x = sample_points(window, wavenumber(field.beam, field.frequency_hz).real)
+    deflection, slope = field.deflection(x), field.slope(x)
+    start = wavenumber(field.beam, field.frequency_hz)
+    waves = fit_waves(
+        x, deflection, wave_number if wave_number is not None else fitted_wavenumber(x, deflection, start)
+    )
+    return _measures(field.beam, field.omega, window, x, deflection, slope, waves)
+
+
+def _measures(
+    beam: Beam,
+    omega: float,
+    window: tuple[float, float],
+    x: Array,
+    deflection: ComplexArray,
+    slope: ComplexArray,
+    waves: TwoWaves,
+) -> WaveMeasures:
+    across = surface_motion(beam, slope)
+    size = abs(deflection)
+    ratio, tilt, area = ellipse(across, deflection)
+    return WaveMeasures(
+        window=window, waves=waves, envelope=float((size.max() - size.min()) / (size.max() + size.min())),
+        travelling_index=travelling_index(deflection), x=x, axis_ratio=ratio, tilt_deg=tilt, signed_area=area,
+        ideal_axis_ratio=0.5 * waves.wavenumber.real * beam.thickness,
+        crest_speed=float(crest_speed(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
+        energy_flux=float(energy_flux(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
+    )  # fmt: skip
+
+
+def surface_motion(beam: Beam, slope: ComplexArray) -> ComplexArray:
+    """u_x = -(h/2) w' of the upper surface, metres."""
+    return -0.5 * beam.thickness * slope
+
+
+def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
+    """(signed axis ratio tan chi, tilt in degrees, signed area S3) of the paths of surface points, (n,) each.
+
+    Stokes parameters: S0 = |u_x|^2 + |u_y|^2, S1 = |u_x|^2 - |u_y|^2, S2 = 2 Re(conj(u_x) u_y), sin 2 chi = S3/S0.
+    """
+    total, difference = abs(across) ** 2 + abs(up) ** 2, abs(across) ** 2 - abs(up) ** 2
+    product = 2.0 * np.conj(across) * up
+    with np.errstate(invalid="ignore"):
+        sine = np.where(total > 0, product.imag / np.where(total > 0, total, 1.0), 0.0)
+    chi = 0.5 * np.arcsin(np.clip(sine, -1.0, 1.0))
+    tilt = 0.5 * np.rad2deg(np.arctan2(product.real, difference))
+    return np.tan(chi), tilt, product.imag
+
+
+def crest_speed(beam: Beam, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+    """Speed of the surface at the crests, m/s; works on arrays of amplitudes alike."""
+    plus, minus = abs(forward) ** 2, abs(backward) ** 2
+    return -omega * 0.5 * beam.thickness * np.real(k) * (plus - minus) / np.sqrt(plus + minus)
+
+
+def energy_flux(beam: Beam, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+    """Power carried towards +x by both waves, watt, at the point where their amplitudes are meant.
+
+    Shear force times deflection speed and moment times turning speed, 1/2 Re, with EI (1 + i eta); undamped
+    EI k^3 omega (|A+|^2 - |A-|^2). Works on arrays of amplitudes alike.
+    """
+    k = np.asarray(k, dtype=complex)
+    deflection, slope = forward + backward, 1j * k * (backward - forward)
+    moment, shear = -(k**2) * deflection, 1j * k**3 * (forward - backward)
+    speed, turning = 1j * omega * deflection, 1j * omega * slope
+    stiffness = beam.bending_stiffness * (1.0 + 1j * beam.loss_factor)
+    return 0.5 * np.real(stiffness * (shear * np.conj(speed) - moment * np.conj(turning)))
+
+
+def travelling_index(deflection: ComplexArray) -> float:
+    """1 / cond([Re W, Im W]), 0 to 1."""
+    values = np.linalg.svd(np.column_stack([deflection.real, deflection.imag]), compute_uv=False)
+    return float(values[1] / values[0]) if values[0] > 0 else 0.0
+
+
+def wave_basis(x: Array, k: Any) -> ComplexArray:
+    """e^{-ik(x - middle)} and e^{+ik(x - middle)}, (..., len(x), 2) for k of shape (...)."""
+    phase = 1j * np.asarray(k)[..., None] * (x - 0.5 * (x[0] + x[-1]))
+    return np.stack([np.exp(-phase), np.exp(phase)], axis=-1)
+
+
+def fit_waves(x: Array, deflection: ComplexArray, k: complex) -> TwoWaves:
+    """Forward and backward amplitude by least squares on the phasors, exact on two-wave fields."""
+    basis = wave_basis(x, k)
+    amplitudes = np.linalg.lstsq(basis, deflection, rcond=None)[0]
+    rest = np.linalg.norm(deflection - basis @ amplitudes) / np.linalg.norm(deflection)
+    return TwoWaves(wavenumber=complex(k), forward=complex(amplitudes[0]), backward=complex(amplitudes[1]),
+                    residual=float(rest))  # fmt: skip
+
+
+def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex) -> complex:
+    """The wavenumber near `start` (within 4 %, the same phase) that leaves the least residual."""
+    from scipy.optimize import minimize_scalar
+
+    found = minimize_scalar(
+        lambda factor: fit_waves(x, deflection, factor * start).residual,
+        bounds=(0.96, 1.04), method="bounded", options={"xatol": 1e-10},
+    )  # fmt: skip
+    return complex(float(found.x) * start)
+
+
+def sample_points(window: tuple[float, float], k: float) -> Array:
+    """Evenly spaced points of a window, its ends included, 24 for each half wavelength."""
+    halves = (window[1] - window[0]) * k / np.pi
+    return np.linspace(window[0], window[1], int(np.ceil(SHARPNESS * halves)) + 1)
+
+
+def check_window(field: HarmonicField, window: tuple[float, float]) -> None:
+    """Raise InputError for a window off the span between two neighbouring forces or too short to measure."""
+    start, end = window
+    if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= field.beam.length):
+        raise InputError(
+            f"window = {list(window)}: give start and end, ascending, between 0 and {field.beam.length!r} m"
+        )
+    places = sorted(force.position for force in field.forces)
+    inside = [p for p in places if start < p < end]
+    if inside or (len(places) > 1 and not places[0] <= start < end <= places[-1]):
+        raise InputError(
+            f"window = {list(window)} leaves the span between two forces (they act at {places} m): "
+            "two waves alone live there, choose a window inside it"
+        )
+    half = float(np.pi / wavenumber(field.beam, field.frequency_hz).real)
+    if end - start < half:
+        raise InputError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
+
+
+def phasors(times: Array, values: NDArray[np.float64], frequency_hz: float) -> ComplexArray:
+    """Complex amplitudes of series at one frequency, over the last whole number of periods, (n_points,).
+
+    times (n_times,) ascending, values (n_times, n_points). A constant and a linear trend are fitted beside the
+    harmonic and dropped. Raises InputError for less than one period or fewer than eight samples of it.
+    """
+    times, values = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
+    step = (times[-1] - times[0]) / max(len(times) - 1, 1)
+    periods = int(np.floor((times[-1] - times[0] + step) * frequency_hz * (1.0 + 1e-9)))
+    kept = times > times[-1] - periods / frequency_hz + 0.5 * step * (1.0 - 1e-6)
+    if periods < 1 or kept.sum() < 8:
+        raise InputError(
+            f"times cover {(times[-1] - times[0]) * frequency_hz:.2f} periods in {len(times)} samples: "
+            "give at least one whole period and eight samples"
+        )
+    t = times[kept] - times[kept].mean()
+    angle = 2.0 * np.pi * frequency_hz * times[kept]
+    basis = np.column_stack([np.ones_like(t), t * frequency_hz, np.cos(angle), -np.sin(angle)])
+    fitted = np.linalg.lstsq(basis, values[kept], rcond=None)[0]
+    return np.asarray(fitted[2] + 1j * fitted[3])
+
+
+def measure_series(
+    beam: Beam, x: Array, times: Array, values: NDArray[np.float64], frequency_hz: float, k: complex | None = None
+) -> WaveMeasures:
+    """The same measures from time series at positions x (ascending), values (n_times, n_positions), metres.
+
+    Slopes come from the two fitted waves. Raises InputError for series or spans that are too short.
+    """
+    start = wavenumber(beam, frequency_hz)
+    if len(x) < 4 or (x[-1] - x[0]) * start.real < np.pi:
+        raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
+    deflection = phasors(times, values, frequency_hz)
+    waves = fit_waves(x, deflection, k if k is not None else fitted_wavenumber(x, deflection, start))
+    basis = wave_basis(x, waves.wavenumber)
+    slope = 1j * waves.wavenumber * (basis @ np.array([-waves.forward, waves.backward]))
+    return _measures(beam, 2.0 * np.pi * frequency_hz, (float(x[0]), float(x[-1])), x, deflection, slope, waves)

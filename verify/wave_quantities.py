@@ -1,0 +1,176 @@
+"""Named figures of the driven beam: deflection, wave quality, surface ellipses, power."""
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from msgspec import Meta
+
+from verify.errors import InputError
+from verify.quantity_types import Arguments, Quantity, Size, Sizes
+from verify.workbench import Workbench
+
+if TYPE_CHECKING:
+    from verify.fields import HarmonicField
+    from verify.scene import Scene
+    from verify.travelling_wave import WaveMeasures
+
+Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
+
+
+class Driven(Arguments, frozen=True, kw_only=True):
+    """A driven beam: what is not given is the scene's."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    count: Size | None = None
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
+    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
+    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    modal_damping: Annotated[float, Meta(description="ratio of every mode; fem and segment")] = 0.0
+    joint_dashpot: Annotated[float, Meta(description="N m s at every joint; segment")] = 0.0
+    drive: (
+        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
+    ) = None
+    load: Annotated[Literal["reciprocal", "lever"], Meta(description="how a force is shared among joints; segment")] = (
+        "reciprocal"
+    )
+    reading: Annotated[
+        Literal["corrected", "raw", "links"], Meta(description="how the chain is read between joints; segment")
+    ] = "corrected"
+
+    def __post_init__(self) -> None:
+        if self.model != "analytic" and self.count is None:
+            raise InputError(f"count is missing: give the number of segments or elements for model = {self.model}")
+        own = {"joint_dashpot": 0.0, "load": "reciprocal", "reading": "corrected"}
+        for name, default in own.items():
+            if self.model != "segment" and getattr(self, name) != default:
+                raise InputError(f"{name} = {getattr(self, name)!r} is for model = segment, not for {self.model}")
+        if self.model == "analytic" and self.modal_damping:
+            raise InputError("modal_damping is for model = fem or segment: the analytic field takes a loss_factor")
+
+    @property
+    def settings(self) -> tuple[tuple[str, Any], ...]:
+        """Keyword arguments of the model's solve_harmonic other than their defaults."""
+        chosen = {"modal_damping": 0.0, "joint_dashpot": 0.0, "load": "reciprocal", "reading": "corrected"}
+        return tuple((name, getattr(self, name)) for name, default in chosen.items() if getattr(self, name) != default)
+
+
+class At(Driven, frozen=True, kw_only=True):
+    """A driven beam and a place on it."""
+
+    x: Annotated[float, Meta(description="metres from the left end")]
+
+
+class InWindow(Driven, frozen=True, kw_only=True):
+    """A driven beam and a window on it."""
+
+    window: Window | None = None
+
+
+class AxisRatio(InWindow, frozen=True, kw_only=True):
+    """A window, and a place in it."""
+
+    x: Annotated[float, Meta(description="metres; default: the mean over the window")] | None = None
+
+
+class WaveOrder(InWindow, frozen=True, kw_only=True):
+    """A figure of a discrete model over several sizes."""
+
+    model: Annotated[Literal["fem", "segment"], Meta(description="which discrete model")]
+    counts: Sizes
+    count: None = None
+    of: Annotated[
+        Literal["standing_wave_ratio", "axis_ratio", "deflection"],
+        Meta(description="whose error; deflection at x, the middle of the window"),
+    ] = "standing_wave_ratio"
+
+    def __post_init__(self) -> None:
+        """The size comes from counts."""
+
+
+class BestFrequency(InWindow, frozen=True, kw_only=True):
+    """Where the reflection is least."""
+
+    span: Annotated[float, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = 0.015
+
+
+def field_of(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> "HarmonicField":
+    """The field that arguments describe. Raises InputError."""
+    from verify.waves import driven
+
+    return driven(a, scene, bench, count if count is not None else a.count)
+
+
+def measured(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> "WaveMeasures":
+    """The wave measures that arguments describe. Raises InputError."""
+    from verify.waves import measures
+
+    return measures(field_of(a, scene, bench, count), a.window)
+
+
+def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
+    return complex(field_of(a, scene, bench).deflection(a.x)[0])
+
+
+def _axis_ratio(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> float:
+    if getattr(a, "x", None) is None:
+        return float(measured(a, scene, bench, count).axis_ratio.mean())
+    from verify.travelling_wave import ellipse, surface_motion
+
+    field = field_of(a, scene, bench, count)
+    return float(ellipse(surface_motion(field.beam, field.slope(a.x)), field.deflection(a.x))[0][0])
+
+
+def _power_imbalance(a: InWindow, scene: "Scene", bench: Workbench) -> float:
+    from verify.waves import power_imbalance
+
+    field = field_of(a, scene, bench)
+    return power_imbalance(field, measured(a, scene, bench))
+
+
+def _best_frequency(a: BestFrequency, scene: "Scene", bench: Workbench) -> float:
+    from verify.waves import best_frequency
+
+    return best_frequency(a, scene, bench)
+
+
+def _order(a: WaveOrder, scene: "Scene", bench: Workbench) -> float:
+    from verify.waves import wave_order
+
+    return wave_order(a, scene, bench)
+
+
+def _figure(name: str) -> Any:
+    """One attribute of the measures."""
+    return lambda a, scene, bench: float(getattr(measured(a, scene, bench), name))
+
+
+def _nothing(a: Any, scene: "Scene") -> tuple[()]:
+    """A driven field takes no modes."""
+    return ()
+
+
+WAVE_QUANTITIES = (
+    Quantity("wave.deflection", "m", "Complex deflection, e^{+i omega t}.", At, _nothing, _deflection),
+    Quantity("wave.standing_wave_ratio", "1", "(1 + Gamma)/(1 - Gamma) of the two waves fitted in the window.",
+             InWindow, _nothing, _figure("standing_wave_ratio")),
+    Quantity("wave.reflection", "1", "Gamma, the weaker wave over the stronger, at the middle of the window.",
+             InWindow, _nothing, _figure("reflection")),
+    Quantity("wave.envelope", "1", "(max - min)/(max + min) of |w| in the window.",
+             InWindow, _nothing, _figure("envelope")),
+    Quantity("wave.travelling_index", "1", "1 for a travelling, 0 for a standing wave: 1/cond([Re W, Im W]).",
+             InWindow, _nothing, _figure("travelling_index")),
+    Quantity("wave.axis_ratio", "1", "Signed axis ratio of the surface ellipse; negative for a wave towards +x.",
+             AxisRatio, _nothing, _axis_ratio),
+    Quantity("wave.signed_area_spread", "1", "(max - min)/|mean| of the ellipses' signed area in the window.",
+             InWindow, _nothing, _figure("signed_area_spread")),
+    Quantity("wave.crest_speed", "m/s", "Speed of the surface at the crests, along +x.",
+             InWindow, _nothing, _figure("crest_speed")),
+    Quantity("wave.energy_flux", "W", "Power carried towards +x through the middle of the window.",
+             InWindow, _nothing, _figure("energy_flux")),
+    Quantity("wave.power_imbalance", "1", "Input of the left force less losses less flux, up to the window's middle.",
+             InWindow, _nothing, _power_imbalance),
+    Quantity("wave.best_frequency", "Hz", "Frequency of least reflection near the drive's, all else as it is.",
+             BestFrequency, _nothing, _best_frequency),
+    Quantity("wave.order", "1", "Observed order of a wave figure's error against the exact field.",
+             WaveOrder, _nothing, _order),
+)  # fmt: skip
