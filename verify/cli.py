@@ -68,31 +68,55 @@ def run(scene: str, overrides: tuple[str, ...], folder: Path, no_report: bool, a
 
 @cli.command()
 @_scene
+@click.argument("arguments", nargs=-1, metavar="[KEY=VALUE]...")
 @_overrides
 @click.option("--modes", metavar="LIST", help="Modes, for instance 1,5,22. Default: the scene's [convergence].")
 @click.option("--counts", metavar="LIST", help="Segments and elements, for instance 10,20,49,98.")
+@click.option("--wave", is_flag=True, help="The motor's figures over the counts instead of modes.")
+@click.option(
+    "--sweep",
+    "sweeps",
+    multiple=True,
+    metavar="AXIS=START:END:STEPS",
+    help="A wave quantity over one or two axes: frequency_hz, phase_deg, position, loss_factor, count.",
+)
+@click.option(
+    "--quantity",
+    default="wave.standing_wave_ratio",
+    show_default=True,
+    help="What a sweep maps, with its other arguments as KEY=VALUE.",
+)
 @_as_json
 @click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
 @click.option("--markdown", "layout", flag_value="markdown", help="Print a Markdown table.")
 def table(
-    scene: str, overrides: tuple[str, ...], modes: str | None, counts: str | None, as_json: bool, layout: str | None
+    scene: str,
+    arguments: tuple[str, ...],
+    overrides: tuple[str, ...],
+    modes: str | None,
+    counts: str | None,
+    wave: bool,
+    sweeps: tuple[str, ...],
+    quantity: str,
+    as_json: bool,
+    layout: str | None,
 ) -> None:
-    """Both discrete models side by side: frequency, error, observed order, bracket width, run time."""
-    from verify.plain import table_request, table_text
+    """Both discrete models side by side; the motor's figures over sizes; or a wave quantity over a sweep."""
+    from verify import tables
 
     asked = _load(scene, overrides)
-    request = table_request(asked, modes, counts)
-    from verify.studies import convergence
-    from verify.workbench import Workbench
-
-    with _progress(len(request.counts), quiet=as_json or bool(layout)) as step:
-        rows = convergence(Workbench(asked.beam), request, step)
-    if as_json or layout:
-        click.echo(table_text(rows, layout or "json"), nl=False)
+    if arguments and not sweeps:
+        raise InputError(f"{arguments[0]!r}: KEY=VALUE arguments belong to a --sweep")
+    if sweeps:
+        job = tables.sweep(asked, sweeps, quantity, arguments)
     else:
-        from verify.console import print_table
-
-        print_table(rows)
+        job = tables.motor(asked, counts) if wave else tables.convergence(asked, modes, counts)
+    with _progress(job.n_steps, quiet=as_json or bool(layout)) as step:
+        found = job.run(step)
+    if as_json or layout:
+        click.echo(job.text(found, layout or "json"), nl=False)
+    else:
+        job.draw(found)
 
 
 @cli.command()

@@ -12,11 +12,13 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
+    from verify.design_map import DesignMap
     from verify.gates import GateResult
     from verify.plan import Plan
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Cell, Row
+    from verify.wave_study import MotorRow
 
 
 def seconds_in_words(seconds: float | None) -> str:
@@ -41,6 +43,8 @@ def figure(value: Any) -> str:
     """A measured figure, short."""
     if value is None:
         return "–"
+    if isinstance(value, dict) and "re" in value:
+        return f"{value['re']:.6g} {value['im']:+.6g}i"
     if isinstance(value, dict):
         return " .. ".join(figure(part) for part in value.values())
     return f"{value:.7g}"
@@ -59,7 +63,10 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     verdict = f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]" if n_failed else (
         f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates"
     )  # fmt: skip
-    console.print(f"{verdict} in {seconds_in_words(result.seconds)}, {len(result.solves)} solves")
+    console.print(
+        f"{verdict} in {seconds_in_words(result.seconds)}, "
+        f"{len(result.solves)} modal solves, {result.n_fields} driven fields"
+    )
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True)
 
@@ -124,6 +131,55 @@ def _bare_percent(value: float | None) -> str:
     return f"{100 * value:+.4f}" if abs(value) >= 1e-4 else f"{100 * value:+.2e}".replace("e-0", "e-")
 
 
+def print_motor(rows: "tuple[MotorRow, ...]") -> None:
+    """The motor's figures over sizes, at the drive's frequency and at each model's own best."""
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
+    pick = ("Hz", "SWR", "axis ratio", "mm/s")
+    for name in ("model", "N", *pick, *pick):
+        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
+    for row in rows:
+        cells = [
+            text
+            for one in (row.drive, row.best)
+            for text in (f"{one.frequency_hz:.2f}", f"{one.standing_wave_ratio:.5f}", f"{one.axis_ratio:+.5f}",
+                         f"{1e3 * one.crest_speed:+.4f}")
+        ]  # fmt: skip
+        table.add_row(row.model, str(row.count or "–"), *cells)
+    console = Console(highlight=False)
+    console.print(table)
+    console.print("[dim]window [L/4, 3L/4]; left at the drive's frequency, right at the model's own best[/]")
+
+
+def print_map(found: "DesignMap") -> None:
+    """A design map: its extremes, and a coarse look at the whole."""
+    import numpy as np
+
+    console = Console(highlight=False)
+    finite = np.where(np.isfinite(found.values), found.values, np.nan)
+    names = [axis.name for axis in found.axes]
+    for word, index in (("least", np.nanargmin(finite)), ("largest", np.nanargmax(finite))):
+        at = np.unravel_index(int(index), finite.shape)
+        place = ", ".join(f"{axis.name} = {axis.values[i]:g}" for axis, i in zip(found.axes, at, strict=True))
+        console.print(
+            f"{word} {found.quantity} = {finite[at]:.6g} {found.unit if found.unit != '1' else ''} at {place}"
+        )
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
+    table.add_column(names[0], justify="right", no_wrap=True)
+    rows = np.unique(np.linspace(0, len(found.axes[0].values) - 1, 13).round().astype(int))
+    width = len(found.axes[1].values) if len(names) == 2 else 1
+    columns = np.unique(np.linspace(0, width - 1, 7).round().astype(int))
+    grid = found.values.reshape(len(found.axes[0].values), width)
+    for j in columns:
+        head = f"{names[1]} {found.axes[1].values[j]:g}" if len(names) == 2 else found.quantity
+        table.add_column(head, justify="right", overflow="fold")
+    for i in rows:
+        table.add_row(f"{found.axes[0].values[i]:g}", *(f"{grid[i, j]:.4g}" for j in columns))
+    console.print(table)
+    console.print(f"[dim]{finite.size} points, {found.method}; --json and --csv give them all[/]")
+    for reason in found.reasons:
+        console.print(Text(f"– {reason}", style="dim"))
+
+
 def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]") -> None:
     """What `verify choose` found, and which of the models costs less."""
     console = Console(highlight=False)
@@ -156,6 +212,8 @@ def print_plan(plan: "Plan") -> None:
         console.print(table)
     if plan.closed_forms:
         console.print(f"closed forms, for {_who(plan.closed_forms)}")
+    if plan.harmonic:
+        console.print(f"harmonic fields, for {_who(plan.harmonic)}")
     console.print("[bold]skipped[/]")
     for skipped in plan.skipped:
         console.print(f"  {skipped.what}: {skipped.why}")

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 from verify.error_laws import discrete_wavenumber
 from verify.errors import InputError, near_name
 from verify.fields import Array, ComplexArray, wavenumber
-from verify.travelling_wave import crest_speed, energy_flux, sample_points, wave_basis
+from verify.travelling_wave import STANDING, crest_speed, energy_flux, sample_points, wave_basis
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -147,8 +147,10 @@ def wave_figure(name: str, beam: "Beam", frequency: Array, k: ComplexArray, forw
         return np.asarray(energy_flux(beam, omega, k, forward, backward))
     sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
     gamma = sizes[0] / sizes[1]
-    with np.errstate(divide="ignore"):
-        return np.asarray(gamma if name == "wave.reflection" else (1.0 + gamma) / (1.0 - gamma))
+    if name == "wave.reflection":
+        return np.asarray(gamma)
+    travelling = gamma < 1.0 - STANDING
+    return np.where(travelling, (1.0 + gamma) / np.where(travelling, 1.0 - gamma, 1.0), np.inf)
 
 
 def _pointwise(

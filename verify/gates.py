@@ -9,6 +9,7 @@ import msgspec
 from verify.errors import InputError
 from verify.quantities import arguments_of, as_plain, evaluate, needs_of, quantity
 from verify.quantity_types import Quantity
+from verify.scene import Complex
 
 if TYPE_CHECKING:
     from verify.scene import Gate, Scene
@@ -69,7 +70,8 @@ def _evaluated(found: Quantity, gate: "Gate", scene: "Scene", bench: "Workbench"
 def expectation(gate: "Gate") -> str:
     """The band in words."""
     if gate.expect is not None:
-        return f"{gate.expect!r} ± {gate.within:g}" if gate.within is not None else f"contains {gate.expect!r}"
+        value = f"{gate.expect.re!r} {gate.expect.im:+}i" if isinstance(gate.expect, Complex) else repr(gate.expect)
+        return f"{value} ± {gate.within:g}" if gate.within is not None else f"contains {value}"
     sides = [f"at least {gate.at_least!r}"] * (gate.at_least is not None)
     return ", ".join(sides + [f"at most {gate.at_most!r}"] * (gate.at_most is not None))
 
@@ -78,6 +80,8 @@ def _verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
     """(reason for failing or '', share of the band used)."""
     if hasattr(value, "lower"):
         return _bracket_verdict(gate, value)
+    if isinstance(gate.expect, Complex):
+        return _disc_verdict(gate.expect, gate.within, value)
     if isinstance(value, complex) or not isfinite(value):
         return f"measured {value!r}, which is not a finite real number", None
     if gate.expect is not None and gate.within is None:
@@ -90,9 +94,17 @@ def _verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
     return f"measured {value!r} lies {side} {edge!r}", share
 
 
+def _disc_verdict(expect: Complex, within: float | None, value: Any) -> tuple[str, float | None]:
+    """A complex figure has to lie within a distance of the expected one."""
+    if not isinstance(value, complex) or within is None:
+        return f"measured {value!r}, and a complex expect with within judges complex figures", None
+    distance = abs(value - complex(expect.re, expect.im)) / within
+    return ("" if distance <= 1.0 else f"measured {value!r} lies outside the disc"), distance
+
+
 def band(gate: "Gate") -> tuple[float, float]:
     """The lowest and highest value that pass; infinite where a side is open."""
-    if gate.expect is not None and gate.within is not None:
+    if isinstance(gate.expect, float) and gate.within is not None:
         return gate.expect - gate.within, gate.expect + gate.within
     low = -float("inf") if gate.at_least is None else gate.at_least
     return low, float("inf") if gate.at_most is None else gate.at_most
@@ -109,7 +121,7 @@ def _share(value: float, low: float, high: float) -> float | None:
 
 
 def _bracket_verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
-    if gate.expect is None or gate.within is not None:
+    if not isinstance(gate.expect, float) or gate.within is not None:
         return "a two-sided bound needs expect alone: the value it has to contain", None
     share = _share(gate.expect, value.lower, value.upper)
     if value.lower < gate.expect < value.upper:

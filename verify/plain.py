@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from verify.checked import checked
 from verify.errors import InputError
-from verify.scene import Convergence, Scene, literal
+from verify.scene import literal
 
 if TYPE_CHECKING:
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Row
+    from verify.wave_study import WaveStudy
     from verify.workbench import Workbench
 
 
@@ -25,20 +25,16 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
         "spectrum": msgspec.to_builtins(result.spectrum),
         "convergence": [flat_row(row) for row in result.convergence or ()],
         "sensitivity": msgspec.to_builtins(result.sensitivity),
+        "wave": wave_as_plain(result.wave) if result.wave else None,
         "solves": msgspec.to_builtins(result.solves),
         "seconds": result.seconds,
         "report": str(report) if report else None,
     }
 
 
-def table_request(scene: Scene, modes: str | None, counts: str | None) -> Convergence:
-    """What a table shows: the command line's lists, else the scene's [convergence], else defaults."""
-    asked = msgspec.to_builtins(scene.convergence or Convergence())
-    for name, text in (("modes", modes), ("counts", counts)):
-        if text is not None:
-            value = literal(text)
-            asked[name] = value if isinstance(value, list) else [value]
-    return checked(asked, Convergence)
+def wave_as_plain(study: "WaveStudy") -> dict[str, Any]:
+    """A wave study: the motor's rows and operating points."""
+    return {"rows": msgspec.to_builtins(study.rows), "points": msgspec.to_builtins(study.points)}
 
 
 def flat_row(row: "Row") -> dict[str, Any]:
@@ -47,21 +43,6 @@ def flat_row(row: "Row") -> dict[str, Any]:
     for model in ("segment", "fem"):
         flat |= {f"{model}_{name}": value for name, value in msgspec.to_builtins(getattr(row, model)).items()}
     return flat | {"bracket_width": row.bracket_width, "mean_error": row.mean_error, "notes": list(row.notes)}
-
-
-def table_text(rows: "tuple[Row, ...]", layout: str) -> str:
-    """A convergence table as json, csv or markdown, ending in a newline."""
-    flat = [flat_row(row) for row in rows]
-    if layout == "json":
-        import json
-
-        return json.dumps(flat, indent=2, allow_nan=False) + "\n"
-    columns = [name for name in flat[0] if name != "notes"]
-    cells = [["" if row[name] is None else repr(row[name]) for name in columns] for row in flat]
-    if layout == "csv":
-        return "".join(",".join(line) + "\n" for line in [columns, *cells])
-    rule = ["---:"] * len(columns)
-    return "".join("| " + " | ".join(line) + " |\n" for line in [columns, rule, *cells])
 
 
 def mode_number(text: str) -> int:

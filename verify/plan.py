@@ -52,6 +52,8 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True):
     scene: str
     solves: tuple[PlannedSolve, ...]
     closed_forms: tuple[str, ...]
+    harmonic: tuple[str, ...]
+    """Who asks for a driven field, solved when asked for."""
     skipped: tuple[Skipped, ...]
     problems: tuple[Problem, ...]
 
@@ -80,6 +82,9 @@ def _study_asks(scene: "Scene") -> list[Ask]:
         asks.append(Ask("convergence", tuple(Need(m, count, max(modes)) for count in counts for m in models)))
     if scene.sensitivity:
         asks.append(Ask("sensitivity", ()))
+    if scene.wave:
+        sizes = ", ".join(str(n) for n in scene.wave.counts)
+        asks.append(Ask(f"wave (harmonic fields of segments and elements at N = {sizes}, one map)", ()))
     return asks
 
 
@@ -93,8 +98,10 @@ def plan_scene(scene: "Scene") -> Plan:
             solves.append(_planned(scene, key, n_wanted, who))
         except InputError as error:
             problems += [(one, str(error)) for one in who]
-    closed = tuple(ask.who for ask in asks if not ask.needs and not ask.problem)
+    driven = {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith("wave.")}
+    closed = tuple(a.who for a in asks if not a.needs and not a.problem and a.who not in driven)
     return Plan(scene=scene.name, solves=tuple(solves), closed_forms=closed, skipped=_skipped(scene, asks),
+                harmonic=tuple(ask.who for ask in asks if ask.who in driven and not ask.problem),
                 problems=tuple(Problem(*pair) for pair in problems))  # fmt: skip
 
 
@@ -115,10 +122,12 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
         left.append(Skipped("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
     elif not any(need.model == "fem" for ask in asks for need in ask.needs):
         left.append(Skipped("scikit-fem", "nothing asked needs the finite-element model"))
-    reason = "the scene has no drive" if scene.drive is None else "no gate and no table asks for the driven beam"
-    left.append(Skipped("harmonic response", reason))
-    left.append(Skipped("time stepping", "modal figures only: nothing here depends on time"))
+    if scene.drive is None:
+        left.append(Skipped("harmonic response", "the scene has no drive"))
+    elif not scene.wave and not any(gate.quantity.startswith("wave.") for gate in scene.gate):
+        left.append(Skipped("harmonic response", "no gate and no study asks for the driven beam"))
+    left.append(Skipped("time stepping", "modes and harmonic fields only: linear, nothing here depends on the past"))
     left.append(Skipped("contact search", "the scene has no slider"))
-    studies = {"spectrum": scene.spectrum, "convergence": scene.convergence, "sensitivity": scene.sensitivity}
+    studies = {name: getattr(scene, name) for name in ("spectrum", "convergence", "sensitivity", "wave")}
     left += [Skipped(f"{name} study", f"the scene has no [{name}]") for name, asked in studies.items() if not asked]
     return tuple(left)

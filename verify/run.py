@@ -14,6 +14,7 @@ from verify.workbench import Solve, Workbench
 
 if TYPE_CHECKING:
     from verify.studies import Row, SensitivityStudy, SpectrumStudy
+    from verify.wave_study import WaveStudy
 
 
 class RunResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -24,7 +25,10 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     spectrum: "SpectrumStudy | None"
     convergence: "tuple[Row, ...] | None"
     sensitivity: "SensitivityStudy | None"
+    wave: "WaveStudy | None"
     solves: tuple[Solve, ...]
+    n_fields: int
+    """How many driven fields were solved, those of maps not counted."""
     seconds: float
 
     @property
@@ -61,12 +65,19 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
             convergence = studies.convergence(bench, found.convergence, progress)
         if found.sensitivity:
             sensitivity = studies.sensitivity(found.beam, found.sensitivity)
+    wave = None
+    if found.wave:
+        from verify.wave_study import wave_study
+
+        wave = wave_study(found, bench, found.wave, progress)
     return RunResult(
-        scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity,
-        solves=tuple(bench.solves), seconds=perf_counter() - start,
+        scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity, wave=wave,
+        solves=tuple(bench.solves), n_fields=len(bench.fields), seconds=perf_counter() - start,
     )  # fmt: skip
 
 
 def n_steps(scene: Scene) -> int:
     """How many times `run_scene` reports progress."""
-    return len(scene.gate) + bool(scene.spectrum) + (len(scene.convergence.counts) if scene.convergence else 0)
+    sizes = len(scene.convergence.counts) if scene.convergence else 0
+    waves = 2 * len(scene.wave.counts) + 1 if scene.wave else 0
+    return len(scene.gate) + bool(scene.spectrum) + sizes + waves

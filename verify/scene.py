@@ -79,10 +79,47 @@ class Sensitivity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
             check_number("sensitivity.published_hz", self.published_hz, "hertz", above=0)
 
 
+class Wave(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for the driven beam: the motor's figures over sizes, envelopes, ellipses, a map with operating points."""
+
+    count: Count = 49
+    """Segments and elements of the envelopes and, with `model`, of the map."""
+    counts: Counts = (49, 98, 196)
+    model: Literal["analytic", "fem", "segment"] = "segment"
+    quantity: str = "wave.standing_wave_ratio"
+    frequency_hz: tuple[float, float, int] = (4000.0, 4600.0, 121)
+    """Start, end and steps of the map."""
+    phase_deg: tuple[float, float, int] = (0.0, 180.0, 91)
+    reflection_limit: float = 0.1
+    operating_loss_factor: float = 1e-3
+    """For the operating points where the beam is undamped: without losses the crest speed has no bound."""
+
+    def __post_init__(self) -> None:
+        for name in ("frequency_hz", "phase_deg"):
+            start, end, steps = getattr(self, name)
+            check_number(f"wave.{name}[0]", start, "start of the map", above=0 if name == "frequency_hz" else -3600)
+            check_number(f"wave.{name}[1]", end, "end of the map", above=start)
+            check_number(f"wave.{name}[2]", steps, "steps of the map", above=1, below=2001)
+        check_number("wave.reflection_limit", self.reflection_limit, "relative", above=0, below=1)
+        check_number("wave.operating_loss_factor", self.operating_loss_factor, "eta", above=0, below=1)
+
+
+class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A complex expectation, { re, im }."""
+
+    re: float
+    im: float
+
+    def __post_init__(self) -> None:
+        check_number("expect.re", self.re, "in the quantity's own unit")
+        check_number("expect.im", self.im, "in the quantity's own unit")
+
+
 class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One named figure and the band it has to lie in.
 
-    `expect` with `within` is a two-sided band; `at_least` and `at_most` bound one side each; a two-sided bound
+    `expect` with `within` is a two-sided band, for a complex `expect = { re, im }` a disc; `at_least` and
+    `at_most` bound one side each; a two-sided bound
     (`mode.bracket`) needs `expect` alone, the value it has to contain. Raises InputError where the band is
     none of these.
     """
@@ -90,7 +127,7 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
     quantity: str
     arguments: dict[str, Any] = {}
-    expect: float | None = None
+    expect: float | Complex | None = None
     within: float | None = None
     at_least: float | None = None
     at_most: float | None = None
@@ -98,7 +135,7 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     def __post_init__(self) -> None:
         for name in ("expect", "within", "at_least", "at_most"):
-            if (value := getattr(self, name)) is not None:
+            if (value := getattr(self, name)) is not None and not isinstance(value, Complex):
                 check_number(f"gate.{self.id}.{name}", value, "in the quantity's own unit")
         if self.within is not None and (self.expect is None or self.within <= 0):
             raise InputError(f"gate.{self.id}.within = {self.within!r}: give it above 0 and together with expect")
@@ -122,6 +159,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     spectrum: Spectrum | None = None
     convergence: Convergence | None = None
     sensitivity: Sensitivity | None = None
+    wave: Wave | None = None
     gate: tuple[Gate, ...] = ()
 
     def __post_init__(self) -> None:
@@ -130,7 +168,8 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             if gate.id in seen:
                 raise InputError(f"gate.{gate.id} stands twice: give every gate an id of its own")
             seen.add(gate.id)
-        _ = self.forces
+        if self.wave is not None and len(self.forces) != 2:
+            raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
 
     @property
     def forces(self) -> tuple[PointForce, ...]:

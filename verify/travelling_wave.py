@@ -15,6 +15,8 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.fields import Array, ComplexArray, HarmonicField, wavenumber
 
+STANDING = 1e-12
+"""A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
 SHARPNESS = 24
 """Sample points for each half wavelength of the window."""
 
@@ -46,7 +48,7 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def standing_wave_ratio(self) -> float:
         """(1 + Gamma) / (1 - Gamma), 1 for a pure travelling wave, infinite for a standing one."""
         gamma = self.reflection
-        return (1.0 + gamma) / (1.0 - gamma) if gamma < 1.0 else float("inf")
+        return (1.0 + gamma) / (1.0 - gamma) if gamma < 1.0 - STANDING else float("inf")
 
 
 class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):

@@ -30,7 +30,11 @@ def charts_of(result: "RunResult") -> list[dict[str, Any]]:
         charts += [_convergence(result.convergence), _bracket(result.convergence), _work(result.convergence)]
     if result.sensitivity:
         charts.append(_sensitivity(result.sensitivity))
-    return [chart for chart in charts if chart["figure"]["data"]]
+    if result.wave:
+        from verify.report.wave_charts import wave_charts
+
+        charts += wave_charts(result.wave)
+    return [one for one in charts if one["figure"]["data"]]
 
 
 def bracketed(result: "RunResult") -> bool:
@@ -45,11 +49,13 @@ def bracketed(result: "RunResult") -> bool:
     return True
 
 
-def _chart(name: str, title: str, caption: str, data: list[Figure], layout: Figure) -> dict[str, Any]:
+def chart(name: str, title: str, caption: str, data: list[Figure], layout: Figure) -> dict[str, Any]:
+    """One chart of the page."""
     return {"id": name, "title": title, "caption": caption, "figure": {"data": data, "layout": layout}}
 
 
-def _axes(x: str, y: str, **more: Any) -> Figure:
+def axes(x: str, y: str, **more: Any) -> Figure:
+    """A layout with titled axes and settings for either."""
     layout: Figure = {"xaxis": {"title": {"text": x}}, "yaxis": {"title": {"text": y}}}
     for axis, settings in more.items():
         layout[axis] |= settings
@@ -71,10 +77,10 @@ def _percent(values: Iterable[float | None], *, size: bool = False) -> list[floa
 def _signed_errors(study: "SpectrumStudy", two_sided: bool) -> dict[str, Any]:
     below = " Rigid links with rotary inertia lie below, Hermite elements above." if two_sided else ""
     data = [_line(m, study.modes, _percent(getattr(study, m))) for m in ("segment", "fem")]
-    return _chart(
+    return chart(
         "mode-errors", f"Frequency error over mode number, N = {study.count}",
         f"Signed, against exact Euler-Bernoulli.{below}",
-        data, _axes("mode number", "frequency error, %"),
+        data, axes("mode number", "frequency error, %"),
     )  # fmt: skip
 
 
@@ -83,11 +89,11 @@ def _model_form(study: "SpectrumStudy") -> dict[str, Any]:
     data = [_line(m, study.modes, _percent(getattr(study, m), size=True)) for m in models]
     for theory, errors in study.theories.items():
         data.append(_line(theory, study.modes, _percent(errors, size=True), line={"dash": "dash"}))
-    return _chart(
+    return chart(
         "model-form", f"Discretisation beside model form, N = {study.count}",
         "Solid: what dividing the beam costs. Dashed: what Euler-Bernoulli theory leaves out, rotary inertia "
         "(Rayleigh) and shear as well (Timoshenko). A mesh finer than that answers a question nobody asked.",
-        data, _axes("mode number", "size of the frequency error, %", yaxis={"type": "log", "exponentformat": "power"}),
+        data, axes("mode number", "size of the frequency error, %", yaxis={"type": "log", "exponentformat": "power"}),
     )  # fmt: skip
 
 
@@ -122,11 +128,11 @@ def _convergence(rows: "tuple[Row, ...]") -> dict[str, Any]:
     means = "mean" in named
     data += [_slope(rows, 4), *([_slope(rows, 6)] if means else []), *keys]
     log = {"type": "log", "exponentformat": "power"}
-    return _chart(
+    return chart(
         "convergence", "Convergence with the number of segments or elements",
         ("The mean of both is of order 6, because the leading errors cancel. " if means else "")
         + "Grey: reference slopes. At about 10⁻¹² % rounding takes over.",
-        data, _axes("segments or elements N", "size of the frequency error, %", xaxis=_sizes(rows), yaxis=log),
+        data, axes("segments or elements N", "size of the frequency error, %", xaxis=_sizes(rows), yaxis=log),
     )  # fmt: skip
 
 
@@ -157,11 +163,11 @@ def _bracket(rows: "tuple[Row, ...]") -> dict[str, Any]:
     lower = _line("segment", counts, _percent([row.segment.error for row in group]))
     lower |= {"fill": "tonexty", "fillcolor": "rgba(138,143,152,0.18)"}
     mean = _line("mean", counts, _percent([row.mean_error for row in group]))
-    return _chart(
+    return chart(
         "bracket", f"Two-sided bound on mode {mode}",
         "The exact frequency (zero) lies in the grey band for every N: no reference solution is needed to know that.",
         [upper, lower, mean] if group else [],
-        _axes("segments or elements N", "against the exact frequency, %", xaxis=_sizes(group)),
+        axes("segments or elements N", "against the exact frequency, %", xaxis=_sizes(group)),
     )  # fmt: skip
 
 
@@ -179,11 +185,11 @@ def _work(rows: "tuple[Row, ...]") -> dict[str, Any]:
                 named.add(model)
         keys.append(key)
     log = {"type": "log", "exponentformat": "power"}
-    return _chart(
+    return chart(
         "work-precision", "Run time against error",
         "A warm solve from beam to modes, set-up included, median of interleaved repeats on the machine named below. "
         "Lower left is better. scikit-fem's assembly is part of the Hermite time.",
-        data + keys, _axes("run time, ms", "size of the frequency error, %", xaxis=log, yaxis=log),
+        data + keys, axes("run time, ms", "size of the frequency error, %", xaxis=log, yaxis=log),
     )  # fmt: skip
 
 
@@ -204,5 +210,5 @@ def _sensitivity(study: "SensitivityStudy") -> dict[str, Any]:
                      "x": [moduli[0], moduli[-1]], "y": [study.published_hz] * 2,
                      "line": {"color": "#d6427a", "dash": "dash"}})  # fmt: skip
         caption += " The dashed line is the published figure: every crossing is a material that fits it."
-    layout = _axes("Young's modulus, GPa", f"frequency of mode {study.mode}, Hz")
-    return _chart("sensitivity", f"Mode {study.mode} over the inferred modulus and density", caption, data, layout)
+    layout = axes("Young's modulus, GPa", f"frequency of mode {study.mode}, Hz")
+    return chart("sensitivity", f"Mode {study.mode} over the inferred modulus and density", caption, data, layout)
