@@ -170,6 +170,71 @@ def test_choose_confirms_its_answer_by_solves_for_any_beam(verify, scene):
         assert here <= 0.002 < less
 
 
+def test_a_complex_figure_has_a_real_and_an_imaginary_part(verify):
+    data = json.loads(verify("measure", "wave.deflection", "x=0.25", "loss_factor=1e-3", "--json")[1])
+    assert data["value"] == {
+        "re": pytest.approx(-1.18467159e-6, rel=1e-8),
+        "im": pytest.approx(-1.20317255e-6, rel=1e-8),
+    }
+    assert data["unit"] == "m"
+    assert "i m" in verify("measure", "wave.deflection", "x=0.25")[1]
+
+
+@pytest.mark.parametrize(
+    ("words", "value", "band"),
+    [
+        (("wave.standing_wave_ratio",), 1.0563563, 2e-7),
+        (("wave.standing_wave_ratio", "window=0.125,0.375", "model=fem", "count=400"), 1.05633, 2e-5),
+        (("wave.reflection", "phase_deg=-90", "position=0.02"), 0.0274059, 1e-6),
+        (("wave.standing_wave_ratio", "drive=displacement"), 2.588, 2e-3),
+        (("wave.standing_wave_ratio", "--set", "drive.kind=displacement"), 2.588, 2e-3),
+    ],
+)
+def test_wave_figures_take_the_scenes_drive_and_what_is_given_instead(verify, words, value, band):
+    assert json.loads(verify("measure", *words, "--json")[1])["value"] == pytest.approx(value, abs=band)
+
+
+def test_a_sweep_is_a_map_in_every_layout(verify):
+    words = (
+        "table",
+        "paper",
+        "--sweep",
+        "frequency_hz=4100:4500:5",
+        "--sweep",
+        "phase_deg=30:150:3",
+        "model=segment",
+        "count=49",
+    )
+    data = json.loads(verify(*words, "--json")[1])
+    assert [axis["name"] for axis in data["axes"]] == ["frequency_hz", "phase_deg"]
+    assert (len(data["values"]), len(data["values"][0])) == (5, 3)
+    rows = list(csv.DictReader(io.StringIO(verify(*words, "--csv")[1])))
+    assert len(rows) == 15
+    assert float(rows[4]["wave.standing_wave_ratio"]) == data["values"][1][1]
+    assert "least wave.standing_wave_ratio" in verify(*words)[1]
+
+
+def test_a_standing_wave_in_a_sweep_is_empty_in_json_not_a_number_json_cannot_hold(verify):
+    data = json.loads(verify("table", "paper", "--sweep", "phase_deg=0:90:2", "--json")[1])
+    assert data["values"][0] is None
+    assert data["values"][1] == pytest.approx(1.0563563, abs=1e-6)
+
+
+def test_the_motors_figures_over_sizes(verify):
+    rows = json.loads(verify("table", "paper", "--wave", "--counts", "49,98", "--json")[1])
+    assert [(r["model"], r["count"]) for r in rows] == [
+        ("analytic", None),
+        ("segment", 49),
+        ("segment", 98),
+        ("fem", 49),
+        ("fem", 98),
+    ]
+    assert rows[1]["drive_standing_wave_ratio"] == pytest.approx(1.20599, abs=1e-5)
+    assert rows[1]["best_frequency_hz"] == pytest.approx(4252.73, abs=0.05)
+    assert rows[1]["best_standing_wave_ratio"] < 1.001
+    assert "segment" in verify("table", "paper", "--wave", "--counts", "49")[1]
+
+
 def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
     assert verify("init", "my.toml")[0] == 0
     assert "# " in (tmp_path / "my.toml").read_text("utf-8")
@@ -213,6 +278,29 @@ BAD = [
     ("measure", "mode.bracket", "mode=3", "count=9", "--scene", "steel-cantilever"),
     ("run", "stepped-beam", "--set", "beam.section.0.length=0.3"),
     ("run", "stepped-beam", "--set", "beam.section.0.lenght=0.3"),
+    ("measure", "wave.standing_wave_ratio", "window=0,0.2"),
+    ("measure", "wave.standing_wave_ratio", "window=0.2,0.21"),
+    ("measure", "wave.standing_wave_ratio", "window=0.2"),
+    ("measure", "wave.standing_wave_ratio", "loss_factor=-0.1"),
+    ("measure", "wave.standing_wave_ratio", "frequency_hz=nan"),
+    ("measure", "wave.standing_wave_ratio", "frequency_hz=inf"),
+    ("measure", "wave.standing_wave_ratio", "position=0.6"),
+    ("measure", "wave.standing_wave_ratio", "position=-0.1"),
+    ("measure", "wave.standing_wave_ratio", "model=segment"),
+    ("measure", "wave.standing_wave_ratio", "model=fem", "count=20", "load=lever"),
+    ("measure", "wave.standing_wave_ratio", "modal_damping=0.1"),
+    ("measure", "wave.standing_wave_ratio", "--scene", "steel-cantilever"),
+    ("measure", "wave.deflection", "x=0.6"),
+    ("measure", "wave.deflection", "x=nan"),
+    ("measure", "wave.deflection", "x=0.25", "frequency_hz=4469.94052768887"),
+    ("table", "paper", "--sweep", "frequency=1:2:3"),
+    ("table", "paper", "--sweep", "frequency_hz=1:2"),
+    ("table", "paper", "--sweep", "frequency_hz=4000:4100:3", "--quantity", "mode.frequency"),
+    ("table", "paper", "--sweep", "frequency_hz=4000:4100:3", "--quantity", "wave.deflection", "x=0.2"),
+    ("table", "paper", "model=segment"),
+    ("table", "steel-cantilever", "--wave"),
+    ("run", "paper-wave", "--set", "drive.force.0.position=0.6"),
+    ("run", "paper-wave", "--set", "wave.counts=0,2"),
     ("plan", "papr"), ("nosuch",), ("run",), ("init", "no/such/folder/my.toml"), ("run", "paper", "--set", "beam"),
 ]  # fmt: skip
 

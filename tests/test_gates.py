@@ -6,7 +6,20 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from verify import chain, chain_walls, closed_forms, compare, division, eigen, fem_beam, segment_model, workbench
+from verify import (
+    analytic_harmonic,
+    chain,
+    chain_walls,
+    closed_forms,
+    compare,
+    division,
+    eigen,
+    fem_beam,
+    segment_model,
+    travelling_wave,
+    waves,
+    workbench,
+)
 from verify.beam import Beam
 from verify.checked import checked
 from verify.compare import Bracket
@@ -225,7 +238,120 @@ def nodes_counted_from_the_other_end_of_the_shape(patch):
     patch.setattr(compare, "zeros", lambda shape, length, mode: true(lambda x: shape(0.99 * x), length, mode))
 
 
+def phase_of_the_wrong_sign(patch):
+    for module in (analytic_harmonic, fem_beam, segment_model):
+        true = module.phasor
+        patch.setattr(module, "phasor", lambda force, true=true: true(force).conjugate())
+
+
+def second_force_mirrored(patch):
+    true = waves.drive_forces
+
+    def mirrored_force(a, scene):
+        first, second = true(a, scene)
+        return first, structs.replace(second, position=0.9 * second.position)
+
+    patch.setattr(waves, "drive_forces", mirrored_force)
+
+
+def load_on_the_next_joint(patch):
+    true = segment_model.joint_weights
+    patch.setattr(segment_model, "joint_weights", lambda chain, position, rule: np.roll(true(chain, position, rule), 1))
+
+
+def load_on_the_next_node(patch):
+    true = fem_beam.nodal_weights
+    patch.setattr(fem_beam, "nodal_weights", lambda parts, x: np.roll(true(parts, x), 2))
+
+
+def mid_line_instead_of_surface(patch):
+    patch.setattr(travelling_wave, "surface_motion", lambda beam, slope: 0.0 * slope)
+
+
+def lower_surface_for_the_upper(patch):
+    true = travelling_wave.surface_motion
+    patch.setattr(travelling_wave, "surface_motion", lambda beam, slope: -true(beam, slope))
+
+
+def waves_fitted_with_the_wrong_sign_of_time(patch):
+    true = travelling_wave.wave_basis
+    patch.setattr(travelling_wave, "wave_basis", lambda x, k: true(x, np.conj(-np.asarray(k))))
+
+
+def wavenumber_two_per_cent_off(patch):
+    true = waves.own_wavenumber
+    patch.setattr(waves, "own_wavenumber", lambda field: 1.02 * true(field))
+
+
+def stiffness_without_its_loss(patch):
+    true = analytic_harmonic.wavenumber
+    patch.setattr(analytic_harmonic, "wavenumber", lambda beam, f: true(structs.replace(beam, loss_factor=0.0), f))
+
+
+def displacement_taken_for_force(patch):
+    patch.setattr(waves, "driven_field", lambda solve, drives, kind: solve(drives))
+
+
+def near_field_forgotten(patch):
+    true = analytic_harmonic._green
+
+    def far(q, *given):
+        return true(q, *given) * (abs(q.imag) > abs(q.real))
+
+    patch.setattr(analytic_harmonic, "_green", far)
+
+
+def lever_rule_and_raw_joints_by_mistake(patch):
+    true_load = segment_model.joint_weights
+    patch.setattr(segment_model, "joint_weights", lambda chain, position, rule: true_load(chain, position, "lever"))
+    patch.setattr(segment_model, "corrected_reading", lambda chain, joints: joints)
+
+
+def reciprocal_pair_where_the_lever_was_asked_for(patch):
+    true = segment_model.joint_weights
+    patch.setattr(segment_model, "joint_weights", lambda chain, position, rule: true(chain, position, "reciprocal"))
+    patch.setattr(
+        segment_model,
+        "_field_shapes",
+        lambda chain, raw, reading, true=segment_model._field_shapes: true(chain, raw, "corrected"),
+    )
+
+
+def power_of_both_waves_added(patch):
+    true = travelling_wave.energy_flux
+    patch.setattr(
+        travelling_wave,
+        "energy_flux",
+        lambda beam, omega, k, a, b: true(beam, omega, k, a, 0 * b) - true(beam, omega, k, 0 * a, b),
+    )
+
+
+def singular_values_squared(patch):
+    true = travelling_wave.travelling_index
+    patch.setattr(travelling_wave, "travelling_index", lambda deflection: true(deflection) ** 2)
+
+
 FAULTS_ELSEWHERE = {
+    "paper-wave": {
+        phase_of_the_wrong_sign: {"reversal-turns-the-wave", "surface-ellipse", "flux", "mid-span"},
+        second_force_mirrored: {"distance-sets-the-amplitude", "pure-wave", "reversal-turns-the-wave", "mid-span"},
+        load_on_the_next_joint: {"segment-49-ratio", "segment-ratio-order", "segment-deflection-order", "lever-rule-order"},
+        load_on_the_next_node: {"mid-span"},
+        mid_line_instead_of_surface: {"surface-ellipse", "segment-ellipse-order"},
+        lower_surface_for_the_upper: {"surface-ellipse"},
+        waves_fitted_with_the_wrong_sign_of_time: {"reversal-turns-the-wave", "distance-sets-the-amplitude", "flux"},
+        wavenumber_two_per_cent_off: {"swr-law", "distance-sets-no-ratio", "pure-wave", "best-frequency", "segment-best-frequency", "fem-best-frequency"},
+        stiffness_without_its_loss: {"energy-flux", "reversal-keeps-the-ratio"},
+        displacement_taken_for_force: {"imposed-displacement"},
+        near_field_forgotten: {"signed-area", "signed-area-beside-the-forces"},
+        lever_rule_and_raw_joints_by_mistake: {"segment-deflection-order"},
+        reciprocal_pair_where_the_lever_was_asked_for: {"lever-rule-order"},
+        lumped_element_mass: {"fem-ratio-order", "fem-best-frequency", "mid-span"},
+        link_inertia_left_out: {"segment-49-ratio", "segment-best-frequency", "segment-ratio-order"},
+        power_of_both_waves_added: {"flux", "energy-flux"},
+        singular_values_squared: {"travelling-index"},
+        section_turned_on_its_side: {"swr-law", "envelope", "best-frequency"},
+    },
     "steel-cantilever": {
         link_inertia_left_out: {"gregory-mode-10", "gregory-law", "gregory-law-after-the-sign-change"},
         wall_joint_as_stiff_as_any_other: {

@@ -14,9 +14,11 @@ PACKAGE = Path(verify.__file__).parent
 MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
-    {"errors", "timing"}, {"beam", "checked", "files"}, {"modes", "closed_forms", "eigen", "division", "chain_walls"},
-    {"error_laws", "extended_precision", "chain"}, set(MODELS), {"compare"}, {"workbench"}, {"sizing"}, {"quantities"}, {"scene"}, {"gates"},
-    {"plan", "studies"}, {"run"}, {"plain", "console"}, {"report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
+    {"errors", "timing"}, {"beam", "checked", "files"}, {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls"},
+    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives"}, {"point_loads"},
+    set(MODELS), {"compare", "travelling_wave"}, {"workbench"}, {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"},
+    {"mode_quantities", "wave_quantities"}, {"quantities", "scene"}, {"design_map"}, {"gates"}, {"studies", "wave_study"},
+    {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 
 
@@ -47,9 +49,22 @@ def modules():
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_model_imports_no_other_model_and_no_judge(model):
-    own = {"analytic_modes": {"closed_forms"}, "fem_beam": set(), "segment_model": {"chain", "chain_walls"}}
-    allowed = {"beam", "division", "modes", "errors", "eigen"} | own[model]
+    own = {
+        "analytic_modes": {"closed_forms", "analytic_harmonic"},
+        "fem_beam": {"harmonic_solvers"},
+        "segment_model": {"chain", "chain_walls", "point_loads", "harmonic_solvers"},
+    }
+    allowed = {"beam", "division", "modes", "fields", "errors", "eigen"} | own[model]
     assert imports_of(PACKAGE / f"{model}.py", typing_too=True) <= allowed
+
+
+def test_what_a_model_is_made_of_knows_no_other_model_either():
+    shared = {"beam", "division", "modes", "fields", "errors", "eigen"}
+    parts = {
+        "analytic_harmonic": {"closed_forms"}, "chain": {"chain_walls"}, "point_loads": {"chain"}, "harmonic_solvers": set(),
+    }  # fmt: skip
+    for part, own in parts.items():
+        assert imports_of(PACKAGE / f"{part}.py", typing_too=True) <= shared | own, part
 
 
 def test_closed_forms_know_no_model():
@@ -120,6 +135,7 @@ HEAVY = {
             ("measure", "mode.frequency", "model=fem", "mode=3", "count=9"),
             {"msgspec", "tomllib", "numpy", "scipy", "skfem"},
         ),
+        (("measure", "wave.standing_wave_ratio"), {"msgspec", "tomllib", "numpy"}),
         (("plan", "paper", "--json"), {"msgspec", "tomllib", "numpy"}),
         (("table", "paper", "--counts", "30,40", "--csv"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),
         (("run", "paper", "--no-report", "--json"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),

@@ -81,6 +81,22 @@ def test_the_environment_names_versions():
     assert {"Python", "numpy", "scipy", "scikit-fem", "processors"} <= set(environment())
 
 
+@pytest.fixture(scope="module")
+def wave_html():
+    return page(run_scene("paper-wave"), "verify run paper-wave")
+
+
+def test_the_report_of_a_wave_shows_envelopes_ellipses_map_and_the_motor_over_sizes(wave_html):
+    figures = json.loads(re.search(r'id="figures">(.*?)</script>', wave_html, re.DOTALL)[1])
+    assert set(figures) == {"wave-envelopes", "wave-ellipses", "wave-map", "wave-sizes"}
+    assert [trace["name"] for trace in figures["wave-envelopes"]["data"]] == ["exact", "segments", "Hermite elements"]
+    heat = figures["wave-map"]["data"][0]
+    assert (len(heat["z"]), len(heat["z"][0])) == (91, 121)
+    assert "magnified" in wave_html
+    assert "The motor over sizes" in wave_html
+    assert "Where to drive" in wave_html
+
+
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine: the report was not opened in a browser")
 def test_a_real_browser_draws_every_chart(result, tmp_path):
     path = tmp_path / "paper.html"

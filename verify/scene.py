@@ -168,7 +168,8 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             if gate.id in seen:
                 raise InputError(f"gate.{gate.id} stands twice: give every gate an id of its own")
             seen.add(gate.id)
-        if self.wave is not None and len(self.forces) != 2:
+        forces = self.forces  # built here, so that one off the beam is refused with the scene
+        if self.wave is not None and len(forces) != 2:
             raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
 
     @property

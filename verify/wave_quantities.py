@@ -1,96 +1,15 @@
 """Named figures of the driven beam: deflection, wave quality, surface ellipses, power."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any
 
-from msgspec import Meta
-
-from verify.errors import InputError
-from verify.quantity_types import Arguments, Quantity, Size, Sizes
+from verify.quantity_types import Quantity
+from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, WaveOrder
 from verify.workbench import Workbench
 
 if TYPE_CHECKING:
     from verify.fields import HarmonicField
     from verify.scene import Scene
     from verify.travelling_wave import WaveMeasures
-
-Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
-
-
-class Driven(Arguments, frozen=True, kw_only=True):
-    """A driven beam: what is not given is the scene's."""
-
-    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
-    count: Size | None = None
-    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
-    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
-    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
-    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
-    modal_damping: Annotated[float, Meta(description="ratio of every mode; fem and segment")] = 0.0
-    joint_dashpot: Annotated[float, Meta(description="N m s at every joint; segment")] = 0.0
-    drive: (
-        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
-    ) = None
-    load: Annotated[Literal["reciprocal", "lever"], Meta(description="how a force is shared among joints; segment")] = (
-        "reciprocal"
-    )
-    reading: Annotated[
-        Literal["corrected", "raw", "links"], Meta(description="how the chain is read between joints; segment")
-    ] = "corrected"
-
-    def __post_init__(self) -> None:
-        if self.model != "analytic" and self.count is None:
-            raise InputError(f"count is missing: give the number of segments or elements for model = {self.model}")
-        own = {"joint_dashpot": 0.0, "load": "reciprocal", "reading": "corrected"}
-        for name, default in own.items():
-            if self.model != "segment" and getattr(self, name) != default:
-                raise InputError(f"{name} = {getattr(self, name)!r} is for model = segment, not for {self.model}")
-        if self.model == "analytic" and self.modal_damping:
-            raise InputError("modal_damping is for model = fem or segment: the analytic field takes a loss_factor")
-
-    @property
-    def settings(self) -> tuple[tuple[str, Any], ...]:
-        """Keyword arguments of the model's solve_harmonic other than their defaults."""
-        chosen = {"modal_damping": 0.0, "joint_dashpot": 0.0, "load": "reciprocal", "reading": "corrected"}
-        return tuple((name, getattr(self, name)) for name, default in chosen.items() if getattr(self, name) != default)
-
-
-class At(Driven, frozen=True, kw_only=True):
-    """A driven beam and a place on it."""
-
-    x: Annotated[float, Meta(description="metres from the left end")]
-
-
-class InWindow(Driven, frozen=True, kw_only=True):
-    """A driven beam and a window on it."""
-
-    window: Window | None = None
-
-
-class AxisRatio(InWindow, frozen=True, kw_only=True):
-    """A window, and a place in it."""
-
-    x: Annotated[float, Meta(description="metres; default: the mean over the window")] | None = None
-
-
-class WaveOrder(InWindow, frozen=True, kw_only=True):
-    """A figure of a discrete model over several sizes."""
-
-    model: Annotated[Literal["fem", "segment"], Meta(description="which discrete model")]
-    counts: Sizes
-    count: None = None
-    of: Annotated[
-        Literal["standing_wave_ratio", "axis_ratio", "deflection"],
-        Meta(description="whose error; deflection at x, the middle of the window"),
-    ] = "standing_wave_ratio"
-
-    def __post_init__(self) -> None:
-        """The size comes from counts."""
-
-
-class BestFrequency(InWindow, frozen=True, kw_only=True):
-    """Where the reflection is least."""
-
-    span: Annotated[float, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = 0.015
 
 
 def field_of(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> "HarmonicField":

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.design_map import Axis, DesignMap, OperatingPoint, best_points, design_map
 from verify.travelling_wave import surface_motion
-from verify.wave_quantities import BestFrequency, InWindow
+from verify.wave_arguments import BestFrequency, InWindow
 from verify.waves import best_frequency, driven, measures
 
 if TYPE_CHECKING:

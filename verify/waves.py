@@ -12,6 +12,7 @@ from verify.error_laws import discrete_wavenumber
 from verify.errors import InputError
 from verify.fields import HarmonicField, phasor
 from verify.travelling_wave import WaveMeasures, measure
+from verify.wave_arguments import InWindow
 from verify.workbench import model_module
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def driven(a: Any, scene: "Scene", bench: "Workbench", count: int | None) -> HarmonicField:
-    """The field that `wave_quantities.Driven` arguments describe, kept on the bench. Raises InputError."""
+    """The field that `wave_arguments.Driven` arguments describe, kept on the bench. Raises InputError."""
     beam = scene.beam if a.loss_factor is None else replace(scene.beam, loss_factor=a.loss_factor)
     frequency = drive_frequency(a, scene)
     forces = drive_forces(a, scene)
@@ -138,7 +139,5 @@ def wave_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
 
 def _exact(a: Any) -> Any:
     """The same drive on the exact beam."""
-    from verify.wave_quantities import InWindow
-
     return InWindow(frequency_hz=a.frequency_hz, phase_deg=a.phase_deg, position=a.position, loss_factor=a.loss_factor,
                     drive=a.drive, window=a.window)  # fmt: skip
