@@ -17,7 +17,7 @@ FLOORS = [
     {"errors", "timing"}, {"beam", "checked", "files"}, {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls"},
     {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives"}, {"point_loads"},
     set(MODELS), {"compare", "travelling_wave"}, {"workbench"}, {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"},
-    {"mode_quantities", "wave_quantities"}, {"quantities", "scene"}, {"design_map"}, {"gates"}, {"studies", "wave_study"},
+    {"mode_quantities", "wave_quantities"}, {"quantities", "scene"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
     {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 

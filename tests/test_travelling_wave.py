@@ -8,9 +8,10 @@ from msgspec.structs import replace
 
 from verify import analytic_modes, error_laws, fem_beam, load_scene, segment_model
 from verify.beam import PointForce
-from verify.design_map import best_points, design_map, parse_axis
+from verify.design_map import design_map, parse_axis
 from verify.errors import InputError
 from verify.fields import HarmonicField, wavenumber
+from verify.operating_point import best_points
 from verify.travelling_wave import (
     ellipse,
     fit_waves,

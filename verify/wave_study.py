@@ -8,7 +8,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam
-from verify.design_map import Axis, DesignMap, OperatingPoint, best_points, design_map
+from verify.design_map import Axis, DesignMap, design_map
+from verify.operating_point import OperatingPoint, best_points
 from verify.travelling_wave import surface_motion
 from verify.wave_arguments import BestFrequency, InWindow
 from verify.waves import best_frequency, driven, measures
@@ -56,6 +57,8 @@ class WaveStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     ellipses: tuple[Ellipse, ...]
     """Of the exact field."""
     map: DesignMap
+    map_model: str
+    """Whose map and operating points: '49 segments'."""
     points: tuple[OperatingPoint, ...]
     undamped: bool
     count: int
@@ -114,6 +117,7 @@ def wave_study(
         rows=rows, x=tuple(x.tolist()), count=asked.count, undamped=not scene.beam.loss_factor,
         envelopes={name: tuple(abs(field.deflection(x)).tolist()) for name, field in fields.items()},
         ellipses=_ellipses(scene.beam, fields["analytic"]), map=design_map(asked.quantity, chosen, axes, scene, bench),
+        map_model={"segment": f"{count} segments", "fem": f"{count} elements"}.get(model, "exact beam"),
         points=best_points(scene, model, count, asked.reflection_limit, eta), other_drive=across,
     )  # fmt: skip
 

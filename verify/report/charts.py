@@ -22,7 +22,7 @@ SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x")
 
 
 def charts_of(result: "RunResult") -> list[dict[str, Any]]:
-    """Every chart the scene asked for: {"id", "title", "caption", "figure"}."""
+    """Every chart of modes the scene asked for: {"id", "title", "caption", "figure"}."""
     charts = []
     if result.spectrum:
         charts += [_signed_errors(result.spectrum, bracketed(result)), _model_form(result.spectrum)]
@@ -30,10 +30,6 @@ def charts_of(result: "RunResult") -> list[dict[str, Any]]:
         charts += [_convergence(result.convergence), _bracket(result.convergence), _work(result.convergence)]
     if result.sensitivity:
         charts.append(_sensitivity(result.sensitivity))
-    if result.wave:
-        from verify.report.wave_charts import wave_charts
-
-        charts += wave_charts(result.wave)
     return [one for one in charts if one["figure"]["data"]]
 
 

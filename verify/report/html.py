@@ -13,6 +13,7 @@ from verify.console import figure, percent, seconds_in_words
 from verify.errors import InputError
 from verify.files import write_whole
 from verify.report.charts import charts_of
+from verify.report.wave_charts import wave_charts
 
 if TYPE_CHECKING:
     from verify.run import RunResult
@@ -33,7 +34,7 @@ def page(result: "RunResult", command: str) -> str:
     templates = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,
                             lstrip_blocks=True)  # fmt: skip
     templates.filters |= {"figure": figure, "percent": percent, "duration": seconds_in_words}
-    charts = charts_of(result)
+    charts = charts_of(result) + (wave_charts(result.wave) if result.wave else [])
     return templates.get_template("page.html.j2").render(
         result=result,
         failed=[gate for gate in result.gates if not gate.passed],

@@ -61,6 +61,7 @@ def _ellipses(study: "WaveStudy") -> dict[str, Any]:
 
 def _map(study: "WaveStudy") -> dict[str, Any]:
     found = study.map
+    name = found.quantity.removeprefix("wave.").replace("_", " ").capitalize()
     values = np.clip(found.values.T, None, 10.0) if found.quantity == "wave.standing_wave_ratio" else found.values.T
     rounded = [[None if not np.isfinite(v) else float(f"{v:.4g}") for v in row] for row in values]
     data: list[Figure] = [{
@@ -73,7 +74,7 @@ def _map(study: "WaveStudy") -> dict[str, Any]:
                      "y": [point.phase_deg], "marker": {"symbol": symbol, "size": 13, "color": "#ff5a36",
                      "line": {"color": "#ffffff", "width": 1.5}}})  # fmt: skip
     return chart(
-        "wave-map", f"{found.quantity.removeprefix('wave.').replace('_', ' ')} over frequency and phase",
+        "wave-map", f"{name} over frequency and phase, {study.map_model}",
         "In the window [L/4, 3L/4]; values above 10 are drawn as 10. Along phase = -kL (modulo 360°) the wave "
         "is pure at any frequency that is no resonance.",
         data, axes("frequency, Hz", "phase of the second force, degrees"),
@@ -99,5 +100,5 @@ def _sizes(study: "WaveStudy") -> dict[str, Any]:
         "wave-sizes", "Error of the standing-wave ratio over N",
         "A small error of frequency spoils the wave at a fixed drive; driven at its own best frequency a coarse model "
         "carries nearly as pure a wave as the exact beam.",
-        data, axes("segments or elements N", "size of the difference to the exact beam", xaxis=ticks, yaxis=log),
+        data, axes("segments or elements N", "difference to exact", xaxis=ticks, yaxis=log),
     )  # fmt: skip
