@@ -290,6 +290,7 @@ BAD = [
     ("measure", "wave.standing_wave_ratio", "model=fem", "count=20", "load=lever"),
     ("measure", "wave.standing_wave_ratio", "modal_damping=0.1"),
     ("measure", "wave.standing_wave_ratio", "--scene", "steel-cantilever"),
+    ("measure", "mode.frequency", "model=analytic", "mode=1", "mode=2"),
     ("measure", "wave.deflection", "x=0.6"),
     ("measure", "wave.deflection", "x=nan"),
     ("measure", "wave.deflection", "x=0.25", "frequency_hz=4469.94052768887"),

@@ -128,11 +128,11 @@ def table(
 def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
     from verify import quantities
-    from verify.scene import split_assignment
+    from verify.scene import given_arguments
     from verify.workbench import Workbench
 
     found = quantities.quantity(quantity)
-    given = dict(split_assignment(text) for text in arguments)
+    given = given_arguments(arguments)
     checked = quantities.arguments_of(found, given)
     asked = _load(scene, overrides)
     value = quantities.evaluate(found, checked, asked, Workbench(asked.beam))

@@ -229,6 +229,17 @@ def split_assignment(text: str) -> tuple[str, Any]:
     return key.strip(), literal(value.strip())
 
 
+def given_arguments(assignments: tuple[str, ...]) -> dict[str, Any]:
+    """'key=value' words as a dict. Raises InputError where a key stands twice."""
+    given: dict[str, Any] = {}
+    for text in assignments:
+        key, value = split_assignment(text)
+        if key in given:
+            raise InputError(f"{key} is given twice, as {given[key]!r} and {value!r}: give it once")
+        given[key] = value
+    return given
+
+
 def override(data: dict[str, Any], assignment: str) -> None:
     """Set one value of a scene's tables in place: 'beam.length=0.4', 'gate.ID.within=1e-6'."""
     key, value = split_assignment(assignment)

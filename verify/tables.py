@@ -8,7 +8,7 @@ import msgspec
 
 from verify.checked import checked
 from verify.plain import flat_row
-from verify.scene import Convergence, Counts, Scene, literal, split_assignment
+from verify.scene import Convergence, Counts, Scene, given_arguments, literal
 from verify.workbench import Workbench
 
 Step = Callable[[str], None]
@@ -101,7 +101,7 @@ def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple
     from verify.design_map import design_map, parse_axis
 
     axes = tuple(parse_axis(text) for text in sweeps)
-    given = dict(split_assignment(text) for text in arguments)
+    given = given_arguments(arguments)
 
     def run(step: Step) -> Any:
         return design_map(quantity, given, axes, scene, Workbench(scene.beam), step)
