@@ -361,7 +361,7 @@ FAULTS_ELSEWHERE = {
         gregorys_weights_turned_round: {"gregory-mode-1", "gregory-mode-5", "gregory-law"},
         orders_of_the_other_walls_exchanged: {"third-order-wall-order", "five-joint-error"},
         welded_half_forgotten: {"welded-wall-order"},
-        clamped_end_on_the_wrong_side: {"gregory-mode-1", "shape-at-the-wall-is-of-order-two"},
+        clamped_end_on_the_wrong_side: {"gregory-mode-1", "shape-beside-the-wall"},
         joint_stiffness_doubled: {"gregory-mode-1", "half-wall-bracket"},
         lumped_element_mass: {"fem-order", "fem-law"},
         link_curvature_for_the_joints_moment: {"curvature-order-of-size"},

@@ -148,3 +148,16 @@ def test_what_has_no_closed_form_is_refused_with_the_models_that_can():
         replace(STEPPED, length=0.61)
     with pytest.raises(InputError, match=r"beam\.section\.length = -0\.25"):
         Section(length=-0.25)
+
+
+def test_sections_alike_but_other_than_the_beam_are_what_counts():
+    """One section, or two alike, thinner than [beam] says: all models take the section's thickness."""
+    thick = replace(STEPPED, section=(), thickness=0.004)
+    thin = replace(thick, thickness=0.002)
+    exact = closed_forms.frequency_hz(thin, 3)
+    for parts in ((0.6,), (0.25, 0.35)):
+        beam = replace(thick, section=tuple(Section(length=part, thickness=0.002) for part in parts))
+        assert beam.stepped
+        assert analytic_modes.stepped_frequency_hz(beam, 3) == pytest.approx(exact, rel=1e-7)
+        assert fem_beam.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-5)
+        assert segment_model.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-4)

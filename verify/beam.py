@@ -113,8 +113,9 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     @property
     def stepped(self) -> bool:
-        """Whether the section changes along the beam."""
-        return len({(p.youngs_modulus, p.second_moment, p.mass_per_length) for p in self.pieces}) > 1
+        """Whether any piece differs from the beam's own section."""
+        own = (self.youngs_modulus, self.second_moment, self.mass_per_length)
+        return any((p.youngs_modulus, p.second_moment, p.mass_per_length) != own for p in self.pieces)
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -127,7 +128,7 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         modulus = self.youngs_modulus if section.youngs_modulus is None else section.youngs_modulus
         density = self.density if section.density is None else section.density
         return Piece(length=section.length, youngs_modulus=modulus, second_moment=width * thickness**3 / 12.0,
-                     mass_per_length=density * width * thickness)  # fmt: skip
+                     mass_per_length=density * (width * thickness))  # fmt: skip
 
     @property
     def rigid_motions(self) -> int:

@@ -244,7 +244,9 @@ def _load(scene: str, overrides: tuple[str, ...]) -> "Scene":
 def _print_json(data: Any) -> None:
     import json
 
-    click.echo(json.dumps(data, indent=2, allow_nan=False))
+    from verify.plain import finite
+
+    click.echo(json.dumps(finite(data), indent=2, allow_nan=False))
 
 
 def _command_line(command: str, scene: str, overrides: tuple[str, ...]) -> str:

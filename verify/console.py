@@ -53,7 +53,7 @@ def figure(value: Any) -> str:
 def print_run(result: "RunResult", report: Path | None) -> None:
     """Verdict, gates, where the report lies."""
     console = Console(highlight=False)
-    console.print(f"[bold]{result.scene.title or result.scene.name}[/]")
+    console.print(Text(result.scene.title or result.scene.name, style="bold"))
     if result.gates:
         console.print(_gate_table(result.gates))
     for gate in result.gates:
@@ -216,7 +216,7 @@ def print_plan(plan: "Plan") -> None:
         console.print(f"harmonic fields, for {_who(plan.harmonic)}")
     console.print("[bold]skipped[/]")
     for skipped in plan.skipped:
-        console.print(f"  {skipped.what}: {skipped.why}")
+        console.print(f"  {skipped.what}: {skipped.why}", markup=False)
     for problem in plan.problems:
         console.print(Text(f"cannot run: {problem.who}: {problem.why}", style="red"))
 

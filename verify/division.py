@@ -43,7 +43,7 @@ def divide(beam: Beam, count: int, grading: float = 1.0) -> Parts:
     check_division(beam, count, grading)
     pieces = beam.pieces
     unit = beam.length / count
-    if len(pieces) == 1 and grading == 1.0:
+    if len(pieces) == 1 and not beam.stepped and grading == 1.0:
         one = np.ones(count)
         return Parts(unit=unit, lengths=one, moduli=one, second_moments=one, masses_per_length=one, equal=True)
     shares = part_counts([piece.length for piece in pieces], count)

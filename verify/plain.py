@@ -1,5 +1,6 @@
 """Results as plain data and text: JSON, CSV, Markdown."""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,6 +44,15 @@ def flat_row(row: "Row") -> dict[str, Any]:
     for model in ("segment", "fem"):
         flat |= {f"{model}_{name}": value for name, value in msgspec.to_builtins(getattr(row, model)).items()}
     return flat | {"bracket_width": row.bracket_width, "mean_error": row.mean_error, "notes": list(row.notes)}
+
+
+def finite(data: Any) -> Any:
+    """Plain data with None for numbers that JSON cannot hold."""
+    if isinstance(data, float):
+        return data if math.isfinite(data) else None
+    if isinstance(data, dict):
+        return {key: finite(value) for key, value in data.items()}
+    return [finite(value) for value in data] if isinstance(data, list | tuple) else data
 
 
 def mode_number(text: str) -> int:

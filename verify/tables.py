@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.checked import checked
-from verify.plain import flat_row
+from verify.plain import finite, flat_row
 from verify.scene import Convergence, Counts, Scene, given_arguments, literal
 from verify.workbench import Workbench
 
@@ -31,7 +31,7 @@ class Job(msgspec.Struct, frozen=True):
             import json
 
             data = self.plain(found) if self.plain else self.flat(found)
-            return json.dumps(data, indent=2, allow_nan=False) + "\n"
+            return json.dumps(finite(data), indent=2, allow_nan=False) + "\n"
         return rows_as_text(self.flat(found), layout)
 
 

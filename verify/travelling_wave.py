@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.beam import Beam
+from verify.closed_forms import check_uniform
 from verify.errors import InputError
 from verify.fields import Array, ComplexArray, HarmonicField, wavenumber
 
@@ -103,6 +104,7 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
     The wavenumber is stated (complex for a damped wave), or fitted where it is None. Raises InputError for a
     window that leaves the span between two forces or is shorter than half a wavelength.
     """
+    check_uniform(field.beam)
     check_window(field, window)
     x = sample_points(window, wavenumber(field.beam, field.frequency_hz).real)
     deflection, slope = field.deflection(x), field.slope(x)

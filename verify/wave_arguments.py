@@ -34,6 +34,10 @@ class Driven(Arguments, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if self.model != "analytic" and self.count is None:
             raise InputError(f"count is missing: give the number of segments or elements for model = {self.model}")
+        self.check_settings()
+
+    def check_settings(self) -> None:
+        """Raise InputError for a setting that the model does not have."""
         own = {"joint_dashpot": 0.0, "load": "reciprocal", "reading": "corrected"}
         for name, default in own.items():
             if self.model != "segment" and getattr(self, name) != default:
@@ -78,7 +82,9 @@ class WaveOrder(InWindow, frozen=True, kw_only=True):
     ] = "standing_wave_ratio"
 
     def __post_init__(self) -> None:
-        """The size comes from counts."""
+        self.check_settings()  # the size comes from counts
+        if self.modal_damping or self.joint_dashpot:
+            raise InputError("wave.order compares with the exact beam, which takes a loss_factor: give that instead")
 
 
 class BestFrequency(InWindow, frozen=True, kw_only=True):

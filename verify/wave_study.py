@@ -118,7 +118,8 @@ def wave_study(
         envelopes={name: tuple(abs(field.deflection(x)).tolist()) for name, field in fields.items()},
         ellipses=_ellipses(scene.beam, fields["analytic"]), map=design_map(asked.quantity, chosen, axes, scene, bench),
         map_model={"segment": f"{count} segments", "fem": f"{count} elements"}.get(model, "exact beam"),
-        points=best_points(scene, model, count, asked.reflection_limit, eta), other_drive=across,
+        points=() if drive.kind != "force" else best_points(scene, model, count, asked.reflection_limit, eta),
+        other_drive=across,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import msgspec
 
 from verify.beam import Beam
+from verify.error_laws import leading_error
 from verify.errors import InputError, NoBracketError
 
 if TYPE_CHECKING:
@@ -175,6 +176,12 @@ class Workbench:
         from verify import compare
 
         check_bracket(self.beam, settings)
+        width = 2.0 * leading_error("fem", self.beam.supports, mode, count)
+        if width < max(10.0 * compare.EIGENVALUE_FLOOR, 1e-16 * count):
+            raise NoBracketError(
+                f"mode.bracket: at count = {count} it would be {width:.0e} wide, thinner than the eigenvalue error, "
+                "use a smaller count"
+            )
         below, above = (self.frequency_hz(model, count, mode, settings) for model in ("segment", "fem"))
         return compare.bracket(below, above)
 

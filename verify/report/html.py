@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from verify.console import figure, percent, seconds_in_words
 from verify.errors import InputError
 from verify.files import write_whole
+from verify.plain import finite
 from verify.report.charts import charts_of
 from verify.report.wave_charts import wave_charts
 
@@ -60,7 +61,7 @@ def environment() -> dict[str, str]:
 
 def _safe_json(data: Any) -> str:
     """JSON that cannot end the script element it stands in."""
-    return json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    return json.dumps(finite(data), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def _plotly_script() -> str:
