@@ -244,14 +244,14 @@ def phase_of_the_wrong_sign(patch):
         patch.setattr(module, "phasor", lambda force, true=true: true(force).conjugate())
 
 
-def second_force_mirrored(patch):
+def second_force_a_tenth_nearer(patch):
     true = waves.drive_forces
 
-    def mirrored_force(a, scene):
+    def moved(a, scene):
         first, second = true(a, scene)
         return first, structs.replace(second, position=0.9 * second.position)
 
-    patch.setattr(waves, "drive_forces", mirrored_force)
+    patch.setattr(waves, "drive_forces", moved)
 
 
 def load_on_the_next_joint(patch):
@@ -334,7 +334,7 @@ def singular_values_squared(patch):
 FAULTS_ELSEWHERE = {
     "paper-wave": {
         phase_of_the_wrong_sign: {"reversal-turns-the-wave", "surface-ellipse", "flux", "mid-span"},
-        second_force_mirrored: {"distance-sets-the-amplitude", "pure-wave", "reversal-turns-the-wave", "mid-span"},
+        second_force_a_tenth_nearer: {"distance-sets-the-amplitude", "pure-wave", "reversal-turns-the-wave", "mid-span"},
         load_on_the_next_joint: {"segment-49-ratio", "segment-ratio-order", "segment-deflection-order", "lever-rule-order"},
         load_on_the_next_node: {"mid-span"},
         mid_line_instead_of_surface: {"surface-ellipse", "segment-ellipse-order"},
