@@ -11,6 +11,7 @@ import msgspec
 from verify.checked import checked
 from verify.errors import InputError, near_name
 from verify.mode_quantities import MODE_QUANTITIES
+from verify.motion_quantities import MOTION_QUANTITIES
 from verify.quantity_types import Arguments, Quantity
 from verify.wave_quantities import WAVE_QUANTITIES
 from verify.workbench import Need, Workbench
@@ -18,7 +19,7 @@ from verify.workbench import Need, Workbench
 if TYPE_CHECKING:
     from verify.scene import Scene
 
-QUANTITIES: dict[str, Quantity] = {q.name: q for q in (*MODE_QUANTITIES, *WAVE_QUANTITIES)}
+QUANTITIES: dict[str, Quantity] = {q.name: q for q in (*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES)}
 
 
 def quantity(name: str) -> Quantity:

@@ -9,6 +9,7 @@ from msgspec import Meta
 from verify.beam import Beam, PointForce, check_number
 from verify.checked import checked
 from verify.errors import InputError, near_name
+from verify.slider import Slider
 
 PACKAGED = Path(__file__).parent / "scenes"
 STARTER = PACKAGED / "starter.toml"
@@ -104,6 +105,35 @@ class Wave(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         check_number("wave.operating_loss_factor", self.operating_loss_factor, "eta", above=0, below=1)
 
 
+class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for the driven beam in time: from rest or steady, with the scene's slider if there is one."""
+
+    duration: float = 1e-3
+    """Seconds."""
+    start: Literal["rest", "steady"] = "rest"
+    soft_start_periods: float = 0.0
+    """Over which the forces grow; 0 is a step load, because cos(0) = 1."""
+    modal_damping: float | None = None
+    """Ratio of every mode; half the beam's loss factor unless given."""
+    count: Count = 49
+    """Segments and elements of the figures."""
+    counts: Counts = (49, 98, 196)
+    """Of the work against error."""
+    steps_per_period: Count = 128
+    samples: Annotated[int, Meta(ge=2, le=100_000)] = 1001
+
+    def __post_init__(self) -> None:
+        check_number("motion.duration", self.duration, "seconds", above=0)
+        check_number("motion.soft_start_periods", self.soft_start_periods, "periods", at_least=0)
+        if self.modal_damping is not None:
+            check_number("motion.modal_damping", self.modal_damping, "ratio", at_least=0, below=1)
+        if self.start == "steady" and self.soft_start_periods:
+            raise InputError(
+                f"motion.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
+                "start, leave it out"
+            )
+
+
 class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A complex expectation, { re, im }."""
 
@@ -160,6 +190,8 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     convergence: Convergence | None = None
     sensitivity: Sensitivity | None = None
     wave: Wave | None = None
+    slider: Slider | None = None
+    motion: MotionAsk | None = None
     gate: tuple[Gate, ...] = ()
 
     def __post_init__(self) -> None:
@@ -171,6 +203,10 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         forces = self.forces  # built here, so that one off the beam is refused with the scene
         if self.wave is not None and len(forces) != 2:
             raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
+        if self.slider is not None:
+            self.slider.start_on(self.beam)
+        if self.motion is not None and not forces:
+            raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
 
     @property
     def forces(self) -> tuple[PointForce, ...]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from verify.compare import Bracket
     from verify.fields import HarmonicField
     from verify.modes import Array, Modes
+    from verify.motion import Motion
 
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Keyword settings of a model's solve_modes other than their defaults, for instance (("wall", "half"),)."""
@@ -95,6 +96,8 @@ class Workbench:
         self._exact: dict[int, float] = {}
         self.fields: dict[Any, HarmonicField] = {}
         """Harmonic fields by everything that makes them."""
+        self.motions: dict[Any, Motion] = {}
+        """Simulations, likewise."""
 
     def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> "Modes":
         """At least `n_modes` modes of a discrete model. Raises InputError."""

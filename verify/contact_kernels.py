@@ -1,0 +1,581 @@
+"""Compiled loops of a slider on a moving surface. One file: numba's cache does not see edits in an imported one.
+
+The surface is a set of rows: row j has a deflection shape, on every piece of the beam a polynomial in the local
+coordinate xi in [0, 1], and a time factor q_j(t). Rows 0..n-1 are modes that vibrate freely, q = Re z with
+z' = (-sigma + i omega) z, which a rotation advances exactly by any step. The rest belong to the drive: real and
+imaginary part of (t/T)^d e^{i omega t}.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+_FAST = {"reassoc", "contract", "nsz"}
+# entries of `motion`: what the slider carries from step to step
+X, V, STUCK = range(3)
+# columns of `seen`, one row each for the start, the middle and the end of a step
+SURFACE, PULL, DRIFT, POWER, LOSS = range(5)
+# entries of `law`
+KIND, KINETIC, STATIC, SLOPE, MASS, HALF, GRAVITY, FOLLOWING = range(8)
+TANH, COULOMB = 0.0, 1.0
+# entries of `ledger`
+ON_BEAM, ON_SLIDER, DRIVEN, DAMPED, RUBBED = range(5)
+# why a loop came back
+DONE, OFF_PIECES, NOT_FINITE = range(3)
+# kinds of events
+STICKS, SLIPS, TURNS = 1.0, 2.0, 3.0
+
+
+# rows of `modes`, (9, n): the state z' = (-sigma + i omega) z, its turns over half a step and a whole one, levers
+Z_RE, Z_IM, SIGMA, OMEGA, HALF_RE, HALF_IM, FULL_RE, FULL_IM, LEVER = range(9)
+# rows of `factors`, (2, rows), and of `local`, (2, degree + 1): deflection and velocity
+STILL, MOVING = range(2)
+# entries of `drive`: the forces grow as 3 p^2 - 2 p^3 over RAMP seconds where RAMPED; RAMP is the unit of time of rows
+FREQUENCY, ORIGIN, RAMP, RAMPED = range(4)
+# entries of `slip`: what friction adds to the speed, sticking at the end, time of the last event, what else adds
+CHANGE, STICKING, EVENT, GIVEN_MIDDLE, GIVEN_END = range(5)
+# columns of `kept`
+KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE = range(4)
+
+
+@njit(cache=True)
+def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> float:
+    """What friction -b tanh(slope r) adds to a slider's speed in dt, while r' = -b tanh(slope r) - a exactly.
+
+    r is the relative speed at the start and `a` the constant acceleration of the surface. Solved in closed form
+    up to one monotone scalar equation, so any slope and any step are stable and exact.
+    """
+    if b <= 0.0 or dt <= 0.0:
+        return 0.0
+    alpha, tau = a / b, slope * b * dt
+    side = -1.0 if alpha < 0.0 else 1.0  # mirrored, so that the surface accelerates forward
+    alpha, rho = side * alpha, side * slope * r
+    if (1.0 + alpha) * tau < 0.01:
+        return float(side * _brief_change(rho, alpha, tau) / slope)
+    if abs(alpha - 1.0) < 1e-7:
+        alpha = 1.0 + 1e-7  # 1e-7 of b in this step; the formulas part there
+    change = _held_change(rho, alpha, tau) if alpha < 1.0 else _swept_change(rho, alpha, tau)
+    return float(side * (change + alpha * tau) / slope)
+
+
+@njit(cache=True)
+def _brief_change(rho: float, alpha: float, tau: float) -> float:
+    """What friction adds to rho in a short tau: four stages, off by less than 1e-11 of it, where logarithms cancel."""
+    first = np.tanh(rho)
+    second = np.tanh(rho - 0.5 * tau * (first + alpha))
+    third = np.tanh(rho - 0.5 * tau * (second + alpha))
+    fourth = np.tanh(rho - tau * (third + alpha))
+    return float(-tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _swept_change(rho: float, alpha: float, tau: float) -> float:
+    """Change of rho in tau under rho' = -(tanh rho + alpha), alpha > 1: there is no speed at rest with the surface.
+
+    alpha delta - ln cosh delta falls by (alpha^2 - 1) tau, with delta = rho + artanh(1/alpha). Newton's method on
+    the change; it stops where the next step would be rounding.
+    """
+    grip = np.tanh(rho)
+    lean = (alpha * grip + 1.0) / (alpha + grip)  # tanh delta
+    fall = (alpha * alpha - 1.0) * tau
+    change = -(alpha + np.tanh(rho - 0.5 * (alpha + grip) * tau)) * tau
+    for _ in range(80):
+        if abs(change) < 4.0:
+            grown = np.expm1(change)
+            sine, cosine = 0.5 * (grown + grown / (grown + 1.0)), 0.5 * grown * grown / (grown + 1.0)
+            inner = cosine + lean * sine
+            value, end = np.log1p(inner), (lean * (1.0 + cosine) + sine) / (1.0 + inner)
+        else:
+            delta = rho + np.arctanh(1.0 / alpha)
+            value, end = _ln_cosh(delta + change) - _ln_cosh(delta), np.tanh(delta + change)
+        step = (alpha * change - value + fall) / (alpha - end)
+        change -= step
+        if abs(step) <= 1e-8 * (abs(change) + 1e-8):
+            break
+    return float(change)
+
+
+@njit(cache=True)
+def _ln_cosh(delta: float) -> float:
+    """Ln(2 cosh delta), without overflow."""
+    return float(abs(delta) + np.log1p(np.exp(-2.0 * abs(delta))))
+
+
+@njit(cache=True)
+def _held_change(rho: float, alpha: float, tau: float) -> float:
+    """Change of rho in tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1: rho tends to rest = -artanh alpha.
+
+    With eta = |rho - rest|, ln sinh eta - s alpha eta falls by (1 - alpha^2) tau; solved for ln sinh eta, in which
+    the slope lies between 1 - alpha and 1 + alpha.
+    """
+    rest = -np.arctanh(alpha)
+    side = 1.0 if rho > rest else -1.0
+    eta = abs(rho - rest)
+    if eta == 0.0:
+        return 0.0
+    lean = side * alpha
+    start = _ln_sinh(eta)
+    goal = start - lean * eta - (1.0 - alpha * alpha) * tau
+    level = min(start, goal + lean * eta)
+    for _ in range(80):
+        here = _arsinh_exp(level)
+        step = (level - lean * here - goal) / (1.0 - lean * np.tanh(here))
+        level -= step
+        if abs(step) <= 1e-8:  # the next would be its square
+            break
+    return float(side * _arsinh_exp(level) + rest - rho)
+
+
+@njit(cache=True)
+def _ln_sinh(eta: float) -> float:
+    return float(np.log(np.sinh(eta))) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
+
+
+@njit(cache=True)
+def _arsinh_exp(level: float) -> float:
+    return float(np.arcsinh(np.exp(level))) if level < 20.0 else level + np.log(2.0)
+
+
+@njit(cache=True)
+def coulomb_span(r: float, a0: float, a1: float, kinetic: float, static: float, dt: float, stuck: bool) -> Any:
+    """Until friction changes its mind: (time used, r at its end, whether stuck then, kind of event or 0).
+
+    `a0` and `a1` are the acceleration of the surface relative to a slider free of friction, at the start and the
+    end of dt, linear between. A slider at rest on the surface stays while |a| <= static; one that slips does so
+    under `kinetic` until r = 0, where it sticks if it can.
+    """
+    rate = (a1 - a0) / dt
+    if stuck and abs(a0) <= static * (1.0 + 1e-12):
+        for bound in (static, -static):
+            beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
+            if beyond > 0.0 and rate != 0.0:
+                return min(max((bound - a0) / rate, 0.0), dt), 0.0, False, SLIPS
+        return dt, 0.0, True, 0.0
+    side = np.sign(r) if r != 0.0 else -np.sign(a0 if a0 != 0.0 else rate)
+    slowing = kinetic * side + a0  # r(t) = r - slowing t - rate t^2 / 2
+    used = _first_zero(r, slowing, rate, dt)
+    if used >= dt:
+        return dt, r - slowing * dt - 0.5 * rate * dt * dt, False, 0.0
+    return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
+
+
+@njit(cache=True)
+def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
+    """The first t in (0, dt) where r - slowing t - rate t^2/2 changes sign, else dt."""
+    if r == 0.0:
+        # leaves zero now; it comes back where slowing + rate t / 2 = 0
+        back = -2.0 * slowing / rate if rate != 0.0 else dt
+        return back if 0.0 < back < dt else dt
+    discriminant = slowing * slowing + 2.0 * rate * r
+    if discriminant < 0.0:
+        return dt
+    root = np.sqrt(discriminant)
+    q = slowing + root if slowing >= 0.0 else slowing - root
+    first, second = (2.0 * r / q if q != 0.0 else dt), (-q / rate if rate != 0.0 else dt)
+    best = dt
+    for t in (first, second):
+        if 0.0 < t < best:
+            best = t
+    return best
+
+
+@njit(cache=True)
+def slide_on_belt(
+    n_steps: int, dt: float, law: Any, belt: float, stiffness: float, pull: float, state: Any, events: Any
+) -> int:
+    """A slider held by a spring to the ground on a surface of constant speed; returns the number of events.
+
+    `state` is (x, v, stuck) and is advanced in place; `stiffness` is k/m, `pull` an acceleration. `events` is
+    (capacity, 3): time, kind, x; a turn of the velocity relative to the surface is an event as well.
+    """
+    x, v, stuck = state[0], state[1], state[2] > 0.0
+    kind, kinetic, static, slope = law[KIND], law[KINETIC], law[STATIC], law[SLOPE]
+    n_events, time = 0, 0.0
+    for step in range(n_steps):
+        time = step * dt
+        left = dt
+        while left > 0.0:
+            force0 = pull - stiffness * x
+            if kind == TANH:
+                rate = force0 - kinetic * np.tanh(slope * (v - belt))
+                middle = pull - stiffness * (x + 0.5 * left * v + 0.125 * left * left * rate)
+                end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
+                given = left * (force0 + 4.0 * middle + end) / 6.0
+                v1 = v + given + tanh_speed_change(v - belt, -given / left, kinetic, slope, left)
+                rate1 = end - kinetic * np.tanh(slope * (v1 - belt))
+                x += 0.5 * left * (v + v1) + left * left * (rate - rate1) / 12.0
+                v, left = v1, 0.0
+                continue
+            rate = 0.0 if stuck else force0 - kinetic * np.sign(v - belt)
+            end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
+            used, r1, stuck1, event = coulomb_span(v - belt, -force0, -end, kinetic, static, left, stuck)
+            rate1 = 0.0 if stuck else force0 + (end - force0) * used / left - kinetic * np.sign(v - belt)
+            x += 0.5 * used * (v + belt + r1) + used * used * (rate - rate1) / 12.0
+            v, stuck, left = belt + r1, stuck1, left - used
+            if event != 0.0 and n_events < len(events):
+                events[n_events, 0], events[n_events, 1], events[n_events, 2] = time + dt - left, event, x
+                n_events += 1
+            if used <= 0.0 and event == 0.0:
+                left = 0.0
+    state[0], state[1], state[2] = x, v, 1.0 if stuck else 0.0
+    return n_events
+
+
+@njit(cache=True, fastmath=_FAST)
+def _rotate_half(modes: Any) -> None:
+    """Advance every free mode by half a step."""
+    for j in range(modes.shape[1]):
+        real = modes[Z_RE, j] * modes[HALF_RE, j] - modes[Z_IM, j] * modes[HALF_IM, j]
+        modes[Z_IM, j] = modes[Z_RE, j] * modes[HALF_IM, j] + modes[Z_IM, j] * modes[HALF_RE, j]
+        modes[Z_RE, j] = real
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _set_factors(time: float, modes: Any, drive: Any, factors: Any) -> None:
+    """Time factors of all rows and their rates: modes first, then (t/ramp)^d (cos, -sin) of the drive."""
+    n = modes.shape[1]
+    for j in range(n):
+        factors[STILL, j] = modes[Z_RE, j]
+        factors[MOVING, j] = -modes[SIGMA, j] * modes[Z_RE, j] - modes[OMEGA, j] * modes[Z_IM, j]
+    omega, unit = drive[FREQUENCY], drive[RAMP]
+    angle = omega * (drive[ORIGIN] + time)
+    c, s = np.cos(angle), np.sin(angle)
+    power, growth = 1.0, 0.0
+    for d in range((factors.shape[1] - n) // 2):
+        j = n + 2 * d
+        factors[STILL, j], factors[STILL, j + 1] = power * c, -power * s
+        factors[MOVING, j] = growth * c - power * omega * s
+        factors[MOVING, j + 1] = -growth * s - power * omega * c
+        growth = (d + 1) * power / unit
+        power = power * time / unit
+
+
+@njit(cache=True, fastmath=_FAST)
+def _set_local(table: Any, piece: int, factors: Any, local: Any) -> None:
+    """Polynomials of deflection and velocity on one piece; table is (pieces, degree + 1, rows)."""
+    for d in range(table.shape[1]):
+        still, moving = 0.0, 0.0
+        for j in range(table.shape[2]):
+            still += table[piece, d, j] * factors[STILL, j]
+            moving += table[piece, d, j] * factors[MOVING, j]
+        local[STILL, d], local[MOVING, d] = still, moving
+
+
+@njit(cache=True)
+def find_piece(edges: Any, x: float, piece: int) -> int:
+    """The piece that holds x, from the one that did; -1 off the pieces."""
+    while piece >= 0 and x < edges[piece]:
+        piece -= 1
+    if piece < 0:
+        return -1
+    while piece < len(edges) - 1 and x > edges[piece + 1]:
+        piece += 1
+    return piece if piece < len(edges) - 1 else -1
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _material(local: Any, edges: Any, piece: int, x: float, half: float) -> float:
+    """The local coordinate of the material point under x: X = x + (h/2) w'."""
+    length = edges[piece + 1] - edges[piece]
+    xi = (x - edges[piece]) / length
+    first = 0.0
+    for d in range(local.shape[1] - 1, 0, -1):
+        first = first * xi + float(d) * local[STILL, d]
+    return float(xi + half * first / (length * length))
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any, seen: Any, row: int) -> None:
+    """The surface under x: tangential velocity of its material, and what a slider that follows it feels.
+
+    The material point over x stands at X = x + (h/2) w'(X) of the mid-line and moves with (-(h/2) dw'/dt, dw/dt).
+    """
+    length = edges[piece + 1] - edges[piece]
+    at = _material(local, edges, piece, x, law[HALF])
+    rise, slope, turn, bend = 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[1] - 1, -1, -1):  # Horner for values and derivatives together
+        bend = bend * at + slope
+        slope = slope * at + (local[STILL, d + 1] * (d + 1.0) if d + 1 < local.shape[1] else 0.0)
+        turn = turn * at + rise
+        rise = rise * at + local[MOVING, d]
+    slope, turn = slope / length, turn / length
+    seen[row, SURFACE] = (rise * slope - law[HALF] * turn) / np.sqrt(1.0 + slope * slope)
+    seen[row, PULL], seen[row, DRIFT] = 0.0, 0.0
+    if law[FOLLOWING] > 0.0:
+        seen[row, PULL] = rise * (turn + bend / (length * length) * speed) - law[GRAVITY] * slope
+        seen[row, DRIFT] = -slope * rise
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: float, modes: Any) -> None:
+    """How a unit tangential force on the surface at x loads every mode: -(h/2) on its slope, w' on its rise."""
+    length = edges[piece + 1] - edges[piece]
+    at = _material(local, edges, piece, x, half)
+    slope = (at - (x - edges[piece]) / length) * length / half
+    stretch = np.sqrt(1.0 + slope * slope)
+    for j in range(modes.shape[1]):
+        value, first = 0.0, 0.0
+        for d in range(table.shape[1] - 1, -1, -1):
+            first = first * at + value
+            value = value * at + table[piece, d, j]
+        modes[LEVER, j] = (slope * value - half * first / length) / stretch
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _mobility(modes: Any, turn: int) -> float:
+    """Speed of the surface after a constant unit force has acted for half a step or a whole one, m/s per newton."""
+    total = 0.0
+    for j in range(modes.shape[1]):
+        total += modes[LEVER, j] * modes[LEVER, j] * modes[turn, j] / modes[OMEGA, j]
+    return total
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _press(force: float, modes: Any) -> None:
+    """Add what a constant force over the whole step adds to the modes: (1 - turn) about the shifted rest position."""
+    for j in range(modes.shape[1]):
+        decay, omega = modes[SIGMA, j], modes[OMEGA, j]
+        real = force * modes[LEVER, j] / (omega * omega + decay * decay)
+        imaginary = -real * decay / omega
+        modes[Z_RE, j] += real - (modes[FULL_RE, j] * real - modes[FULL_IM, j] * imaginary)
+        modes[Z_IM, j] += imaginary - (modes[FULL_RE, j] * imaginary + modes[FULL_IM, j] * real)
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _power(drive: Any, loads: Any, forces: Any, time: float, factors: Any) -> float:
+    """Power of the driving forces, watts; loads is (n_forces, rows), forces (2, n_forces) real and imaginary."""
+    angle = drive[FREQUENCY] * (drive[ORIGIN] + time)
+    c, s = np.cos(angle), np.sin(angle)
+    part = time / drive[RAMP]
+    grown = part * part * (3.0 - 2.0 * part) if drive[RAMPED] > 0.0 else 1.0
+    total = 0.0
+    for f in range(loads.shape[0]):
+        speed = 0.0
+        for j in range(loads.shape[1]):
+            speed += loads[f, j] * factors[MOVING, j]
+        total += grown * (forces[0, f] * c - forces[1, f] * s) * speed
+    return total
+
+
+@njit(cache=True, fastmath=_FAST)
+def _loss(modes: Any, factors: Any) -> float:
+    """Power lost in the modes, watts."""
+    total = 0.0
+    for j in range(modes.shape[1]):
+        total += 2.0 * modes[SIGMA, j] * factors[MOVING, j] * factors[MOVING, j]
+    return total
+
+
+@njit(cache=True, fastmath=_FAST)
+def _pressed_speed(modes: Any) -> float:
+    """Displacement of the free modes along the levers, metres."""
+    total = 0.0
+    for j in range(modes.shape[1]):
+        total += modes[LEVER, j] * modes[Z_RE, j]
+    return total
+
+
+@njit(cache=True, inline="always")
+def _friction(r: float, law: Any) -> float:
+    """Friction per mass at relative speed r where it does not depend on sticking."""
+    if law[KIND] == TANH:
+        return float(-law[KINETIC] * np.tanh(law[SLOPE] * r))
+    return float(-law[KINETIC] * np.sign(r))
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _slip(
+    v: float, stuck: bool, push: float, half: float, full: float, law: Any, dt: float, seen: Any, slip: Any
+) -> float:
+    """Speed change by friction in one step under a contact force `push` on the beam; fills `slip`.
+
+    For tanh the speed of the surface is replaced by its least-squares line, which keeps both moments: order 4
+    where friction is smooth, exact where it is steep. Coulomb's law follows the parabola, with sticking and
+    slipping located on it.
+    """
+    s0 = seen[0, SURFACE]
+    sm = seen[1, SURFACE] - slip[GIVEN_MIDDLE] + push * half
+    s1 = seen[2, SURFACE] - slip[GIVEN_END] + push * full
+    slip[STICKING], slip[EVENT] = 0.0, -1.0
+    if law[KIND] == TANH:
+        mean, rise = (s0 + 4.0 * sm + s1) / 6.0, s1 - s0
+        slip[CHANGE] = tanh_speed_change(v - mean + 0.5 * rise, rise / dt, law[KINETIC], law[SLOPE], dt)
+        return float(slip[CHANGE])
+    a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
+    r, used = 0.0 if stuck else v - s0, 0.0
+    for _ in range(20):
+        span, r, stuck, event = coulomb_span(
+            r, a0 + (a1 - a0) * used / dt, a1, law[KINETIC], law[STATIC], dt - used, stuck
+        )
+        used += span
+        if event in (STICKS, SLIPS):
+            slip[EVENT] = used
+        if used >= dt or (span <= 0.0 and event == 0.0):
+            break
+    slip[CHANGE], slip[STICKING] = r + s1 - v, 1.0 if stuck else 0.0
+    return float(slip[CHANGE])
+
+
+@njit(cache=True, error_model="numpy")
+def _balance(v: float, stuck: bool, half: float, full: float, law: Any, dt: float, seen: Any, slip: Any) -> float:
+    """The contact force, newton, mean over the step, at which slider and beam agree: regula falsi (Illinois).
+
+    The slider's impulse falls as the beam gives way, so there is one root between the limits of friction.
+    """
+    per = law[MASS] / dt
+    high = 1.000001 * law[MASS] * max(law[KINETIC], law[STATIC])
+    low = -high
+    at_low = per * _slip(v, stuck, -low, half, full, law, dt, seen, slip) - low
+    at_high = per * _slip(v, stuck, -high, half, full, law, dt, seen, slip) - high
+    force = per * _slip(v, stuck, 0.0, half, full, law, dt, seen, slip)
+    for _ in range(60):
+        force = min(max(force, low), high)
+        miss = per * _slip(v, stuck, -force, half, full, law, dt, seen, slip) - force
+        if abs(miss) <= 1e-14 * (high - low) or abs(miss) <= 1e-15 * abs(force):
+            break
+        if miss > 0.0:
+            low, at_low, at_high = force, miss, 0.5 * at_high
+        else:
+            high, at_high, at_low = force, miss, 0.5 * at_low
+        force = (low * at_high - high * at_low) / (at_high - at_low)
+    return float(force)
+
+
+@njit(cache=True, inline="always")
+def _see(
+    row: int, time: float, x: float, speed: float, piece: int, modes: Any, drive: Any, table: Any, edges: Any, law: Any,
+    loads: Any, forces: Any, accounts: bool, factors: Any, local: Any, seen: Any, fresh: bool,
+) -> None:  # fmt: skip
+    """Fill one row of `seen`: the surface at x and, with accounts, the powers of drive and damping."""
+    if fresh:
+        _set_factors(time, modes, drive, factors)
+        _set_local(table, piece, factors, local)
+    _touch(local, edges, piece, x, speed, law, seen, row)
+    if accounts:
+        seen[row, POWER] = _power(drive, loads, forces, time, factors)
+        seen[row, LOSS] = _loss(modes, factors)
+
+
+@njit(cache=True, inline="always")
+def _account(
+    v: float, v1: float, moved: float, pressed: float, two_way: bool, dt: float, law: Any, seen: Any, ledger: Any
+) -> None:
+    """Add one step to the ledger. `pressed` is the work of the contact on the beam (two-way)."""
+    ledger[DRIVEN] += dt * (seen[0, POWER] + 4.0 * seen[1, POWER] + seen[2, POWER]) / 6.0
+    ledger[DAMPED] += dt * (seen[0, LOSS] + 4.0 * seen[1, LOSS] + seen[2, LOSS]) / 6.0
+    on_slider = 0.5 * law[MASS] * (v1 * v1 - v * v)
+    if not two_way:  # the integral of friction times the surface's line, by parts
+        mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
+        rise = seen[2, SURFACE] - seen[0, SURFACE]
+        pressed = -law[MASS] * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved)
+    ledger[ON_BEAM] += pressed
+    ledger[ON_SLIDER] += on_slider
+    ledger[RUBBED] -= on_slider + pressed
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _step(
+    number: int, dt: float, piece: int, fresh: bool, modes: Any, drive: Any, table: Any, edges: Any, motion: Any,
+    law: Any, two_way: bool, loads: Any, forces: Any, accounts: bool, ledger: Any, factors: Any, local: Any, seen: Any,
+    slip: Any,
+) -> None:  # fmt: skip
+    """One step of beam and slider."""
+    x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
+    _see(0, number * dt, x, v, piece, modes, drive, table, edges, law, loads, forces, accounts, factors, local, seen,
+         fresh)  # fmt: skip
+    rate = seen[0, PULL] + (0.0 if stuck else _friction(v - seen[0, SURFACE], law))
+    along = v + seen[0, DRIFT]
+    half, full, pressed = 0.0, 0.0, 0.0
+    if two_way:
+        _set_levers(table, piece, edges, local, x, law[HALF], modes)
+        half, full, pressed = _mobility(modes, HALF_IM), _mobility(modes, FULL_IM), _pressed_speed(modes)
+    for row in range(1, 3):
+        _rotate_half(modes)
+        t = 0.5 * row * dt
+        _see(row, (number + 0.5 * row) * dt, x + t * along + 0.5 * t * t * rate, v + t * rate, piece, modes, drive,
+             table, edges, law, loads, forces, accounts, factors, local, seen, True)  # fmt: skip
+    slip[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
+    slip[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+    if two_way:
+        force = _balance(v, stuck, half, full, law, dt, seen, slip)
+        _press(-force, modes)
+        _set_factors((number + 1) * dt, modes, drive, factors)
+        seen[2, SURFACE] -= force * full
+        pressed = -force * (_pressed_speed(modes) - pressed)
+    else:
+        _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
+    v1 = v + slip[GIVEN_END] + slip[CHANGE]
+    if slip[STICKING] > 0.0:
+        v1, rate1 = seen[2, SURFACE], rate
+    else:
+        rate1 = seen[2, PULL] + _friction(v1 - seen[2, SURFACE], law)
+    moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
+    motion[X] = x + moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
+    motion[V], motion[STUCK] = v1, slip[STICKING]
+    if accounts:
+        _account(v, v1, moved, pressed, two_way, dt, law, seen, ledger)
+
+
+@njit(cache=True)
+def slide(
+    n_steps: int, first: int, dt: float, modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any,
+    two_way: bool, loads: Any, forces: Any, accounts: bool, ledger: Any, every: int, kept: Any, points: Any,
+    deflections: Any, events: Any,
+) -> Any:  # fmt: skip
+    """Advance beam and slider by n_steps from step number `first`; (steps done, why, rows kept, events).
+
+    Time is the step's number times dt. `modes`, `motion` and `ledger` are advanced in place. `kept` is
+    (capacity, 4), filled every `every` steps together with the deflections at `points` (n_points, rows); `events`
+    is (capacity, 3): time, kind, x.
+    """
+    factors, local = np.empty((2, table.shape[2])), np.empty((2, table.shape[1]))
+    seen, slip = np.zeros((3, 5)), np.zeros(5)
+    piece, fresh, n_kept, n_events = 0, True, 0, 0
+    for number in range(first, first + n_steps):
+        here = find_piece(edges, motion[X], max(piece, 0))
+        if here < 0:
+            return number - first, OFF_PIECES, n_kept, n_events
+        fresh = fresh or here != piece or two_way
+        piece = here
+        _step(number, dt, piece, fresh, modes, drive, table, edges, motion, law, two_way, loads, forces, accounts,
+              ledger, factors, local, seen, slip)  # fmt: skip
+        fresh = False
+        if not np.isfinite(motion[V] + factors[STILL, 0]):
+            return number + 1 - first, NOT_FINITE, n_kept, n_events
+        if slip[EVENT] >= 0.0 and n_events < len(events):
+            events[n_events, 0], events[n_events, 2] = number * dt + slip[EVENT], motion[X]
+            events[n_events, 1] = STICKS if motion[STUCK] > 0.0 else SLIPS
+            n_events += 1
+        if (number + 1) % every == 0:
+            _keep(motion, law, slip[CHANGE] / dt, seen, factors, points, kept, deflections, n_kept)
+            n_kept += 1
+    return n_steps, DONE, n_kept, n_events
+
+
+@njit(cache=True)
+def _keep(
+    motion: Any, law: Any, mean_friction: float, seen: Any, factors: Any, points: Any, kept: Any, deflections: Any,
+    row: int,
+) -> None:  # fmt: skip
+    """Write one sample."""
+    surface = seen[2, SURFACE]
+    kept[row, KEPT_X], kept[row, KEPT_V], kept[row, KEPT_SURFACE] = motion[X], motion[V], surface
+    kept[row, KEPT_FRICTION] = mean_friction if motion[STUCK] > 0.0 else _friction(motion[V] - surface, law)
+    for p in range(points.shape[0]):
+        total = 0.0
+        for j in range(points.shape[1]):
+            total += points[p, j] * factors[STILL, j]
+        deflections[row, p] = total
+
+
+@njit(cache=True)
+def look(modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any) -> Any:
+    """(speed of the surface under the slider, friction per mass) at time 0."""
+    factors, local, seen = np.empty((2, table.shape[2])), np.empty((2, table.shape[1])), np.zeros((3, 5))
+    piece = max(find_piece(edges, motion[X], 0), 0)
+    _set_factors(0.0, modes, drive, factors)
+    _set_local(table, piece, factors, local)
+    _touch(local, edges, piece, motion[X], motion[V], law, seen, 0)
+    speed = seen[0, SURFACE]
+    return speed, 0.0 if motion[STUCK] > 0.0 else _friction(motion[V] - speed, law)

@@ -1,0 +1,114 @@
+"""The free modes of the Hermite elements for motion in time, closed-form where they have one."""
+
+from collections.abc import Callable
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.division import divide
+from verify.eigen import modal_basis
+from verify.fem_beam import assemble, check, element_pencil, free_unknowns, hermite, nodal_weights
+from verify.harmonic_solvers import check_dense
+from verify.time_basis import Array, TimeBasis, check_held
+
+Nodal = Callable[[Any], tuple[Array, Array]]
+"""Node numbers -> deflection and slope (per element length) of all modes there, each (n, len(numbers))."""
+
+
+def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
+    """All modes of the elements, (n,), from two-by-two problems on a uniform pinned-pinned beam, else dense.
+
+    Raises InputError for rigid motions and meshes beyond the dense size.
+    """
+    check(beam, 1, n_elements)
+    check_held(beam)
+    uniform = beam.supports == ("pinned", "pinned") and not beam.section and n_elements > 1
+    omegas, nodal, method = _pinned(beam, n_elements) if uniform else _dense(beam, n_elements)
+    parts = divide(beam, n_elements)
+
+    def loads(position: float) -> Array:
+        weights = nodal_weights(parts, position / parts.unit).reshape(-1, 2)
+        near = np.flatnonzero(weights.any(axis=1))
+        w, slope = nodal(near)
+        return np.asarray(weights[near, 0] @ w.T + weights[near, 1] @ slope.T)
+
+    nodes, lengths = parts.nodes, parts.lengths
+
+    def shapes(x: Array, derivative: int) -> Array:
+        place = np.asarray(x) / parts.unit
+        element = np.clip(np.searchsorted(nodes * parts.unit, x, side="right") - 1, 0, n_elements - 1)
+        h = lengths[element]
+        weights = hermite((place - nodes[element]) / h, derivative) / (h * parts.unit) ** derivative
+        (w0, s0), (w1, s1) = nodal(element), nodal(element + 1)
+        return np.asarray(w0 * weights[0] + s0 * h * weights[1] + w1 * weights[2] + s1 * h * weights[3])
+
+    return TimeBasis(model="fem", count=n_elements, beam=beam, omegas=omegas, shapes=shapes, loads=loads,
+                     edges=nodes * parts.unit, degree=3, method=method)  # fmt: skip
+
+
+def _dense(beam: Beam, n_elements: int) -> tuple[Array, Nodal, str]:
+    parts, free = divide(beam, n_elements), free_unknowns(beam.supports, n_elements)
+    pencil = element_pencil(beam, parts, free)
+    check_dense(pencil, "motion in time")
+    values, vectors = modal_basis(pencil)
+    everywhere = np.zeros((len(values), 2 * n_elements + 2))
+    everywhere[:, free] = vectors.T / np.sqrt(beam.mass_per_length * parts.unit)
+    omegas = np.sqrt(values) * beam.wave_constant / parts.unit**2
+    return omegas, lambda i: (everywhere[:, 2 * i], everywhere[:, 2 * i + 1]), "dense eigenvalues"
+
+
+def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
+    """Equal elements between pinned ends: w_j = W sin(mu j), slopes T cos(mu j), two branches for each mu = m pi / N.
+
+    The rows of the matrices at an inner node are scikit-fem's, of three elements. Frequencies come from the
+    quotient of bending energy and mass, so that nothing cancels in the low ones.
+    """
+    mu, w, slope, values = _branches(n)
+    element = beam.length / n
+    numbers = np.round(mu * n / pi).astype(int)
+    alone = (numbers == 0) | (numbers == n)
+    scale = 1.0 / np.sqrt(beam.mass_per_length * element * np.where(alone, float(n), 0.5 * n))
+    turn = pi * np.arange(2 * n) / n
+    sines, cosines = np.sin(turn), np.cos(turn)
+
+    def nodal(nodes: Any) -> tuple[Array, Array]:
+        index = np.outer(numbers, np.asarray(nodes, dtype=int)) % (2 * n)
+        return (scale * w)[:, None] * sines[index], (scale * slope)[:, None] * cosines[index]
+
+    return np.sqrt(values) * beam.wave_constant / element**2, nodal, "two by two for every wavelength"
+
+
+def _branches(n: int) -> tuple[Array, Array, Array, Array]:
+    """(mu, W, T, lambda) of all 2 N modes, ascending, each (2N,); W and T of unit mass per element."""
+    stiffness, mass = (matrix.toarray()[2:4, :6] for matrix in assemble(np.ones(3), np.ones(3), np.ones(3)))
+    inner = pi * np.arange(1, n) / n
+    shapes = _two_by_two(_symbol(stiffness, inner), _symbol(mass, inner))
+    ends = np.array([0.0, pi])
+    mass_ends = mass[1, 3] + 2.0 * mass[1, 5] * np.cos(ends)
+    mu = np.concatenate([inner, inner, ends])
+    w = np.concatenate([shapes[:, 0, 0], shapes[:, 0, 1], [0.0, 0.0]])
+    slope = np.concatenate([shapes[:, 1, 0], shapes[:, 1, 1], 1.0 / np.sqrt(mass_ends)])
+    s, c = np.sin(0.5 * mu), np.cos(0.5 * mu)
+    values = 4.0 * (s * slope) ** 2 + 3.0 * (2.0 * c * slope - 4.0 * s * w) ** 2
+    order = np.argsort(values)
+    return mu[order], w[order], slope[order], values[order]
+
+
+def _symbol(rows: Array, mu: Array) -> Array:
+    """A matrix on waves W sin(mu j), T cos(mu j) from its two rows at an inner node, (len(mu), 2, 2)."""
+    ww, wt, tt = (
+        rows[0, 2] + 2 * rows[0, 4] * np.cos(mu),
+        rows[0, 5] * np.sin(mu),
+        rows[1, 3] + 2 * rows[1, 5] * np.cos(mu),
+    )
+    return np.moveaxis(np.array([[ww, -2.0 * wt], [-2.0 * wt, tt]]), 2, 0)
+
+
+def _two_by_two(stiffness: Array, mass: Array) -> Array:
+    """Vectors with v^T M v = 1, ascending, (n, 2, 2) in columns."""
+    lower = np.linalg.cholesky(mass)
+    inverse = np.linalg.inv(lower)
+    _, vectors = np.linalg.eigh(inverse @ stiffness @ inverse.transpose(0, 2, 1))
+    return np.asarray(inverse.transpose(0, 2, 1) @ vectors)

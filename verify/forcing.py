@@ -1,0 +1,103 @@
+"""Forces that grow and then stay harmonic, and the exact answer of a mode to them: no quadrature, no step."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from verify.beam import PointForce
+from verify.fields import RESONANCE, ComplexArray, phasor, refuse_resonance
+from verify.time_basis import Array, TimeBasis
+
+CONSTANT = np.array([1.0])
+SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
+"""3 p^2 - 2 p^3: from 0 to 1 with a flat start and end."""
+
+
+class Modal(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Modes with their damping and their share of the forces."""
+
+    sigmas: Array
+    """(n,), 1/s: zeta omega."""
+    omegas: Array
+    """(n,), rad/s: damped."""
+    squares: Array
+    """(n,): undamped omega squared."""
+    loads: ComplexArray
+    """(n,): generalised force phasors."""
+
+
+class Answer(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """The forced part of every mode, q(t) = Re(sum_d Q_d (t/T)^d e^{i omega (t + origin)})."""
+
+    amplitudes: ComplexArray
+    """Q, (n, degree + 1)."""
+    omega: float
+    origin: float
+    unit_s: float
+    """T."""
+
+    def state(self, t: float) -> tuple[Array, Array]:
+        """(q, dq/dt) of every mode at time t, (n,) each."""
+        powers = (t / self.unit_s) ** np.arange(self.amplitudes.shape[1])
+        rates = np.zeros_like(powers)
+        rates[1:] = np.arange(1, len(powers)) * powers[:-1] / self.unit_s
+        turn = np.exp(1j * self.omega * (t + self.origin))
+        still = self.amplitudes @ powers * turn
+        moving = self.amplitudes @ rates * turn + 1j * self.omega * still
+        return still.real, moving.real
+
+
+def modal(basis: TimeBasis, forces: Sequence[PointForce], damping: float) -> Modal:
+    """A basis with the ratio `damping` in every mode, under the forces."""
+    loads = sum((phasor(f) * basis.loads(f.position) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
+    return Modal(sigmas=damping * basis.omegas, omegas=basis.omegas * np.sqrt(1.0 - damping**2),
+                 squares=basis.omegas**2, loads=np.asarray(loads, dtype=complex))  # fmt: skip
+
+
+def answer(modes: Modal, omega: float, growth: Array, unit_s: float, origin: float = 0.0) -> Answer:
+    """The forced part under Re(F sum_d growth_d (t/T)^d e^{i omega (t + origin)}), exact for any polynomial.
+
+    (omega_n^2 - omega^2 + 2 i sigma omega) Q_d + 2 (sigma + i omega) (d+1)/T Q_{d+1} + (d+2)(d+1)/T^2 Q_{d+2} =
+    F growth_d, from the highest power down. omega = 0 is a force that is a polynomial in time.
+    """
+    stiff = modes.squares - omega**2 + 2j * modes.sigmas * omega
+    first = 2.0 * (modes.sigmas + 1j * omega) / unit_s
+    amplitudes = np.zeros((len(modes.squares), len(growth) + 2), dtype=complex)
+    for d in range(len(growth) - 1, -1, -1):
+        carried = first * (d + 1) * amplitudes[:, d + 1] + (d + 2) * (d + 1) / unit_s**2 * amplitudes[:, d + 2]
+        amplitudes[:, d] = (modes.loads * growth[d] - carried) / stiff
+    return Answer(amplitudes=amplitudes[:, : len(growth)], omega=omega, origin=origin, unit_s=unit_s)
+
+
+def free_part(modes: Modal, q: Array, qd: Array) -> Array:
+    """The z of free modes with the given state, (2, n): q = Re z, dq/dt = Re((-sigma + i omega) z)."""
+    return np.array([q, -(qd + modes.sigmas * q) / modes.omegas])
+
+
+def state_of(modes: Modal, z: Array) -> tuple[Array, Array]:
+    """(q, dq/dt) of free modes, (n,) each."""
+    return z[0], -modes.sigmas * z[0] - modes.omegas * z[1]
+
+
+def turns(modes: Modal, t: float) -> Array:
+    """e^{(-sigma + i omega) t}, (2, n)."""
+    decay = np.exp(-modes.sigmas * t)
+    return np.array([decay * np.cos(modes.omegas * t), decay * np.sin(modes.omegas * t)])
+
+
+def advanced(modes: Modal, z: Array, t: Any) -> Array:
+    """Free modes at the times t after z, (len(t), n): their q."""
+    t = np.atleast_1d(t)[:, None]
+    return np.asarray(np.exp(-modes.sigmas * t) * (z[0] * np.cos(modes.omegas * t) - z[1] * np.sin(modes.omegas * t)))
+
+
+def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: float) -> None:
+    """Raise InputError where an undamped mode is driven at its own frequency."""
+    if damping or not frequency_hz:
+        return
+    ratio = np.abs(2.0 * np.pi * frequency_hz / basis.omegas - 1.0)
+    nearest = int(ratio.argmin())
+    if ratio[nearest] < RESONANCE:
+        refuse_resonance(basis.model, frequency_hz, nearest + 1, float(basis.omegas[nearest] / (2.0 * np.pi)))

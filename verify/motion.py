@@ -1,0 +1,107 @@
+"""What a simulation returns: times, what was asked to be kept, what it cost, where the energy went."""
+
+import msgspec
+
+from verify.contact import Coupling, Margins
+from verify.slider import Slider
+from verify.time_basis import Array
+
+
+class Statistics(msgspec.Struct, frozen=True, kw_only=True):
+    """What a run cost and why it ended."""
+
+    steps: int
+    """0 where the motion was evaluated in closed form."""
+    evaluations: int
+    """Of the surface under the slider, or of the closed form."""
+    step_s: float
+    """Seconds; 0 without stepping."""
+    set_up_s: float
+    """Wall time of modes and tables."""
+    wall_s: float
+    """Wall time of the run itself."""
+    stopped: str
+    """end, interrupted, left the beam, or diverged."""
+
+
+class Ledger(msgspec.Struct, frozen=True, kw_only=True):
+    """Where the energy went, joules, from the start of the run to its end."""
+
+    kinetic: float
+    """Of the beam, at the end."""
+    elastic: float
+    """Of the beam, at the end."""
+    slider: float
+    """Gained by the slider."""
+    work_in: float
+    """Of the driving forces."""
+    damped: float
+    """Lost in the beam."""
+    rubbed: float
+    """Lost in friction."""
+    contact_on_beam: float
+    """Work of the slider on the beam; under one-way coupling the beam is not charged with it."""
+    residual: float
+    """What the books miss: quadrature of the power over a step (order 4)."""
+
+
+class EndState(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """From where a run can go on."""
+
+    time: float
+    q: Array
+    """(n,), all of every mode's motion, its forced part included; empty for a steady beam."""
+    rates: Array
+    """(n,), dq/dt."""
+    position: float = 0.0
+    """Of the slider, metres."""
+    speed: float = 0.0
+    stuck: bool = False
+
+
+class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A beam, and perhaps a slider on it, in time."""
+
+    model: str
+    count: int | None
+    times: Array
+    """(n,), seconds."""
+    points: Array
+    """(p,), metres: where the deflection was asked for."""
+    deflection: Array
+    """(n, p), metres."""
+    slider: Slider | None
+    start: float | None
+    """Where the slider began, metres from the left end; None without one."""
+    travelled: Array
+    """(n,), metres along +x from there, to full digits; empty without a slider, so for the following."""
+    speed: Array
+    """(n,), m/s."""
+    friction: Array
+    """(n,), tangential force on the slider, newton."""
+    surface_speed: Array
+    """(n,), tangential velocity of the material under the slider, m/s."""
+    events: Array
+    """(k, 3): time, kind (1 sticks, 2 slips) and position, for Coulomb friction."""
+    coupling: Coupling | None
+    margins: Margins
+    ledger: Ledger | None
+    statistics: Statistics
+    end: EndState
+    notes: tuple[str, ...]
+    """What stands for what: modes, damping, soft start."""
+
+    @property
+    def position(self) -> Array:
+        """(n,), of the slider, metres from the left end."""
+        return self.travelled + (self.start or 0.0)
+
+    @property
+    def displacement(self) -> float:
+        """Of the slider from its start to the end of the run, metres."""
+        return float(self.travelled[-1])
+
+    @property
+    def mean_speed(self) -> float:
+        """Displacement over duration, m/s."""
+        return self.displacement / float(self.times[-1] - self.times[0])

@@ -1,0 +1,128 @@
+"""The typed arguments of figures in time: friction alone, sliders on a beam, the beam itself."""
+
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from verify.errors import InputError
+from verify.quantity_types import Arguments, Size, Sizes
+from verify.slider import GRAVITY
+
+Positive = Annotated[float, Meta(gt=0)]
+Friction = Annotated[float, Meta(gt=0, description="coefficient of friction")]
+Slope = Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")]
+Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
+
+
+class FreeDecay(Arguments, frozen=True, kw_only=True):
+    """A slider left to itself on a surface at rest."""
+
+    mu: Friction
+    slope: Slope
+    speed: Annotated[float, Meta(description="at the start, m/s")]
+    time: Annotated[float, Meta(gt=0, description="seconds")]
+    gravity: Gravity = GRAVITY
+
+
+class Creep(Arguments, frozen=True, kw_only=True):
+    """A slider pulled by a constant force below the friction's limit."""
+
+    mu: Friction
+    slope: Slope
+    pull: Annotated[float, Meta(description="pulling force over mass, m/s^2")]
+    gravity: Gravity = GRAVITY
+
+
+class OnBelt(Arguments, frozen=True, kw_only=True):
+    """A mass held by a spring on a belt, Coulomb friction."""
+
+    mass: Annotated[float, Meta(gt=0, description="kg")]
+    stiffness: Annotated[float, Meta(gt=0, description="N/m")]
+    static: Annotated[float, Meta(gt=0, description="largest friction at rest, newton")]
+    kinetic: Annotated[float, Meta(gt=0, description="friction when slipping, newton")]
+    speed: Annotated[float, Meta(gt=0, description="of the belt, m/s")]
+
+
+class Oscillator(Arguments, frozen=True, kw_only=True):
+    """A mass on a spring and a floor with Coulomb friction."""
+
+    mass: Annotated[float, Meta(gt=0, description="kg")]
+    stiffness: Annotated[float, Meta(gt=0, description="N/m")]
+    force: Annotated[float, Meta(gt=0, description="friction, newton")]
+
+
+class OnWave(Arguments, frozen=True, kw_only=True):
+    """A slider on a pure travelling wave."""
+
+    amplitude: Annotated[float, Meta(gt=0, description="of the wave, metres")]
+    slope: Slope
+    mu: Friction
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    kinematics: Annotated[
+        Literal["tangential", "following"], Meta(description="following: its path is that of the surface, exactly")
+    ] = "tangential"
+    gravity: Gravity = GRAVITY
+
+
+class InTime(Arguments, frozen=True, kw_only=True):
+    """A driven beam in time: what is not given is the scene's."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "segment"
+    count: Size | None = None
+    time: Annotated[float, Meta(gt=0, description="seconds; default: the scene's motion.duration")] | None = None
+    start: Annotated[Literal["rest", "steady"], Meta(description="default: the scene's motion.start")] | None = None
+    soft_start_periods: (
+        Annotated[float, Meta(ge=0, description="over which the forces grow; default: the scene's")] | None
+    ) = None
+    modal_damping: Annotated[float, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
+    modes: Annotated[int, Meta(ge=1, description="the exact beam keeps from rest")] = 400
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
+    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.model == "analytic") != (self.count is None):
+            raise InputError(
+                f"count = {self.count!r} does not fit model = {self.model}: give fem and segment a count, "
+                "the exact beam none"
+            )
+
+
+class DeflectionAt(InTime, frozen=True, kw_only=True):
+    """A place on the beam."""
+
+    x: Annotated[float, Meta(description="metres from the left end")]
+
+
+class SliderInTime(InTime, frozen=True, kw_only=True):
+    """The scene's slider, with what is given instead of its own."""
+
+    step: Annotated[float, Meta(gt=0, description="seconds; default: a part of a period")] | None = None
+    mu: Friction | None = None
+    slope: Slope | None = None
+    mass: Annotated[float, Meta(gt=0, description="kg")] | None = None
+    law: Annotated[Literal["tanh", "coulomb"], Meta(description="Eq. (3), or true sticking")] | None = None
+    coupling: Annotated[Literal["auto", "one-way", "two-way"], Meta(description="whether the beam feels it")] | None = (
+        None
+    )
+    line: Annotated[Literal["spline", "raw"], Meta(description="contact line of a chain")] | None = None
+    kinematics: (
+        Annotated[Literal["tangential", "following"], Meta(description="how it keeps to the surface")] | None
+    ) = None
+    slider_position: Annotated[float, Meta(description="where it starts, metres")] | None = None
+    slider_speed: Annotated[float, Meta(description="at the start, m/s")] | None = None
+
+
+class SliderOrder(SliderInTime, frozen=True, kw_only=True):
+    """Displacements over several sizes, or over several steps."""
+
+    counts: Sizes | None = None
+    steps: Annotated[tuple[Positive, ...], Meta(description="three or more steps, seconds")] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.counts is None) == (self.steps is None):
+            raise InputError("slider.order takes counts or steps: give one of the two")
+        if self.counts is None:
+            super().__post_init__()
+        elif self.count is not None or self.model == "analytic":
+            raise InputError("slider.order over counts is for fem and segment and takes no count: leave it out")

@@ -1,0 +1,106 @@
+"""Named figures in time: friction laws on their own, the slider on a beam, the beam itself."""
+
+from typing import TYPE_CHECKING, Any
+
+from verify.motion_arguments import (
+    Creep,
+    DeflectionAt,
+    FreeDecay,
+    OnBelt,
+    OnWave,
+    Oscillator,
+    SliderInTime,
+    SliderOrder,
+)
+from verify.quantity_types import Quantity
+from verify.workbench import Workbench
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+
+def _free_decay(a: FreeDecay, scene: "Scene", bench: Workbench) -> float:
+    from verify.rigid_surface import free_decay
+
+    return free_decay(a.mu, a.slope, a.speed, a.time, a.gravity)
+
+
+def _creep_speed(a: Creep, scene: "Scene", bench: Workbench) -> float:
+    from verify.rigid_surface import creep_speed
+
+    return creep_speed(a.mu, a.slope, a.pull, a.gravity)
+
+
+def _belt(which: int) -> Any:
+    """Stick time (0) or slip time (1)."""
+
+    def evaluate(a: OnBelt, scene: "Scene", bench: Workbench) -> float:
+        from verify.rigid_surface import stick_slip_times
+
+        return stick_slip_times(a.mass, a.stiffness, a.static, a.kinetic, a.speed)[which]
+
+    return evaluate
+
+
+def _decrement(a: Oscillator, scene: "Scene", bench: Workbench) -> float:
+    from verify.rigid_surface import coulomb_decrement
+
+    return coulomb_decrement(a.mass, a.stiffness, a.force)
+
+
+def _terminal_speed(a: OnWave, scene: "Scene", bench: Workbench) -> float:
+    from verify.pure_wave import terminal_speed
+    from verify.slider import Slider
+    from verify.waves import drive_frequency
+
+    slider = Slider(mass=1.0, mu=a.mu, slope=a.slope, kinematics=a.kinematics, gravity=a.gravity)
+    return terminal_speed(scene.beam, slider, a.amplitude, drive_frequency(a, scene))
+
+
+def _slider(name: str) -> Any:
+    """One attribute of the slider's run."""
+
+    def evaluate(a: SliderInTime, scene: "Scene", bench: Workbench) -> float:
+        from verify.motions import with_slider
+
+        return float(getattr(with_slider(a, scene, bench), name))
+
+    return evaluate
+
+
+def _order(a: SliderOrder, scene: "Scene", bench: Workbench) -> float:
+    from verify.motions import slider_order
+
+    return slider_order(a, scene, bench)
+
+
+def _deflection(a: DeflectionAt, scene: "Scene", bench: Workbench) -> float:
+    from verify.motions import without_slider
+
+    return float(without_slider(a, scene, bench).deflection[-1, 0])
+
+
+def _nothing(a: Any, scene: "Scene") -> tuple[()]:
+    """Motion in time brings its own modes."""
+    return ()
+
+
+MOTION_QUANTITIES = (
+    Quantity("friction.free_decay", "m/s", "Speed left after a time on a surface at rest, tanh friction.",
+             FreeDecay, _nothing, _free_decay),
+    Quantity("friction.creep_speed", "m/s", "Speed under a constant pull below the friction's limit, tanh friction.",
+             Creep, _nothing, _creep_speed),
+    Quantity("friction.belt_stick_time", "s", "Time a spring-held mass rides on a belt, Coulomb friction.",
+             OnBelt, _nothing, _belt(0)),
+    Quantity("friction.belt_slip_time", "s", "Time it slips back.", OnBelt, _nothing, _belt(1)),
+    Quantity("friction.coulomb_decrement", "m", "Amplitude an oscillator with Coulomb friction loses in a cycle.",
+             Oscillator, _nothing, _decrement),
+    Quantity("slider.terminal_speed", "m/s", "Settled mean speed along +x on a pure wave towards +x.",
+             OnWave, _nothing, _terminal_speed),
+    Quantity("slider.displacement", "m", "Of the scene's slider along +x after a time.",
+             SliderInTime, _nothing, _slider("displacement")),
+    Quantity("slider.mean_speed", "m/s", "Displacement over time.", SliderInTime, _nothing, _slider("mean_speed")),
+    Quantity("slider.order", "1", "Observed order of the slider's displacement in the size or in the step.",
+             SliderOrder, _nothing, _order),
+    Quantity("motion.deflection", "m", "Of the driven beam at a place and time.", DeflectionAt, _nothing, _deflection),
+)  # fmt: skip

@@ -1,0 +1,180 @@
+"""A driven linear beam in time as rows of shapes and time factors: what the compiled loop and the closed form read."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam, PointForce
+from verify.errors import InputError
+from verify.forcing import CONSTANT, SMOOTH_STEP, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
+from verify.time_basis import Array, TimeBasis, taylor_table
+
+if TYPE_CHECKING:
+    from verify.fields import HarmonicField
+
+Shapes = Callable[[Array, int], Array]
+ANALYTIC_DEGREE = 8
+
+
+class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A stretch of time in which the forces keep one form; its own time begins at 0."""
+
+    modal: Modal
+    forced: Answer | None
+    """None where the drive's rows are a steady field."""
+    free_shapes: Shapes
+    """(n, len(x)); n = 0 where no mode is free."""
+    drive_shapes: Shapes
+    """(2 (degree + 1), len(x)): real and imaginary part of every power of t."""
+    edges: Array
+    degree: int
+    omega: float
+    origin: float
+    unit_s: float
+    ramped: bool
+    n_steps: int
+    dt: float
+    every: int
+    """A sample is kept after so many steps."""
+
+    def rows(self, x: Array, derivative: int = 0) -> Array:
+        """All shapes at x, (rows, len(x))."""
+        return np.concatenate([self.free_shapes(x, derivative), self.drive_shapes(x, derivative)])
+
+    def table(self, first: int, last: int) -> Array:
+        """Polynomials of pieces first..last-1, (pieces, degree + 1, rows)."""
+        return taylor_table(self.rows, self.edges, first, last, self.degree)
+
+    def drive_factors(self, t: Array) -> Array:
+        """Time factors of the drive's rows, (len(t), 2 (degree + 1))."""
+        turn = np.exp(1j * self.omega * (t + self.origin))
+        degree = 0 if self.forced is None else self.forced.amplitudes.shape[1] - 1
+        powers = (t[:, None] / self.unit_s) ** np.arange(degree + 1) * turn[:, None]
+        return np.stack([powers.real, -powers.imag], axis=2).reshape(len(t), -1)
+
+    def deflection(self, z: Array, t: Array, x: Array) -> Array:
+        """Closed form, (len(t), len(x)): free modes from z at t = 0 and the drive."""
+        factors = np.concatenate([advanced(self.modal, z, t), self.drive_factors(t)], axis=1)
+        return np.asarray(factors @ self.rows(x))
+
+    @property
+    def sample_times(self) -> Array:
+        """When samples are kept, (n,), seconds from the start of the stage, which is not among them."""
+        return self.every * self.dt * np.arange(1.0, self.n_steps // self.every + 1)
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return self.n_steps * self.dt
+
+    def start(self, q: Array, rates: Array) -> Array:
+        """The free modes' z where all of the motion begins with (q, rates), (2, n)."""
+        forced_q, forced_rates = self.forced.state(0.0) if self.forced else (np.zeros(len(q)), np.zeros(len(q)))
+        return free_part(self.modal, q - forced_q, rates - forced_rates)
+
+    def state(self, z: Array, t: float) -> tuple[Array, Array]:
+        """All of every mode's motion at time t, where its free part then is z."""
+        forced_q, forced_rates = self.forced.state(t) if self.forced else (0.0, 0.0)
+        q, rates = state_of(self.modal, z)
+        return q + forced_q, rates + forced_rates
+
+
+def free_at(stage: Stage, z: Array, t: float) -> Array:
+    """The free modes after the time t, (2, n)."""
+    real, imaginary = turns(stage.modal, t)
+    return np.array([z[0] * real - z[1] * imaginary, z[0] * imaginary + z[1] * real])
+
+
+def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = "spline") -> TimeBasis:
+    """The free modes of a model by name. Raises InputError."""
+    if model == "analytic":
+        if count is not None:
+            raise InputError(f"count = {count!r} is for fem and segment: the exact beam takes modes, how many it keeps")
+        from verify.analytic_motion import time_basis as exact
+
+        return exact(beam, modes)
+    if count is None:
+        raise InputError(f"count is missing: give the number of segments or elements for model = {model}")
+    if model == "fem":
+        from verify.fem_motion import time_basis as elements
+
+        return elements(beam, count)
+    from verify.segment_motion import time_basis as segments
+
+    return segments(beam, count, line=line)  # type: ignore[arg-type]
+
+
+class Steps(msgspec.Struct, frozen=True):
+    """How a stretch of time is cut."""
+
+    n: int
+    dt: float
+    every: int
+    """Steps from one sample to the next."""
+
+
+def cut(duration: float, longest: float, samples: int) -> Steps:
+    """Equal steps no longer than `longest`, a whole number of them from sample to sample."""
+    every = max(int(np.ceil(duration / longest / samples * (1.0 - 1e-12))), 1)
+    return Steps(every * samples, duration / (every * samples), every)
+
+
+def stages_from_rest(
+    basis: TimeBasis, forces: Sequence[PointForce], omega: float, damping: float, ramp: Steps | None,
+    rest: Steps | None, origin: float,
+) -> list[Stage]:  # fmt: skip
+    """The growth of the forces, if it is asked for, and what follows."""
+    modes, stages = modal(basis, forces, damping), []
+    if ramp:
+        stages.append(_stage(basis, answer(modes, omega, SMOOTH_STEP, ramp.n * ramp.dt, origin), modes, ramp))
+        origin += ramp.n * ramp.dt
+    if rest:
+        stages.append(_stage(basis, answer(modes, omega, CONSTANT, 1.0, origin), modes, rest))
+    return stages
+
+
+def _stage(basis: TimeBasis, forced: Answer, modes: Modal, steps: Steps) -> Stage:
+    def drive(x: Array, derivative: int) -> Array:
+        parts = forced.amplitudes.T @ basis.shapes(x, derivative)
+        return np.stack([parts.real, parts.imag], axis=1).reshape(2 * len(parts), len(x))
+
+    return Stage(
+        modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, edges=basis.edges,
+        degree=basis.degree, omega=forced.omega, origin=forced.origin, unit_s=forced.unit_s,
+        ramped=forced.amplitudes.shape[1] > 1, n_steps=steps.n, dt=steps.dt, every=steps.every,
+    )  # fmt: skip
+
+
+NO_MODES = Modal(sigmas=np.empty(0), omegas=np.empty(0), squares=np.empty(0), loads=np.empty(0, dtype=complex))
+
+
+def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: float) -> Stage:
+    """A beam in its steady state; with a basis its modes are there to be pushed, at rest at first."""
+    edges, degree = steady_edges(field)
+
+    def drive(x: Array, derivative: int) -> Array:
+        higher, rest = divmod(derivative, 4) if field.model == "analytic" else (0, derivative)
+        values = field.shapes(x, rest) * field.wavenumber ** (4 * higher)
+        return np.array([values.real, values.imag])
+
+    def nothing(x: Array, derivative: int) -> Array:
+        return np.empty((0, len(x)))
+
+    modes = modal(basis, (), damping) if basis else NO_MODES
+    return Stage(modal=modes, forced=None, free_shapes=basis.shapes if basis else nothing, drive_shapes=drive,
+                 edges=edges, degree=degree, omega=field.omega, origin=origin, unit_s=1.0, ramped=False,
+                 n_steps=steps.n, dt=steps.dt, every=steps.every)  # fmt: skip
+
+
+def steady_edges(field: "HarmonicField") -> tuple[Array, int]:
+    """Where the pieces of a field begin, metres, and the degree of its polynomials."""
+    length = field.beam.length
+    if field.count is None:
+        cells = int(np.ceil(length * abs(field.wavenumber) / 0.3)) + 1
+        return np.union1d(np.linspace(0.0, length, cells + 1), [f.position for f in field.forces]), ANALYTIC_DEGREE
+    from verify.division import divide
+
+    parts: Any = divide(field.beam, field.count)
+    return np.asarray(parts.nodes * parts.unit), 3

@@ -1,0 +1,93 @@
+"""A slider on a rigid surface of constant speed, pulled or held by a spring: friction laws on their own.
+
+The same compiled friction steps as on a beam; nothing here knows a closed form of what it measures.
+"""
+
+from math import pi, sqrt
+
+import numpy as np
+
+from verify.errors import InputError
+from verify.slider import GRAVITY
+from verify.time_basis import Array
+
+STEPS = 4096
+STEPS_PER_PERIOD = 4000
+EVENTS = 64
+
+
+def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Array:
+    """Entries of `contact_kernels.KIND` and so on, accelerations in m/s^2."""
+    return np.array([float(coulomb), kinetic, static, slope, 1.0, 0.0, GRAVITY, 0.0])
+
+
+def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
+    """Speed that tanh friction leaves of `speed` after `time` on a surface at rest, m/s."""
+    from verify.contact_kernels import slide_on_belt
+
+    state = np.array([0.0, speed, 0.0])
+    slide_on_belt(STEPS, time / STEPS, _law(False, mu * gravity, 0.0, slope), 0.0, 0.0, 0.0, state, np.zeros((0, 3)))
+    return float(state[1])
+
+
+def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) -> float:
+    """Speed at which a slider under the constant acceleration `pull` creeps in the end, m/s. Raises InputError."""
+    from verify.contact_kernels import slide_on_belt
+
+    if abs(pull) >= mu * gravity:
+        raise InputError(
+            f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2: friction cannot hold it, lower it"
+        )
+    state, law = np.array([0.0, 0.0, 0.0]), _law(False, mu * gravity, 0.0, slope)
+    step, before = 1.0 / (mu * gravity * slope), np.inf
+    while state[1] != before:
+        before = state[1]
+        slide_on_belt(100, step, law, 0.0, 0.0, pull, state, np.zeros((0, 3)))
+        step *= 2.0
+    return float(state[1])
+
+
+def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: float, speed: float) -> tuple[float, float]:
+    """(stick, slip) seconds of the settled motion of a spring-held mass on a belt; static and kinetic are forces.
+
+    Raises InputError where it does not stick and slip.
+    """
+    from verify.contact_kernels import SLIPS, STICKS, slide_on_belt
+
+    if kinetic >= static:
+        raise InputError(
+            f"kinetic = {kinetic!r} is not below static = {static!r}: without a drop nothing slips, lower it"
+        )
+    period = 2.0 * pi * sqrt(mass / stiffness)
+    stick = (static - kinetic) / (stiffness * speed)
+    step = period / STEPS_PER_PERIOD
+    steps = int(4.0 * (period + 2.0 * stick + static / (stiffness * speed)) / step)
+    if steps > 200_000_000:
+        raise InputError(f"speed = {speed!r} m/s sticks for {stick / period:.1e} periods of the spring: raise speed")
+    events, state = np.zeros((EVENTS, 3)), np.array([0.0, speed, 1.0])
+    law = _law(True, kinetic / mass, static / mass, 0.0)
+    n = slide_on_belt(steps, step, law, speed, stiffness / mass, 0.0, state, events)
+    kinds = events[:n, 1]
+    sticks, slips = events[:n][kinds == STICKS, 0], events[:n][kinds == SLIPS, 0]
+    if len(sticks) < 2 or len(slips) < 2:
+        raise InputError(f"speed = {speed!r} m/s: the mass does not stick and slip, lower the speed of the belt")
+    last = slips[slips > sticks[0]][-1]
+    end = sticks[sticks > last]
+    begin = sticks[sticks < last][-1]
+    before = slips[slips < begin][-1]
+    del end
+    return float(last - begin), float(begin - before)
+
+
+def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
+    """Amplitude that a spring-mass oscillator on a floor with Coulomb friction `force` loses in a cycle, metres."""
+    from verify.contact_kernels import slide_on_belt
+
+    period = 2.0 * pi * sqrt(mass / stiffness)
+    start = 12.5 * force / stiffness
+    events, state = np.zeros((EVENTS, 3)), np.array([start, 0.0, 0.0])
+    law = _law(True, force / mass, force / mass, 0.0)
+    n = slide_on_belt(2 * STEPS_PER_PERIOD, period / STEPS_PER_PERIOD, law, 0.0, stiffness / mass, 0.0, state, events)
+    turns = events[:n, 2]
+    ahead = turns[turns > 0.0]
+    return float(start - ahead[0])

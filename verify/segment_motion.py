@@ -1,0 +1,127 @@
+"""The free modes of the chain of rigid links for motion in time, closed-form where they have one."""
+
+from collections.abc import Callable
+from math import pi
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.chain import Chain, build_chain, chain_pencil, corrected_reading, with_ends
+from verify.chain_walls import Wall
+from verify.eigen import modal_basis
+from verify.errors import InputError, near_name
+from verify.harmonic_solvers import check_dense
+from verify.point_loads import Load, joint_weights
+from verify.segment_model import check
+from verify.time_basis import Array, TimeBasis, check_held
+
+Line = Literal["spline", "raw"]
+LINES: tuple[str, ...] = get_args(Line)
+"""The contact line: the paper's C2 spline through the joints (Section II.B), or the links' own straight edges."""
+
+
+def time_basis(
+    beam: Beam, n_segments: int, *, load: Load = "reciprocal", line: Line = "spline", wall: Wall = "gregory"
+) -> TimeBasis:
+    """All modes of the chain, (n,), in closed form on a uniform pinned-pinned beam, else from a dense solve.
+
+    `line` "spline" reads order 4 joints through the C2 spline, "raw" the rigid links as they stand. Raises
+    InputError for unknown settings, rigid motions and chains beyond the dense size.
+    """
+    check(beam, 1, n_segments, wall=wall)
+    check_held(beam)
+    if line not in LINES:
+        raise InputError(f"line = {line!r} is not known: {near_name(line, LINES)}")
+    chain = build_chain(beam, n_segments, wall=wall)
+    uniform = beam.supports == ("pinned", "pinned") and not beam.section
+    omegas, joints, method = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
+
+    def loads(position: float) -> Array:
+        weights: Any = joint_weights(chain, position, load)
+        near = np.flatnonzero(weights)
+        return np.asarray(weights[near] @ joints(near).T)
+
+    shapes = _straight(chain, joints) if line == "raw" else _splined(beam, chain, joints, uniform)
+    return TimeBasis(model="segment", count=n_segments, beam=beam, omegas=omegas, shapes=shapes, loads=loads,
+                     edges=chain.nodes, degree=1 if line == "raw" else 3, method=method)  # fmt: skip
+
+
+Joints = Callable[[Any], Array]
+"""Joint numbers -> deflection of all modes there, (n, len(numbers))."""
+
+
+def _pinned(beam: Beam, n: int) -> tuple[Array, Joints, str]:
+    """Equal links between pinned ends: y_j = a sin(n pi j / N), omega = 4 s^2 / sqrt(1 - 2 s^2/3) in link units."""
+    mu = pi * np.arange(1, n) / n
+    square = np.sin(0.5 * mu) ** 2
+    inertia = 1.0 - 2.0 * square / 3.0
+    link = beam.length / n
+    omegas = beam.wave_constant / link**2 * 4.0 * square / np.sqrt(inertia)
+    scale = 1.0 / np.sqrt(beam.mass_per_length * link * inertia * 0.5 * n)
+    sines = np.sin(pi * np.arange(2 * n) / n)  # of n pi j / N, by n j modulo 2 N: exact at any size
+
+    def joints(numbers: Any) -> Array:
+        return np.asarray(scale[:, None] * sines[np.outer(np.arange(1, n), np.asarray(numbers, dtype=int)) % (2 * n)])
+
+    return omegas, joints, "closed-form dispersion"
+
+
+def _dense(beam: Beam, chain: Chain) -> tuple[Array, Joints, str]:
+    pencil = chain_pencil(chain)
+    check_dense(pencil, "motion in time")
+    values, vectors = modal_basis(pencil)
+    raw = with_ends(chain, vectors).T / np.sqrt(beam.mass_per_length * chain.unit)
+    omegas = np.sqrt(values) * beam.wave_constant / chain.unit**2
+    return omegas, lambda numbers: np.asarray(raw[:, numbers]), "dense eigenvalues"
+
+
+def _straight(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
+    """The rigid links: straight between the joints, the link to the right at a joint."""
+    nodes, lengths = chain.nodes, chain.lengths * chain.unit
+
+    def shapes(x: Array, derivative: int) -> Array:
+        link = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, chain.n_segments - 1)
+        left, right = joints(link), joints(link + 1)
+        slopes = (right - left) / lengths[link]
+        if derivative == 0:
+            return np.asarray(left + slopes * (x - nodes[link]))
+        return slopes if derivative == 1 else np.zeros_like(slopes)
+
+    return shapes
+
+
+def _splined(beam: Beam, chain: Chain, joints: Joints, uniform: bool) -> Callable[[Array, int], Array]:
+    """The C2 spline through the corrected joints."""
+    if not uniform:
+        from verify.segment_model import _spline
+
+        everywhere = corrected_reading(chain, joints(np.arange(chain.n_segments + 1)))
+        return lambda x, derivative: _spline(chain, everywhere, x, derivative)
+    return _sine_spline(chain, joints)
+
+
+def _sine_spline(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
+    """Corrected reading and spline of sines, which both leave sines: no system to solve.
+
+    y + delta^2 y / 12 is (1 - s^2/3) y, the spline's second derivative -4 s^2 / (1 - 2 s^2/3) y per link squared.
+    """
+    n, link = chain.n_segments, chain.unit
+    square = np.sin(0.5 * pi * np.arange(1, n) / n)[:, None] ** 2
+    reading = 1.0 - square / 3.0
+    bend = -4.0 * square / (1.0 - 2.0 * square / 3.0)  # times y, per link length squared
+
+    def shapes(x: Array, derivative: int) -> Array:
+        number = np.clip(np.searchsorted(chain.nodes, x, side="right") - 1, 0, n - 1)
+        xi = (x - chain.nodes[number]) / link
+        left, right = np.asarray(reading * joints(number)), np.asarray(reading * joints(number + 1))
+        m0, m1 = bend * left, bend * right
+        c = [left, right - left - (2.0 * m0 + m1) / 6.0, 0.5 * m0, (m1 - m0) / 6.0]
+        for _ in range(derivative):
+            c = [(d + 1) * c[d + 1] for d in range(len(c) - 1)] or [np.zeros_like(left)]
+        value = np.zeros_like(left)
+        for part in reversed(c):
+            value = value * xi + part
+        return np.asarray(value / link**derivative)
+
+    return shapes

@@ -1,0 +1,321 @@
+"""Time: a linear beam by exact steps, and a slider on it; what nothing nonlinear touches is not stepped at all."""
+
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import Literal
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam, PointForce, check_number
+from verify.contact import Coupling, Margins, coupling_of, law_entries
+from verify.errors import InputError
+from verify.fields import check_drive
+from verify.forcing import check_no_resonance
+from verify.motion import EndState, Ledger, Motion, Statistics
+from verify.moving_surface import Stage, Steps, basis_of, cut, free_at, stages_from_rest, steady_stage
+from verify.slider import Slider
+from verify.slider_run import Sliding, run_stages
+from verify.time_basis import Array, TimeBasis
+
+STEPS_PER_PERIOD = 64
+CLOSED_FORM_ROWS = 2000
+
+
+class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A simulation, checked and with its steps laid out."""
+
+    beam: Beam
+    forces: tuple[PointForce, ...]
+    frequency_hz: float
+    model: str
+    count: int | None
+    modes: int
+    start: str
+    damping: float
+    slider: Slider | None
+    points: Array
+    ramp: Steps | None
+    rest: Steps | None
+    accounts: bool
+    before: EndState | None
+
+    @property
+    def omega(self) -> float:
+        """2 pi f, rad/s."""
+        return 2.0 * np.pi * self.frequency_hz
+
+    @property
+    def origin(self) -> float:
+        """Seconds that have passed when this run begins."""
+        return self.before.time if self.before else 0.0
+
+    @property
+    def n_steps(self) -> int:
+        """Of the growth and the rest."""
+        return sum(part.n for part in (self.ramp, self.rest) if part)
+
+    @property
+    def line(self) -> str:
+        """The contact line."""
+        return self.slider.line if self.slider else "spline"
+
+
+def simulate(
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    duration: float,
+    *,
+    model: Literal["analytic", "fem", "segment"] = "segment",
+    count: int | None = None,
+    modes: int = 400,
+    start: Literal["rest", "steady"] = "rest",
+    soft_start_periods: float = 0.0,
+    modal_damping: float | None = None,
+    slider: Slider | None = None,
+    at: Sequence[float] = (),
+    samples: int = 201,
+    step: float | None = None,
+    ledger: bool = True,
+    continue_from: Motion | None = None,
+    progress: Callable[[float], None] = lambda part: None,
+) -> Motion:
+    """A driven beam from rest or in its steady state for `duration` seconds, with a slider or without.
+
+    Forces are amplitude cos(omega t + phase): from rest cos(0) = 1 is a step load, which `soft_start_periods`
+    spreads as 3 p^2 - 2 p^3. Modes advance exactly by any step; `step` (default a 64th of a period) is the
+    slider's alone. The exact beam keeps `modes` modes from rest and none in its steady state. Damping is a ratio
+    of every mode, half the beam's loss factor unless given. `at` are metres where the deflection is kept.
+    Returns what was reached where the run was interrupted or the slider left the beam, and says so. Raises
+    InputError.
+    """
+    began = perf_counter()
+    request = _request(beam, tuple(forces), frequency_hz, duration, model, count, modes, start, soft_start_periods,
+                       modal_damping, slider, at, samples, step, ledger, continue_from)  # fmt: skip
+    stages, basis, coupling = _prepare(request)
+    if slider is None:
+        return _closed_form(request, stages, basis, began)
+    assert coupling is not None
+    return _with_slider(request, stages, basis, coupling, began, progress)
+
+
+def _request(
+    beam: Beam, forces: tuple[PointForce, ...], frequency_hz: float, duration: float, model: str, count: int | None,
+    modes: int, start: str, soft: float, damping: float | None, slider: Slider | None, at: Sequence[float],
+    samples: int, step: float | None, ledger: bool, before: Motion | None,
+) -> Request:  # fmt: skip
+    check_drive(beam, forces, frequency_hz)
+    check_number("duration", duration, "seconds", above=0)
+    check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
+    if model not in ("analytic", "fem", "segment"):
+        raise InputError(f"model = {model!r} is not known: known are analytic, fem, segment")
+    if start not in ("rest", "steady"):
+        raise InputError(f"start = {start!r} is not known: known are rest, steady")
+    if soft and (start == "steady" or before):
+        raise InputError(f"soft_start_periods = {soft!r}: a beam that moves already has no start, leave it out")
+    if not 2 <= samples <= 10_000_000:
+        raise InputError(f"samples = {samples!r}: keep between 2 and 10000000 of them")
+    zeta = 0.5 * beam.loss_factor if damping is None else damping
+    check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
+    points = np.atleast_1d(np.asarray(at, dtype=float)) if len(at) else np.empty(0)
+    if not np.all((points >= 0.0) & (points <= beam.length)):
+        raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
+    longest = 1.0 / (STEPS_PER_PERIOD * frequency_hz) if step is None else step
+    check_number("step", longest, "seconds", above=0)
+    if duration / longest > 2e9:
+        raise InputError(f"step = {longest!r} takes more than 2e9 steps: lengthen the step or shorten the duration")
+    ramp, rest = _laid_out(duration, soft / frequency_hz, longest, samples - 1)
+    return Request(beam=beam, forces=forces, frequency_hz=frequency_hz, model=model, count=count, modes=modes,
+                   start=start, damping=zeta, slider=slider, points=points, ramp=ramp, rest=rest, accounts=ledger,
+                   before=before.end if before else None)  # fmt: skip
+
+
+def _laid_out(duration: float, growth: float, longest: float, samples: int) -> tuple[Steps | None, Steps | None]:
+    """Steps of the growth of the forces and of what follows, with the samples shared between them."""
+    if growth <= 0.0:
+        return None, cut(duration, longest, samples)
+    if growth >= duration:
+        raise InputError(f"soft_start_periods lasts {growth!r} s of duration = {duration!r} s: shorten it")
+    shared = min(max(round(samples * growth / duration), 1), max(samples - 1, 1))
+    return cut(growth, longest, shared), cut(duration - growth, longest, max(samples - shared, 1))
+
+
+def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling | None]:
+    """The stages of a run, the modes behind them where there are any, and how the slider is coupled."""
+    if request.start == "rest":
+        basis = basis_of(request.beam, request.model, request.count, request.modes, request.line)
+        check_no_resonance(basis, request.frequency_hz, request.damping)
+        stages = stages_from_rest(
+            basis, request.forces, request.omega, request.damping, request.ramp, request.rest, request.origin
+        )
+        return stages, basis, _coupling(request, stages[-1])
+    stage = _steady(request, None)
+    coupling = _coupling(request, stage)
+    if coupling is None or not coupling.two_way:
+        return [stage], None, coupling
+    basis = basis_of(request.beam, request.model, request.count, request.modes, request.line)
+    return [_steady(request, basis)], basis, coupling
+
+
+def _steady(request: Request, basis: TimeBasis | None) -> Stage:
+    from verify.waves import solve_by_model
+
+    if request.line == "raw":
+        raise InputError("slider.line = 'raw' is for a start from rest: its steady state is read through the spline")
+    if request.model != "analytic" and request.count is None:
+        raise InputError(f"count is missing: give the number of segments or elements for model = {request.model}")
+    settings = {} if request.beam.loss_factor or not request.damping else {"modal_damping": request.damping}
+    field = solve_by_model(request.model, request.beam, request.forces, request.frequency_hz, request.count, settings)
+    assert request.rest is not None
+    return steady_stage(field, request.rest, request.origin, basis, request.damping)
+
+
+def _coupling(request: Request, stage: Stage) -> Coupling | None:
+    if request.slider is None:
+        return None
+    x = np.array([request.slider.start_on(request.beam)])
+    slope = abs(stage.drive_shapes(x, 1))[:2]
+    speed = 0.5 * request.beam.thickness * request.omega * float(np.hypot(*slope[:, 0]))
+    return coupling_of(request.slider, request.beam, request.frequency_hz, speed)
+
+
+def margins_of(request: Request, stage: Stage) -> Margins:
+    """How far the run can be believed, from the steady part of its motion."""
+    from verify.validity import discretisation, model_form
+
+    x = np.linspace(0.0, request.beam.length, 400)
+    steady, slopes = stage.drive_shapes(x, 0)[:2], stage.drive_shapes(x, 1)[:2]
+    amplitude = float(np.hypot(*steady).max())
+    pressing = request.slider.normal_force / request.slider.mass if request.slider else 9.81
+    k = np.sqrt(request.omega / request.beam.wave_constant)
+    return Margins(
+        lift_off=request.omega**2 * amplitude / pressing,
+        nonlinearity=float((k * request.beam.length) ** 2 * 0.5 * (slopes**2).sum(axis=0).mean()),
+        model_form=model_form(request.beam, request.frequency_hz),
+        discretisation=discretisation(request.beam, request.model, request.count, request.frequency_hz),
+    )
+
+
+def _begin(request: Request, stage: Stage) -> Array:
+    """The free modes at the start, (2, n)."""
+    n = len(stage.modal.squares)
+    if request.before is None:
+        return stage.start(np.zeros(n), np.zeros(n)) if stage.forced else np.zeros((2, n))
+    if len(request.before.q) != n:
+        raise InputError(f"continue_from has {len(request.before.q)} modes and this run {n}: give both the same model")
+    return stage.start(request.before.q, request.before.rates)
+
+
+def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
+    notes = [f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"]
+    if request.damping:
+        notes.append(
+            f"damping: ratio {request.damping:g} of every mode, at a resonance the same as a loss factor twice it"
+        )
+    if request.ramp:
+        notes.append(f"forces grow over {request.ramp.n * request.ramp.dt:.6g} s")
+    return tuple(notes)
+
+
+def _closed_form(request: Request, stages: list[Stage], basis: TimeBasis | None, began: float) -> Motion:
+    """Nothing nonlinear: every sample is evaluated where it stands."""
+    ready = perf_counter()
+    z = start = _begin(request, stages[0])
+    parts = [stages[0].deflection(z, np.zeros(1), request.points)]
+    state = stages[0].state(z, 0.0)
+    for stage in stages:
+        z = stage.start(*state) if stage.forced else z
+        blocks = np.array_split(stage.sample_times, max(stage.n_steps // stage.every // CLOSED_FORM_ROWS, 1))
+        parts += [stage.deflection(z, block, request.points) for block in blocks]
+        state = stage.state(free_at(stage, z, stage.duration), stage.duration)
+    times = _times(request, stages)
+    wall = perf_counter() - ready
+    return Motion(
+        model=request.model, count=request.count, times=times, points=request.points,
+        deflection=np.concatenate(parts), slider=None, start=None, travelled=np.empty(0), speed=np.empty(0),
+        friction=np.empty(0),
+        surface_speed=np.empty(0), events=np.empty((0, 3)), coupling=None, margins=margins_of(request, stages[-1]),
+        ledger=_closed_ledger(request, stages, basis, start), notes=_notes(request, basis),
+        statistics=Statistics(steps=0, evaluations=len(times), step_s=0.0, set_up_s=ready - began, wall_s=wall,
+                              stopped="end"),
+        end=EndState(time=float(times[-1]), q=state[0], rates=state[1]),
+    )  # fmt: skip
+
+
+def _times(request: Request, stages: list[Stage]) -> Array:
+    """When the start and the samples of all stages stand, (n,), seconds."""
+    return np.concatenate([[request.origin], *(stage.origin + stage.sample_times for stage in stages)])
+
+
+def _closed_ledger(request: Request, stages: list[Stage], basis: TimeBasis | None, z: Array) -> Ledger | None:
+    """Without a slider the energy is asked for by stepping a ledger's quadrature; a steady beam has none to gain."""
+    if basis is None or not request.accounts or request.before is not None:
+        return None
+    from verify.energy import driven_ledger
+
+    return driven_ledger(stages, basis, z)
+
+
+def _with_slider(
+    request: Request, stages: list[Stage], basis: TimeBasis | None, coupling: Coupling, began: float,
+    progress: Callable[[float], None],
+) -> Motion:  # fmt: skip
+    slider = request.slider
+    assert slider is not None
+    before = request.before
+    start = before.position if before else slider.start_on(request.beam)
+    sliding = Sliding.fresh(start, sum(stage.n_steps // stage.every for stage in stages), request.points,
+                            law_entries(slider, request.beam), coupling.two_way,
+                            request.accounts and basis is not None)  # fmt: skip
+    sliding.motion[1:] = (before.speed, float(before.stuck)) if before else (slider.speed, 0.0)
+    z = _begin(request, stages[0])
+    energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
+    ready = perf_counter()
+    stopped, q, rates = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / request.n_steps))
+    wall = perf_counter() - ready - sliding.set_up_s
+    n = sliding.n_kept
+    first = sliding.first
+    ledger = _ledger(basis, sliding, energy, q, rates, coupling) if sliding.accounts else None
+    times = _times(request, stages)[: n + 1]
+    columns = np.concatenate([first[None, :4], sliding.kept[:n]])
+    return Motion(
+        model=request.model, count=request.count, times=times, points=request.points,
+        deflection=np.concatenate([sliding.first_deflection[None], sliding.deflections[:n]]), slider=slider,
+        start=start, travelled=columns[:, 0], speed=columns[:, 1], friction=slider.mass * columns[:, 2],
+        surface_speed=columns[:, 3],
+        events=sliding.events[: sliding.n_events], coupling=coupling, margins=margins_of(request, stages[-1]),
+        ledger=ledger, notes=_notes(request, basis),
+        statistics=Statistics(steps=sliding.steps, evaluations=2 * sliding.steps + 1, step_s=stages[-1].dt,
+                              set_up_s=ready - began + sliding.set_up_s, wall_s=wall, stopped=stopped),
+        end=EndState(time=_reached(stages, sliding.steps), q=q, rates=rates,
+                     position=start + float(sliding.motion[0]), speed=float(sliding.motion[1]),
+                     stuck=bool(sliding.motion[2] > 0.0)),
+    )  # fmt: skip
+
+
+def _reached(stages: list[Stage], steps: int) -> float:
+    """The time after so many steps, seconds."""
+    for stage in stages:
+        if steps <= stage.n_steps:
+            break
+        steps -= stage.n_steps
+    return stage.origin + steps * stage.dt
+
+
+def _beam_energy(basis: TimeBasis, q: Array, rates: Array) -> tuple[float, float]:
+    """(kinetic, elastic), joules."""
+    return 0.5 * float(rates @ rates), 0.5 * float((basis.omegas**2 * q) @ q)
+
+
+def _ledger(
+    basis: TimeBasis | None, sliding: Sliding, before: tuple[float, float], q: Array, rates: Array, coupling: Coupling
+) -> Ledger | None:
+    if basis is None:
+        return None
+    on_beam, on_slider, driven, damped, rubbed = (float(v) for v in sliding.ledger)
+    kinetic, elastic = _beam_energy(basis, q, rates)
+    gained = kinetic + elastic - sum(before)
+    charged = on_beam if coupling.two_way else 0.0
+    return Ledger(kinetic=kinetic, elastic=elastic, slider=on_slider, work_in=driven, damped=damped, rubbed=rubbed,
+                  contact_on_beam=on_beam, residual=driven + charged - damped - gained)  # fmt: skip

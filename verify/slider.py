@@ -1,0 +1,71 @@
+"""The slider as a scene or a script states it. Data, no numerics."""
+
+from typing import Literal
+
+import msgspec
+
+from verify.beam import Beam, check_number
+from verify.errors import InputError
+
+GRAVITY = 9.81
+
+
+class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A point mass that stays on the surface and is carried along by friction.
+
+    Friction is the paper's Eq. (3), F = -mu N tanh(K (v - v_beam)), or Coulomb's law with true sticking. N is
+    m g + preload. `v` is the slider's speed along the tangent. Raises InputError.
+    """
+
+    mass: float
+    """m_s, kg."""
+    mu: float
+    """Coefficient of (kinetic) friction."""
+    slope: float = 1e4
+    """K of Eq. (3), s/m."""
+    law: Literal["tanh", "coulomb"] = "tanh"
+    mu_static: float | None = None
+    """Of Coulomb's law at rest; as `mu` unless given."""
+    position: float | None = None
+    """Where it starts, metres from the left end; mid-span unless given."""
+    speed: float = 0.0
+    """Along +x at the start, m/s."""
+    preload: float = 0.0
+    """Newton pressing it on, beside its weight."""
+    gravity: float = GRAVITY
+    """m/s^2."""
+    coupling: Literal["auto", "one-way", "two-way"] = "auto"
+    """Whether the beam feels the slider; auto decides by size."""
+    line: Literal["spline", "raw"] = "spline"
+    """Contact line on a chain: the paper's C2 spline, or the links' own straight edges."""
+    kinematics: Literal["tangential", "following"] = "tangential"
+    """tangential: m dv/dt = F and dx/dt = v, as in the paper. following: the path of a point that follows the
+    surface exactly, with dx/dt = v - w' dw/dt and the inertia of the turning tangent."""
+
+    def __post_init__(self) -> None:
+        check_number("slider.mass", self.mass, "kg", above=0)
+        check_number("slider.mu", self.mu, "coefficient of friction", above=0)
+        check_number("slider.slope", self.slope, "s/m", above=0)
+        check_number("slider.speed", self.speed, "m/s")
+        check_number("slider.gravity", self.gravity, "m/s^2", at_least=0)
+        check_number("slider.preload", self.preload, "newton", at_least=0)
+        if self.mu_static is not None:
+            check_number("slider.mu_static", self.mu_static, "coefficient of friction", at_least=self.mu)
+        if self.position is not None:
+            check_number("slider.position", self.position, "metres")
+        if self.normal_force == 0.0:
+            raise InputError("slider.gravity = 0.0 without slider.preload presses on nothing: give one of the two")
+
+    @property
+    def normal_force(self) -> float:
+        """N, newton."""
+        return self.mass * self.gravity + self.preload
+
+    def start_on(self, beam: Beam) -> float:
+        """Where it starts, metres. Raises InputError off the beam."""
+        x = 0.5 * beam.length if self.position is None else self.position
+        if not 0.0 <= x <= beam.length:
+            raise InputError(
+                f"slider.position = {x!r} lies off the beam: give a position between 0 and {beam.length!r} m"
+            )
+        return x

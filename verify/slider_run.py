@@ -1,0 +1,158 @@
+"""The compiled loop, fed piece by piece: windows of polynomials around the slider, stages of the drive, stops."""
+
+from collections.abc import Callable, Sequence
+from time import perf_counter
+
+import msgspec
+import numpy as np
+
+from verify.beam import PointForce
+from verify.fields import phasor
+from verify.forcing import turns
+from verify.moving_surface import Stage
+from verify.time_basis import Array
+
+CHUNK = 20_000
+"""Steps between two looks at the keyboard."""
+REACH = 4
+"""Pieces of the beam kept ready on each side of the slider."""
+EVENTS = 20_000
+
+
+class Sliding(msgspec.Struct, eq=False, kw_only=True):
+    """What grows while a slider runs."""
+
+    start: float
+    """Where the slider was put, metres; the loop counts from here, so that nanometres keep their digits."""
+    motion: Array
+    """(3,): distance travelled, v, whether it sticks."""
+    law: Array
+    two_way: bool
+    points: Array
+    kept: Array
+    """(samples, 4): distance travelled, v, friction per mass, speed of the surface."""
+    deflections: Array
+    events: Array
+    accounts: bool
+    ledger: Array
+    first: Array
+    first_deflection: Array
+    steps: int = 0
+    n_kept: int = 0
+    n_events: int = 0
+    set_up_s: float = 0.0
+    """Wall time spent on tables, not on steps."""
+
+    @classmethod
+    def fresh(cls, start: float, samples: int, points: Array, law: Array, two_way: bool, accounts: bool) -> "Sliding":
+        """Room for a run."""
+        return cls(start=start, motion=np.zeros(3), law=law, two_way=two_way, points=points,
+                   kept=np.zeros((samples, 4)), deflections=np.zeros((samples, len(points))),
+                   events=np.zeros((EVENTS, 3)), accounts=accounts, ledger=np.zeros(5), first=np.zeros(4),
+                   first_deflection=np.zeros(len(points)))  # fmt: skip
+
+
+class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """The compiled loop's view of one stage."""
+
+    stage: Stage
+    modes: Array
+    """(9, n), see `contact_kernels.Z_RE`; advanced in place."""
+    drive: Array
+    loads: Array
+    forces: Array
+    points: Array
+
+    @property
+    def z(self) -> Array:
+        """The free modes now, (2, n)."""
+        return self.modes[:2].copy()
+
+
+def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) -> Feed:
+    """Arrays for one stage with free modes z."""
+    modes = np.zeros((9, z.shape[1]))
+    modes[0:2], modes[2], modes[3] = z, stage.modal.sigmas, stage.modal.omegas
+    modes[4:6], modes[6:8] = turns(stage.modal, 0.5 * stage.dt), turns(stage.modal, stage.dt)
+    amplitudes = np.array([phasor(f) for f in forces], dtype=complex)
+    places = np.array([f.position for f in forces])
+    return Feed(stage=stage, modes=modes, loads=np.ascontiguousarray(stage.rows(places).T),
+                drive=np.array([stage.omega, stage.origin, stage.unit_s, float(stage.ramped)]),
+                forces=np.array([amplitudes.real, amplitudes.imag]),
+                points=np.ascontiguousarray(stage.rows(points).T))  # fmt: skip
+
+
+Window = tuple[Array, Array]
+"""Polynomials of the pieces around the slider, (pieces, degree + 1, rows), and their edges, metres."""
+
+
+def window(stage: Stage, start: float, travelled: float) -> Window | None:
+    """The polynomials around start + travelled, their edges counted from start; None off the beam."""
+    x = start + travelled
+    pieces = len(stage.edges) - 1
+    if not stage.edges[0] <= x <= stage.edges[-1]:
+        return None
+    here = int(np.clip(np.searchsorted(stage.edges, x, side="right") - 1, 0, pieces - 1))
+    first, last = max(here - REACH, 0), min(here + REACH + 1, pieces)
+    return stage.table(first, last), stage.edges[first : last + 1] - start
+
+
+def look(fed: Feed, around: Window, sliding: Sliding) -> None:
+    """The first sample: the slider as it is put on, before any step."""
+    from verify import contact_kernels as kernels
+
+    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law)
+    sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed
+    if len(sliding.points):
+        sliding.first_deflection[:] = fed.stage.deflection(fed.z, np.zeros(1), sliding.points)[0]
+
+
+def run_stages(
+    stages: Sequence[Stage], z: Array, sliding: Sliding, forces: Sequence[PointForce], tell: Callable[[int], None],
+) -> tuple[str, Array, Array]:  # fmt: skip
+    """Run through all stages from free modes z; (why it stopped, q, dq/dt of the modes then).
+
+    `tell` hears the steps done.
+    """
+    stopped, state = "end", (np.empty(0), np.empty(0))
+    for i, stage in enumerate(stages):
+        began = perf_counter()
+        fed = feed(stage, z if i == 0 else stage.start(*state), forces, sliding.points)
+        around = window(stage, sliding.start, float(sliding.motion[0]))
+        assert around is not None
+        if i == 0:
+            look(fed, around, sliding)
+        sliding.set_up_s += perf_counter() - began
+        before = sliding.steps
+        try:
+            stopped = _run_stage(fed, around, sliding, tell)
+        except KeyboardInterrupt:
+            stopped = "interrupted"
+        state = stage.state(fed.z, (sliding.steps - before) * stage.dt)
+        if stopped != "end":
+            break
+    return stopped, *state
+
+
+def _run_stage(fed: Feed, around: Window, sliding: Sliding, tell: Callable[[int], None]) -> str:
+    """One stage in chunks; why it ended."""
+    from verify import contact_kernels as kernels
+
+    s, stage, number = sliding, fed.stage, 0
+    while number < stage.n_steps:
+        done, why, kept, events = kernels.slide(
+            min(CHUNK, stage.n_steps - number), number, stage.dt, fed.modes, fed.drive, *around, s.motion, s.law,
+            s.two_way, fed.loads, fed.forces, s.accounts, s.ledger, stage.every, s.kept[s.n_kept :], fed.points,
+            s.deflections[s.n_kept :], s.events[s.n_events :],
+        )  # fmt: skip
+        s.events[s.n_events : s.n_events + events, 0] += stage.origin
+        s.steps, s.n_kept, s.n_events, number = s.steps + done, s.n_kept + kept, s.n_events + events, number + done
+        tell(s.steps)
+        if why == kernels.NOT_FINITE:
+            return "diverged"
+        if why == kernels.OFF_PIECES:
+            fresh = window(stage, s.start, float(s.motion[0]))
+            if fresh is None:
+                return "left the beam"
+            around = fresh
+    return "end"

@@ -1,0 +1,50 @@
+"""What every model brings to time: its free modes, read along the beam, and how point forces load them."""
+
+from collections.abc import Callable
+from math import factorial
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.beam import Beam
+from verify.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """All modes that one model moves in, of unit modal mass (SI)."""
+
+    model: str
+    """analytic, fem or segment."""
+    count: int | None
+    """Segments or elements; None for the exact beam, whose modes are cut off."""
+    beam: Beam
+    omegas: Array
+    """(n,), rad/s, undamped."""
+    shapes: Callable[[Array, int], Array]
+    """(x, derivative) -> (n, len(x)), in 1/sqrt(kg) per metre^derivative; from the right where it jumps."""
+    loads: Callable[[float], Array]
+    """Position in metres -> (n,), the load of every mode under a unit transverse force there."""
+    edges: Array
+    """(pieces + 1,), metres: between them the shapes are polynomials of `degree`."""
+    degree: int
+    method: str
+    """Where the modes come from."""
+
+
+def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:
+    """Coefficients in xi = (x - edge) / length of pieces first..last-1, (pieces, degree + 1, rows)."""
+    starts, lengths = edges[first:last], np.diff(edges[first : last + 1])
+    parts = [shapes(starts, d) * lengths**d / factorial(d) for d in range(degree + 1)]
+    return np.ascontiguousarray(np.array(parts).transpose(2, 0, 1))
+
+
+def check_held(beam: Beam) -> None:
+    """Raise InputError for supports that let the beam drift away as a whole."""
+    if beam.rigid_motions:
+        raise InputError(
+            f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), which a driven beam "
+            "would drift off in: hold it at both ends, or clamp one"
+        )
