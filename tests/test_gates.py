@@ -289,7 +289,7 @@ def stiffness_without_its_loss(patch):
 
 
 def displacement_taken_for_force(patch):
-    patch.setattr(waves, "driven_field", lambda solve, drives, kind: solve(drives))
+    patch.setattr(waves, "driven_field", lambda solve, drives, frequency, kind: solve(drives, frequency))
 
 
 def near_field_forgotten(patch):

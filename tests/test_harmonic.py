@@ -11,8 +11,8 @@ from verify import analytic_modes, closed_forms, fem_beam, segment_model
 from verify.analytic_harmonic import pinned_shapes, spliced_shapes
 from verify.beam import SUPPORTS, PointForce
 from verify.chain import build_chain
-from verify.drives import driven_field
-from verify.errors import InputError
+from verify.drives import driven_field, held_units
+from verify.errors import InputError, ResonanceError
 from verify.fields import wavenumber
 from verify.point_loads import four_weights, joint_weights
 
@@ -256,12 +256,86 @@ def test_reciprocity_of_force_and_deflection(titanium_strip, model):
 def test_imposed_displacements_are_held(titanium_strip, model):
     given = () if model == "analytic" else (48,)
     solve = analytic_modes.solve_harmonic if model == "analytic" else SOLVERS[model]
-    field = driven_field(lambda forces: solve(titanium_strip, forces, 411.0, *given), FORCES, "displacement")
+    field = driven_field(lambda forces, f: solve(titanium_strip, forces, f, *given), FORCES, 411.0, "displacement")
     held = field.deflection([force.position for force in FORCES])
     assert held == pytest.approx([0.7, 1.3 * np.exp(1j * np.deg2rad(63.0))], rel=1e-9)
     twice = (FORCES[0], FORCES[0])
     with pytest.raises(InputError, match="cannot be imposed"):
-        driven_field(lambda forces: solve(titanium_strip, forces, 411.0, *given), twice, "displacement")
+        driven_field(lambda forces, f: solve(titanium_strip, forces, f, *given), twice, 411.0, "displacement")
+
+
+def held(model, beam, frequency, kind="displacement"):
+    """The field under imposed displacements."""
+    given = () if model == "analytic" else (48,)
+    solve = analytic_modes.solve_harmonic if model == "analytic" else SOLVERS[model]
+    return driven_field(lambda forces, f: solve(beam, forces, f, *given), FORCES, frequency, kind)
+
+
+@pytest.mark.parametrize("model", ["analytic", *SOLVERS])
+def test_a_resonance_under_forces_is_none_of_the_beam_held_at_its_actuators(titanium_strip, model):
+    """There the held field is as smooth as beside it: the mean of both sides, to the curvature over 1e-6."""
+    module = {"segment": segment_model, "fem": fem_beam}.get(model)
+    f = (
+        float(module.solve_modes(titanium_strip, 9, 48).frequencies_hz[8])
+        if module
+        else closed_forms.frequency_hz(titanium_strip, 9)
+    )
+    with pytest.raises(ResonanceError, match="mode 9"):
+        held(model, titanium_strip, f, "force")
+    here = held(model, titanium_strip, f)
+    sides = [held(model, titanium_strip, f * (1 + s * 1e-6)).deflection(X) for s in (1, -1)]
+    close(here.deflection(X), 0.5 * (sides[0] + sides[1]), 1e-8)
+    assert here.deflection([force.position for force in FORCES]) == pytest.approx(
+        [0.7, 1.3 * np.exp(1j * np.deg2rad(63.0))], rel=1e-8
+    )
+
+
+@pytest.mark.parametrize("model", ["analytic", *SOLVERS])
+def test_a_resonance_of_the_held_beam_is_refused(titanium_strip, model):
+    """Found from outside: where the determinant of the receptance changes sign."""
+    from scipy.optimize import brentq
+
+    given = () if model == "analytic" else (48,)
+    solve = analytic_modes.solve_harmonic if model == "analytic" else SOLVERS[model]
+    places = [force.position for force in FORCES]
+
+    def determinant(f):
+        fields = [solve(titanium_strip, [PointForce(position=p)], f, *given) for p in places]
+        return np.linalg.det(np.array([field.deflection(places).real for field in fields])) * 1e12
+
+    f = np.linspace(300.0, 420.0, 60)
+    values = np.array([determinant(g) for g in f])
+    zero = np.flatnonzero(
+        (values[:-1] * values[1:] < 0) & (abs(values[:-1]) + abs(values[1:]) < 4 * np.median(abs(values)))
+    )[0]
+    resonance = brentq(determinant, f[zero], f[zero + 1], xtol=1e-12, rtol=1e-14)
+    with pytest.raises(ResonanceError, match="resonance of the beam held at its actuators"):
+        held(model, titanium_strip, resonance)
+    assert np.isfinite(held(model, titanium_strip, resonance * (1 + 1e-6)).deflection(X)).all()
+    damped = replace(titanium_strip, loss_factor=1e-4)
+    assert np.isfinite(held(model, damped, resonance).deflection(X)).all()
+    assert np.isfinite(held(model, titanium_strip, resonance, "force").deflection(X)).all()
+
+    def units(frequencies, x):
+        module = {"analytic": analytic_modes, "segment": segment_model, "fem": fem_beam}[model]
+        return module.unit_responses(titanium_strip, places, frequencies, x, *given)
+
+    several = held_units(units, np.array(places), titanium_strip, np.array([resonance, 333.0]), X)
+    assert np.isnan(several[0]).all()
+    single = held(model, titanium_strip, 333.0).deflection(X)
+    close(0.7 * several[1, 0] + 1.3 * np.exp(1j * np.deg2rad(63.0)) * several[1, 1], single, 1e-8)
+
+
+def test_one_displacement_alone_is_held_too_and_refused_on_a_support(titanium_strip):
+    def solve(forces, f):
+        return analytic_modes.solve_harmonic(titanium_strip, forces, f)
+
+    one = (PointForce(position=0.3, amplitude=2.5e-6, phase_deg=41.0),)
+    assert driven_field(solve, one, 377.0, "displacement").deflection(0.3)[0] == pytest.approx(
+        2.5e-6 * np.exp(1j * np.deg2rad(41.0))
+    )
+    with pytest.raises(InputError, match="held end"):
+        driven_field(solve, (PointForce(position=0.73),), 377.0, "displacement")
 
 
 @pytest.mark.parametrize("model", SOLVERS)

@@ -1,6 +1,7 @@
 """The exact harmonic field of a uniform beam: what `analytic_modes.solve_harmonic` returns."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from math import pi, sqrt
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.closed_forms import check_uniform
 from verify.closed_forms import frequency_hz as mode_frequency_hz
+from verify.errors import ResonanceError
 from verify.fields import (
     RESONANCE,
     ComplexArray,
@@ -135,9 +137,13 @@ def _exponentials(k: complex, ends: Array, span: int, x: Array, derivative: int)
 
 
 def unit_responses(beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array) -> ComplexArray:
-    """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N."""
-    responses = [
-        [solve_harmonic(beam, [PointForce(position=p)], float(f)).deflection(x) for p in positions]
-        for f in frequencies_hz
-    ]
-    return np.array(responses)
+    """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
+
+    NaN at the frequencies of undamped resonances.
+    """
+    responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    for i, j in np.ndindex(*responses.shape[:2]):
+        with suppress(ResonanceError):
+            force = PointForce(position=positions[j])
+            responses[i, j] = solve_harmonic(beam, [force], float(frequencies_hz[i])).deflection(x)
+    return responses

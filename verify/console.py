@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Cell, Row
-    from verify.wave_study import MotorRow
+    from verify.wave_study import MotorRow, Operation
 
 
 def seconds_in_words(seconds: float | None) -> str:
@@ -134,50 +134,64 @@ def _bare_percent(value: float | None) -> str:
 def print_motor(rows: "tuple[MotorRow, ...]") -> None:
     """The motor's figures over sizes, at the drive's frequency and at each model's own best."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
-    pick = ("Hz", "SWR", "axis ratio", "mm/s")
-    for name in ("model", "N", *pick, *pick):
+    pick = ("SWR", "axis ratio", "mm/s")
+    for name in ("model", "N", *pick, "best Hz", *pick):
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
     for row in rows:
-        cells = [
-            text
-            for one in (row.drive, row.best)
-            for text in (f"{one.frequency_hz:.2f}", f"{one.standing_wave_ratio:.5f}", f"{one.axis_ratio:+.5f}",
-                         f"{1e3 * one.crest_speed:+.4f}")
-        ]  # fmt: skip
-        table.add_row(row.model, str(row.count or "–"), *cells)
+        best = (f"{row.best.frequency_hz:.2f}", *_operation(row.best)) if row.best else ("–",) * 4
+        table.add_row(row.model, str(row.count or "–"), *_operation(row.drive), *best)
     console = Console(highlight=False)
     console.print(table)
-    console.print("[dim]window [L/4, 3L/4]; left at the drive's frequency, right at the model's own best[/]")
+    console.print(f"[dim]window [L/4, 3L/4]; left at {rows[0].drive.frequency_hz:g} Hz, the drive's frequency, right "
+                  "at the model's own best[/]")  # fmt: skip
+    for row in rows:
+        if row.note:
+            console.print(Text(f"– {row.model}{f', N = {row.count}' if row.count else ''}: {row.note}", style="dim"))
+
+
+def _operation(one: "Operation") -> tuple[str, str, str]:
+    """SWR, axis ratio and crest speed, at most 8, 8 and 9 characters."""
+    ratio = one.standing_wave_ratio
+    return f"{ratio:.5f}" if ratio < 10 else f"{ratio:.4g}", f"{one.axis_ratio:+.5f}", f"{1e3 * one.crest_speed:+.5g}"
 
 
 def print_map(found: "DesignMap") -> None:
-    """A design map: its extremes, and a coarse look at the whole."""
+    """A design map: whose it is, its extremes, and a coarse look at the whole."""
     import numpy as np
 
     console = Console(highlight=False)
-    finite = np.where(np.isfinite(found.values), found.values, np.nan)
-    names = [axis.name for axis in found.axes]
-    for word, index in (("least", np.nanargmin(finite)), ("largest", np.nanargmax(finite))):
-        at = np.unravel_index(int(index), finite.shape)
-        place = ", ".join(f"{axis.name} = {axis.values[i]:g}" for axis, i in zip(found.axes, at, strict=True))
-        console.print(
-            f"{word} {found.quantity} = {finite[at]:.6g} {found.unit if found.unit != '1' else ''} at {place}"
-        )
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
-    table.add_column(names[0], justify="right", no_wrap=True)
-    rows = np.unique(np.linspace(0, len(found.axes[0].values) - 1, 13).round().astype(int))
-    width = len(found.axes[1].values) if len(names) == 2 else 1
-    columns = np.unique(np.linspace(0, width - 1, 7).round().astype(int))
-    grid = found.values.reshape(len(found.axes[0].values), width)
-    for j in columns:
-        head = f"{names[1]} {found.axes[1].values[j]:g}" if len(names) == 2 else found.quantity
-        table.add_column(head, justify="right", overflow="fold")
-    for i in rows:
-        table.add_row(f"{found.axes[0].values[i]:g}", *(f"{grid[i, j]:.4g}" for j in columns))
-    console.print(table)
+    console.print(Text(f"{found.quantity} of {found.of}"))
+    finite = np.isfinite(found.values)
+    for word, pick, other in (("least", np.argmin, np.inf), ("largest", np.argmax, -np.inf)):
+        if finite.any():
+            at = np.unravel_index(int(pick(np.where(finite, found.values, other))), finite.shape)
+            place = ", ".join(f"{axis.name} = {axis.values[i]:g}" for axis, i in zip(found.axes, at, strict=True))
+            unit = f" {found.unit}" if found.unit != "1" else ""
+            console.print(f"{word} {found.quantity} = {found.values[at]:.6g}{unit} at {place}")
+    if not finite.any():
+        console.print("no point has a finite figure")
+    console.print(_map_table(found))
     console.print(f"[dim]{finite.size} points, {found.method}; --json and --csv give them all[/]")
     for reason in found.reasons:
         console.print(Text(f"– {reason}", style="dim"))
+
+
+def _map_table(found: "DesignMap") -> Table:
+    """At most 13 by 7 of a map's values."""
+    import numpy as np
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
+    first, *second = found.axes
+    table.add_column(first.name, justify="right", no_wrap=True)
+    grid = found.values.reshape(len(first.values), -1)
+    few = ((grid.shape[0], 13), (grid.shape[1], 7))
+    rows, columns = (np.unique(np.linspace(0, n - 1, most).round().astype(int)) for n, most in few)
+    for j in columns:
+        head = f"{second[0].name} {second[0].values[j]:g}" if second else found.quantity
+        table.add_column(head, justify="right", overflow="fold")
+    for i in rows:
+        table.add_row(f"{first.values[i]:g}", *("–" if np.isnan(v) else f"{v:.4g}" for v in grid[i, columns]))
+    return table
 
 
 def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]") -> None:

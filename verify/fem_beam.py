@@ -294,8 +294,8 @@ def unit_responses(
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
-    All modes of the mesh are solved once and summed exactly for every frequency. Raises InputError for meshes
-    beyond the dense size.
+    All modes of the mesh are solved once and summed exactly for every frequency. NaN at the frequencies of
+    undamped resonances. Raises InputError for meshes beyond the dense size.
     """
     check(beam, 1, n_elements)
     parts, free = divide(beam, n_elements), free_unknowns(beam.supports, n_elements)

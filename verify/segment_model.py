@@ -214,7 +214,8 @@ def unit_responses(
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
     All modes of the chain are solved once and summed exactly for every frequency. Load and reading are the
-    defaults of `solve_harmonic`. Raises InputError for chains beyond the dense size.
+    defaults of `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError for chains
+    beyond the dense size.
     """
     check(beam, 1, n_segments)
     chain = build_chain(beam, n_segments)
