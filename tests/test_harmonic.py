@@ -8,7 +8,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify import analytic_modes, closed_forms, fem_beam, segment_model
-from verify.analytic_harmonic import pinned_shapes, spliced_shapes
+from verify.analytic_harmonic import pinned_shapes, slow_shapes, spliced_shapes
 from verify.beam import SUPPORTS, PointForce
 from verify.chain import build_chain
 from verify.drives import driven_field, held_units
@@ -38,6 +38,49 @@ def test_the_closed_form_and_the_spliced_exponentials_are_one_field(titanium_str
         inside = X if derivative < 3 else X[X != 0.083]  # the shear force jumps at a force
         one, other = (make(beam, FORCES, k)(inside, derivative) for make in (pinned_shapes, spliced_shapes))
         close(one, other, 3e-12)
+
+
+@pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)
+def test_power_series_and_exponentials_are_one_field_where_they_meet(titanium_strip, supports):
+    """Just below |k| L = 1, where the exponentials have lost only two digits and the series none."""
+    beam = replace(titanium_strip, supports=supports, loss_factor=0.01)
+    k = 0.97 / 0.73 * (1 + 0.01j) ** -0.25
+    for derivative in range(4):
+        inside = X if derivative < 3 else X[X != 0.083]
+        close(
+            slow_shapes(beam, FORCES, k)(inside, derivative), spliced_shapes(beam, FORCES, k)(inside, derivative), 2e-12
+        )
+
+
+@pytest.mark.parametrize("frequency", [1e-300, 1e-12, 1e-6, 1e-4])
+def test_a_slow_force_bends_a_held_beam_as_a_dead_load_does(titanium_strip, frequency):
+    """Textbook deflections; the inertia left out is (f / f_1)^2, below 1e-8 here."""
+    ei, force, x = (
+        titanium_strip.bending_stiffness,
+        PointForce(position=0.311, amplitude=1.7),
+        np.array([0.05, 0.29, 0.6]),
+    )
+    a, b = np.minimum(x, 0.311), 0.73 - np.maximum(x, 0.311)
+    pinned = 1.7 * a * b * (0.73**2 - a**2 - b**2) / (6 * 0.73 * ei)
+    close(analytic_modes.solve_harmonic(titanium_strip, [force], frequency).deflection(x), pinned, 1e-8)
+    cantilever = replace(titanium_strip, supports=("clamped", "free"))
+    tip = 1.7 * a**2 * (3 * np.maximum(x, 0.311) - a) / (6 * ei)
+    close(analytic_modes.solve_harmonic(cantilever, [force], frequency).deflection(x), tip, 1e-8)
+
+
+def test_a_slow_force_drives_a_free_beam_as_a_rigid_body(titanium_strip):
+    free = replace(titanium_strip, supports=("free", "free"))
+    mass, omega = free.mass_per_length * 0.73, 2 * np.pi * 1e-5
+    x, lever = np.array([0.0, 0.4, 0.73]), 0.611 - 0.365
+    rigid = -2.3 / omega**2 * (1 / mass + lever * (x - 0.365) / (mass * 0.73**2 / 12))
+    close(
+        analytic_modes.solve_harmonic(free, [PointForce(position=0.611, amplitude=2.3)], 1e-5).deflection(x),
+        rigid,
+        1e-9,
+    )
+    for supports in (("free", "free"), ("pinned", "free"), ("guided", "guided")):
+        with pytest.raises(InputError, match="moves beyond floating point, give a higher frequency_hz"):
+            analytic_modes.solve_harmonic(replace(free, supports=supports), FORCES, 1e-160)
 
 
 def test_the_closed_form_is_the_modal_sum_without_its_truncation(titanium_strip):
