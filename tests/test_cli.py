@@ -132,6 +132,16 @@ def test_plan_names_what_runs_what_is_skipped_and_what_cannot_work(verify):
     assert "gate exact-mode-22" in data["closed_forms"]
 
 
+def test_plan_counts_a_wave_study_and_its_gates_as_harmonic(verify):
+    data = json.loads(verify("plan", "paper-wave", "--json")[1])
+    assert data["closed_forms"] == []
+    assert any(who.startswith("wave (harmonic fields of segments and elements at N = 49") for who in data["harmonic"])
+    left_out = {skipped["what"] for skipped in data["skipped"]}
+    assert not left_out & {"numpy, scipy, scikit-fem", "scikit-fem", "harmonic response"}
+    bare = json.loads(verify("plan", "free-free-bar", "--json")[1])
+    assert {"harmonic response", "wave study"} <= {skipped["what"] for skipped in bare["skipped"]}
+
+
 def test_plan_of_a_size_that_does_not_fit_says_so_without_allocating(verify):
     status, out, _ = verify("plan", "paper", "--set", "spectrum.count=10000000000000")
     assert status == 0
@@ -211,7 +221,36 @@ def test_a_sweep_is_a_map_in_every_layout(verify):
     rows = list(csv.DictReader(io.StringIO(verify(*words, "--csv")[1])))
     assert len(rows) == 15
     assert float(rows[4]["wave.standing_wave_ratio"]) == data["values"][1][1]
-    assert "least wave.standing_wave_ratio" in verify(*words)[1]
+    out = verify(*words)[1]
+    assert out.startswith("wave.standing_wave_ratio of 49 segments, scene paper")
+    assert "least wave.standing_wave_ratio" in out
+
+
+@pytest.mark.parametrize(
+    ("sweep", "said"),
+    [
+        (("phase_deg=0:0:3",), "no point has a finite figure"),
+        (("phase_deg=0:90:2",), "least wave.standing_wave_ratio = 1.05636 at phase_deg = 90"),
+        (("count=20:49:2", "model=segment"), "1 of 2 points have no figure: count = 20"),
+    ],
+)
+def test_maps_of_standing_waves_and_gaps_are_drawn(verify, sweep, said):
+    status, out, err = verify("table", "paper", "--sweep", *sweep)
+    assert (status, err) == (0, "")
+    assert said in " ".join(out.split())
+
+
+def test_a_map_under_one_force_is_drawn_or_refused(verify, tmp_path):
+    (tmp_path / "one.toml").write_text(
+        'name = "one"\n[beam]\nlength = 0.5\nwidth = 0.02\nthickness = 0.001\nyoungs_modulus = 70e9\ndensity = 2700.0\n'
+        "[drive]\nfrequency_hz = 4276.0\nforce = [{ position = 0.0116 }]\n"
+    )
+    status, out, _ = verify("table", "one.toml", "--sweep", "frequency_hz=4000:4100:3")
+    assert status == 0
+    assert "no point has a finite figure" in out  # undamped, one force makes a standing wave
+    status, _, err = verify("table", "one.toml", "--sweep", "phase_deg=0:90:3")
+    assert status == 2
+    assert "the scene has 1" in err
 
 
 def test_a_standing_wave_in_a_sweep_is_empty_in_json_not_a_number_json_cannot_hold(verify):

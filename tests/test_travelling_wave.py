@@ -448,12 +448,32 @@ def test_imposed_displacements_have_operating_points():
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["frequency=1:2:3", "frequency_hz=1:2", "frequency_hz=a:b:c", "frequency_hz=1:2:0", "count=-3:9:2", "frequency_hz"],
+    ("text", "message"),
+    [
+        ("frequency=1:2:3", "did you mean 'frequency_hz'"),
+        ("frequency_hz=1:2", "for instance frequency_hz=4000:4600:241"),
+        ("frequency_hz=a:b:c", "start:end:steps"),
+        ("frequency_hz=1:2:0", "from 1 to 10000 steps"),
+        ("frequency_hz=1:2:1000000000000", "from 1 to 10000 steps"),
+        ("frequency_hz=0:100:3", "above 0"),
+        ("frequency_hz", "start:end:steps"),
+        ("count=-3:9:2", "from 1, for instance count=49:98:50"),
+        ("loss_factor=-0.1:0.1:3", "not negative, for instance loss_factor=0:0.01:11"),
+        ("position=0:nan:3", "not negative, for instance position=0.005:0.03:26"),
+        ("phase_deg=0:inf:3", "finite, for instance phase_deg=0:180:121"),
+        ("phase_deg=0:90", "for instance phase_deg=0:180:121"),
+    ],
 )
-def test_sweeps_that_cannot_be_are_refused(text):
-    with pytest.raises(InputError, match="--sweep"):
+def test_sweeps_that_cannot_be_are_refused(text, message):
+    with pytest.raises(InputError, match=message) as caught:
         parse_axis(text)
+    assert str(caught.value).startswith("--sweep ")
+
+
+def test_a_map_of_too_many_points_is_refused_before_it_is_allocated():
+    axes = (parse_axis("frequency_hz=4000:4600:10000"), parse_axis("phase_deg=0:180:10000"))
+    with pytest.raises(InputError, match="span 100000000 points, give at most 4000000"):
+        design_map("wave.reflection", {}, axes, PAPER, Workbench(BEAM))
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ resonance, a mesh too coarse for the wave, a field that is zero) is a gap.
 
 from collections.abc import Callable
 from itertools import product
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -23,7 +24,11 @@ if TYPE_CHECKING:
     from verify.scene import Scene
     from verify.workbench import Workbench
 
-AXES = ("frequency_hz", "phase_deg", "position", "loss_factor", "count")
+AXES = {"frequency_hz": "4000:4600:241", "phase_deg": "0:180:121", "position": "0.005:0.03:26",
+        "loss_factor": "0:0.01:11", "count": "49:98:50"}  # fmt: skip
+"""What a map can run over, each with an example."""
+MOST_STEPS, MOST_POINTS = 10_000, 4_000_000
+"""Of an axis, and of a map: 64 MB of figures."""
 
 
 class Axis(msgspec.Struct, frozen=True):
@@ -53,14 +58,21 @@ def parse_axis(text: str) -> Axis:
     """'frequency_hz=4000:4600:241' as an axis. Raises InputError."""
     name, _, span = text.partition("=")
     if name not in AXES:
-        raise InputError(f"--sweep {text!r}: {name!r} is no axis, {near_name(name, AXES)}")
+        raise InputError(f"--sweep {text!r}: {name!r} is no axis, {near_name(name, tuple(AXES))}")
     try:
         start, end, steps = span.split(":")
-        values = np.linspace(float(start), float(end), int(steps))
+        ends, n = (float(start), float(end)), int(steps)
     except ValueError:
-        raise InputError(f"--sweep {text!r}: write axis=start:end:steps, for instance {name}=4000:4600:241") from None
-    if not np.isfinite(values).all() or len(values) < 1 or (name != "phase_deg" and (values < 0).any()):
-        raise InputError(f"--sweep {text!r}: give finite values that are not negative and at least one step")
+        raise InputError(f"--sweep {text!r}: write axis=start:end:steps, for instance {name}={AXES[name]}") from None
+    if not 1 <= n <= MOST_STEPS:
+        raise InputError(f"--sweep {text!r}: give from 1 to {MOST_STEPS} steps, for instance {name}={AXES[name]}")
+    lowest = {"phase_deg": -np.inf, "frequency_hz": np.nextafter(0.0, 1.0), "count": 1.0}.get(name, 0.0)
+    if not (np.isfinite(ends).all() and min(ends) >= lowest):
+        words = {"phase_deg": "finite", "frequency_hz": "above 0", "count": "from 1"}.get(
+            name, "finite and not negative"
+        )
+        raise InputError(f"--sweep {text!r}: start and end have to be {words}, for instance {name}={AXES[name]}")
+    values = np.linspace(*ends, n)
     if name == "count":
         values = np.unique(np.round(values))
     return Axis(name, tuple(float(v) for v in values))
@@ -81,6 +93,9 @@ def design_map(
     found = named(quantity)
     if not quantity.startswith("wave.") or not 1 <= len(axes) <= 2 or len({a.name for a in axes}) != len(axes):
         raise InputError(f"quantity = {quantity!r}: a map takes a wave quantity and one or two different --sweep axes")
+    n_points = prod(len(axis.values) for axis in axes)
+    if n_points > MOST_POINTS:
+        raise InputError(f"--sweep: the axes span {n_points} points, give at most {MOST_POINTS}")
     first = {axis.name: int(v) if axis.name == "count" else v for axis in axes for v in axis.values[:1]}
     asked = arguments_of(found, arguments | first)
     if quantity in FAST and {a.name for a in axes} <= {"frequency_hz", "phase_deg"} and _superposes(asked, scene):
