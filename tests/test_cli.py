@@ -271,7 +271,23 @@ def test_the_motors_figures_over_sizes(verify):
     assert rows[1]["drive_standing_wave_ratio"] == pytest.approx(1.20599, abs=1e-5)
     assert rows[1]["best_frequency_hz"] == pytest.approx(4252.73, abs=0.05)
     assert rows[1]["best_standing_wave_ratio"] < 1.001
-    assert "segment" in verify("table", "paper", "--wave", "--counts", "49")[1]
+    assert rows[1]["notes"] == []
+
+
+def test_the_motors_table_fits_into_eighty_columns_with_every_figure_whole(verify, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    out = verify("table", "paper", "--wave", "--counts", "49,10000")[1]
+    assert max(map(len, out.splitlines())) <= 80
+    assert "…" not in out
+    for word in ("1.20599", "-0.06793", "-3.1863", "4252.73", "10000", "best Hz", "axis ratio"):
+        assert word in out, word
+    out = verify("table", "paper", "--wave", "--counts", "30")[1]
+    assert "– segment, N = 30: the reflection still falls at the edge of the search, 4340.14" in out
+    rows = json.loads(
+        verify("table", "paper", "--wave", "--counts", "49", "--set", "drive.force.1.phase_deg=0", "--json")[1]
+    )
+    assert rows[1]["best_frequency_hz"] is None
+    assert "the wave stands at every frequency" in rows[1]["notes"][0]
 
 
 def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
