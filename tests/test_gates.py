@@ -566,6 +566,21 @@ def test_a_gate_without_a_reason_is_refused():
         checked({"id": "g", "quantity": "mode.frequency", "expect": 1.0, "within": 1.0, "why": ""}, Gate)
 
 
+def test_no_sentence_speaks_of_null_or_of_a_class():
+    """Neither in the refusal of an argument nor in the list of quantities."""
+    from verify.quantities import arguments_of, described, quantity
+
+    for name in QUANTITIES:
+        for key in ("count", "counts", "model", "mode", "x", "window", "error"):
+            for value in (5, "five", [5], -1):
+                try:
+                    arguments_of(quantity(name), {key: value})
+                except InputError as error:
+                    assert "null" not in str(error), str(error)
+                    assert "<class" not in str(error), str(error)
+    assert "<class" not in str(described())
+
+
 def test_expectations_read_as_sentences():
     def words(**band):
         return expectation(Gate(id="g", quantity="q", why="test", **band))

@@ -409,6 +409,17 @@ def test_a_map_without_any_figure_is_refused_with_the_reason(name):
         design_map(name, {"model": "segment", "count": 25}, (parse_axis("frequency_hz=4276:4300:2"),), PAPER, bench)
 
 
+@pytest.mark.parametrize("name", ["wave.signed_area_spread", "wave.power_imbalance"])
+def test_what_relates_to_the_flux_of_a_standing_wave_is_refused(name):
+    found = quantity(name)
+    with pytest.raises(InputError, match="the wave stands"):
+        evaluate(found, arguments_of(found, {"phase_deg": 0.0}), PAPER, Workbench(BEAM))
+    axes = (Axis("phase_deg", (0.0, 60.0)),)
+    walked = design_map(name, {}, axes, PAPER, Workbench(BEAM))
+    assert np.isnan(walked.values).tolist() == [True, False]
+    assert "1 of 2 points have no figure: the wave stands" in walked.reasons[0]
+
+
 def test_a_walked_map_counts_the_fields_it_solved():
     bench = Workbench(BEAM)
     design_map("wave.axis_ratio", {"x": 0.25}, (parse_axis("loss_factor=0:0.01:3"),), PAPER, bench)

@@ -29,6 +29,10 @@ class ZeroFieldError(NoFigureError):
     """Nothing moves, so there is no wave to measure."""
 
 
+class StandingError(NoFigureError):
+    """A standing wave carries nothing, so that nothing can be related to what it carries."""
+
+
 class WindowError(NoFigureError):
     """A window in which the waves cannot be told apart."""
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.closed_forms import check_uniform
-from verify.errors import InputError, WindowError, ZeroFieldError
+from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
 from verify.fields import Array, ComplexArray, HarmonicField, phasor, unit_response, wavenumber
 from verify.search import least_over
 
@@ -61,6 +61,14 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         gamma = self.reflection
         return (1.0 + gamma) / (1.0 - gamma) if gamma < 1.0 - STANDING else float("inf")
 
+    def check_travelling(self) -> None:
+        """Raise StandingError where the wave stands: flux and signed area are then zero but for rounding."""
+        if self.reflection >= 1.0 - STANDING:
+            raise StandingError(
+                "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
+                "phase_deg"
+            )
+
 
 class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """What kind of wave a field carries in a window, and what the surface does there."""
@@ -99,7 +107,11 @@ class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def signed_area_spread(self) -> float:
-        """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends."""
+        """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends.
+
+        Raises StandingError where the wave stands.
+        """
+        self.waves.check_travelling()
         return float(np.ptp(self.signed_area) / abs(self.signed_area.mean()))
 
     @property

@@ -100,7 +100,11 @@ def own_wavenumber(field: HarmonicField) -> complex:
 
 
 def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
-    """(input of the forces left of the window - losses up to its middle - flux through it) over that flux."""
+    """(input of the forces left of the window - losses up to its middle - flux through it) over that flux.
+
+    Raises StandingError where the wave stands.
+    """
+    wave.waves.check_travelling()
     middle = 0.5 * sum(wave.window)
     left = [force for force in field.forces if force.position <= wave.window[0]]
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
