@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import subprocess
 import sys
 
@@ -299,6 +300,9 @@ def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
     assert (status, (tmp_path / "my.toml").read_text("utf-8")) == (2, "mine")
     assert "--force" in err
     assert verify("init", "my.toml", "--force")[0] == 0
+    data = json.loads(verify("init", "other.toml", "--json")[1])
+    assert data == {"path": "other.toml", "next": ["verify", "run", "other.toml"]}
+    assert (tmp_path / "other.toml").exists()
 
 
 BAD = [
@@ -416,6 +420,66 @@ def test_a_write_that_fails_midway_keeps_the_old_file(tmp_path, monkeypatch):
         write_whole(target, "new")
     assert [p.name for p in tmp_path.iterdir()] == ["r.html"]
     assert target.read_text() == "old"
+
+
+def test_an_interrupt_during_the_first_import_is_answered_too():
+    """Deterministic: the import of click is what is interrupted."""
+    code = (
+        "import sys, runpy\n"
+        "class Interrupt:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name == 'click':\n"
+        "            raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Interrupt())\n"
+        "runpy.run_module('verify', run_name='__main__')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "verify: interrupted; nothing half-written is left\n"
+
+
+def test_the_installed_command_is_the_module():
+    from importlib.metadata import entry_points
+
+    (command,) = [e for e in entry_points(group="console_scripts") if e.name == "verify"]
+    assert command.value == "verify.__main__:main"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("table", "paper", "--counts", "30,40"), ("table", "paper", "--wave", "--counts", "49"), ("quantities",),
+     ("table", "paper", "--sweep", "frequency_hz=4000:4600:241", "--csv"), ("plan", "paper")],
+    ids=" ".join,
+)  # fmt: skip
+def test_a_reader_that_leaves_ends_the_command_without_a_word(words):
+    """The reader has gone before the first line is written."""
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-m", "verify", *words], stdout=write, stderr=subprocess.PIPE, text=True, check=False
+    )
+    os.close(write)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize(
+    "words", [("table", "paper", "--counts", "30,40"), ("plan", "steel-cantilever"), ("choose", "--mode", "3", "--error", "1%")],
+    ids=" ".join,
+)  # fmt: skip
+def test_a_terminal_that_knows_ascii_alone_is_written_to(words):
+    done = subprocess.run(
+        [sys.executable, "-m", "verify", *words], capture_output=True, check=False,
+        env=os.environ | {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.isascii()
+
+
+def test_a_spectrum_that_does_not_fit_into_memory_is_refused_not_left_empty(verify, tmp_path):
+    status, out, err = verify("run", "paper", "--set", "spectrum.count=10000000000000")
+    assert (status, out) == (2, "")
+    assert "GiB" in err
+    assert not list(tmp_path.rglob("*.html"))
 
 
 def test_the_module_runs_as_a_program():

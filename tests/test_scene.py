@@ -119,6 +119,18 @@ def test_a_broken_scene_is_one_sentence(tmp_path, text, message):
         scene_of(tmp_path, text)
 
 
+def test_a_byte_order_mark_is_no_part_of_a_scene(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"' + BEAM, encoding="utf-8-sig")
+    assert load_scene(path).name == "s"
+
+
+@pytest.mark.parametrize("overrides", ["beam.length=0.4", 3, (3,), None, {"beam.length": 0.4}])
+def test_overrides_that_are_no_list_of_words_are_one_sentence(overrides):
+    with pytest.raises(InputError, match="give a list of 'key=value' words"):
+        load_scene("paper", overrides)
+
+
 def test_files_that_cannot_be_read_are_one_sentence(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path, tmp_path / "no" / "folder.toml"):
         with pytest.raises(InputError, match="cannot be read"):

@@ -21,6 +21,17 @@ if TYPE_CHECKING:
     from verify.wave_study import MotorRow, Operation
 
 
+class Terminal(Console):
+    """Standard output without highlighting of numbers."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(highlight=False, **settings)
+
+    def on_broken_pipe(self) -> None:
+        """Leave it to the command line, which ends without a word."""
+        raise BrokenPipeError
+
+
 def seconds_in_words(seconds: float | None) -> str:
     """A duration with a unit that suits it."""
     if seconds is None:
@@ -52,7 +63,7 @@ def figure(value: Any) -> str:
 
 def print_run(result: "RunResult", report: Path | None) -> None:
     """Verdict, gates, where the report lies."""
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
     if result.gates:
         console.print(_gate_table(result.gates))
@@ -89,7 +100,7 @@ def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
 
 def print_table(rows: "tuple[Row, ...]") -> None:
     """The convergence table, one block for each mode."""
-    console = Console(highlight=False)
+    console = Terminal()
     for mode, group in groupby(rows, key=lambda row: row.mode):
         block = list(group)
         console.print(f"[bold]mode {mode}[/]  exact {block[0].exact_hz:.4f} Hz")
@@ -140,7 +151,7 @@ def print_motor(rows: "tuple[MotorRow, ...]") -> None:
     for row in rows:
         best = (f"{row.best.frequency_hz:.2f}", *_operation(row.best)) if row.best else ("–",) * 4
         table.add_row(row.model, str(row.count or "–"), *_operation(row.drive), *best)
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(table)
     console.print(f"[dim]window [L/4, 3L/4]; left at {rows[0].drive.frequency_hz:g} Hz, the drive's frequency, right "
                   "at the model's own best[/]")  # fmt: skip
@@ -159,7 +170,7 @@ def print_map(found: "DesignMap") -> None:
     """A design map: whose it is, its extremes, and a coarse look at the whole."""
     import numpy as np
 
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(Text(f"{found.quantity} of {found.of}"))
     finite = np.isfinite(found.values)
     for word, pick, other in (("least", np.argmin, np.inf), ("largest", np.argmax, -np.inf)):
@@ -196,7 +207,7 @@ def _map_table(found: "DesignMap") -> Table:
 
 def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]") -> None:
     """What `verify choose` found, and which of the models costs less."""
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact_hz:.4f} Hz takes")
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_header=True)
     for name in ("model", "N", "unknowns", "error", "error law", "time"):
@@ -211,7 +222,7 @@ def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choic
 
 def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(f"[bold]{plan.scene}[/] will run")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for name in ("model", "N", "modes", "unknowns"):
