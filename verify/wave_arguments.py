@@ -86,7 +86,7 @@ class WaveOrder(InWindow, frozen=True, kw_only=True):
 
     model: Annotated[Literal["fem", "segment"], Meta(description="which discrete model")]
     counts: Sizes
-    count: Size | None = None
+    count: Annotated[int, Meta(ge=1, description="refused here: give counts")] | None = None
     of: Annotated[
         Literal["standing_wave_ratio", "axis_ratio", "deflection"],
         Meta(description="whose error; deflection at x, the middle of the window"),

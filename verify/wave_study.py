@@ -61,8 +61,6 @@ class WaveStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     ellipses: tuple[Ellipse, ...]
     """Of the exact field."""
     map: DesignMap
-    map_model: str
-    """Whose map and operating points: '49 segments'."""
     points: tuple[OperatingPoint, ...]
     notes: tuple[str, ...]
     """Why an operating point is missing."""
@@ -134,7 +132,6 @@ def wave_study(
         rows=rows, x=tuple(x.tolist()), count=asked.count, undamped=not scene.beam.loss_factor,
         envelopes={name: tuple(abs(field.deflection(x)).tolist()) for name, field in fields.items()},
         ellipses=_ellipses(scene.beam, fields["analytic"]), map=design_map(asked.quantity, chosen, axes, scene, bench),
-        map_model={"segment": f"{count} segments", "fem": f"{count} elements"}.get(model, "exact beam"),
         points=points, notes=tuple(str(problem) for problem in problems), operating_loss_factor=eta,
         pure_phase=_pure_along_a_phase(scene), first_phase_deg=scene.forces[0].phase_deg, other_drive=across,
     )  # fmt: skip

@@ -75,7 +75,7 @@ def _map(study: "WaveStudy") -> dict[str, Any]:
                      "y": [point.phase_deg], "marker": {"symbol": symbol, "size": 13, "color": "#ff5a36",
                      "line": {"color": "#ffffff", "width": 1.5}}})  # fmt: skip
     return chart(
-        "wave-map", f"{name} over frequency and phase, {study.map_model}",
+        "wave-map", f"{name} over frequency and phase, {study.map.of}",
         _map_caption(study), data, axes("frequency, Hz", "phase of the second force relative to the first, degrees"),
     )  # fmt: skip
 
