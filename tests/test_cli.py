@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import subprocess
 import sys
 
@@ -132,6 +133,16 @@ def test_plan_names_what_runs_what_is_skipped_and_what_cannot_work(verify):
     assert "gate exact-mode-22" in data["closed_forms"]
 
 
+def test_plan_counts_a_wave_study_and_its_gates_as_harmonic(verify):
+    data = json.loads(verify("plan", "paper-wave", "--json")[1])
+    assert data["closed_forms"] == []
+    assert any(who.startswith("wave (harmonic fields of segments and elements at N = 49") for who in data["harmonic"])
+    left_out = {skipped["what"] for skipped in data["skipped"]}
+    assert not left_out & {"numpy, scipy, scikit-fem", "scikit-fem", "harmonic response"}
+    bare = json.loads(verify("plan", "free-free-bar", "--json")[1])
+    assert {"harmonic response", "wave study"} <= {skipped["what"] for skipped in bare["skipped"]}
+
+
 def test_plan_of_a_size_that_does_not_fit_says_so_without_allocating(verify):
     status, out, _ = verify("plan", "paper", "--set", "spectrum.count=10000000000000")
     assert status == 0
@@ -211,7 +222,36 @@ def test_a_sweep_is_a_map_in_every_layout(verify):
     rows = list(csv.DictReader(io.StringIO(verify(*words, "--csv")[1])))
     assert len(rows) == 15
     assert float(rows[4]["wave.standing_wave_ratio"]) == data["values"][1][1]
-    assert "least wave.standing_wave_ratio" in verify(*words)[1]
+    out = verify(*words)[1]
+    assert out.startswith("wave.standing_wave_ratio of 49 segments, scene paper")
+    assert "least wave.standing_wave_ratio" in out
+
+
+@pytest.mark.parametrize(
+    ("sweep", "said"),
+    [
+        (("phase_deg=0:0:3",), "no point has a finite figure"),
+        (("phase_deg=0:90:2",), "least wave.standing_wave_ratio = 1.05636 at phase_deg = 90"),
+        (("count=20:49:2", "model=segment"), "1 of 2 points have no figure: count = 20"),
+    ],
+)
+def test_maps_of_standing_waves_and_gaps_are_drawn(verify, sweep, said):
+    status, out, err = verify("table", "paper", "--sweep", *sweep)
+    assert (status, err) == (0, "")
+    assert said in " ".join(out.split())
+
+
+def test_a_map_under_one_force_is_drawn_or_refused(verify, tmp_path):
+    (tmp_path / "one.toml").write_text(
+        'name = "one"\n[beam]\nlength = 0.5\nwidth = 0.02\nthickness = 0.001\nyoungs_modulus = 70e9\ndensity = 2700.0\n'
+        "[drive]\nfrequency_hz = 4276.0\nforce = [{ position = 0.0116 }]\n"
+    )
+    status, out, _ = verify("table", "one.toml", "--sweep", "frequency_hz=4000:4100:3")
+    assert status == 0
+    assert "no point has a finite figure" in out  # undamped, one force makes a standing wave
+    status, _, err = verify("table", "one.toml", "--sweep", "phase_deg=0:90:3")
+    assert status == 2
+    assert "the scene has 1" in err
 
 
 def test_a_standing_wave_in_a_sweep_is_empty_in_json_not_a_number_json_cannot_hold(verify):
@@ -232,7 +272,23 @@ def test_the_motors_figures_over_sizes(verify):
     assert rows[1]["drive_standing_wave_ratio"] == pytest.approx(1.20599, abs=1e-5)
     assert rows[1]["best_frequency_hz"] == pytest.approx(4252.73, abs=0.05)
     assert rows[1]["best_standing_wave_ratio"] < 1.001
-    assert "segment" in verify("table", "paper", "--wave", "--counts", "49")[1]
+    assert rows[1]["notes"] == []
+
+
+def test_the_motors_table_fits_into_eighty_columns_with_every_figure_whole(verify, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    out = verify("table", "paper", "--wave", "--counts", "49,10000")[1]
+    assert max(map(len, out.splitlines())) <= 80
+    assert "…" not in out
+    for word in ("1.20599", "-0.06793", "-3.1863", "4252.73", "10000", "best Hz", "axis ratio"):
+        assert word in out, word
+    out = verify("table", "paper", "--wave", "--counts", "30")[1]
+    assert "– segment, N = 30: the reflection still falls at the edge of the search, 4340.14" in out
+    rows = json.loads(
+        verify("table", "paper", "--wave", "--counts", "49", "--set", "drive.force.1.phase_deg=0", "--json")[1]
+    )
+    assert rows[1]["best_frequency_hz"] is None
+    assert "the wave stands at every frequency" in rows[1]["notes"][0]
 
 
 def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
@@ -244,6 +300,9 @@ def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
     assert (status, (tmp_path / "my.toml").read_text("utf-8")) == (2, "mine")
     assert "--force" in err
     assert verify("init", "my.toml", "--force")[0] == 0
+    data = json.loads(verify("init", "other.toml", "--json")[1])
+    assert data == {"path": "other.toml", "next": ["verify", "run", "other.toml"]}
+    assert (tmp_path / "other.toml").exists()
 
 
 BAD = [
@@ -290,6 +349,16 @@ BAD = [
     ("measure", "wave.standing_wave_ratio", "model=fem", "count=20", "load=lever"),
     ("measure", "wave.standing_wave_ratio", "modal_damping=0.1"),
     ("measure", "wave.standing_wave_ratio", "--scene", "steel-cantilever"),
+    ("measure", "wave.standing_wave_ratio", "count=5"),
+    ("measure", "mode.frequency", "model=analytic", "mode=3", "count=5"),
+    ("measure", "wave.order", "model=fem", "counts=98,196,392", "count=5"),
+    ("measure", "wave.standing_wave_ratio", "model=segment", "count=3"),
+    ("measure", "wave.standing_wave_ratio", "position=0"),
+    ("measure", "wave.best_frequency", "phase_deg=0"),
+    ("measure", "wave.power_imbalance", "model=segment", "count=49", "loss_factor=0.01", "joint_dashpot=1e-6"),
+    ("measure", "wave.power_imbalance", "model=fem", "count=49", "loss_factor=0.01", "modal_damping=0.01"),
+    ("table", "paper", "--sweep", "count=49:98:2"),
+    ("table", "paper", "--sweep", "position=0:0:1"),
     ("measure", "mode.frequency", "model=analytic", "mode=1", "mode=2"),
     ("measure", "wave.deflection", "x=0.6"),
     ("measure", "wave.deflection", "x=nan"),
@@ -351,6 +420,66 @@ def test_a_write_that_fails_midway_keeps_the_old_file(tmp_path, monkeypatch):
         write_whole(target, "new")
     assert [p.name for p in tmp_path.iterdir()] == ["r.html"]
     assert target.read_text() == "old"
+
+
+def test_an_interrupt_during_the_first_import_is_answered_too():
+    """Deterministic: the import of click is what is interrupted."""
+    code = (
+        "import sys, runpy\n"
+        "class Interrupt:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name == 'click':\n"
+        "            raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Interrupt())\n"
+        "runpy.run_module('verify', run_name='__main__')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (130, "")
+    assert done.stderr == "verify: interrupted; nothing half-written is left\n"
+
+
+def test_the_installed_command_is_the_module():
+    from importlib.metadata import entry_points
+
+    (command,) = [e for e in entry_points(group="console_scripts") if e.name == "verify"]
+    assert command.value == "verify.__main__:main"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("table", "paper", "--counts", "30,40"), ("table", "paper", "--wave", "--counts", "49"), ("quantities",),
+     ("table", "paper", "--sweep", "frequency_hz=4000:4600:241", "--csv"), ("plan", "paper")],
+    ids=" ".join,
+)  # fmt: skip
+def test_a_reader_that_leaves_ends_the_command_without_a_word(words):
+    """The reader has gone before the first line is written."""
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-m", "verify", *words], stdout=write, stderr=subprocess.PIPE, text=True, check=False
+    )
+    os.close(write)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize(
+    "words", [("table", "paper", "--counts", "30,40"), ("plan", "steel-cantilever"), ("choose", "--mode", "3", "--error", "1%")],
+    ids=" ".join,
+)  # fmt: skip
+def test_a_terminal_that_knows_ascii_alone_is_written_to(words):
+    done = subprocess.run(
+        [sys.executable, "-m", "verify", *words], capture_output=True, check=False,
+        env=os.environ | {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.isascii()
+
+
+def test_a_spectrum_that_does_not_fit_into_memory_is_refused_not_left_empty(verify, tmp_path):
+    status, out, err = verify("run", "paper", "--set", "spectrum.count=10000000000000")
+    assert (status, out) == (2, "")
+    assert "GiB" in err
+    assert not list(tmp_path.rglob("*.html"))
 
 
 def test_the_module_runs_as_a_program():

@@ -1,5 +1,7 @@
 """Segments and Hermite elements against their own exact solutions, in exact or extended arithmetic."""
 
+import subprocess
+import sys
 from math import pi, sin, sqrt
 
 import mpmath
@@ -9,6 +11,7 @@ from msgspec.structs import replace
 
 from verify import analytic_modes, closed_forms, eigen, error_laws, fem_beam, segment_model
 from verify import chain as chain_of_links
+from verify.beam import PointForce
 from verify.errors import InputError
 
 MODELS = {"segment": segment_model, "fem": fem_beam}
@@ -220,3 +223,53 @@ def test_hermite_elements_take_every_support(titanium_strip, supports, count):
     x = np.array([0.0, 0.07, 0.31, 0.7, 0.73])
     size = abs(exact.deflection(x)).max()
     assert found.deflection(x) == pytest.approx(exact.deflection(x), abs=mu[-1] ** 4 / 500 * size)
+
+
+@pytest.mark.parametrize("value", [2.5, "3", None, True, 0, -1])
+@pytest.mark.parametrize("model", ["analytic", *MODELS])
+def test_numbers_of_modes_and_parts_are_whole(titanium_strip, model, value):
+    solve = analytic_modes.solve_modes if model == "analytic" else MODELS[model].solve_modes
+    with pytest.raises(InputError, match=f"n_modes = {value!r}: give a whole number of at least 1"):
+        solve(titanium_strip, value, *(() if model == "analytic" else (9,)))
+    if model != "analytic":
+        with pytest.raises(InputError, match=f"{MODELS[model].FIELD} = {value!r}: give a whole number"):
+            MODELS[model].solve_harmonic(titanium_strip, [PointForce(position=0.1)], 99.0, value)
+    assert solve(titanium_strip, np.int64(2), *(() if model == "analytic" else (9,))).n_modes == 2
+
+
+@pytest.mark.parametrize("error", [MemoryError(), RuntimeError("SUPERLU_MALLOC fails for buf in doubleMalloc()")])
+def test_a_factorisation_without_memory_is_one_sentence(titanium_strip, monkeypatch, error):
+    import scipy.sparse.linalg
+
+    def fails(*_):
+        raise error
+
+    monkeypatch.setattr(scipy.sparse.linalg, "splu", fails)
+    with pytest.raises(InputError, match="do not fit into memory, lower it"):
+        segment_model.solve_harmonic(titanium_strip, [PointForce(position=0.1)], 99.0, 300)
+    with pytest.raises(InputError, match="do not fit into memory, lower it"):
+        fem_beam.solve_modes(titanium_strip, 2, 300)
+
+
+def test_a_singular_system_is_one_sentence(titanium_strip):
+    free = replace(titanium_strip, supports=("free", "free"))
+    with pytest.raises(InputError, match="singular to rounding"):
+        fem_beam.solve_harmonic(free, [PointForce(position=0.1)], 1e-300, 20)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="peak memory is read from /proc")
+@pytest.mark.parametrize("model", sorted(MODELS))
+def test_the_memory_guard_counts_more_than_a_driven_field_takes(titanium_strip, model):
+    """Peak resident memory of a fresh process at 10^5 parts, less what it took at ten."""
+    code = (
+        "import re\nfrom verify import {0}\nfrom verify.beam import Beam, PointForce\n"
+        "beam = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0, loss_factor=0.01)\n"
+        "peaks = []\n"
+        "for n in (10, 100_000):\n"
+        "    {0}.solve_harmonic(beam, [PointForce(position=0.1)], 433.0, n)\n"
+        "    peaks.append(1024 * int(re.search(r'VmHWM:\\s+(\\d+) kB', open('/proc/self/status').read())[1]))\n"
+        "print(peaks[1] - peaks[0])"
+    ).format(MODELS[model].__name__.split(".")[1])
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    counted = eigen.required_bytes(MODELS[model].unknowns(titanium_strip, 100_000), 1)
+    assert 0.3 * counted < int(done.stdout) < counted

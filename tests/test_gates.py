@@ -289,7 +289,7 @@ def stiffness_without_its_loss(patch):
 
 
 def displacement_taken_for_force(patch):
-    patch.setattr(waves, "driven_field", lambda solve, drives, kind: solve(drives))
+    patch.setattr(waves, "driven_field", lambda solve, drives, frequency, kind: solve(drives, frequency))
 
 
 def near_field_forgotten(patch):
@@ -336,8 +336,8 @@ FAULTS_ELSEWHERE = {
         phase_of_the_wrong_sign: {"reversal-turns-the-wave", "surface-ellipse", "flux", "mid-span"},
         second_force_a_tenth_nearer: {"distance-sets-the-amplitude", "pure-wave", "reversal-turns-the-wave", "mid-span"},
         load_on_the_next_joint: {"segment-49-ratio", "segment-ratio-order", "segment-deflection-order", "lever-rule-order"},
-        load_on_the_next_node: {"mid-span"},
-        mid_line_instead_of_surface: {"surface-ellipse", "segment-ellipse-order"},
+        load_on_the_next_node: {"mid-span", "fem-49-ratio"},
+        mid_line_instead_of_surface: {"surface-ellipse", "segment-ellipse-order", "fem-ellipse-order"},
         lower_surface_for_the_upper: {"surface-ellipse"},
         waves_fitted_with_the_wrong_sign_of_time: {"reversal-turns-the-wave", "distance-sets-the-amplitude", "flux"},
         wavenumber_two_per_cent_off: {"swr-law", "distance-sets-no-ratio", "pure-wave", "best-frequency", "segment-best-frequency", "fem-best-frequency"},
@@ -346,7 +346,7 @@ FAULTS_ELSEWHERE = {
         near_field_forgotten: {"signed-area", "signed-area-beside-the-forces"},
         lever_rule_and_raw_joints_by_mistake: {"segment-deflection-order"},
         reciprocal_pair_where_the_lever_was_asked_for: {"lever-rule-order"},
-        lumped_element_mass: {"fem-ratio-order", "fem-best-frequency", "mid-span"},
+        lumped_element_mass: {"fem-49-ratio", "fem-ratio-order", "fem-ellipse-order", "fem-best-frequency", "mid-span"},
         link_inertia_left_out: {"segment-49-ratio", "segment-best-frequency", "segment-ratio-order"},
         power_of_both_waves_added: {"flux", "energy-flux"},
         singular_values_squared: {"travelling-index"},
@@ -444,6 +444,19 @@ def test_every_gate_of_a_scene_has_a_fault_that_turns_it_red(scene):
 def test_no_quantity_is_without_a_gate_in_a_packaged_scene():
     gates = [gate for name in packaged_scenes() for gate in load_scene(name).gate]
     assert {gate.quantity for gate in gates} == set(QUANTITIES)
+
+
+def test_every_wave_gate_says_its_damping_and_its_window():
+    gates = [gate for name in packaged_scenes() for gate in load_scene(name).gate if gate.quantity.startswith("wave.")]
+    assert len(gates) >= 26
+    for gate in gates:
+        given = gate.arguments
+        eta = given.get("loss_factor")
+        damping = f"Loss factor {eta:g}, " if eta else "Undamped, "
+        at_a_point = gate.quantity == "wave.deflection" or given.get("of") == "deflection"
+        window = "[{} m, {} m]".format(*given["window"]) if "window" in given else "[L/4, 3L/4]"
+        assert gate.why.startswith(damping + ("at L/2" if at_a_point else window)), gate.id
+        assert given.get("x", 0.25) == 0.25  # L/2
 
 
 def verdict(monkeypatch, value, **band):
@@ -551,6 +564,21 @@ def test_a_gate_without_a_reason_is_refused():
         checked({"id": "g", "quantity": "mode.frequency", "expect": 1.0, "within": 1.0}, Gate)
     with pytest.raises(InputError, match="why"):
         checked({"id": "g", "quantity": "mode.frequency", "expect": 1.0, "within": 1.0, "why": ""}, Gate)
+
+
+def test_no_sentence_speaks_of_null_or_of_a_class():
+    """Neither in the refusal of an argument nor in the list of quantities."""
+    from verify.quantities import arguments_of, described, quantity
+
+    for name in QUANTITIES:
+        for key in ("count", "counts", "model", "mode", "x", "window", "error"):
+            for value in (5, "five", [5], -1):
+                try:
+                    arguments_of(quantity(name), {key: value})
+                except InputError as error:
+                    assert "null" not in str(error), str(error)
+                    assert "<class" not in str(error), str(error)
+    assert "<class" not in str(described())
 
 
 def test_expectations_read_as_sentences():

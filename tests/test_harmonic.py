@@ -8,11 +8,11 @@ import pytest
 from msgspec.structs import replace
 
 from verify import analytic_modes, closed_forms, fem_beam, segment_model
-from verify.analytic_harmonic import pinned_shapes, spliced_shapes
+from verify.analytic_harmonic import pinned_shapes, slow_shapes, spliced_shapes
 from verify.beam import SUPPORTS, PointForce
 from verify.chain import build_chain
-from verify.drives import driven_field
-from verify.errors import InputError
+from verify.drives import driven_field, held_units
+from verify.errors import InputError, ResonanceError
 from verify.fields import wavenumber
 from verify.point_loads import four_weights, joint_weights
 
@@ -38,6 +38,49 @@ def test_the_closed_form_and_the_spliced_exponentials_are_one_field(titanium_str
         inside = X if derivative < 3 else X[X != 0.083]  # the shear force jumps at a force
         one, other = (make(beam, FORCES, k)(inside, derivative) for make in (pinned_shapes, spliced_shapes))
         close(one, other, 3e-12)
+
+
+@pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)
+def test_power_series_and_exponentials_are_one_field_where_they_meet(titanium_strip, supports):
+    """Just below |k| L = 1, where the exponentials have lost only two digits and the series none."""
+    beam = replace(titanium_strip, supports=supports, loss_factor=0.01)
+    k = 0.97 / 0.73 * (1 + 0.01j) ** -0.25
+    for derivative in range(4):
+        inside = X if derivative < 3 else X[X != 0.083]
+        close(
+            slow_shapes(beam, FORCES, k)(inside, derivative), spliced_shapes(beam, FORCES, k)(inside, derivative), 2e-12
+        )
+
+
+@pytest.mark.parametrize("frequency", [1e-300, 1e-12, 1e-6, 1e-4])
+def test_a_slow_force_bends_a_held_beam_as_a_dead_load_does(titanium_strip, frequency):
+    """Textbook deflections; the inertia left out is (f / f_1)^2, below 1e-8 here."""
+    ei, force, x = (
+        titanium_strip.bending_stiffness,
+        PointForce(position=0.311, amplitude=1.7),
+        np.array([0.05, 0.29, 0.6]),
+    )
+    a, b = np.minimum(x, 0.311), 0.73 - np.maximum(x, 0.311)
+    pinned = 1.7 * a * b * (0.73**2 - a**2 - b**2) / (6 * 0.73 * ei)
+    close(analytic_modes.solve_harmonic(titanium_strip, [force], frequency).deflection(x), pinned, 1e-8)
+    cantilever = replace(titanium_strip, supports=("clamped", "free"))
+    tip = 1.7 * a**2 * (3 * np.maximum(x, 0.311) - a) / (6 * ei)
+    close(analytic_modes.solve_harmonic(cantilever, [force], frequency).deflection(x), tip, 1e-8)
+
+
+def test_a_slow_force_drives_a_free_beam_as_a_rigid_body(titanium_strip):
+    free = replace(titanium_strip, supports=("free", "free"))
+    mass, omega = free.mass_per_length * 0.73, 2 * np.pi * 1e-5
+    x, lever = np.array([0.0, 0.4, 0.73]), 0.611 - 0.365
+    rigid = -2.3 / omega**2 * (1 / mass + lever * (x - 0.365) / (mass * 0.73**2 / 12))
+    close(
+        analytic_modes.solve_harmonic(free, [PointForce(position=0.611, amplitude=2.3)], 1e-5).deflection(x),
+        rigid,
+        1e-9,
+    )
+    for supports in (("free", "free"), ("pinned", "free"), ("guided", "guided")):
+        with pytest.raises(InputError, match="moves beyond floating point, give a higher frequency_hz"):
+            analytic_modes.solve_harmonic(replace(free, supports=supports), FORCES, 1e-160)
 
 
 def test_the_closed_form_is_the_modal_sum_without_its_truncation(titanium_strip):
@@ -256,12 +299,86 @@ def test_reciprocity_of_force_and_deflection(titanium_strip, model):
 def test_imposed_displacements_are_held(titanium_strip, model):
     given = () if model == "analytic" else (48,)
     solve = analytic_modes.solve_harmonic if model == "analytic" else SOLVERS[model]
-    field = driven_field(lambda forces: solve(titanium_strip, forces, 411.0, *given), FORCES, "displacement")
+    field = driven_field(lambda forces, f: solve(titanium_strip, forces, f, *given), FORCES, 411.0, "displacement")
     held = field.deflection([force.position for force in FORCES])
     assert held == pytest.approx([0.7, 1.3 * np.exp(1j * np.deg2rad(63.0))], rel=1e-9)
     twice = (FORCES[0], FORCES[0])
     with pytest.raises(InputError, match="cannot be imposed"):
-        driven_field(lambda forces: solve(titanium_strip, forces, 411.0, *given), twice, "displacement")
+        driven_field(lambda forces, f: solve(titanium_strip, forces, f, *given), twice, 411.0, "displacement")
+
+
+def held(model, beam, frequency, kind="displacement"):
+    """The field under imposed displacements."""
+    given = () if model == "analytic" else (48,)
+    solve = analytic_modes.solve_harmonic if model == "analytic" else SOLVERS[model]
+    return driven_field(lambda forces, f: solve(beam, forces, f, *given), FORCES, frequency, kind)
+
+
+@pytest.mark.parametrize("model", ["analytic", *SOLVERS])
+def test_a_resonance_under_forces_is_none_of_the_beam_held_at_its_actuators(titanium_strip, model):
+    """There the held field is as smooth as beside it: the mean of both sides, to the curvature over 1e-6."""
+    module = {"segment": segment_model, "fem": fem_beam}.get(model)
+    f = (
+        float(module.solve_modes(titanium_strip, 9, 48).frequencies_hz[8])
+        if module
+        else closed_forms.frequency_hz(titanium_strip, 9)
+    )
+    with pytest.raises(ResonanceError, match="mode 9"):
+        held(model, titanium_strip, f, "force")
+    here = held(model, titanium_strip, f)
+    sides = [held(model, titanium_strip, f * (1 + s * 1e-6)).deflection(X) for s in (1, -1)]
+    close(here.deflection(X), 0.5 * (sides[0] + sides[1]), 1e-8)
+    assert here.deflection([force.position for force in FORCES]) == pytest.approx(
+        [0.7, 1.3 * np.exp(1j * np.deg2rad(63.0))], rel=1e-8
+    )
+
+
+@pytest.mark.parametrize("model", ["analytic", *SOLVERS])
+def test_a_resonance_of_the_held_beam_is_refused(titanium_strip, model):
+    """Found from outside: where the determinant of the receptance changes sign."""
+    from scipy.optimize import brentq
+
+    given = () if model == "analytic" else (48,)
+    solve = analytic_modes.solve_harmonic if model == "analytic" else SOLVERS[model]
+    places = [force.position for force in FORCES]
+
+    def determinant(f):
+        fields = [solve(titanium_strip, [PointForce(position=p)], f, *given) for p in places]
+        return np.linalg.det(np.array([field.deflection(places).real for field in fields])) * 1e12
+
+    f = np.linspace(300.0, 420.0, 60)
+    values = np.array([determinant(g) for g in f])
+    zero = np.flatnonzero(
+        (values[:-1] * values[1:] < 0) & (abs(values[:-1]) + abs(values[1:]) < 4 * np.median(abs(values)))
+    )[0]
+    resonance = brentq(determinant, f[zero], f[zero + 1], xtol=1e-12, rtol=1e-14)
+    with pytest.raises(ResonanceError, match="resonance of the beam held at its actuators"):
+        held(model, titanium_strip, resonance)
+    assert np.isfinite(held(model, titanium_strip, resonance * (1 + 1e-6)).deflection(X)).all()
+    damped = replace(titanium_strip, loss_factor=1e-4)
+    assert np.isfinite(held(model, damped, resonance).deflection(X)).all()
+    assert np.isfinite(held(model, titanium_strip, resonance, "force").deflection(X)).all()
+
+    def units(frequencies, x):
+        module = {"analytic": analytic_modes, "segment": segment_model, "fem": fem_beam}[model]
+        return module.unit_responses(titanium_strip, places, frequencies, x, *given)
+
+    several = held_units(units, np.array(places), titanium_strip, np.array([resonance, 333.0]), X)
+    assert np.isnan(several[0]).all()
+    single = held(model, titanium_strip, 333.0).deflection(X)
+    close(0.7 * several[1, 0] + 1.3 * np.exp(1j * np.deg2rad(63.0)) * several[1, 1], single, 1e-8)
+
+
+def test_one_displacement_alone_is_held_too_and_refused_on_a_support(titanium_strip):
+    def solve(forces, f):
+        return analytic_modes.solve_harmonic(titanium_strip, forces, f)
+
+    one = (PointForce(position=0.3, amplitude=2.5e-6, phase_deg=41.0),)
+    assert driven_field(solve, one, 377.0, "displacement").deflection(0.3)[0] == pytest.approx(
+        2.5e-6 * np.exp(1j * np.deg2rad(41.0))
+    )
+    with pytest.raises(InputError, match="held end"):
+        driven_field(solve, (PointForce(position=0.73),), 377.0, "displacement")
 
 
 @pytest.mark.parametrize("model", SOLVERS)

@@ -11,6 +11,7 @@ from verify import chain as chain_of_links
 from verify.beam import SUPPORTS, Beam, Section
 from verify.division import part_counts
 from verify.errors import InputError
+from verify.quantities import QUANTITIES
 
 SOLVERS = {"segment": segment_model.solve_modes, "fem": fem_beam.solve_modes}
 supports = st.tuples(st.sampled_from(SUPPORTS), st.sampled_from(SUPPORTS))
@@ -133,3 +134,99 @@ def test_any_arguments_give_a_figure_or_a_sentence(arguments, name, beam):
         assert str(error)
     else:
         assert value is not None
+
+
+FIGURES = st.one_of(
+    st.floats(),
+    st.floats(-1.0, 1.0),
+    st.floats(1.0, 1e4),
+    st.integers(-2, 60),
+    st.sampled_from(
+        ["segment", "fem", "analytic", "force", "displacement", "lever", "links", "deflection", "axis_ratio", ""]
+    ),
+    st.lists(st.floats(-0.1, 0.8), max_size=3),
+)
+WAVE_ARGUMENTS = ["model", "count", "counts", "frequency_hz", "phase_deg", "position", "loss_factor", "modal_damping",
+                  "joint_dashpot", "drive", "load", "reading", "window", "x", "of", "span"]  # fmt: skip
+PLACES = st.one_of(st.sampled_from([0.0, 0.01, 0.1, 0.3, 0.73]), st.floats(0.0, 0.73))
+WAVE_FIGURES = st.sampled_from(sorted(name for name in QUANTITIES if name.startswith("wave.")))
+
+
+def wave_figure(name, arguments, beam, forces):
+    """A figure of two forces or none at all: None where a sentence refused it."""
+    from verify.quantities import arguments_of, evaluate, quantity
+    from verify.scene import Drive, Scene, SceneForce
+    from verify.workbench import Workbench
+
+    found = quantity(name)
+    drive = Drive(frequency_hz=433.0, force=tuple(SceneForce(position=p * beam.length, amplitude=a, phase_deg=70.0 * i)
+                                                  for i, (p, a) in enumerate(forces)))  # fmt: skip
+    try:
+        scene = Scene(name="s", beam=beam, drive=drive)
+        return evaluate(found, arguments_of(found, arguments), scene, Workbench(beam))
+    except InputError as error:
+        assert str(error)
+        assert "\n" not in str(error)
+        return None
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.dictionaries(st.sampled_from(WAVE_ARGUMENTS), FIGURES, max_size=5),
+    WAVE_FIGURES,
+    stepped_beams() | supports.map(lambda ends: replace(BASE, supports=ends)),
+    st.lists(st.tuples(st.floats(0, 1), st.sampled_from([0.0, 1.0, 2.5e-6])), max_size=3),
+)
+def test_any_wave_arguments_give_a_figure_or_a_sentence(arguments, name, beam, forces):
+    value = wave_figure(name, arguments, beam, forces)
+    assert value is None or not np.isnan(value)
+
+
+@st.composite
+def sensible_waves(draw):
+    """(quantity, arguments it takes, most of them right): most examples reach the numerics."""
+    name, model = draw(WAVE_FIGURES), draw(st.sampled_from(["analytic", "segment", "fem"]))
+    given = {"model": model, "frequency_hz": draw(st.floats(1.0, 3e4))}
+    given |= {"count": draw(st.integers(1, 120))} if model != "analytic" else {}
+    optional = {"phase_deg": st.floats(-200, 200), "position": st.floats(0.0, 0.2), "loss_factor": st.floats(0, 1),
+                "drive": st.sampled_from(["force", "displacement"]), "window": st.tuples(PLACES, PLACES).map(list)}  # fmt: skip
+    for argument in draw(st.lists(st.sampled_from(sorted(optional)), max_size=3, unique=True)):
+        given[argument] = draw(optional[argument])
+    given |= {"x": draw(PLACES)} if name == "wave.deflection" else {}
+    if name == "wave.order":
+        given = {k: v for k, v in given.items() if k != "count"} | {"model": "fem", "counts": [60, 90, 120]}
+    return name, given
+
+
+@settings(max_examples=150, deadline=None)
+@given(sensible_waves(), supports)
+def test_any_sensible_wave_is_a_figure_or_a_sentence(asked, ends):
+    value = wave_figure(*asked, replace(BASE, supports=ends), [(0.03, 1.0), (0.97, 1.3)])
+    assert value is None or not np.isnan(value)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    sensible_waves(),
+    supports,
+    st.lists(st.sampled_from(["frequency_hz=300:5000:3", "phase_deg=-90:180:3", "position=0:0.3:3", "loss_factor=0:0.5:2",
+                              "count=2:60:3"]), min_size=1, max_size=2),
+)  # fmt: skip
+def test_any_sweep_gives_a_map_or_a_sentence(asked, ends, sweeps):
+    from verify.design_map import design_map, parse_axis
+    from verify.scene import Drive, Scene, SceneForce
+    from verify.workbench import Workbench
+
+    beam = replace(BASE, supports=ends)
+    far = SceneForce(position=0.03, measured_from="right", phase_deg=90.0)
+    scene = Scene(name="s", beam=beam, drive=Drive(frequency_hz=433.0, force=(SceneForce(position=0.02), far)))
+    name, arguments = asked
+    axes = tuple(parse_axis(text) for text in sweeps)
+    try:
+        rest = {k: v for k, v in arguments.items() if k not in {axis.name for axis in axes}}
+        found = design_map(name, rest, axes, scene, Workbench(beam))
+    except InputError as error:
+        assert str(error)
+    else:
+        assert not np.isnan(found.values).all()
+        assert bool(found.reasons) == bool(np.isnan(found.values).any())

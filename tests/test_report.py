@@ -82,8 +82,13 @@ def test_the_environment_names_versions():
 
 
 @pytest.fixture(scope="module")
-def wave_html():
-    return page(run_scene("paper-wave"), "verify run paper-wave")
+def wave_result():
+    return run_scene("paper-wave")
+
+
+@pytest.fixture(scope="module")
+def wave_html(wave_result):
+    return page(wave_result, "verify run paper-wave")
 
 
 def test_the_report_of_a_wave_shows_envelopes_ellipses_map_and_the_motor_over_sizes(wave_html):
@@ -97,15 +102,81 @@ def test_the_report_of_a_wave_shows_envelopes_ellipses_map_and_the_motor_over_si
     assert "Where to drive" in wave_html
 
 
+def wave_map(study):
+    """The map's chart: (caption, axis of phases, its traces)."""
+    from verify.report.wave_charts import wave_charts
+
+    found = next(chart for chart in wave_charts(study) if chart["id"] == "wave-map")
+    return found["caption"], found["figure"]["layout"]["yaxis"], found["figure"]["data"]
+
+
+def small_study(*overrides):
+    from verify import load_scene
+    from verify.wave_study import wave_study
+    from verify.workbench import Workbench
+
+    scene = load_scene(
+        "paper-wave", ("wave.counts=[49]", "wave.frequency_hz=4200,4300,11", "wave.phase_deg=0,180,13", *overrides)
+    )
+    return wave_study(scene, Workbench(scene.beam), scene.wave)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "pure"),
+    [
+        ((), True),
+        (("drive.kind=displacement",), False),
+        (("drive.force.1.amplitude=0.7",), False),
+        (("drive.force.1.position=0.02",), False),
+        (("beam.supports=clamped,clamped",), False),
+    ],
+)
+def test_the_map_speaks_of_a_pure_phase_only_where_there_is_one(overrides, pure):
+    caption = wave_map(small_study(*overrides))[0]
+    assert ("pure along phase = -kL" in caption) is pure
+    assert "with loss factor 0.001, as the operating points" in caption
+
+
+def test_the_operating_points_lie_on_the_map_they_are_drawn_on():
+    """Same model, same damping, same phase axis: the point's reflection is the map's at that place."""
+    study = small_study("drive.force.0.phase_deg=30", "drive.force.1.phase_deg=120", "wave.phase_deg=60,210,61",
+                        "wave.frequency_hz=4240,4260,81", "wave.quantity=wave.reflection")  # fmt: skip
+    _, axis, (heat, *points) = wave_map(study)
+    assert "relative to the first" in axis["title"]["text"]
+    quiet = points[0]
+    assert quiet["y"] == [pytest.approx(90.0)]
+    row, column = (
+        min(range(len(v)), key=lambda i: abs(v[i] - at[0]))
+        for v, at in ((heat["y"], quiet["y"]), (heat["x"], quiet["x"]))
+    )
+    assert heat["z"][row][column] == pytest.approx(study.points[0].reflection, abs=5e-4)
+    assert heat["z"][row][column] == min(heat["z"][row])
+
+
+def test_what_is_missing_in_a_wave_report_is_said(wave_result):
+    """A drive in phase has no best frequency; a coarse chain's lies beyond the search."""
+    from msgspec.structs import replace
+
+    study = small_study("drive.force.1.phase_deg=0", "wave.phase_deg=0,0.5,3")
+    text = page(replace(wave_result, gates=(), wave=study), "verify run x")
+    assert "the wave stands at every frequency" in text
+    study = small_study("wave.counts=[30]", "wave.count=30")
+    assert "at the edge of the search" in page(replace(wave_result, gates=(), wave=study), "verify run x")
+
+
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine: the report was not opened in a browser")
-def test_a_real_browser_draws_every_chart(result, tmp_path):
-    path = tmp_path / "paper.html"
-    write_report(result, path, "verify run paper")
+@pytest.mark.parametrize(("name", "charts", "traces"), [("paper", 6, 6), ("paper-wave", 4, 3)])
+def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, traces):
+    """Every chart, and a scatter layer in those that are not maps alone."""
+    path = tmp_path / "report.html"
+    result = request.getfixturevalue("result" if name == "paper" else "wave_result")
+    write_report(result, path, f"verify run {name}")
     profile = f"--user-data-dir={tmp_path / 'profile'}"
     done = subprocess.run(
         [CHROMIUM, *QUIET, profile, "--virtual-time-budget=20000", "--dump-dom", path.as_uri()],
         capture_output=True, text=True, timeout=180, check=True,
     )  # fmt: skip
-    assert 'data-drawn="6"' in done.stdout
-    assert done.stdout.count('class="main-svg"') >= 6
-    assert done.stdout.count("scatterlayer") >= 6
+    assert f'data-drawn="{charts}"' in done.stdout
+    assert done.stdout.count('class="main-svg"') >= charts
+    assert done.stdout.count("scatterlayer") >= traces
+    assert ("heatmaplayer" in done.stdout) or name == "paper"

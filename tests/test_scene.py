@@ -119,6 +119,18 @@ def test_a_broken_scene_is_one_sentence(tmp_path, text, message):
         scene_of(tmp_path, text)
 
 
+def test_a_byte_order_mark_is_no_part_of_a_scene(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('name = "s"' + BEAM, encoding="utf-8-sig")
+    assert load_scene(path).name == "s"
+
+
+@pytest.mark.parametrize("overrides", ["beam.length=0.4", 3, (3,), None, {"beam.length": 0.4}])
+def test_overrides_that_are_no_list_of_words_are_one_sentence(overrides):
+    with pytest.raises(InputError, match="give a list of 'key=value' words"):
+        load_scene("paper", overrides)
+
+
 def test_files_that_cannot_be_read_are_one_sentence(tmp_path):
     for path in (tmp_path / "none.toml", tmp_path, tmp_path / "no" / "folder.toml"):
         with pytest.raises(InputError, match="cannot be read"):
@@ -150,7 +162,8 @@ def test_a_force_measured_from_the_right_end_follows_the_length():
         assert (far.position, far.phase_deg) == (pytest.approx(length - 0.0116, rel=1e-15), 90.0)
 
 
-KEYS = st.sampled_from(["beam", "gate", "drive", "spectrum", "convergence", "length", "mode", "x"])
+KEYS = st.sampled_from(["beam", "gate", "drive", "spectrum", "convergence", "length", "mode", "x", "wave", "count", "counts",
+                        "model", "quantity", "frequency_hz", "phase_deg", "force", "kind", "reflection_limit"])  # fmt: skip
 LEAVES = st.one_of(
     st.none().map(lambda _: "x"),
     st.booleans(),
@@ -165,7 +178,9 @@ TREES = st.recursive(
 
 @settings(max_examples=300, deadline=None)
 @given(
-    st.dictionaries(st.sampled_from(["name", "beam", "gate", "drive", "convergence", "sensitivity", "spectrum"]), TREES)
+    st.dictionaries(
+        st.sampled_from(["name", "beam", "gate", "drive", "convergence", "sensitivity", "spectrum", "wave"]), TREES
+    )
 )
 def test_no_tree_of_values_gives_anything_but_a_scene_or_a_sentence(tree):
     from verify.checked import checked
@@ -175,6 +190,40 @@ def test_no_tree_of_values_gives_anything_but_a_scene_or_a_sentence(tree):
         checked(tree, Scene)
     except InputError as error:
         assert str(error)
+
+
+WAVES = st.fixed_dictionaries(
+    {},
+    optional={
+        "count": LEAVES,
+        "counts": st.lists(LEAVES, max_size=3),
+        "model": LEAVES,
+        "quantity": LEAVES,
+        "frequency_hz": st.lists(LEAVES, min_size=2, max_size=4),
+        "phase_deg": st.lists(LEAVES, min_size=2, max_size=4),
+        "reflection_limit": LEAVES,
+        "operating_loss_factor": LEAVES,
+        "window": LEAVES,
+    },
+)
+
+
+@settings(max_examples=200, deadline=None)
+@given(WAVES, st.dictionaries(st.sampled_from(["frequency_hz", "kind", "force"]), TREES))
+def test_no_wave_table_gives_anything_but_a_scene_or_a_sentence(wave, drive):
+    from verify.checked import checked
+    from verify.scene import Scene
+
+    beam = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470}
+    two = {"frequency_hz": 433.0, "force": [{"position": 0.02}, {"position": 0.7}]}
+    for shaken in (two, two | drive):
+        try:
+            scene = checked({"name": "s", "beam": beam, "drive": shaken, "wave": wave}, Scene)
+        except InputError as error:
+            assert str(error)
+            assert "\n" not in str(error)
+        else:
+            assert scene.wave.frequency_hz[0] < scene.wave.frequency_hz[1]
 
 
 SIZES = st.floats(1e-9, 1e3)

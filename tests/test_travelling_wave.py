@@ -1,17 +1,20 @@
 """Wave measures on fields whose answer is known, in noise, from time series, and as laws of the driven beam."""
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import analytic_modes, error_laws, fem_beam, load_scene, segment_model
+from verify import analytic_modes, closed_forms, error_laws, fem_beam, load_scene, segment_model
 from verify.beam import PointForce
-from verify.design_map import design_map, parse_axis
-from verify.errors import InputError
+from verify.design_map import Axis, design_map, parse_axis
+from verify.drives import driven_field
+from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.fields import HarmonicField, wavenumber
-from verify.operating_point import best_points
+from verify.operating_point import best_points, operating_points
+from verify.quantities import arguments_of, evaluate, quantity
 from verify.travelling_wave import (
     ellipse,
     fit_waves,
@@ -21,6 +24,7 @@ from verify.travelling_wave import (
     phasors,
     surface_motion,
 )
+from verify.wave_study import motor_row
 from verify.workbench import Workbench
 
 PAPER = load_scene("paper")
@@ -176,6 +180,151 @@ def test_the_discrete_wavenumbers_are_the_inverse_of_the_discrete_dispersion():
     )
 
 
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_the_discrete_wavenumber_keeps_its_digits_on_the_finest_mesh(model):
+    """Against 40 digits at 10^6 parts, where mu is 7e-5 and 1 - cos mu has lost all but seven of its digits."""
+    n = 1_000_000
+    with mpmath.workdps(40):
+        root = (
+            (2 * mpmath.pi * mpmath.mpf("4276") / mpmath.mpf(BEAM.wave_constant)) ** 2 * mpmath.mpf("0.5") ** 4 / n**4
+        )
+        start = root ** mpmath.mpf("0.25")
+
+        def equation(mu):
+            c, s = mpmath.cos(mu), mpmath.sin(mu)
+            if model == "segment":
+                return 48 * mpmath.sin(mu / 2) ** 4 - root * (3 - 2 * mpmath.sin(mu / 2) ** 2)
+            m = root / 420
+            return (24 * (1 - c) - m * (312 + 108 * c)) * (8 + 4 * c - m * (8 - 6 * c)) - s**2 * (12 + 26 * m) ** 2
+
+        exact = mpmath.findroot(equation, (start, start * (1 + mpmath.mpf("1e-9"))), tol=1e-60) * n / mpmath.mpf("0.5")
+    assert error_laws.discrete_wavenumber(model, BEAM, n, 4276.0).real == pytest.approx(float(exact), rel=1e-14)
+
+
+def test_the_ratio_and_the_flux_of_elements_do_not_drift_with_the_mesh():
+    bench = Workbench(BEAM)
+    arguments = {"model": "fem", "count": 100_000}
+    for name, exact in (("wave.standing_wave_ratio", 1.05635631395), ("wave.energy_flux", 0.0233318340824)):
+        found = quantity(name)
+        assert evaluate(found, arguments_of(found, arguments), PAPER, bench) == pytest.approx(exact, rel=2e-8)
+
+
+@pytest.mark.parametrize(("model", "fewest", "counts"), [("segment", 26, (3, 10, 20, 25)), ("fem", 22, (1, 12, 21))])
+def test_a_mesh_that_cannot_carry_the_wave_is_refused_with_the_fewest_parts_that_can(model, fewest, counts):
+    bench = Workbench(BEAM)
+    for name, more in (("wave.standing_wave_ratio", {}), ("wave.deflection", {"x": 0.3})):
+        found = quantity(name)
+        for count in counts:
+            with pytest.raises(CutOffError, match=f"give count = {fewest} or more"):
+                evaluate(found, arguments_of(found, {"model": model, "count": count} | more), PAPER, bench)
+        assert np.isfinite(evaluate(found, arguments_of(found, {"model": model, "count": fewest} | more), PAPER, bench))
+    assert error_laws.cut_off_hz(model, BEAM, fewest - 1) <= 4276.0 < error_laws.cut_off_hz(model, BEAM, fewest)
+    with pytest.raises(CutOffError, match="give count = "):
+        error_laws.check_carried(model, BEAM, 7, 1e300)
+
+
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_the_cut_off_is_where_half_a_wave_stands_on_each_part(model):
+    """At mu = pi the joints stand still in turns: the exact discrete frequency there, from just below."""
+    beam = replace(BEAM, supports=("pinned", "guided"))  # mu = (n - 1/2) pi / N, not pi itself
+    below = error_laws.dispersion_frequency_hz(model, beam, 1000, 1000)
+    assert below == pytest.approx(error_laws.cut_off_hz(model, beam, 1000), rel=2e-5)
+    assert below < error_laws.cut_off_hz(model, beam, 1000)
+    assert error_laws.discrete_wavenumber(model, beam, 1000, below) == pytest.approx(999.5 * np.pi / 0.5, rel=1e-8)
+
+
+@pytest.mark.parametrize("factor", [0.9, 1.07])
+def test_a_wavenumber_fitted_to_the_edge_of_its_search_is_refused(factor):
+    field = two_waves(1e-6, 0.2e-6, 135.2 * factor)
+    with pytest.raises(InputError, match="ends at the edge of its search"):
+        measure(field, WINDOW)
+    assert measure(field, WINDOW, 135.2 * factor).reflection == pytest.approx(0.2, rel=1e-9)
+
+
+def test_the_wavenumber_is_fitted_over_a_long_window_too():
+    """A hundred half wavelengths: the residual has many valleys within four per cent."""
+    x = np.linspace(0.0, 100 * np.pi / 135.2, 3000)
+    for factor in (0.97, 1.0, 1.031):
+        wave = np.exp(-135.2j * factor * x)
+        assert fitted_wavenumber(x, wave, 135.2 + 0j) == pytest.approx(135.2 * factor, rel=1e-8)
+
+
+@pytest.mark.parametrize("frequency", [4200.0, 4345.0])
+def test_a_best_frequency_at_the_edge_of_its_search_is_no_answer(frequency):
+    best = quantity("wave.best_frequency")
+    asked = arguments_of(best, {"frequency_hz": frequency})
+    with pytest.raises(InputError, match="still falls at the edge of the search"):
+        evaluate(best, asked, PAPER, Workbench(BEAM))
+    wider = arguments_of(best, {"frequency_hz": frequency, "span": 0.03})
+    assert evaluate(best, wider, PAPER, Workbench(BEAM)) == pytest.approx(4269.0703, abs=0.01)
+
+
+def test_two_drives_in_phase_have_no_best_frequency():
+    best = quantity("wave.best_frequency")
+    for phase in (0.0, 180.0):
+        with pytest.raises(InputError, match="the wave stands at every frequency"):
+            evaluate(best, arguments_of(best, {"phase_deg": phase}), PAPER, Workbench(BEAM))
+    standing = load_scene("paper", ("drive.force.1.phase_deg=0",))
+    row = motor_row(standing, Workbench(BEAM), "segment", 49)
+    assert row.best is None
+    assert "the wave stands" in row.note
+    points, problems = operating_points(standing, "segment", 49, loss_factor=1e-3)
+    assert [p.what[:7] for p in points] == ["largest"]
+    assert "the wave stands" in str(problems[0])
+
+
+def test_a_motor_or_an_operating_point_at_the_edge_says_so():
+    far = load_scene("paper", ("drive.frequency_hz=4200",))
+    row = motor_row(far, Workbench(BEAM), "analytic", None)
+    assert row.best.frequency_hz == pytest.approx(4263.0, abs=0.1)
+    assert "at the edge of the search" in row.note
+    quiet, _ = best_points(far, "analytic", None, loss_factor=1e-3)
+    assert "at the edge of the search" in quiet.note
+    inside = best_points(PAPER, "analytic", None, loss_factor=1e-3)[0]
+    assert inside.note == ""
+
+
+@pytest.mark.parametrize("position", [0.0, 0.5])
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 49), ("fem", 49)])
+def test_a_force_on_a_support_makes_no_wave_to_measure(model, count, position):
+    found = quantity("wave.standing_wave_ratio")
+    given = {"model": model, "position": position} | ({"count": count} if count else {})
+    with pytest.raises(ZeroFieldError, match="the field is zero in the window"):
+        evaluate(found, arguments_of(found, given), PAPER, Workbench(BEAM))
+    near = given | {"position": abs(position - 1e-6)}
+    assert evaluate(found, arguments_of(found, near), PAPER, Workbench(BEAM)) < 2.0
+
+
+@pytest.mark.parametrize(
+    ("times", "values", "frequency", "message"),
+    [
+        (np.linspace(0, 1e-2, 80), np.zeros((80, 5)), 4276.0, "samples in each period"),
+        (np.arange(200) / 8552.0, np.zeros((200, 5)), 4276.0, "samples in each period"),
+        (np.empty(0), np.empty((0, 5)), 4276.0, "neither empty"),
+        (np.linspace(0, 1e-2, 800), np.empty((800, 0)), 4276.0, "neither empty"),
+        (np.linspace(0, 1e-2, 800), np.zeros((799, 5)), 4276.0, r"shape \(800,\)"),
+        (np.linspace(0, 1e-2, 800), np.full((800, 5), np.nan), 4276.0, "finite"),
+        (np.full(800, np.inf), np.zeros((800, 5)), 4276.0, "finite"),
+        (np.linspace(1e-2, 0, 800), np.zeros((800, 5)), 4276.0, "ascending"),
+        (np.linspace(0, 1e-2, 800), np.zeros((800, 5)), 0.0, r"frequency_hz = 0\.0"),
+        (np.linspace(0, 1e-2, 800), np.zeros((800, 5)), float("nan"), "frequency_hz = nan"),
+        (np.linspace(0, 1e-2, 800), np.zeros((800, 5)), -4276.0, r"frequency_hz = -4276"),
+        (np.zeros(1), np.zeros((1, 5)), 4276.0, "eight samples"),
+    ],
+)
+def test_series_that_hold_no_phasor_are_refused(times, values, frequency, message):
+    with pytest.raises(InputError, match=message):
+        phasors(times, values, frequency)
+
+
+def test_series_at_rest_have_no_wave():
+    x, times = np.linspace(*WINDOW, 65), np.arange(1000) / 4276.0 / 31.3
+    with pytest.raises(ZeroFieldError, match="do not move"):
+        measure_series(BEAM, x, times, np.full((1000, 65), 3e-6), 4276.0)
+    with pytest.raises(InputError, match="ascending"):
+        measure_series(BEAM, x[::-1], times, np.ones((1000, 65)), 4276.0)
+
+
 @pytest.mark.parametrize(
     ("window", "message"),
     [
@@ -195,16 +344,16 @@ def test_windows_that_measure_nothing_are_refused(window, message):
 def test_a_map_of_the_chain_is_its_single_solves():
     bench = Workbench(BEAM)
     axes = (parse_axis("frequency_hz=4100:4500:5"), parse_axis("phase_deg=20:160:3"))
-    for quantity in ("wave.standing_wave_ratio", "wave.crest_speed", "wave.energy_flux", "wave.reflection"):
+    for name in ("wave.standing_wave_ratio", "wave.crest_speed", "wave.energy_flux", "wave.reflection"):
         for model, module in (("segment", segment_model), ("fem", fem_beam)):
-            found = design_map(quantity, {"model": model, "count": 61}, axes, PAPER, bench)
+            found = design_map(name, {"model": model, "count": 61}, axes, PAPER, bench)
             assert found.method == "superposed"
             for i, j in ((0, 0), (3, 2), (4, 1)):
                 forces = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=axes[1].values[j]))
                 frequency = axes[0].values[i]
                 own = error_laws.discrete_wavenumber(model, BEAM, 61, frequency)
                 single = measure(module.solve_harmonic(BEAM, forces, frequency, 61), WINDOW, own)
-                assert found.values[i, j] == pytest.approx(getattr(single, quantity.removeprefix("wave.")), rel=2e-4)
+                assert found.values[i, j] == pytest.approx(getattr(single, name.removeprefix("wave.")), rel=2e-4)
 
 
 def test_axes_may_be_exchanged_and_other_axes_are_walked():
@@ -219,23 +368,123 @@ def test_axes_may_be_exchanged_and_other_axes_are_walked():
     assert counts.values == pytest.approx([1.20599, 1.06266], abs=1e-5)
 
 
-def test_an_undamped_resonance_in_a_sweep_is_a_gap_with_its_reason():
-    from verify.closed_forms import frequency_hz
+@pytest.mark.parametrize("name", ["wave.axis_ratio", "wave.standing_wave_ratio"])
+@pytest.mark.parametrize("model", ["analytic", "segment", "fem"])
+def test_an_undamped_resonance_in_a_sweep_is_a_gap_with_its_reason(name, model):
+    """Point by point and superposed alike; the other points are what they are without it."""
+    count = {} if model == "analytic" else {"count": 60}
+    f = (
+        closed_forms.frequency_hz(BEAM, 21) if model == "analytic"
+        else float({"segment": segment_model, "fem": fem_beam}[model].solve_modes(BEAM, 21, 60).frequencies_hz[20])
+    )  # fmt: skip
+    axes = (Axis("frequency_hz", (f, f + 10.0, f + 20.0)), Axis("phase_deg", (60.0, 110.0)))
+    found = design_map(name, {"model": model} | count, axes, PAPER, Workbench(BEAM))
+    assert np.isnan(found.values[0]).all()
+    assert np.isfinite(found.values[1:]).all()
+    assert len(found.reasons) == 1
+    assert found.reasons[0].startswith("2 of 6 points have no figure: frequency_hz = ")
+    assert "resonance" in found.reasons[0]
+    clean = design_map(name, {"model": model} | count, (Axis("frequency_hz", (f + 10.0, f + 20.0)), axes[1]), PAPER,
+                       Workbench(BEAM))  # fmt: skip
+    assert found.values[1:] == pytest.approx(clean.values, rel=1e-9)
 
-    f = frequency_hz(BEAM, 21)
-    found = design_map("wave.axis_ratio", {}, (parse_axis(f"frequency_hz={f!r}:{f + 10!r}:2"),), PAPER, Workbench(BEAM))
-    assert np.isnan(found.values[0])
-    assert np.isfinite(found.values[1])
-    assert "mode 21" in found.reasons[0]
+
+def test_gaps_are_counted_by_their_reason_and_each_is_said_once():
+    axes = (Axis("count", (10.0, 20.0, 49.0)), Axis("position", (0.0, 0.013, 0.2)))
+    found = design_map("wave.standing_wave_ratio", {"model": "segment"}, axes, PAPER, Workbench(BEAM))
+    assert np.isfinite(found.values).tolist() == [[False] * 3, [False] * 3, [False, True, False]]
+    assert [reason.split(":")[0] for reason in found.reasons] == [
+        "6 of 9 points have no figure", "1 of 9 points have no figure", "1 of 9 points have no figure"]  # fmt: skip
+    assert all(word in " ".join(found.reasons) for word in ("give count = 26", "field is zero", "leaves the span"))
+
+
+@pytest.mark.parametrize("name", ["wave.axis_ratio", "wave.reflection"])
+def test_a_map_without_any_figure_is_refused_with_the_reason(name):
+    bench, axes = Workbench(BEAM), (parse_axis("frequency_hz=4100:4300:3"),)
+    with pytest.raises(WindowError, match="leaves the span"):
+        design_map(name, {"window": [0.0, 0.2]}, axes, PAPER, bench)
+    with pytest.raises(ZeroFieldError, match="field is zero"):
+        design_map(name, {"position": 0.0}, axes, PAPER, bench)
+    with pytest.raises(CutOffError, match="26 or more"):
+        design_map(name, {"model": "segment", "count": 25}, (parse_axis("frequency_hz=4276:4300:2"),), PAPER, bench)
+
+
+@pytest.mark.parametrize("name", ["wave.signed_area_spread", "wave.power_imbalance"])
+def test_what_relates_to_the_flux_of_a_standing_wave_is_refused(name):
+    found = quantity(name)
+    with pytest.raises(InputError, match="the wave stands"):
+        evaluate(found, arguments_of(found, {"phase_deg": 0.0}), PAPER, Workbench(BEAM))
+    axes = (Axis("phase_deg", (0.0, 60.0)),)
+    walked = design_map(name, {}, axes, PAPER, Workbench(BEAM))
+    assert np.isnan(walked.values).tolist() == [True, False]
+    assert "1 of 2 points have no figure: the wave stands" in walked.reasons[0]
+
+
+def test_a_walked_map_counts_the_fields_it_solved():
+    bench = Workbench(BEAM)
+    design_map("wave.axis_ratio", {"x": 0.25}, (parse_axis("loss_factor=0:0.01:3"),), PAPER, bench)
+    assert bench.n_fields == 3
+    assert len(bench.fields) <= 1
+
+
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 61), ("fem", 61)])
+def test_a_map_of_imposed_displacements_is_superposed_and_is_its_single_solves(model, count):
+    given = {"model": model, "drive": "displacement"} | ({"count": count} if count else {})
+    axes = (parse_axis("frequency_hz=4100:4500:3"), parse_axis("phase_deg=-40:160:3"))
+    for name in ("wave.standing_wave_ratio", "wave.crest_speed"):
+        found = design_map(name, given, axes, PAPER, Workbench(BEAM))
+        assert found.method == "superposed"
+        for i, j in np.ndindex(3, 3):
+            point = {axis.name: axis.values[n] for axis, n in zip(axes, (i, j), strict=True)}
+            single = evaluate(quantity(name), arguments_of(quantity(name), given | point), PAPER, Workbench(BEAM))
+            assert found.values[i, j] == pytest.approx(single, rel=2e-4)
+
+
+def test_imposed_displacements_have_operating_points():
+    scene = load_scene("paper", ("drive.kind=displacement", "drive.frequency_hz=4170"))
+    quiet, fast = best_points(scene, "analytic", None, loss_factor=1e-3)
+    around = [
+        measure(field, WINDOW, field.wavenumber).reflection
+        for field in (
+            driven_field(
+                lambda forces, f: analytic_modes.solve_harmonic(replace(BEAM, loss_factor=1e-3), forces, f),
+                scene.forces, quiet.frequency_hz + step, "displacement",
+            )
+            for step in (-1.0, 0.0, 1.0)
+        )
+    ]  # fmt: skip
+    assert around[1] == pytest.approx(quiet.reflection, rel=1e-6)
+    assert around[1] <= min(around) + (1e-9 if not quiet.note else np.inf)
+    assert fast.reflection <= 0.1 + 1e-6
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["frequency=1:2:3", "frequency_hz=1:2", "frequency_hz=a:b:c", "frequency_hz=1:2:0", "count=-3:9:2", "frequency_hz"],
+    ("text", "message"),
+    [
+        ("frequency=1:2:3", "did you mean 'frequency_hz'"),
+        ("frequency_hz=1:2", "for instance frequency_hz=4000:4600:241"),
+        ("frequency_hz=a:b:c", "start:end:steps"),
+        ("frequency_hz=1:2:0", "from 1 to 10000 steps"),
+        ("frequency_hz=1:2:1000000000000", "from 1 to 10000 steps"),
+        ("frequency_hz=0:100:3", "above 0"),
+        ("frequency_hz", "start:end:steps"),
+        ("count=-3:9:2", "from 1, for instance count=49:98:50"),
+        ("loss_factor=-0.1:0.1:3", "not negative, for instance loss_factor=0:0.01:11"),
+        ("position=0:nan:3", "not negative, for instance position=0.005:0.03:26"),
+        ("phase_deg=0:inf:3", "finite, for instance phase_deg=0:180:121"),
+        ("phase_deg=0:90", "for instance phase_deg=0:180:121"),
+    ],
 )
-def test_sweeps_that_cannot_be_are_refused(text):
-    with pytest.raises(InputError, match="--sweep"):
+def test_sweeps_that_cannot_be_are_refused(text, message):
+    with pytest.raises(InputError, match=message) as caught:
         parse_axis(text)
+    assert str(caught.value).startswith("--sweep ")
+
+
+def test_a_map_of_too_many_points_is_refused_before_it_is_allocated():
+    axes = (parse_axis("frequency_hz=4000:4600:10000"), parse_axis("phase_deg=0:180:10000"))
+    with pytest.raises(InputError, match="span 100000000 points, give at most 4000000"):
+        design_map("wave.reflection", {}, axes, PAPER, Workbench(BEAM))
 
 
 @pytest.mark.parametrize(

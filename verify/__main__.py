@@ -1,6 +1,19 @@
-"""`python -m verify`."""
+"""`verify` and `python -m verify`: an interrupt is answered from the first import on."""
 
-from verify.cli import main
+import sys
+from typing import NoReturn
+
+
+def main() -> NoReturn:
+    """Run the command line; end quietly where it is interrupted before it is ready to answer."""
+    try:
+        from verify.cli import main as run
+
+        run()
+    except KeyboardInterrupt:
+        sys.stderr.write("verify: interrupted; nothing half-written is left\n")
+        sys.exit(130)
+
 
 if __name__ == "__main__":
     main()

@@ -1,13 +1,15 @@
 """The exact harmonic field of a uniform beam: what `analytic_modes.solve_harmonic` returns."""
 
 from collections.abc import Callable, Sequence
-from math import pi, sqrt
+from contextlib import suppress
+from math import factorial, pi, sqrt
 
 import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.closed_forms import check_uniform
 from verify.closed_forms import frequency_hz as mode_frequency_hz
+from verify.errors import InputError, ResonanceError
 from verify.fields import (
     RESONANCE,
     ComplexArray,
@@ -24,7 +26,8 @@ def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float
     """The exact steady field under harmonic point forces, e^{+i omega t}, with the beam's loss factor.
 
     Pinned-pinned in closed form without truncation; other supports in exponentials that decay from where they
-    start, so that no frequency overflows. Raises InputError; an undamped resonance is refused.
+    start, so that no frequency overflows; below |k| L = 1, where both lose digits, in power series. Raises
+    InputError; an undamped resonance is refused.
     """
     check_uniform(beam)
     check_drive(beam, forces, frequency_hz)
@@ -32,9 +35,11 @@ def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float
         mode = _nearest_mode(beam, frequency_hz)
         if abs(frequency_hz / (resonance := mode_frequency_hz(beam, mode)) - 1.0) < RESONANCE:
             refuse_resonance("analytic", frequency_hz, mode, resonance)
-    solve = pinned_shapes if beam.supports == ("pinned", "pinned") else spliced_shapes
+    k = wavenumber(beam, frequency_hz)
+    slow, pinned = abs(k) * beam.length < 1.0, beam.supports == ("pinned", "pinned")
+    solve = slow_shapes if slow else pinned_shapes if pinned else spliced_shapes
     return HarmonicField(model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces),
-                         shapes=solve(beam, forces, wavenumber(beam, frequency_hz)))  # fmt: skip
+                         shapes=solve(beam, forces, k))  # fmt: skip
 
 
 def _nearest_mode(beam: Beam, frequency_hz: float) -> int:
@@ -74,7 +79,47 @@ def _green(q: complex, source: float, length: float, x: Array, derivative: int) 
     return np.asarray(q**derivative * sign * np.exp(-q * (b - a)) * start * end / (1.0 - np.exp(-2 * q * length)))
 
 
+_NO_INERTIA = 1e-280
+"""(k L)^4 below which a rigid motion overflows."""
 _FREE_DERIVATIVES = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
+
+
+def slow_shapes(beam: Beam, forces: Sequence[PointForce], k: complex) -> Callable[[Array, int], ComplexArray]:
+    """Krylov's functions from the left end, sum of c_d u_d(x/L) and of F L^3 / EI u_3((x - xi)/L) behind each force.
+
+    The c_d are deflection, slope, curvature and its gradient at the left end; two of them its support sets to zero,
+    the other two follow from the right end. As k goes to 0 the u_d are 1, z, z^2/2, z^3/6: the static beam. Raises
+    InputError where a beam that is not held has no finite answer.
+    """
+    kappa = (k * beam.length) ** 4
+    scale = beam.length**3 / (beam.bending_stiffness * (1.0 + 1j * beam.loss_factor))
+    sources = [(force.position / beam.length, phasor(force) * scale) for force in forces]
+    unknown = [d for d in range(4) if d not in _FREE_DERIVATIVES[beam.supports[0]]]
+    ends = _FREE_DERIVATIVES[beam.supports[1]]
+    if beam.rigid_motions and abs(kappa) < _NO_INERTIA:
+        raise InputError(
+            f"frequency_hz: at |k| L = {abs(k) * beam.length:.3g} a beam that no support holds moves beyond floating "
+            "point, give a higher frequency_hz or other supports"
+        )
+    matrix = np.array([[_krylov(kappa, d, q, np.ones(1))[0] for d in unknown] for q in ends])
+    right = [-sum(f * _krylov(kappa, 3, q, np.array([1.0 - xi]))[0] for xi, f in sources) for q in ends]
+    amplitudes = np.linalg.solve(matrix, right)
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        z = np.minimum(x / beam.length, 1.0)
+        field = sum(c * _krylov(kappa, d, derivative, z) for d, c in zip(unknown, amplitudes, strict=True))
+        for xi, f in sources:
+            field = field + f * np.where(z >= xi, _krylov(kappa, 3, derivative, np.maximum(z - xi, 0.0)), 0.0)
+        return np.asarray(field / beam.length**derivative)
+
+    return shapes
+
+
+def _krylov(kappa: complex, d: int, derivative: int, z: Array) -> ComplexArray:
+    """A derivative of u_d = sum over j of kappa^j z^(4j + d) / (4j + d)!, for |kappa| and z up to 1, (len(z),)."""
+    turns, left = divmod(d - derivative, 4)  # a turn past the constant brings kappa back
+    terms = [kappa ** (j - turns) * z ** (4 * j + left) / factorial(4 * j + left) for j in range(6)]
+    return np.asarray(sum(terms), dtype=complex)
 
 
 def spliced_shapes(beam: Beam, forces: Sequence[PointForce], k: complex) -> Callable[[Array, int], ComplexArray]:
@@ -135,9 +180,13 @@ def _exponentials(k: complex, ends: Array, span: int, x: Array, derivative: int)
 
 
 def unit_responses(beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array) -> ComplexArray:
-    """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N."""
-    responses = [
-        [solve_harmonic(beam, [PointForce(position=p)], float(f)).deflection(x) for p in positions]
-        for f in frequencies_hz
-    ]
-    return np.array(responses)
+    """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
+
+    NaN at the frequencies of undamped resonances.
+    """
+    responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    for i, j in np.ndindex(*responses.shape[:2]):
+        with suppress(ResonanceError):
+            force = PointForce(position=positions[j])
+            responses[i, j] = solve_harmonic(beam, [force], float(frequencies_hz[i])).deflection(x)
+    return responses

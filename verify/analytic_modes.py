@@ -8,9 +8,8 @@ from math import cos, exp, pi, sin, sqrt
 import numpy as np
 
 from verify.analytic_harmonic import solve_harmonic, unit_responses
-from verify.beam import Beam
+from verify.beam import Beam, check_whole
 from verify.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
-from verify.errors import InputError
 from verify.modes import Array, Modes
 
 __all__ = [
@@ -32,8 +31,7 @@ def solve_modes(beam: Beam, n_modes: int) -> Modes:
     Roots in the exponential form y = (n + c) pi + s g atan(exp(-2 y / g)), shapes with decaying exponentials
     from both ends. Raises InputError for n_modes < 1.
     """
-    if n_modes < 1:
-        raise InputError(f"n_modes = {n_modes!r}: ask for at least one mode")
+    check_whole("n_modes", n_modes, 1)
     frequencies = np.array([frequency_hz(beam, n) for n in range(1, n_modes + 1)])
 
     def shapes(x: Array, derivative: int) -> Array:

@@ -1,6 +1,7 @@
 """What a beam is: geometry, material, supports and the forces on it. Data, no numerics."""
 
 from math import inf, isfinite, log10
+from operator import index
 from typing import Literal, get_args
 
 import msgspec
@@ -22,6 +23,16 @@ def check_number(
     limits += [f"below {below:g}"] * (below < inf)
     wanted = " ".join(["a finite number", " and ".join(limits)]).strip()
     raise InputError(f"{field} = {value!r}: give {wanted} ({unit})")
+
+
+def check_whole(field: str, value: object, least: int) -> None:
+    """Raise InputError unless `value` is a whole number of at least `least`."""
+    try:
+        whole = index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise InputError(f"{field} = {value!r}: give a whole number of at least {least}") from None
+    if isinstance(value, bool) or whole < least:
+        raise InputError(f"{field} = {value!r}: give a whole number of at least {least}")
 
 
 class Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

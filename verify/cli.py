@@ -3,7 +3,8 @@
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -15,7 +16,7 @@ from verify.errors import InputError
 if TYPE_CHECKING:
     from verify.scene import Scene
 
-BAD_INPUT, GATE_FAILED, INTERRUPTED = 2, 1, 130
+BAD_INPUT, GATE_FAILED, INTERRUPTED, NO_READER = 2, 1, 130, 141
 
 _overrides = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a value of the scene: beam.length=0.4."
@@ -24,13 +25,28 @@ _as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON and 
 _scene = click.argument("scene")
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+class ReaderGoneError(Exception):
+    """Whoever read standard output has left."""
+
+
+class Commands(click.Group):
+    """The commands. A broken pipe is told apart from a failed gate, which click ends with the same status."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command that was asked for."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            raise ReaderGoneError from None
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="verify")
 def cli() -> None:
     """Say how far a finite-segment model of a vibrating beam can be trusted, and what that costs in run time.
 
     SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
-    Exit status: 0 all well, 1 a gate failed, 2 bad input.
+    Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on.
     """
 
 
@@ -224,7 +240,8 @@ def scenes(as_json: bool) -> None:
 @cli.command()
 @click.argument("path", type=click.Path(path_type=Path))
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
-def init(path: Path, force: bool) -> None:
+@_as_json
+def init(path: Path, force: bool, as_json: bool) -> None:
     """Write a commented scene to PATH to start from."""
     from verify.files import write_whole
     from verify.scene import STARTER
@@ -232,7 +249,10 @@ def init(path: Path, force: bool) -> None:
     if path.exists() and not force:
         raise InputError(f"path = {str(path)!r} exists: name another file, or replace it with --force")
     write_whole(path, STARTER.read_text("utf-8"), "path")
-    click.echo(f"wrote {path}; next: verify run {path}")
+    if as_json:
+        _print_json({"path": str(path), "next": ["verify", "run", str(path)]})
+    else:
+        click.echo(f"wrote {path}; next: verify run {path}")
 
 
 def _load(scene: str, overrides: tuple[str, ...]) -> "Scene":
@@ -271,6 +291,10 @@ def status_of(argv: list[str] | None = None) -> int:
     """Run a command line and return its exit status; messages go to the error stream."""
     try:
         result = cli.main(args=argv, prog_name="verify", standalone_mode=False)
+        sys.stdout.flush()
+    except (BrokenPipeError, ReaderGoneError):
+        _hush()
+        return NO_READER
     except InputError as error:
         click.echo(f"verify: {error}", err=True)
         return BAD_INPUT
@@ -281,15 +305,25 @@ def status_of(argv: list[str] | None = None) -> int:
         click.echo("verify: interrupted; nothing half-written is left", err=True)
         return INTERRUPTED
     except SystemExit as stop:
-        return stop.code if isinstance(stop.code, int) else BAD_INPUT
+        result = stop.code if isinstance(stop.code, int) else BAD_INPUT
     return result if isinstance(result, int) else 0
 
 
-def main() -> NoReturn:
-    """Entry point of the command `verify`.
+def _hush() -> None:
+    """Whoever read standard output has gone: leave the interpreter nothing to say about it at its end."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
-    The matrices here are small or sparse: BLAS threads only get in each other's way, so one is the default.
+
+def main() -> NoReturn:
+    """Entry point of the command `verify`, behind `__main__`.
+
+    The matrices here are small or sparse: BLAS threads only get in each other's way, so one is the default. What a
+    terminal cannot show is escaped.
     """
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     sys.exit(status_of())

@@ -18,7 +18,18 @@ if TYPE_CHECKING:
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Cell, Row
-    from verify.wave_study import MotorRow
+    from verify.wave_study import MotorRow, Operation
+
+
+class Terminal(Console):
+    """Standard output without highlighting of numbers."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(highlight=False, **settings)
+
+    def on_broken_pipe(self) -> None:
+        """Leave it to the command line, which ends without a word."""
+        raise BrokenPipeError
 
 
 def seconds_in_words(seconds: float | None) -> str:
@@ -52,7 +63,7 @@ def figure(value: Any) -> str:
 
 def print_run(result: "RunResult", report: Path | None) -> None:
     """Verdict, gates, where the report lies."""
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
     if result.gates:
         console.print(_gate_table(result.gates))
@@ -89,7 +100,7 @@ def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
 
 def print_table(rows: "tuple[Row, ...]") -> None:
     """The convergence table, one block for each mode."""
-    console = Console(highlight=False)
+    console = Terminal()
     for mode, group in groupby(rows, key=lambda row: row.mode):
         block = list(group)
         console.print(f"[bold]mode {mode}[/]  exact {block[0].exact_hz:.4f} Hz")
@@ -134,55 +145,69 @@ def _bare_percent(value: float | None) -> str:
 def print_motor(rows: "tuple[MotorRow, ...]") -> None:
     """The motor's figures over sizes, at the drive's frequency and at each model's own best."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
-    pick = ("Hz", "SWR", "axis ratio", "mm/s")
-    for name in ("model", "N", *pick, *pick):
+    pick = ("SWR", "axis ratio", "mm/s")
+    for name in ("model", "N", *pick, "best Hz", *pick):
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
     for row in rows:
-        cells = [
-            text
-            for one in (row.drive, row.best)
-            for text in (f"{one.frequency_hz:.2f}", f"{one.standing_wave_ratio:.5f}", f"{one.axis_ratio:+.5f}",
-                         f"{1e3 * one.crest_speed:+.4f}")
-        ]  # fmt: skip
-        table.add_row(row.model, str(row.count or "–"), *cells)
-    console = Console(highlight=False)
+        best = (f"{row.best.frequency_hz:.2f}", *_operation(row.best)) if row.best else ("–",) * 4
+        table.add_row(row.model, str(row.count or "–"), *_operation(row.drive), *best)
+    console = Terminal()
     console.print(table)
-    console.print("[dim]window [L/4, 3L/4]; left at the drive's frequency, right at the model's own best[/]")
+    console.print(f"[dim]window [L/4, 3L/4]; left at {rows[0].drive.frequency_hz:g} Hz, the drive's frequency, right "
+                  "at the model's own best[/]")  # fmt: skip
+    for row in rows:
+        if row.note:
+            console.print(Text(f"– {row.model}{f', N = {row.count}' if row.count else ''}: {row.note}", style="dim"))
+
+
+def _operation(one: "Operation") -> tuple[str, str, str]:
+    """SWR, axis ratio and crest speed, at most 8, 8 and 9 characters."""
+    ratio = one.standing_wave_ratio
+    return f"{ratio:.5f}" if ratio < 10 else f"{ratio:.4g}", f"{one.axis_ratio:+.5f}", f"{1e3 * one.crest_speed:+.5g}"
 
 
 def print_map(found: "DesignMap") -> None:
-    """A design map: its extremes, and a coarse look at the whole."""
+    """A design map: whose it is, its extremes, and a coarse look at the whole."""
     import numpy as np
 
-    console = Console(highlight=False)
-    finite = np.where(np.isfinite(found.values), found.values, np.nan)
-    names = [axis.name for axis in found.axes]
-    for word, index in (("least", np.nanargmin(finite)), ("largest", np.nanargmax(finite))):
-        at = np.unravel_index(int(index), finite.shape)
-        place = ", ".join(f"{axis.name} = {axis.values[i]:g}" for axis, i in zip(found.axes, at, strict=True))
-        console.print(
-            f"{word} {found.quantity} = {finite[at]:.6g} {found.unit if found.unit != '1' else ''} at {place}"
-        )
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
-    table.add_column(names[0], justify="right", no_wrap=True)
-    rows = np.unique(np.linspace(0, len(found.axes[0].values) - 1, 13).round().astype(int))
-    width = len(found.axes[1].values) if len(names) == 2 else 1
-    columns = np.unique(np.linspace(0, width - 1, 7).round().astype(int))
-    grid = found.values.reshape(len(found.axes[0].values), width)
-    for j in columns:
-        head = f"{names[1]} {found.axes[1].values[j]:g}" if len(names) == 2 else found.quantity
-        table.add_column(head, justify="right", overflow="fold")
-    for i in rows:
-        table.add_row(f"{found.axes[0].values[i]:g}", *(f"{grid[i, j]:.4g}" for j in columns))
-    console.print(table)
+    console = Terminal()
+    console.print(Text(f"{found.quantity} of {found.of}"))
+    finite = np.isfinite(found.values)
+    for word, pick, other in (("least", np.argmin, np.inf), ("largest", np.argmax, -np.inf)):
+        if finite.any():
+            at = np.unravel_index(int(pick(np.where(finite, found.values, other))), finite.shape)
+            place = ", ".join(f"{axis.name} = {axis.values[i]:g}" for axis, i in zip(found.axes, at, strict=True))
+            unit = f" {found.unit}" if found.unit != "1" else ""
+            console.print(f"{word} {found.quantity} = {found.values[at]:.6g}{unit} at {place}")
+    if not finite.any():
+        console.print("no point has a finite figure")
+    console.print(_map_table(found))
     console.print(f"[dim]{finite.size} points, {found.method}; --json and --csv give them all[/]")
     for reason in found.reasons:
         console.print(Text(f"– {reason}", style="dim"))
 
 
+def _map_table(found: "DesignMap") -> Table:
+    """At most 13 by 7 of a map's values."""
+    import numpy as np
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
+    first, *second = found.axes
+    table.add_column(first.name, justify="right", no_wrap=True)
+    grid = found.values.reshape(len(first.values), -1)
+    few = ((grid.shape[0], 13), (grid.shape[1], 7))
+    rows, columns = (np.unique(np.linspace(0, n - 1, most).round().astype(int)) for n, most in few)
+    for j in columns:
+        head = f"{second[0].name} {second[0].values[j]:g}" if second else found.quantity
+        table.add_column(head, justify="right", overflow="fold")
+    for i in rows:
+        table.add_row(f"{first.values[i]:g}", *("–" if np.isnan(v) else f"{v:.4g}" for v in grid[i, columns]))
+    return table
+
+
 def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]") -> None:
     """What `verify choose` found, and which of the models costs less."""
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact_hz:.4f} Hz takes")
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_header=True)
     for name in ("model", "N", "unknowns", "error", "error law", "time"):
@@ -197,7 +222,7 @@ def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choic
 
 def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
-    console = Console(highlight=False)
+    console = Terminal()
     console.print(f"[bold]{plan.scene}[/] will run")
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for name in ("model", "N", "modes", "unknowns"):

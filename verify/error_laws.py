@@ -4,15 +4,17 @@ Exact discrete dispersion where a sine fits the ends (pinned and guided), leadin
 The models are not asked: this is what they are checked against.
 """
 
-from cmath import acos
+from cmath import asin
 from cmath import sqrt as csqrt
 from math import cos, pi, sin, sqrt
 
 from verify.beam import Beam
 from verify.closed_forms import check_mode, check_uniform, wavenumber_length
-from verify.errors import InputError
+from verify.errors import CutOffError, InputError
 
-MODELS = ("segment", "fem")
+PARTS = {"segment": "segments", "fem": "elements"}
+_CUT_OFF_ROOTS = {"segment": 48.0, "fem": 1680.0 / 17.0}
+"""omega^2 rho A l^4 / EI at mu = pi, the end of the lower branch."""
 
 
 def sine_fits(supports: tuple[str, str]) -> bool:
@@ -54,35 +56,52 @@ def _hermite_root(mu: float) -> float:
     return 2.0 * det / (b + sqrt(b * b - 4.0 * a * det))
 
 
+def cut_off_hz(model: str, beam: Beam, count: int) -> float:
+    """The frequency, Hz, above which no wave runs along a discrete model of equal parts: a half wave on each part."""
+    return sqrt(_CUT_OFF_ROOTS[model]) * beam.wave_constant * (count / beam.length) ** 2 / (2.0 * pi)
+
+
+def check_carried(model: str, beam: Beam, count: int, frequency_hz: float) -> None:
+    """Raise CutOffError, with the fewest parts that carry it, for a frequency beyond the model's cut-off."""
+    if frequency_hz < cut_off_hz(model, beam, count):
+        return
+    fewest = int(count * sqrt(frequency_hz / cut_off_hz(model, beam, count)))
+    fewest += cut_off_hz(model, beam, fewest) <= frequency_hz
+    raise CutOffError(
+        f"count = {count!r}: {count} {PARTS[model]} carry waves up to {cut_off_hz(model, beam, count):.6g} Hz and "
+        f"frequency_hz = {frequency_hz!r} lies beyond, give count = {fewest} or more"
+    )
+
+
 def discrete_wavenumber(model: str, beam: Beam, count: int, frequency_hz: float) -> complex:
     """The wavenumber at which a wave runs along a discrete model of equal parts, 1/m, with the loss factor.
 
-    The inverse of the discrete dispersion; beyond the model's cut-off it is complex. Raises InputError for
-    stepped beams.
+    The inverse of the discrete dispersion on its lower branch, solved for s^2 = sin^2(mu/2), which keeps its
+    digits on the finest mesh. Raises InputError for stepped beams and CutOffError where no wave runs.
     """
     check_uniform(beam)
+    check_carried(model, beam, count, frequency_hz)
     length = beam.length / count
     root = (2.0 * pi * frequency_hz / beam.wave_constant * length**2) ** 2 / (1.0 + 1j * beam.loss_factor)
-    cosine = _segment_cosine(root) if model == "segment" else _hermite_cosine(root)
-    mu = acos(cosine)
+    s2 = _segment_s2(root) if model == "segment" else _hermite_s2(root)
+    mu = 2.0 * asin(csqrt(s2))
     return (mu if mu.imag <= 0 else mu.conjugate()) / length
 
 
-def _segment_cosine(root: complex) -> complex:
-    """The cosine of mu of rigid links from 48 s^4 = root (3 - 2 s^2)."""
-    s2 = (csqrt(root * root + 144.0 * root) - root) / 48.0
-    return 1.0 - 2.0 * s2
+def _segment_s2(root: complex) -> complex:
+    """s^2 of rigid links from 48 s^4 = root (3 - 2 s^2), the root written without a difference."""
+    return 3.0 * root / (csqrt(root * root + 144.0 * root) + root)
 
 
-def _hermite_cosine(root: complex) -> complex:
-    """The cosine of mu of Hermite elements: the two nodal equations' determinant is a quadratic in it."""
-    k, m = 12.0 + 26.0 * root / 420.0, root / 420.0
-    # (24 - 312 m - (24 + 108 m) c) (8 - 8 m + (4 + 6 m) c) - (1 - c^2) k^2 = 0
-    a0, a1, b0, b1 = 24.0 - 312.0 * m, -(24.0 + 108.0 * m), 8.0 - 8.0 * m, 4.0 + 6.0 * m
-    a, b, c = a1 * b1 + k * k, a0 * b1 + a1 * b0, a0 * b0 - k * k
-    half = csqrt(b * b - 4.0 * a * c)
-    roots = ((-b + half) / (2.0 * a), (-b - half) / (2.0 * a))
-    return min(roots, key=lambda value: abs(value.imag) + max(abs(value.real) - 1.0, 0.0))
+def _hermite_s2(root: complex) -> complex:
+    """s^2 of Hermite elements: the two nodal equations' determinant is a quadratic in it, m = root / 420.
+
+    ((48 + 216 m) s^2 - 420 m) (12 - 2 m - (8 + 12 m) s^2) = 4 s^2 (1 - s^2) (12 + 26 m)^2, its root on the lower
+    branch written without a difference.
+    """
+    m = root / 420.0
+    a, b, c = 192.0 + (192.0 + 112.0 * m) * m, (3360.0 + 1904.0 * m) * m, (5040.0 - 840.0 * m) * m
+    return 2.0 * c / (b + csqrt(b * b + 4.0 * a * c))
 
 
 def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) -> float:

@@ -13,6 +13,30 @@ class NoBracketError(InputError):
     """A two-sided bound was asked for where theory or rounding gives none."""
 
 
+class NoFigureError(InputError):
+    """One point of a sweep has no figure, though its neighbours may: a map has a gap there."""
+
+
+class ResonanceError(NoFigureError):
+    """An undamped model is driven at one of its own frequencies."""
+
+
+class CutOffError(NoFigureError):
+    """A mesh is too coarse to carry a wave of this frequency."""
+
+
+class ZeroFieldError(NoFigureError):
+    """Nothing moves, so there is no wave to measure."""
+
+
+class StandingError(NoFigureError):
+    """A standing wave carries nothing, so that nothing can be related to what it carries."""
+
+
+class WindowError(NoFigureError):
+    """A window in which the waves cannot be told apart."""
+
+
 def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
     """The end of a sentence about an unknown word: the nearest known one, or all of them."""
     from difflib import get_close_matches

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.division import Parts, check_division, divide
 from verify.eigen import (
     DENSE_UNKNOWNS,
@@ -22,7 +22,6 @@ from verify.eigen import (
     lowest,
     method_name,
 )
-from verify.errors import InputError
 from verify.fields import HarmonicField, check_drive, phasor
 from verify.harmonic_solvers import damped_response, modal_receptance, refuse_near_resonance
 from verify.modes import Modes
@@ -135,8 +134,8 @@ def solve_modes(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1
 
 def check(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0) -> None:
     """Raise InputError, before anything is allocated, where `solve_modes` would refuse."""
-    if n_elements < 1:
-        raise InputError(f"{FIELD} = {n_elements!r}: give at least one element")
+    check_whole("n_modes", n_modes, 1)
+    check_whole(FIELD, n_elements, 1)
     check_division(beam, n_elements, grading)
     check_size(unknowns(beam, n_elements), n_modes, n_elastic(beam, n_elements), FIELD, n_elements)
 
@@ -294,8 +293,8 @@ def unit_responses(
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
-    All modes of the mesh are solved once and summed exactly for every frequency. Raises InputError for meshes
-    beyond the dense size.
+    All modes of the mesh are solved once and summed exactly for every frequency. NaN at the frequencies of
+    undamped resonances. Raises InputError for meshes beyond the dense size.
     """
     check(beam, 1, n_elements)
     parts, free = divide(beam, n_elements), free_unknowns(beam.supports, n_elements)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.beam import Beam, PointForce, check_number
-from verify.errors import InputError
+from verify.errors import InputError, ResonanceError
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -64,6 +64,12 @@ def wavenumber(beam: Beam, frequency_hz: float) -> complex:
     return complex(real * (1.0 + 1j * beam.loss_factor) ** -0.25)
 
 
+def unit_response(beam: Beam, frequency_hz: float) -> float:
+    """The size of an answer to a unit force, min(1/|k|, L)^3 / EI, m/N: what is tiny beside it is rounding."""
+    length = min(1.0 / abs(wavenumber(beam, frequency_hz)), beam.length)
+    return float(length**3 / beam.bending_stiffness)
+
+
 def check_drive(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> None:
     """Raise InputError for a frequency that is not finite and positive, no force, or a force off the beam."""
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
@@ -83,9 +89,9 @@ def phasor(force: PointForce) -> complex:
 
 
 def refuse_resonance(model: str, frequency_hz: float, mode: int, resonance_hz: float) -> None:
-    """Raise InputError naming the mode of an undamped resonance and the distance to it."""
+    """Raise ResonanceError naming the mode of an undamped resonance and the distance to it."""
     distance = abs(frequency_hz / resonance_hz - 1.0)
-    raise InputError(
+    raise ResonanceError(
         f"frequency_hz = {frequency_hz!r} lies {distance:.1e} (relative) from the undamped resonance of mode {mode} "
         f"of the {model} model at {resonance_hz!r} Hz: give the beam a loss_factor or choose another frequency"
     )

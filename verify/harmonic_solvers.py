@@ -44,12 +44,17 @@ def modal_receptance(
 ) -> tuple[Array, ComplexArray]:
     """(modes (n, n), their share in the response to each load at each frequency (n_frequencies, n_loads, n)).
 
-    Exact with a loss factor, which leaves the modes as they are. Raises InputError beyond the dense size.
+    Exact with a loss factor, which leaves the modes as they are. NaN at the frequencies of undamped resonances.
+    Raises InputError beyond the dense size.
     """
     check_dense(pencil, "a map over frequency")
     values, vectors = modal_basis(pencil)
     denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None]
-    return vectors, np.asarray((vectors.T @ weights).T / denominators[:, None, :])
+    near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
+    known = np.full(len(omega2), True) if loss_factor else ~near.any(axis=1)
+    shares = np.full((len(omega2), weights.shape[1], len(values)), np.nan, dtype=complex)
+    shares[known] = (vectors.T @ weights).T / denominators[known, None, :]
+    return vectors, shares
 
 
 def check_dense(pencil: FactoredPencil, what: str) -> None:

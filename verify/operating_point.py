@@ -7,9 +7,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.design_map import unit_waves, wave_figure
 from verify.errors import InputError
 from verify.fields import Array
+from verify.travelling_wave import middle_half
+from verify.unit_waves import Gaps, UnitDrive, superposed
+from verify.waves import quietest
 
 if TYPE_CHECKING:
     from verify.scene import Scene
@@ -28,34 +30,37 @@ class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):
     per_degree: float
     """Change of the reflection with phase there, 1/degree."""
     what: str
+    note: str = ""
+    """What limits it: the edge of the search; empty where the point is a true optimum."""
 
 
 class Landscape(msgspec.Struct, frozen=True, kw_only=True):
-    """Reflection and crest speed of a beam under two forces, over frequency and phase between them."""
+    """Reflection and crest speed of a beam under two forces or displacements, over frequency and phase between them."""
 
     beam: Beam
     forces: tuple[PointForce, PointForce]
     model: str
     count: int | None
+    kind: str = "force"
+    """What is imposed, force or displacement."""
 
     def over(self, frequencies: Array, phases_deg: Array) -> tuple[Array, Array]:
         """(reflection, crest speed in m/s) on a grid, (n_frequencies, n_phases) each; window [L/4, 3L/4]."""
-        window = (0.25 * self.beam.length, 0.75 * self.beam.length)
-        places = [force.position for force in self.forces]
-        k, plus, minus = unit_waves(self.beam, self.model, self.count, places, frequencies, window)
-        turn = self.forces[1].amplitude * np.exp(1j * np.deg2rad(phases_deg))
-        waves = [w[:, 0, None] * self.forces[0].amplitude + w[:, 1, None] * turn for w in (plus, minus)]
-        figures = ("wave.reflection", "wave.crest_speed")
-        f = frequencies[:, None]
-        reflection, speed = (wave_figure(name, self.beam, f, k[:, None], *waves) for name in figures)
-        return reflection, speed
+        first, second = self.forces
+        drive = UnitDrive(beam=self.beam, model=self.model, count=self.count, kind=self.kind,
+                          places=(first.position, second.position), window=middle_half(self.beam))  # fmt: skip
+        turned = np.asarray(second.amplitude * np.exp(1j * np.deg2rad(phases_deg)), dtype=complex)
+        gaps, figures = Gaps(), ("wave.reflection", "wave.crest_speed")
+        reflection, speed = superposed(drive, figures, frequencies, complex(first.amplitude), turned, gaps)
+        gaps.reasons(reflection.size)
+        return np.where(np.isnan(reflection), 1.0, reflection), np.nan_to_num(speed)  # a gap attracts nobody
 
     def at(self, frequency: float, phase_deg: float) -> tuple[float, float]:
         """(reflection, crest speed) at one point."""
         reflection, speed = self.over(np.array([frequency]), np.array([phase_deg]))
         return float(reflection[0, 0]), float(speed[0, 0])
 
-    def point(self, frequency: float, phase_deg: float, what: str) -> OperatingPoint:
+    def point(self, frequency: float, phase_deg: float, what: str, note: str = "") -> OperatingPoint:
         """A point with its sensitivity: mean changes over half a hertz and half a degree on both sides."""
         gamma, speed = self.at(frequency, phase_deg)
 
@@ -64,38 +69,60 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
             return 0.5 * sum(abs(side - gamma) for side in sides) / (hertz + degrees)
 
         return OperatingPoint(frequency_hz=frequency, phase_deg=phase_deg, reflection=gamma, crest_speed=speed,
-                              per_hertz=change(0.5, 0.0), per_degree=change(0.0, 0.5), what=what)  # fmt: skip
+                              per_hertz=change(0.5, 0.0), per_degree=change(0.0, 0.5),
+                              what=what, note=note)  # fmt: skip
+
+    def quiet_point(self, frequencies: Array, phase_deg: float) -> OperatingPoint:
+        """Least reflection at one phase. Raises InputError where the wave stands at every frequency."""
+        least = quietest(lambda f: self.over(f, np.array([phase_deg]))[0][:, 0], frequencies)
+        note = edge_note("the reflection still falls", least.x) if least.at_edge else ""
+        return self.point(least.x, phase_deg, "least reflection at the scene's phase", note)
+
+    def fast_point(self, frequencies: Array, phase_deg: float, limit: float) -> OperatingPoint:
+        """Largest crest speed with a reflection up to `limit`. Raises InputError where no point keeps it."""
+        frequency, phase = fastest(self, frequencies, phase_deg, limit)
+        inside = min(frequency - frequencies[0], frequencies[-1] - frequency) > 0.01 * np.diff(frequencies)[0]
+        note = "" if inside else edge_note("the crests still grow faster", frequency)
+        return self.point(frequency, phase, f"largest crest speed with a reflection up to {limit:g}", note)
 
 
-def best_points(
+def edge_note(what: str, frequency: float) -> str:
+    """A sentence about an optimum at the edge of its search, Hz."""
+    return f"{what} at the edge of the search, {frequency:.6g} Hz: not an optimum but where the search ends"
+
+
+def operating_points(
     scene: "Scene", model: str, count: int | None, limit: float = 0.1, loss_factor: float | None = None
-) -> tuple[OperatingPoint, OperatingPoint]:
+) -> tuple[tuple[OperatingPoint, ...], tuple[InputError, ...]]:
     """(least reflection at the scene's phase; largest crest speed with a reflection up to `limit` over both).
 
-    Within 1.5 % of the drive's frequency and phases of 5 to 175 degrees in size. Raises InputError.
+    Within 1.5 % of the drive's frequency and phases of 5 to 175 degrees in size; beside them the reasons for those
+    that do not exist. Raises InputError for a scene without two forces.
     """
     if scene.drive is None or len(scene.forces) != 2:
         raise InputError("an operating point takes a scene with two forces: add them to its [drive]")
     beam = scene.beam if loss_factor is None else replace(scene.beam, loss_factor=loss_factor)
     first, second = scene.forces
-    land = Landscape(beam=beam, forces=(first, second), model=model, count=count)
+    land = Landscape(beam=beam, forces=(first, second), model=model, count=count, kind=scene.drive.kind)
     phase = second.phase_deg - first.phase_deg
     frequencies = np.linspace(0.985, 1.015, 121) * scene.drive.frequency_hz
-    return (
-        land.point(quietest(land, frequencies, phase), phase, "least reflection at the scene's phase"),
-        land.point(*fastest(land, frequencies, phase, limit), f"largest crest speed with a reflection up to {limit:g}"),
-    )
+    points, problems = [], []
+    for find in (land.quiet_point, lambda f, p: land.fast_point(f, p, limit)):
+        try:
+            points.append(find(frequencies, phase))
+        except InputError as error:
+            problems.append(error)
+    return tuple(points), tuple(problems)
 
 
-def quietest(land: Landscape, frequencies: Array, phase_deg: float) -> float:
-    """The frequency of least reflection at one phase, Hz: the best of a grid, then Brent's method around it."""
-    from scipy.optimize import minimize_scalar
-
-    least = int(np.argmin(land.over(frequencies, np.array([phase_deg]))[0]))
-    around = frequencies[max(least - 1, 0)], frequencies[min(least + 1, len(frequencies) - 1)]
-    found = minimize_scalar(lambda f: land.at(float(f), phase_deg)[0], bounds=around, method="bounded",
-                            options={"xatol": 1e-5})  # fmt: skip
-    return float(found.x)
+def best_points(
+    scene: "Scene", model: str, count: int | None, limit: float = 0.1, loss_factor: float | None = None
+) -> tuple[OperatingPoint, ...]:
+    """Both of `operating_points`. Raises InputError where either does not exist."""
+    points, problems = operating_points(scene, model, count, limit, loss_factor)
+    if problems:
+        raise problems[0]
+    return points
 
 
 def fastest(land: Landscape, frequencies: Array, phase_deg: float, limit: float) -> tuple[float, float]:

@@ -35,7 +35,8 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
 
 def wave_as_plain(study: "WaveStudy") -> dict[str, Any]:
     """A wave study: the motor's rows and operating points."""
-    return {"rows": msgspec.to_builtins(study.rows), "points": msgspec.to_builtins(study.points)}
+    return {"rows": msgspec.to_builtins(study.rows), "points": msgspec.to_builtins(study.points),
+            "notes": list(study.notes)}  # fmt: skip
 
 
 def flat_row(row: "Row") -> dict[str, Any]:

@@ -8,7 +8,7 @@ from verify.errors import InputError
 from verify.workbench import Key, Need, Settings, merged, model_module
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scene import Scene, Wave
 
 
 class Ask(msgspec.Struct, frozen=True):
@@ -83,8 +83,7 @@ def _study_asks(scene: "Scene") -> list[Ask]:
     if scene.sensitivity:
         asks.append(Ask("sensitivity", ()))
     if scene.wave:
-        sizes = ", ".join(str(n) for n in scene.wave.counts)
-        asks.append(Ask(f"wave (harmonic fields of segments and elements at N = {sizes}, one map)", ()))
+        asks.append(Ask(_wave_study(scene.wave), ()))
     return asks
 
 
@@ -98,11 +97,29 @@ def plan_scene(scene: "Scene") -> Plan:
             solves.append(_planned(scene, key, n_wanted, who))
         except InputError as error:
             problems += [(one, str(error)) for one in who]
-    driven = {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith("wave.")}
+    driven = _driven(scene)
     closed = tuple(a.who for a in asks if not a.needs and not a.problem and a.who not in driven)
     return Plan(scene=scene.name, solves=tuple(solves), closed_forms=closed, skipped=_skipped(scene, asks),
                 harmonic=tuple(ask.who for ask in asks if ask.who in driven and not ask.problem),
                 problems=tuple(Problem(*pair) for pair in problems))  # fmt: skip
+
+
+def _driven(scene: "Scene") -> set[str]:
+    """Who asks for driven fields: gates on waves and the wave study."""
+    gates = {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith("wave.")}
+    return gates | ({_wave_study(scene.wave)} if scene.wave else set())
+
+
+def _wave_study(wave: "Wave") -> str:
+    sizes = ", ".join(str(n) for n in wave.counts)
+    return f"wave (harmonic fields of segments and elements at N = {sizes}, one map)"
+
+
+def _driven_elements(scene: "Scene") -> bool:
+    """Whether a driven field of the finite elements is asked for."""
+    return scene.wave is not None or any(
+        gate.quantity.startswith("wave.") and gate.arguments.get("model") == "fem" for gate in scene.gate
+    )
 
 
 def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
@@ -118,13 +135,14 @@ def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> P
 def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
     """What this scene leaves out, with the reason."""
     left = []
-    if not any(ask.needs for ask in asks):
+    driven = _driven(scene)
+    if not driven and not any(ask.needs for ask in asks):
         left.append(Skipped("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
-    elif not any(need.model == "fem" for ask in asks for need in ask.needs):
+    elif not _driven_elements(scene) and not any(need.model == "fem" for ask in asks for need in ask.needs):
         left.append(Skipped("scikit-fem", "nothing asked needs the finite-element model"))
     if scene.drive is None:
         left.append(Skipped("harmonic response", "the scene has no drive"))
-    elif not scene.wave and not any(gate.quantity.startswith("wave.") for gate in scene.gate):
+    elif not driven:
         left.append(Skipped("harmonic response", "no gate and no study asks for the driven beam"))
     left.append(Skipped("time stepping", "modes and harmonic fields only: linear, nothing here depends on the past"))
     left.append(Skipped("contact search", "the scene has no slider"))

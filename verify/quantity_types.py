@@ -36,6 +36,14 @@ Joints = Annotated[
 Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
 
 
+def check_count(model: str, count: int | None) -> None:
+    """Raise InputError for a discrete model without its size, or the exact beam with one."""
+    if model != "analytic" and count is None:
+        raise InputError(f"count is missing: give the number of segments or elements for model = {model}")
+    if model == "analytic" and count is not None:
+        raise InputError(f"count = {count!r} is for model = fem or segment: the exact beam has no parts, leave it out")
+
+
 class Arguments(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Base of the typed arguments of a quantity."""
 
@@ -72,8 +80,7 @@ class AtSize(Divided, frozen=True, kw_only=True):
     theory: Theory = "euler-bernoulli"
 
     def __post_init__(self) -> None:
-        if self.model != "analytic" and self.count is None:
-            raise InputError(f"count is missing: give the number of segments or elements for model = {self.model}")
+        check_count(self.model, self.count)
         if self.model != "analytic" and self.theory != "euler-bernoulli":
             raise InputError(
                 f"theory = {self.theory!r} belongs to model = analytic: the {self.model} model is Euler-Bernoulli"
@@ -107,8 +114,7 @@ class NodeAt(Divided, frozen=True, kw_only=True):
     count: Size | None = None
 
     def __post_init__(self) -> None:
-        if self.model != "analytic" and self.count is None:
-            raise InputError(f"count is missing: give the number of segments or elements for model = {self.model}")
+        check_count(self.model, self.count)
         self.check_settings(self.model)
 
 

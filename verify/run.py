@@ -28,7 +28,7 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     wave: "WaveStudy | None"
     solves: tuple[Solve, ...]
     n_fields: int
-    """How many driven fields were solved, those of maps not counted."""
+    """How many driven fields were solved, those of superposed maps not counted."""
     seconds: float
 
     @property
@@ -72,7 +72,7 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
         wave = wave_study(found, bench, found.wave, progress)
     return RunResult(
         scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity, wave=wave,
-        solves=tuple(bench.solves), n_fields=len(bench.fields), seconds=perf_counter() - start,
+        solves=tuple(bench.solves), n_fields=bench.n_fields, seconds=perf_counter() - start,
     )  # fmt: skip
 
 

@@ -236,7 +236,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     import tomllib
 
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8"))
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
         raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -309,6 +309,8 @@ def _position(entries: list[Any], step: str, field: str) -> int:
 
 def load_scene(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> Scene:
     """A packaged scene by name, any other by path, with 'key=value' overrides. Raises InputError."""
+    if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
+        raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
     data = read_toml(scene_path(str(name_or_path)))
     for assignment in overrides:
         override(data, assignment)

@@ -6,7 +6,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.chain import (
     JOINTS,
     Chain,
@@ -79,8 +79,8 @@ def check(
         raise InputError(f"wall = {wall!r} is not known: {near_name(wall, WALLS)}")
     if joints not in JOINTS:
         raise InputError(f"joints = {joints!r} is not known: {near_name(joints, JOINTS)}")
-    if n_segments < 2:
-        raise InputError(f"{FIELD} = {n_segments!r}: a chain that bends needs at least 2 segments")
+    check_whole("n_modes", n_modes, 1)
+    check_whole(FIELD, n_segments, 2)  # a single link does not bend
     if wall == "welded" and (beam.section or grading != 1.0):
         raise InputError("wall = 'welded' is for uniform beams of equal segments: choose another wall")
     check_division(beam, n_segments, grading)
@@ -214,7 +214,8 @@ def unit_responses(
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
     All modes of the chain are solved once and summed exactly for every frequency. Load and reading are the
-    defaults of `solve_harmonic`. Raises InputError for chains beyond the dense size.
+    defaults of `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError for chains
+    beyond the dense size.
     """
     check(beam, 1, n_segments)
     chain = build_chain(beam, n_segments)

@@ -68,7 +68,9 @@ class SensitivityStudy(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumStudy:
-    """Errors of modes 1..modes at one size."""
+    """Errors of modes 1..modes at one size. Raises InputError for a size that cannot be solved."""
+    for model in MODELS:
+        check_size(bench.beam, model, asked.count, asked.modes)
     modes = tuple(range(1, asked.modes + 1))
     errors = {m: tuple(_error(bench, m, asked.count, n)[0] for n in reversed(modes))[::-1] for m in MODELS}
     return SpectrumStudy(count=asked.count, modes=modes, segment=errors["segment"], fem=errors["fem"],

@@ -87,12 +87,15 @@ def motor(scene: Scene, counts: str | None) -> Job:
 
 
 def _flat_motor(rows: Any) -> list[dict[str, Any]]:
+    from verify.wave_study import Operation
+
     flat = []
     for row in rows:
         line: dict[str, Any] = {"model": row.model, "count": row.count}
         for name in ("drive", "best"):
-            line |= {f"{name}_{key}": value for key, value in msgspec.to_builtins(getattr(row, name)).items()}
-        flat.append(line)
+            found = msgspec.to_builtins(getattr(row, name)) or dict.fromkeys(Operation.__struct_fields__)
+            line |= {f"{name}_{key}": value for key, value in found.items()}
+        flat.append(line | {"notes": [row.note] if row.note else []})
     return flat
 
 

@@ -11,15 +11,25 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from verify.beam import Beam
+from verify.beam import Beam, check_number
 from verify.closed_forms import check_uniform
-from verify.errors import InputError
-from verify.fields import Array, ComplexArray, HarmonicField, wavenumber
+from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
+from verify.fields import Array, ComplexArray, HarmonicField, phasor, unit_response, wavenumber
+from verify.search import least_over
 
 STANDING = 1e-12
 """A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
 SHARPNESS = 24
 """Sample points for each half wavelength of the window."""
+STILL = 1e-13
+"""A deflection this small beside the forces' own size is rounding: nothing moves."""
+REACH = 0.04
+"""How far from the beam's, relative, a fitted wavenumber is looked for."""
+
+
+def middle_half(beam: Beam) -> tuple[float, float]:
+    """The window [L/4, 3L/4], metres, where none is given."""
+    return 0.25 * beam.length, 0.75 * beam.length
 
 
 class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -50,6 +60,14 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """(1 + Gamma) / (1 - Gamma), 1 for a pure travelling wave, infinite for a standing one."""
         gamma = self.reflection
         return (1.0 + gamma) / (1.0 - gamma) if gamma < 1.0 - STANDING else float("inf")
+
+    def check_travelling(self) -> None:
+        """Raise StandingError where the wave stands: flux and signed area are then zero but for rounding."""
+        if self.reflection >= 1.0 - STANDING:
+            raise StandingError(
+                "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
+                "phase_deg"
+            )
 
 
 class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -89,7 +107,11 @@ class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def signed_area_spread(self) -> float:
-        """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends."""
+        """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends.
+
+        Raises StandingError where the wave stands.
+        """
+        self.waves.check_travelling()
         return float(np.ptp(self.signed_area) / abs(self.signed_area.mean()))
 
     @property
@@ -102,12 +124,16 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
     """Measure the wave that a field carries in a window (a, b) between the forces, metres.
 
     The wavenumber is stated (complex for a damped wave), or fitted where it is None. Raises InputError for a
-    window that leaves the span between two forces or is shorter than half a wavelength.
+    window that leaves the span between two forces or is shorter than half a wavelength, for a field that is zero
+    there and for a fit that ends at its edge.
     """
     check_uniform(field.beam)
-    check_window(field, window)
+    check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
     x = sample_points(window, wavenumber(field.beam, field.frequency_hz).real)
     deflection, slope = field.deflection(x), field.slope(x)
+    force = sum(abs(phasor(force)) for force in field.forces)
+    if abs(deflection).max() <= STILL * force * unit_response(field.beam, field.frequency_hz):
+        raise zero_field()
     start = wavenumber(field.beam, field.frequency_hz)
     waves = fit_waves(
         x, deflection, wave_number if wave_number is not None else fitted_wavenumber(x, deflection, start)
@@ -196,15 +222,29 @@ def fit_waves(x: Array, deflection: ComplexArray, k: complex) -> TwoWaves:
                     residual=float(rest))  # fmt: skip
 
 
-def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex) -> complex:
-    """The wavenumber near `start` (within 4 %, the same phase) that leaves the least residual."""
-    from scipy.optimize import minimize_scalar
+def zero_field() -> ZeroFieldError:
+    """The refusal of a field in which nothing moves."""
+    return ZeroFieldError(
+        "the field is zero in the window: drive.force acts on a support or has no amplitude, move it or give it one"
+    )
 
-    found = minimize_scalar(
-        lambda factor: fit_waves(x, deflection, factor * start).residual,
-        bounds=(0.96, 1.04), method="bounded", options={"xatol": 1e-10},
-    )  # fmt: skip
-    return complex(float(found.x) * start)
+
+def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex) -> complex:
+    """The wavenumber near `start` (within 4 %, the same phase) that leaves the least residual.
+
+    Raises InputError where the residual still falls at the edge of the search.
+    """
+    halves = float(x[-1] - x[0]) * start.real / np.pi
+    grid = np.linspace(1.0 - REACH, 1.0 + REACH, 2 * int(np.ceil(4.0 * REACH * halves)) + 9)
+    least = least_over(
+        lambda factors: np.array([fit_waves(x, deflection, complex(f * start)).residual for f in factors]), grid, 1e-10
+    )
+    if least.at_edge:
+        raise InputError(
+            f"the fitted wavenumber ends at the edge of its search, {least.x * start.real:.6g} 1/m, {REACH:.0%} from "
+            f"the beam's {start.real:.6g} 1/m: state the wavenumber, two waves near the beam's are not there"
+        )
+    return complex(least.x * start)
 
 
 def sample_points(window: tuple[float, float], k: float) -> Array:
@@ -213,32 +253,53 @@ def sample_points(window: tuple[float, float], k: float) -> Array:
     return np.linspace(window[0], window[1], int(np.ceil(SHARPNESS * halves)) + 1)
 
 
-def check_window(field: HarmonicField, window: tuple[float, float]) -> None:
-    """Raise InputError for a window off the span between two neighbouring forces or too short to measure."""
+def check_window(beam: Beam, places: list[float], frequency_hz: float, window: tuple[float, float]) -> None:
+    """Raise for a window off the span between two neighbouring forces (at `places`) or too short to measure.
+
+    InputError where it is no window of the beam at all, WindowError where it does not suit forces or frequency.
+    """
     start, end = window
-    if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= field.beam.length):
-        raise InputError(
-            f"window = {list(window)}: give start and end, ascending, between 0 and {field.beam.length!r} m"
-        )
-    places = sorted(force.position for force in field.forces)
+    if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= beam.length):
+        raise InputError(f"window = {list(window)}: give start and end, ascending, between 0 and {beam.length!r} m")
+    places = sorted(places)
     inside = [p for p in places if start < p < end]
     if inside or (len(places) > 1 and not places[0] <= start < end <= places[-1]):
-        raise InputError(
+        raise WindowError(
             f"window = {list(window)} leaves the span between two forces (they act at {places} m): "
             "two waves alone live there, choose a window inside it"
         )
-    half = float(np.pi / wavenumber(field.beam, field.frequency_hz).real)
+    half = float(np.pi / wavenumber(beam, frequency_hz).real)
     if end - start < half:
-        raise InputError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
+        raise WindowError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
+
+
+def check_series(times: Array, values: Array, frequency_hz: float) -> None:
+    """Raise InputError for series that are empty, not finite, not ascending in time or sampled too slowly."""
+    check_number("frequency_hz", frequency_hz, "hertz", above=0)
+    if times.ndim != 1 or not len(times) or values.ndim != 2 or len(values) != len(times) or not values.shape[1]:
+        raise InputError(
+            f"times have the shape {times.shape} and values {values.shape}: give (n_times,) and (n_times, n_points), "
+            "neither empty"
+        )
+    if not (np.isfinite(times).all() and np.isfinite(values).all() and (np.diff(times) > 0).all()):
+        raise InputError("times and values have to be finite and times ascending: leave out what is not")
+    step = float(times[-1] - times[0]) / max(len(times) - 1, 1)
+    if len(times) > 1 and step * frequency_hz > 0.5 * (1.0 - 1e-9):
+        raise InputError(
+            f"times have {1.0 / (step * frequency_hz):.4g} samples in each period of frequency_hz = {frequency_hz!r}: "
+            "give more than two"
+        )
 
 
 def phasors(times: Array, values: NDArray[np.float64], frequency_hz: float) -> ComplexArray:
     """Complex amplitudes of series at one frequency, over the last whole number of periods, (n_points,).
 
     times (n_times,) ascending, values (n_times, n_points). A constant and a linear trend are fitted beside the
-    harmonic and dropped. Raises InputError for less than one period or fewer than eight samples of it.
+    harmonic and dropped. Raises InputError for less than one period, fewer than eight samples of it, two samples or
+    fewer in each period, and for what is empty or not finite.
     """
     times, values = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
+    check_series(times, values, frequency_hz)
     step = (times[-1] - times[0]) / max(len(times) - 1, 1)
     periods = int(np.floor((times[-1] - times[0] + step) * frequency_hz * (1.0 + 1e-9)))
     kept = times > times[-1] - periods / frequency_hz + 0.5 * step * (1.0 - 1e-6)
@@ -261,10 +322,15 @@ def measure_series(
 
     Slopes come from the two fitted waves. Raises InputError for series or spans that are too short.
     """
-    start = wavenumber(beam, frequency_hz)
+    check_number("frequency_hz", frequency_hz, "hertz", above=0)
+    start, x = wavenumber(beam, frequency_hz), np.asarray(x, dtype=float)
+    if not (np.isfinite(x).all() and (np.diff(x) > 0).all() and np.shape(values)[1:] == x.shape):
+        raise InputError("x has to be finite, ascending and as long as values are wide")
     if len(x) < 4 or (x[-1] - x[0]) * start.real < np.pi:
         raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
     deflection = phasors(times, values, frequency_hz)
+    if not abs(deflection).max() > STILL * abs(np.asarray(values)).max():
+        raise ZeroFieldError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
     waves = fit_waves(x, deflection, k if k is not None else fitted_wavenumber(x, deflection, start))
     basis = wave_basis(x, waves.wavenumber)
     slope = 1j * waves.wavenumber * (basis @ np.array([-waves.forward, waves.backward]))

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.quantity_types import Arguments, Size, Sizes
+from verify.quantity_types import Arguments, Size, Sizes, check_count
 
 Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
 
@@ -32,8 +32,7 @@ class Driven(Arguments, frozen=True, kw_only=True):
     ] = "corrected"
 
     def __post_init__(self) -> None:
-        if self.model != "analytic" and self.count is None:
-            raise InputError(f"count is missing: give the number of segments or elements for model = {self.model}")
+        check_count(self.model, self.count)
         self.check_settings()
 
     def check_settings(self) -> None:
@@ -64,6 +63,18 @@ class InWindow(Driven, frozen=True, kw_only=True):
     window: Window | None = None
 
 
+class Power(InWindow, frozen=True, kw_only=True):
+    """A window and a balance of power up to its middle, with losses by the loss factor alone."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("modal_damping", "joint_dashpot"):
+            if value := getattr(self, name):
+                raise InputError(
+                    f"{name} = {value!r}: a power balance counts the losses of a loss_factor alone, give that instead"
+                )
+
+
 class AxisRatio(InWindow, frozen=True, kw_only=True):
     """A window, and a place in it."""
 
@@ -75,14 +86,16 @@ class WaveOrder(InWindow, frozen=True, kw_only=True):
 
     model: Annotated[Literal["fem", "segment"], Meta(description="which discrete model")]
     counts: Sizes
-    count: None = None
+    count: Annotated[int, Meta(ge=1, description="refused here: give counts")] | None = None
     of: Annotated[
         Literal["standing_wave_ratio", "axis_ratio", "deflection"],
         Meta(description="whose error; deflection at x, the middle of the window"),
     ] = "standing_wave_ratio"
 
     def __post_init__(self) -> None:
-        self.check_settings()  # the size comes from counts
+        if self.count is not None:
+            raise InputError(f"count = {self.count!r}: wave.order takes several sizes, give counts instead")
+        self.check_settings()
         if self.modal_damping or self.joint_dashpot:
             raise InputError("wave.order compares with the exact beam, which takes a loss_factor: give that instead")
 

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.quantity_types import Quantity
-from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, WaveOrder
+from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, Power, WaveOrder
 from verify.workbench import Workbench
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def _axis_ratio(a: Any, scene: "Scene", bench: Workbench, count: int | None = No
     return float(ellipse(surface_motion(field.beam, field.slope(a.x)), field.deflection(a.x))[0][0])
 
 
-def _power_imbalance(a: InWindow, scene: "Scene", bench: Workbench) -> float:
+def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:
     from verify.waves import power_imbalance
 
     field = field_of(a, scene, bench)
@@ -87,7 +87,7 @@ WAVE_QUANTITIES = (
     Quantity("wave.energy_flux", "W", "Power carried towards +x through the middle of the window.",
              InWindow, _nothing, _figure("energy_flux")),
     Quantity("wave.power_imbalance", "1", "Input of the left force less losses less flux, up to the window's middle.",
-             InWindow, _nothing, _power_imbalance),
+             Power, _nothing, _power_imbalance),
     Quantity("wave.best_frequency", "Hz", "Frequency of least reflection near the drive's, all else as it is.",
              BestFrequency, _nothing, _best_frequency),
     Quantity("wave.order", "1", "Observed order of a wave figure's error against the exact field.",

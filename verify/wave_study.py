@@ -9,10 +9,11 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.design_map import Axis, DesignMap, design_map
-from verify.operating_point import OperatingPoint, best_points
+from verify.errors import InputError
+from verify.operating_point import OperatingPoint, edge_note, operating_points
 from verify.travelling_wave import surface_motion
 from verify.wave_arguments import BestFrequency, InWindow
-from verify.waves import best_frequency, driven, measures
+from verify.waves import driven, measures, quietest_drive
 
 if TYPE_CHECKING:
     from verify.scene import Scene, Wave
@@ -36,7 +37,10 @@ class MotorRow(msgspec.Struct, frozen=True, kw_only=True):
     model: str
     count: int | None
     drive: Operation
-    best: Operation
+    best: Operation | None
+    """None where the wave stands at every frequency."""
+    note: str = ""
+    """What is wrong with `best`: it is missing, or lies at the edge of the search."""
 
 
 class Ellipse(msgspec.Struct, frozen=True, kw_only=True):
@@ -57,9 +61,15 @@ class WaveStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     ellipses: tuple[Ellipse, ...]
     """Of the exact field."""
     map: DesignMap
-    map_model: str
-    """Whose map and operating points: '49 segments'."""
     points: tuple[OperatingPoint, ...]
+    notes: tuple[str, ...]
+    """Why an operating point is missing."""
+    operating_loss_factor: float
+    """Of the map and of the operating points."""
+    pure_phase: bool
+    """Whether, undamped, the wave is pure along phase = -kL: equal forces as far from both pinned ends."""
+    first_phase_deg: float
+    """Of the first force; phases of the map are those of the second, absolute."""
     undamped: bool
     count: int
     other_drive: float
@@ -71,9 +81,13 @@ def motor_row(scene: "Scene", bench: "Workbench", model: str, count: int | None)
     a = InWindow(model=model, count=count)  # type: ignore[arg-type]
     asked = BestFrequency(model=model, count=count)  # type: ignore[arg-type]
     assert scene.drive is not None
-    here, best = scene.drive.frequency_hz, best_frequency(asked, scene, bench)
-    return MotorRow(model=model, count=count, drive=_operation(a, scene, bench, here),
-                    best=_operation(a, scene, bench, best))  # fmt: skip
+    drive = _operation(a, scene, bench, scene.drive.frequency_hz)
+    try:
+        found = quietest_drive(asked, scene, bench)
+    except InputError as error:
+        return MotorRow(model=model, count=count, drive=drive, best=None, note=str(error))
+    note = edge_note("the reflection still falls", found.x) if found.at_edge else ""
+    return MotorRow(model=model, count=count, drive=drive, best=_operation(a, scene, bench, found.x), note=note)
 
 
 def _operation(a: Any, scene: "Scene", bench: "Workbench", frequency: float) -> Operation:
@@ -101,7 +115,8 @@ def wave_study(
     rows = motor_table(scene, bench, asked.counts, progress)
     progress("design map")
     model, count = asked.model, None if asked.model == "analytic" else asked.count
-    chosen: dict[str, Any] = {"model": model} | ({"count": count} if count else {})
+    eta = scene.beam.loss_factor or asked.operating_loss_factor
+    chosen: dict[str, Any] = {"model": model, "loss_factor": eta} | ({"count": count} if count else {})
     axes = (Axis("frequency_hz", _steps(asked.frequency_hz)), Axis("phase_deg", _steps(asked.phase_deg)))
     drive = scene.drive
     assert drive is not None
@@ -112,15 +127,22 @@ def wave_study(
     other = "displacement" if drive.kind == "force" else "force"
     across = measures(driven(InWindow(drive=other), scene, bench, None), None).standing_wave_ratio  # type: ignore[arg-type]
     x = np.linspace(0.0, scene.beam.length, 601)
-    eta = scene.beam.loss_factor or asked.operating_loss_factor
+    points, problems = operating_points(scene, model, count, asked.reflection_limit, eta)
     return WaveStudy(
         rows=rows, x=tuple(x.tolist()), count=asked.count, undamped=not scene.beam.loss_factor,
         envelopes={name: tuple(abs(field.deflection(x)).tolist()) for name, field in fields.items()},
         ellipses=_ellipses(scene.beam, fields["analytic"]), map=design_map(asked.quantity, chosen, axes, scene, bench),
-        map_model={"segment": f"{count} segments", "fem": f"{count} elements"}.get(model, "exact beam"),
-        points=() if drive.kind != "force" else best_points(scene, model, count, asked.reflection_limit, eta),
-        other_drive=across,
+        points=points, notes=tuple(str(problem) for problem in problems), operating_loss_factor=eta,
+        pure_phase=_pure_along_a_phase(scene), first_phase_deg=scene.forces[0].phase_deg, other_drive=across,
     )  # fmt: skip
+
+
+def _pure_along_a_phase(scene: "Scene") -> bool:
+    """Whether a phase between the forces makes the undamped wave pure at any frequency (phi = -kL)."""
+    first, second = scene.forces
+    mirrored = abs(first.position + second.position - scene.beam.length) < 1e-9 * scene.beam.length
+    equal = first.amplitude == second.amplitude and scene.beam.supports == ("pinned", "pinned")
+    return scene.drive is not None and scene.drive.kind == "force" and mirrored and equal
 
 
 def _steps(span: tuple[float, float, int]) -> tuple[float, ...]:

@@ -1,5 +1,6 @@
 """Driven beams evaluated for quantities and maps: fields by model, measures, power, best frequency, orders."""
 
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,10 +9,11 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.compare import observed_order
 from verify.drives import driven_field
-from verify.error_laws import discrete_wavenumber
-from verify.errors import InputError
-from verify.fields import HarmonicField, phasor
-from verify.travelling_wave import WaveMeasures, measure
+from verify.error_laws import check_carried, discrete_wavenumber
+from verify.errors import InputError, ResonanceError
+from verify.fields import Array, HarmonicField, phasor
+from verify.search import Least, least_over
+from verify.travelling_wave import WaveMeasures, measure, middle_half
 from verify.wave_arguments import InWindow
 from verify.workbench import model_module
 
@@ -21,17 +23,31 @@ if TYPE_CHECKING:
 
 
 def driven(a: Any, scene: "Scene", bench: "Workbench", count: int | None) -> HarmonicField:
-    """The field that `wave_arguments.Driven` arguments describe, kept on the bench. Raises InputError."""
-    beam = scene.beam if a.loss_factor is None else replace(scene.beam, loss_factor=a.loss_factor)
+    """The field that `wave_arguments.Driven` arguments describe, its solves kept on the bench. Raises InputError."""
+    beam = driven_beam(a, scene)
+
+    def solve(forces: Sequence[PointForce], frequency: float) -> HarmonicField:
+        key = (a.model, count, beam, frequency, tuple(forces), a.settings)
+        if key not in bench.fields:
+            bench.fields[key] = solve_by_model(a.model, beam, forces, frequency, count, dict(a.settings))
+            bench.n_fields += 1
+        return bench.fields[key]
+
     frequency = drive_frequency(a, scene)
-    forces = drive_forces(a, scene)
-    kind = a.drive or (scene.drive.kind if scene.drive else "force")
-    key = (a.model, count, beam, frequency, forces, kind, a.settings)
-    if key not in bench.fields:
-        bench.fields[key] = driven_field(
-            lambda drives: solve_by_model(a.model, beam, drives, frequency, count, dict(a.settings)), forces, kind
-        )
-    return bench.fields[key]
+    field = driven_field(solve, drive_forces(a, scene), frequency, drive_kind(a, scene))
+    if count is not None and not beam.stepped:
+        check_carried(a.model, beam, count, frequency)
+    return field
+
+
+def driven_beam(a: Any, scene: "Scene") -> Beam:
+    """The scene's beam, with the loss factor given instead of its own."""
+    return scene.beam if a.loss_factor is None else replace(scene.beam, loss_factor=a.loss_factor)
+
+
+def drive_kind(a: Any, scene: "Scene") -> str:
+    """What is imposed, force or displacement: as given, else as in the scene."""
+    return str(a.drive or (scene.drive.kind if scene.drive else "force"))
 
 
 def solve_by_model(
@@ -72,9 +88,8 @@ def drive_forces(a: Any, scene: "Scene") -> tuple[PointForce, ...]:
 
 
 def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMeasures:
-    """Measures in a window, [L/4, 3L/4] unless given, with the model's own wavenumber stated. Raises InputError."""
-    length = field.beam.length
-    return measure(field, window or (0.25 * length, 0.75 * length), own_wavenumber(field))
+    """Measures in a window, the middle half unless given, with the model's own wavenumber stated. Raises InputError."""
+    return measure(field, window or middle_half(field.beam), own_wavenumber(field))
 
 
 def own_wavenumber(field: HarmonicField) -> complex:
@@ -85,7 +100,11 @@ def own_wavenumber(field: HarmonicField) -> complex:
 
 
 def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
-    """(input of the forces left of the window - losses up to its middle - flux through it) over that flux."""
+    """(input of the forces left of the window - losses up to its middle - flux through it) over that flux.
+
+    Raises StandingError where the wave stands.
+    """
+    wave.waves.check_travelling()
     middle = 0.5 * sum(wave.window)
     left = [force for force in field.forces if force.position <= wave.window[0]]
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
@@ -102,28 +121,48 @@ def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
 
 
 def best_frequency(a: Any, scene: "Scene", bench: "Workbench") -> float:
-    """The frequency within `span` of the drive's at which the reflection is least: a grid, then Brent's method."""
-    from scipy.optimize import minimize_scalar
+    """The frequency within `span` of the drive's at which the reflection is least.
 
+    Raises InputError where the reflection still falls at the edge of the search or the wave stands everywhere.
+    """
+    found = quietest_drive(a, scene, bench)
+    if found.at_edge:
+        raise InputError(
+            f"span = {a.span!r}: the reflection still falls at the edge of the search, {found.x:.6g} Hz, give a wider "
+            "span or another frequency_hz"
+        )
+    return found.x
+
+
+def quietest_drive(a: Any, scene: "Scene", bench: "Workbench") -> Least:
+    """Where within `span` of the drive's frequency the reflection is least. Raises InputError where the wave stands."""
     centre = drive_frequency(a, scene)
 
     def reflection(frequency: float) -> float:
         try:
-            field = driven(replace(a, frequency_hz=float(frequency)), scene, bench, a.count)
-        except InputError:
+            field = driven(replace(a, frequency_hz=frequency), scene, bench, a.count)
+        except ResonanceError:
             return 1.0  # on a resonance the wave stands
         return measures(field, a.window).reflection
 
     grid = np.linspace((1.0 - a.span) * centre, (1.0 + a.span) * centre, 41)
-    least = int(np.argmin([reflection(f) for f in grid]))
-    around = grid[max(least - 1, 0)], grid[min(least + 1, len(grid) - 1)]
-    found = minimize_scalar(reflection, bounds=around, method="bounded", options={"xatol": 1e-4})
-    return float(found.x)
+    return quietest(lambda frequencies: np.array([reflection(float(f)) for f in frequencies]), grid)
+
+
+def quietest(reflection: Callable[[Array], Array], frequencies: Array) -> Least:
+    """Where a reflection over frequency is least, to 1e-5 Hz. Raises InputError where the wave stands everywhere."""
+    found = least_over(reflection, frequencies, 1e-5)
+    if found.value > 1.0 - 1e-6:
+        raise InputError(
+            f"phase_deg: with this phase between the forces the wave stands at every frequency from "
+            f"{frequencies[0]:.6g} to {frequencies[-1]:.6g} Hz, so none is best, choose another phase_deg"
+        )
+    return found
 
 
 def wave_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
     """The observed order of a discrete model's figure towards the exact field's. Raises InputError."""
-    window = a.window or (0.25 * scene.beam.length, 0.75 * scene.beam.length)
+    window = a.window or middle_half(scene.beam)
 
     def figure(model: str, count: int | None) -> complex:
         asked = replace(a, model=model) if model != "analytic" else _exact(a)

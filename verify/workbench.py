@@ -95,9 +95,11 @@ class Workbench:
         self._index: dict[tuple[Key, int], int] = {}
         self._exact: dict[int, float] = {}
         self.fields: dict[Any, HarmonicField] = {}
-        """Harmonic fields by everything that makes them."""
+        """Harmonic fields under forces by everything that makes them."""
+        self.n_fields = 0
+        """How many were solved; a map forgets those it has passed."""
         self.motions: dict[Any, Motion] = {}
-        """Simulations, likewise."""
+        """Simulations by everything that makes them."""
 
     def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> "Modes":
         """At least `n_modes` modes of a discrete model. Raises InputError."""

@@ -65,7 +65,8 @@ def _map(study: "WaveStudy") -> dict[str, Any]:
     values = np.clip(found.values.T, None, 10.0) if found.quantity == "wave.standing_wave_ratio" else found.values.T
     rounded = [[None if not np.isfinite(v) else float(f"{v:.4g}") for v in row] for row in values]
     data: list[Figure] = [{
-        "type": "heatmap", "x": list(found.axes[0].values), "y": list(found.axes[1].values), "z": rounded,
+        "type": "heatmap", "x": list(found.axes[0].values), "z": rounded,
+        "y": [phase - study.first_phase_deg for phase in found.axes[1].values],
         "colorscale": "Viridis", "reversescale": True, "colorbar": {"thickness": 12}, "hoverongaps": False,
     }]  # fmt: skip
     for point, symbol in zip(study.points, ("circle", "star"), strict=False):
@@ -74,11 +75,21 @@ def _map(study: "WaveStudy") -> dict[str, Any]:
                      "y": [point.phase_deg], "marker": {"symbol": symbol, "size": 13, "color": "#ff5a36",
                      "line": {"color": "#ffffff", "width": 1.5}}})  # fmt: skip
     return chart(
-        "wave-map", f"{name} over frequency and phase, {study.map_model}",
-        "In the window [L/4, 3L/4]; values above 10 are drawn as 10. Along phase = -kL (modulo 360°) the wave "
-        "is pure at any frequency that is no resonance.",
-        data, axes("frequency, Hz", "phase of the second force, degrees"),
+        "wave-map", f"{name} over frequency and phase, {study.map.of}",
+        _map_caption(study), data, axes("frequency, Hz", "phase of the second force relative to the first, degrees"),
     )  # fmt: skip
+
+
+def _map_caption(study: "WaveStudy") -> str:
+    """Window, damping, what is clipped or missing, and where the wave would be pure if this drive makes it so."""
+    clipped = study.map.quantity == "wave.standing_wave_ratio"
+    return " ".join([
+        f"In the window [L/4, 3L/4], with loss factor {study.operating_loss_factor:g}, as the operating points.",
+        *(["Values above 10 are drawn as 10."] if clipped else []),
+        *(["Without losses the wave would be pure along phase = -kL (modulo 360°), at any frequency that is no "
+           "resonance."] if study.pure_phase else []),
+        *(f"{reason}." for reason in study.map.reasons),
+    ])  # fmt: skip
 
 
 def _sizes(study: "WaveStudy") -> dict[str, Any]:
@@ -87,11 +98,12 @@ def _sizes(study: "WaveStudy") -> dict[str, Any]:
     for model in ("segment", "fem"):
         rows = [row for row in study.rows if row.model == model]
         for name, dash, pick in (("at the drive", "solid", "drive"), ("at its own best frequency", "dot", "best")):
+            known = [row for row in rows if getattr(row, pick) and getattr(exact, pick)]
             excess = [
-                abs(getattr(row, pick).standing_wave_ratio - getattr(exact, pick).standing_wave_ratio) for row in rows
+                abs(getattr(row, pick).standing_wave_ratio - getattr(exact, pick).standing_wave_ratio) for row in known
             ]
             data.append({"type": "scatter", "mode": "lines+markers", "name": f"{NAME[model]}, {name}",
-                         "x": [row.count for row in rows], "y": excess,
+                         "x": [row.count for row in known], "y": excess,
                          "line": {"color": COLOUR[model], "dash": dash}})  # fmt: skip
     log = {"type": "log", "exponentformat": "power"}
     counts = sorted({row.count for row in study.rows if row.count})

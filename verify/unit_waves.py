@@ -1,0 +1,158 @@
+"""Waves under unit forces or unit displacements, superposed to the figures that a map takes from them."""
+
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.beam import Beam
+from verify.drives import held_units
+from verify.error_laws import discrete_wavenumber
+from verify.errors import NoFigureError, ResonanceError
+from verify.fields import Array, ComplexArray, unit_response, wavenumber
+from verify.travelling_wave import (
+    STANDING,
+    STILL,
+    check_window,
+    crest_speed,
+    energy_flux,
+    sample_points,
+    wave_basis,
+    zero_field,
+)
+
+BoolArray = NDArray[np.bool_]
+FAST = ("wave.reflection", "wave.standing_wave_ratio", "wave.crest_speed", "wave.energy_flux")
+
+
+class Gaps:
+    """Points of a map without a figure, counted by the kind of reason."""
+
+    def __init__(self) -> None:
+        self._found: dict[type[NoFigureError], tuple[int, NoFigureError]] = {}
+
+    def add(self, error: NoFigureError, points: int = 1) -> None:
+        """Count `points` that have no figure for this reason."""
+        counted, first = self._found.get(type(error), (0, error))
+        self._found[type(error)] = counted + points, first
+
+    def reasons(self, n_points: int) -> tuple[str, ...]:
+        """A sentence for each kind of reason. Raises the first reason where no point of the map has a figure."""
+        if sum(counted for counted, _ in self._found.values()) == n_points:
+            raise next(iter(self._found.values()))[1]
+        return tuple(
+            f"{counted} of {n_points} points have no figure: {first}" for counted, first in self._found.values()
+        )
+
+
+class UnitWaves(msgspec.Struct, frozen=True, eq=False):
+    """The two waves in a window under a unit drive at each place, at the frequencies that have them."""
+
+    known: BoolArray
+    """(n,), which of the frequencies asked for; m of them."""
+    k: ComplexArray
+    """(m,), 1/m."""
+    forward: ComplexArray
+    """A+, (m, n_places)."""
+    backward: ComplexArray
+    """A-, (m, n_places)."""
+
+
+class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
+    """A unit force, or a unit displacement with the others at rest, at each of some places on a model's beam."""
+
+    beam: Beam
+    model: str
+    count: int | None
+    kind: str
+    """Force or displacement."""
+    places: tuple[float, ...]
+    window: tuple[float, float]
+
+    def waves(self, frequencies: Array, gaps: Gaps, points: int = 1) -> UnitWaves:
+        """The waves over frequencies (n,). `gaps` counts those without, each for so many `points`.
+
+        Raises InputError where the model or the window is none.
+        """
+        check_window(self.beam, list(self.places), float(frequencies.max()), self.window)  # or it suits none of them
+        x = sample_points(self.window, wavenumber(self.beam, float(frequencies.max())).real)
+        fields = self._responses(frequencies, x)
+        k = np.full(len(frequencies), np.nan, dtype=complex)
+        for i, frequency in enumerate(frequencies):
+            try:
+                k[i] = self._wavenumber(float(frequency), fields[i])
+            except NoFigureError as error:
+                gaps.add(error, points)
+        known = np.isfinite(k)
+        basis = wave_basis(x, k[known])
+        adjoint = np.conj(np.swapaxes(basis, 1, 2))
+        waves = np.linalg.solve(adjoint @ basis, adjoint @ np.swapaxes(fields[known], 1, 2))
+        return UnitWaves(known, k[known], np.asarray(waves[:, 0], complex), np.asarray(waves[:, 1], complex))
+
+    def _wavenumber(self, frequency: float, field: ComplexArray) -> complex:
+        """The model's own. Raises NoFigureError where the frequency has none, or no field."""
+        check_window(self.beam, list(self.places), frequency, self.window)
+        if not np.isfinite(field).all():
+            held = " held at its actuators" if self.kind == "displacement" else ""
+            raise ResonanceError(
+                f"frequency_hz = {frequency!r} is an undamped resonance of the {self.model} model{held}: give the beam "
+                "a loss_factor or choose another frequency"
+            )
+        if self.count is None:
+            return wavenumber(self.beam, frequency)
+        return discrete_wavenumber(self.model, self.beam, self.count, frequency)
+
+    def _responses(self, frequencies: Array, x: Array) -> ComplexArray:
+        """Deflection at x, (n, n_places, len(x))."""
+        places = np.array(self.places)
+
+        def units(f: Array, at: Array) -> ComplexArray:
+            if self.count is None:
+                from verify.analytic_modes import unit_responses
+
+                return unit_responses(self.beam, self.places, f, at)
+            from verify.workbench import model_module
+
+            return np.asarray(model_module(self.model).unit_responses(self.beam, self.places, f, at, self.count))
+
+        return units(frequencies, x) if self.kind == "force" else held_units(units, places, self.beam, frequencies, x)
+
+
+def wave_figure(name: str, beam: Beam, frequency: Array, k: ComplexArray, forward: Any, backward: Any) -> Array:
+    """One of the FAST figures from two amplitudes, of their shape."""
+    omega = 2.0 * np.pi * frequency
+    if name == "wave.crest_speed":
+        return np.asarray(crest_speed(beam, omega, k, forward, backward))
+    if name == "wave.energy_flux":
+        return np.asarray(energy_flux(beam, omega, k, forward, backward))
+    sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
+    gamma = sizes[0] / sizes[1]
+    if name == "wave.reflection":
+        return np.asarray(gamma)
+    travelling = gamma < 1.0 - STANDING
+    return np.where(travelling, (1.0 + gamma) / np.where(travelling, 1.0 - gamma, 1.0), np.inf)
+
+
+def superposed(
+    drive: UnitDrive, names: tuple[str, ...], frequencies: Array, first: complex, second: ComplexArray, gaps: Gaps
+) -> list[Array]:
+    """FAST figures under complex amplitudes of the first and, (p,), of the second drive, (n, p) each.
+
+    NaN where there is none, counted by `gaps`. Raises InputError where the model or the window is none.
+    """
+    waves = drive.waves(frequencies, gaps, len(second))
+    f, k = frequencies[waves.known, None], waves.k[:, None]
+    forward, backward = (w[:, 0, None] * first + w[:, 1, None] * second for w in (waves.forward, waves.backward))
+    unit = [unit_response(drive.beam, float(g)) if drive.kind == "force" else 1.0 for g in f[:, 0]]
+    scale = np.array(unit)[:, None] * (abs(first) + abs(second))
+    still = np.maximum(abs(forward), abs(backward)) <= STILL * scale
+    if still.any():
+        gaps.add(zero_field(), int(still.sum()))
+        forward[still] = 1.0  # anything: it has no figure
+    found = []
+    for name in names:
+        values = np.full((len(frequencies), len(second)), np.nan)
+        values[waves.known] = np.where(still, np.nan, wave_figure(name, drive.beam, f, k, forward, backward))
+        found.append(values)
+    return found
