@@ -1,12 +1,16 @@
 """The first exact modes for motion in time: what is cut off is said."""
 
-import numpy as np
+from collections.abc import Callable, Sequence
 
-from verify.analytic_modes import mode_shape, solve_modes
-from verify.beam import Beam
+import numpy as np
+from msgspec.structs import replace
+
+from verify.analytic_modes import mode_shape, solve_harmonic, solve_modes
+from verify.beam import Beam, PointForce
 from verify.closed_forms import check_uniform
 from verify.errors import InputError
-from verify.time_basis import Array, TimeBasis, check_held
+from verify.fields import phasor
+from verify.time_basis import Array, ComplexArray, TimeBasis, check_held
 
 DEGREE = 8
 """Of the Taylor pieces: the fastest mode is followed to 1e-9, the others far closer."""
@@ -31,4 +35,24 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
     return TimeBasis(model="analytic", count=None, beam=beam, omegas=omegas, shapes=shapes,
                      loads=lambda position: shapes(np.array([position]), 0)[:, 0],
                      edges=np.linspace(0.0, beam.length, cells + 1), degree=DEGREE,
-                     method=f"the first {n_modes} exact modes")  # fmt: skip
+                     method=f"the first {n_modes} exact modes, the rest following at once",
+                     tail=lambda forces, frequency, damping: _tail(beam, omegas, shapes, forces, frequency, damping),
+                     )  # fmt: skip
+
+
+def _tail(
+    beam: Beam, omegas: Array, shapes: Callable[[Array, int], Array], forces: Sequence[PointForce], frequency_hz: float,
+    damping: float,
+) -> Callable[[Array, int], ComplexArray]:  # fmt: skip
+    """The exact field less the part of the modes that are kept: what far faster modes answer without delay."""
+    lossy = replace(beam, loss_factor=2.0 * damping)
+    field = solve_harmonic(lossy, forces, frequency_hz)
+    loads = sum(phasor(f) * shapes(np.array([f.position]), 0)[:, 0] for f in forces)
+    kept = loads / (omegas**2 * (1.0 + 2j * damping) - (2.0 * np.pi * frequency_hz) ** 2)
+
+    def rest(x: Array, derivative: int) -> ComplexArray:
+        turns, left = divmod(derivative, 4)
+        exact = field.shapes(x, left) * field.wavenumber ** (4 * turns)
+        return np.asarray(exact - kept @ shapes(x, derivative))
+
+    return rest

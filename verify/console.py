@@ -239,6 +239,10 @@ def print_plan(plan: "Plan") -> None:
         console.print(f"closed forms, for {_who(plan.closed_forms)}")
     if plan.harmonic:
         console.print(f"harmonic fields, for {_who(plan.harmonic)}")
+    if plan.stepped:
+        console.print(f"motion in time, for {_who(plan.stepped)}")
+    for chosen in plan.chosen:
+        console.print(f"  {chosen.what}: {chosen.why}", markup=False)
     console.print("[bold]skipped[/]")
     for skipped in plan.skipped:
         console.print(f"  {skipped.what}: {skipped.why}", markup=False)

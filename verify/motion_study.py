@@ -41,11 +41,6 @@ class MotionStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     count: int
 
 
-def n_steps(scene: "Scene") -> int:
-    """How many times `motion_study` reports progress."""
-    return 12
-
-
 def motion_study(scene: "Scene", progress: Callable[[str], None] = lambda step: None) -> MotionStudy:
     """Run the scene's slider on three models, examine it, and weigh work against error. Raises InputError."""
     asked = scene.motion

@@ -9,7 +9,7 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.forcing import CONSTANT, SMOOTH_STEP, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
-from verify.time_basis import Array, TimeBasis, taylor_table
+from verify.time_basis import Array, ComplexArray, TimeBasis, taylor_table
 
 if TYPE_CHECKING:
     from verify.fields import HarmonicField
@@ -127,17 +127,24 @@ def stages_from_rest(
 ) -> list[Stage]:  # fmt: skip
     """The growth of the forces, if it is asked for, and what follows."""
     modes, stages = modal(basis, forces, damping), []
+    tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail else None
     if ramp:
-        stages.append(_stage(basis, answer(modes, omega, SMOOTH_STEP, ramp.n * ramp.dt, origin), modes, ramp))
+        stages.append(_stage(basis, answer(modes, omega, SMOOTH_STEP, ramp.n * ramp.dt, origin), modes, ramp, tail))
         origin += ramp.n * ramp.dt
     if rest:
-        stages.append(_stage(basis, answer(modes, omega, CONSTANT, 1.0, origin), modes, rest))
+        stages.append(_stage(basis, answer(modes, omega, CONSTANT, 1.0, origin), modes, rest, tail))
     return stages
 
 
-def _stage(basis: TimeBasis, forced: Answer, modes: Modal, steps: Steps) -> Stage:
+def _stage(
+    basis: TimeBasis, forced: Answer, modes: Modal, steps: Steps, tail: Callable[[Array, int], ComplexArray] | None
+) -> Stage:
+    growth = SMOOTH_STEP if forced.amplitudes.shape[1] > 1 else CONSTANT
+
     def drive(x: Array, derivative: int) -> Array:
         parts = forced.amplitudes.T @ basis.shapes(x, derivative)
+        if tail:
+            parts = parts + np.outer(growth, tail(x, derivative))
         return np.stack([parts.real, parts.imag], axis=1).reshape(2 * len(parts), len(x))
 
     return Stage(

@@ -10,6 +10,8 @@ from verify.errors import InputError
 from verify.scene import literal
 
 if TYPE_CHECKING:
+    from verify.motion import Motion
+    from verify.motion_study import MotionStudy
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Row
@@ -27,6 +29,7 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
         "convergence": [flat_row(row) for row in result.convergence or ()],
         "sensitivity": msgspec.to_builtins(result.sensitivity),
         "wave": wave_as_plain(result.wave) if result.wave else None,
+        "motion": motion_as_plain(result.motion) if result.motion else None,
         "solves": msgspec.to_builtins(result.solves),
         "seconds": result.seconds,
         "report": str(report) if report else None,
@@ -37,6 +40,25 @@ def wave_as_plain(study: "WaveStudy") -> dict[str, Any]:
     """A wave study: the motor's rows and operating points."""
     return {"rows": msgspec.to_builtins(study.rows), "points": msgspec.to_builtins(study.points),
             "notes": list(study.notes)}  # fmt: skip
+
+
+def motion_as_plain(study: "MotionStudy") -> dict[str, Any]:
+    """A slider study: displacements and margins by model, facts, readings, work against error."""
+    runs = {
+        model: {"displacement": run.displacement, "mean_speed": run.mean_speed, "largest_friction": largest(run),
+                "coupling": msgspec.to_builtins(run.coupling), "margins": msgspec.to_builtins(run.margins),
+                "ledger": msgspec.to_builtins(run.ledger), "statistics": msgspec.to_builtins(run.statistics),
+                "notes": list(run.notes)}
+        for model, run in study.runs.items()
+    }  # fmt: skip
+    answer = msgspec.to_builtins(study.answer) | {"ratio": study.answer.ratio} if study.answer else None
+    return {"runs": runs, "facts": msgspec.to_builtins(study.facts), "readings": msgspec.to_builtins(study.readings),
+            "work": msgspec.to_builtins(study.work), "answer": answer}  # fmt: skip
+
+
+def largest(run: "Motion") -> float:
+    """The largest friction force of a run, newton."""
+    return float(abs(run.friction).max())
 
 
 def flat_row(row: "Row") -> dict[str, Any]:

@@ -54,6 +54,10 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True):
     closed_forms: tuple[str, ...]
     harmonic: tuple[str, ...]
     """Who asks for a driven field, solved when asked for."""
+    stepped: tuple[str, ...]
+    """Who asks for motion in time: friction and sliders by steps, a beam alone in closed form."""
+    chosen: tuple[Skipped, ...]
+    """Simpler models taken where the neglected part is small, with its size."""
     skipped: tuple[Skipped, ...]
     problems: tuple[Problem, ...]
 
@@ -84,6 +88,8 @@ def _study_asks(scene: "Scene") -> list[Ask]:
         asks.append(Ask("sensitivity", ()))
     if scene.wave:
         asks.append(Ask(_wave_study(scene.wave), ()))
+    if scene.motion and scene.slider:
+        asks.append(Ask(_motion_study(scene), ()))
     return asks
 
 
@@ -97,10 +103,11 @@ def plan_scene(scene: "Scene") -> Plan:
             solves.append(_planned(scene, key, n_wanted, who))
         except InputError as error:
             problems += [(one, str(error)) for one in who]
-    driven = _driven(scene)
-    closed = tuple(a.who for a in asks if not a.needs and not a.problem and a.who not in driven)
+    driven, timed = _driven(scene), _timed(scene)
+    closed = tuple(a.who for a in asks if not a.needs and not a.problem and a.who not in driven | timed)
     return Plan(scene=scene.name, solves=tuple(solves), closed_forms=closed, skipped=_skipped(scene, asks),
                 harmonic=tuple(ask.who for ask in asks if ask.who in driven and not ask.problem),
+                stepped=tuple(ask.who for ask in asks if ask.who in timed and not ask.problem), chosen=_chosen(scene),
                 problems=tuple(Problem(*pair) for pair in problems))  # fmt: skip
 
 
@@ -115,11 +122,48 @@ def _wave_study(wave: "Wave") -> str:
     return f"wave (harmonic fields of segments and elements at N = {sizes}, one map)"
 
 
+def _timed(scene: "Scene") -> set[str]:
+    """Who asks for motion in time."""
+    prefixes = ("friction.", "slider.", "motion.")
+    gates = {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith(prefixes)}
+    return gates | ({_motion_study(scene)} if scene.motion and scene.slider else set())
+
+
+def _motion_study(scene: "Scene") -> str:
+    assert scene.motion is not None
+    sizes = ", ".join(str(n) for n in scene.motion.counts)
+    return f"motion (slider on segments, elements and the exact beam, work against error at N = {sizes})"
+
+
+def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
+    """How a slider is coupled and whether the chain may be linear, by size."""
+    if scene.slider is None or not scene.forces or scene.beam.stepped:
+        return ()
+    from verify.analytic_modes import solve_harmonic
+    from verify.contact import FELT, NONLINEAR, coupling_of, nonlinearity, surface_speed
+
+    assert scene.drive is not None
+    try:
+        field = solve_harmonic(scene.beam, scene.forces, scene.drive.frequency_hz)
+    except InputError:
+        return ()
+    speed = surface_speed(field, scene.slider.start_on(scene.beam))
+    found, size = coupling_of(scene.slider, scene.beam, field.frequency_hz, speed), nonlinearity(field)
+    kind = "two-way" if found.two_way else "one-way"
+    linear = "linear chain with an exact step" if size <= NONLINEAR else "linear chain, although"
+    return (
+        Skipped(f"{kind} coupling", f"full friction moves the surface by {found.relative_size:.1e} of its own speed"
+                f"{', as slider.coupling says' if found.forced else f' (felt from {FELT:g} on)'}"),
+        Skipped(linear, f"axial inertia of a roller-ended chain, (kL)^2 <theta^2> = {size:.1e} of the motion "
+                f"(felt from {NONLINEAR:g} on)"),
+    )  # fmt: skip
+
+
 def _driven_elements(scene: "Scene") -> bool:
     """Whether a driven field of the finite elements is asked for."""
-    return scene.wave is not None or any(
-        gate.quantity.startswith("wave.") and gate.arguments.get("model") == "fem" for gate in scene.gate
-    )
+    prefixes = ("wave.", "slider.", "motion.")
+    gates = any(g.quantity.startswith(prefixes) and g.arguments.get("model") == "fem" for g in scene.gate)
+    return scene.wave is not None or scene.motion is not None or gates
 
 
 def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
@@ -136,7 +180,7 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
     """What this scene leaves out, with the reason."""
     left = []
     driven = _driven(scene)
-    if not driven and not any(ask.needs for ask in asks):
+    if not driven and not _timed(scene) and not any(ask.needs for ask in asks):
         left.append(Skipped("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
     elif not _driven_elements(scene) and not any(need.model == "fem" for ask in asks for need in ask.needs):
         left.append(Skipped("scikit-fem", "nothing asked needs the finite-element model"))
@@ -144,8 +188,12 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
         left.append(Skipped("harmonic response", "the scene has no drive"))
     elif not driven:
         left.append(Skipped("harmonic response", "no gate and no study asks for the driven beam"))
-    left.append(Skipped("time stepping", "modes and harmonic fields only: linear, nothing here depends on the past"))
-    left.append(Skipped("contact search", "the scene has no slider"))
-    studies = {name: getattr(scene, name) for name in ("spectrum", "convergence", "sensitivity", "wave")}
+    timed = _timed(scene)
+    if not timed:
+        left.append(Skipped("time stepping", "modes and harmonic fields only: linear, nothing depends on the past"))
+        left.append(Skipped("numba", "nothing asked is stepped"))
+    if scene.slider is None:
+        left.append(Skipped("contact search", "the scene has no slider"))
+    studies = {name: getattr(scene, name) for name in ("spectrum", "convergence", "sensitivity", "wave", "motion")}
     left += [Skipped(f"{name} study", f"the scene has no [{name}]") for name, asked in studies.items() if not asked]
     return tuple(left)

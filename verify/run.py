@@ -13,6 +13,7 @@ from verify.scene import Scene, load_scene
 from verify.workbench import Solve, Workbench
 
 if TYPE_CHECKING:
+    from verify.motion_study import MotionStudy
     from verify.studies import Row, SensitivityStudy, SpectrumStudy
     from verify.wave_study import WaveStudy
 
@@ -26,6 +27,7 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     convergence: "tuple[Row, ...] | None"
     sensitivity: "SensitivityStudy | None"
     wave: "WaveStudy | None"
+    motion: "MotionStudy | None"
     solves: tuple[Solve, ...]
     n_fields: int
     """How many driven fields were solved, those of superposed maps not counted."""
@@ -70,9 +72,14 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
         from verify.wave_study import wave_study
 
         wave = wave_study(found, bench, found.wave, progress)
+    motion = None
+    if found.motion and found.slider:
+        from verify.motion_study import motion_study
+
+        motion = motion_study(found, progress)
     return RunResult(
         scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity, wave=wave,
-        solves=tuple(bench.solves), n_fields=bench.n_fields, seconds=perf_counter() - start,
+        motion=motion, solves=tuple(bench.solves), n_fields=bench.n_fields, seconds=perf_counter() - start,
     )  # fmt: skip
 
 
@@ -80,4 +87,5 @@ def n_steps(scene: Scene) -> int:
     """How many times `run_scene` reports progress."""
     sizes = len(scene.convergence.counts) if scene.convergence else 0
     waves = 2 * len(scene.wave.counts) + 1 if scene.wave else 0
-    return len(scene.gate) + bool(scene.spectrum) + sizes + waves
+    motion = 12 if scene.motion and scene.slider else 0
+    return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion

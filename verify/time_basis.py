@@ -1,16 +1,17 @@
 """What every model brings to time: its free modes, read along the beam, and how point forces load them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import factorial
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
 from verify.errors import InputError
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 
 class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -32,6 +33,11 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     degree: int
     method: str
     """Where the modes come from."""
+    tail: Callable[[Sequence[PointForce], float, float], Callable[[Array, int], ComplexArray]] | None = None
+    """What modes beyond the last would add: (forces, frequency_hz, damping) -> (x, derivative) -> (len(x),) complex.
+
+    None where no mode is cut off.
+    """
 
 
 def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:

@@ -14,6 +14,7 @@ from verify.errors import InputError
 from verify.files import write_whole
 from verify.plain import finite
 from verify.report.charts import charts_of
+from verify.report.motion_charts import motion_charts
 from verify.report.wave_charts import wave_charts
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def page(result: "RunResult", command: str) -> str:
                             lstrip_blocks=True)  # fmt: skip
     templates.filters |= {"figure": figure, "percent": percent, "duration": seconds_in_words}
     charts = charts_of(result) + (wave_charts(result.wave) if result.wave else [])
+    charts += motion_charts(result.motion) if result.motion else []
     return templates.get_template("page.html.j2").render(
         result=result,
         failed=[gate for gate in result.gates if not gate.passed],

@@ -1,0 +1,78 @@
+"""Charts of the slider as plain plotly figure data."""
+
+from typing import TYPE_CHECKING, Any
+
+from verify.motion_study import thinned
+from verify.report.charts import COLOUR, GREY, NAME, Figure, axes, chart
+
+if TYPE_CHECKING:
+    from verify.motion_study import MotionStudy
+
+_NAMES = {"analytic": "exact beam", **NAME}
+_COLOURS = {"analytic": GREY, **COLOUR}
+
+
+def motion_charts(study: "MotionStudy") -> list[dict[str, Any]]:
+    """The paper's Figures 3 and 4 on three models, the surface under the slider, work against error."""
+    return [_trajectory(study), _force(study), _speeds(study), _work(study)]
+
+
+def _lines(study: "MotionStudy", read: str, scale: float) -> list[Figure]:
+    """One line for every model."""
+    order = ("analytic", "segment", "fem")
+    return [
+        {"type": "scatter", "mode": "lines", "name": _NAMES[model], "x": [1e3 * t for t in thinned(run.times)],
+         "y": [scale * v for v in thinned(getattr(run, read))],
+         "line": {"color": _COLOURS[model], "width": 4 if model == "analytic" else 1.6}}
+        for model, run in ((m, study.runs[m]) for m in order)
+    ]  # fmt: skip
+
+
+def _trajectory(study: "MotionStudy") -> dict[str, Any]:
+    return chart(
+        "slider-trajectory", f"Slider on the beam, N = {study.count} (as the paper's Fig. 3)",
+        "Distance from the start, along +x. The paper reads a mean of -1.5 cm/s off its figure, 15 µm in this time; "
+        "from rest Eq. (3) does not allow it, see the readings below.",
+        _lines(study, "travelled", 1e9), axes("time, ms", "distance, nm"),
+    )  # fmt: skip
+
+
+def _force(study: "MotionStudy") -> dict[str, Any]:
+    return chart(
+        "slider-force", f"Tangential force on the slider, N = {study.count} (as the paper's Fig. 4)",
+        "Eq. (3) saturates at ±mu N as soon as the surface moves faster than 1/K.",
+        _lines(study, "friction", 1e3), axes("time, ms", "force, mN"),
+    )  # fmt: skip
+
+
+def _speeds(study: "MotionStudy") -> dict[str, Any]:
+    run = study.runs["segment"]
+    times = [1e3 * t for t in thinned(run.times)]
+    data: list[Figure] = [
+        {"type": "scatter", "mode": "lines", "name": name, "x": times, "y": [1e3 * v for v in thinned(values)],
+         "line": {"color": colour, "width": 1.6}}
+        for name, values, colour in (("surface under the slider", run.surface_speed, GREY),
+                                     ("slider", run.speed, COLOUR["segment"]))
+    ]  # fmt: skip
+    return chart(
+        "slider-speeds", "Speed of the slider and of the surface under it, segments",
+        "The surface swings both ways about nearly nothing; what is left over of a period is the drift.",
+        data, axes("time, ms", "speed, mm/s"),
+    )  # fmt: skip
+
+
+def _work(study: "MotionStudy") -> dict[str, Any]:
+    data: list[Figure] = []
+    for model in ("segment", "fem"):
+        rows = sorted((r for r in study.work if r.model == model), key=lambda r: r.count)
+        data.append({"type": "scatter", "mode": "lines+markers+text", "name": NAME[model],
+                     "x": [abs(r.error) for r in rows], "y": [r.run_ms_per_ms for r in rows],
+                     "text": [str(r.count) for r in rows], "textposition": "top center",
+                     "line": {"color": COLOUR[model]}})  # fmt: skip
+    log = {"type": "log", "exponentformat": "power"}
+    return chart(
+        "slider-work", "Run time against the error of the slider's displacement",
+        "The same contact code on both; sizes beside the points. Lower left is better; set-up is not counted.",
+        data, axes("error of the displacement against the exact beam", "wall ms per simulated ms", xaxis=log,
+                   yaxis=log | {"exponentformat": "none"}),
+    )  # fmt: skip
