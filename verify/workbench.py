@@ -90,14 +90,14 @@ class Workbench:
         """`needs` says what will be asked, so that a size is solved once for all who want it."""
         self.beam = beam
         self.solves: list[Solve] = []
+        self.n_fields = 0
+        """How many driven fields were solved; a map forgets those it has passed."""
         self._wanted = merged(needs)
         self._modes: dict[Key, Modes] = {}
         self._index: dict[tuple[Key, int], int] = {}
         self._exact: dict[int, float] = {}
         self.fields: dict[Any, HarmonicField] = {}
-        """Harmonic fields under forces by everything that makes them."""
-        self.n_fields = 0
-        """How many were solved; a map forgets those it has passed."""
+        """Harmonic fields by everything that makes them."""
         self.motions: dict[Any, Motion] = {}
         """Simulations by everything that makes them."""
 
