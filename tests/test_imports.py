@@ -14,10 +14,10 @@ PACKAGE = Path(verify.__file__).parent
 MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
-    {"errors", "timing", "search"}, {"beam", "checked", "files"}, {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls"},
-    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives"}, {"point_loads"},
-    set(MODELS), {"compare", "travelling_wave"}, {"workbench"}, {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"},
-    {"mode_quantities", "wave_quantities"}, {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
+    {"errors", "timing", "search"}, {"beam", "checked", "files", "contact_kernels"}, {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis"},
+    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives", "forcing", "contact"}, {"point_loads", "motion", "validity"},
+    set(MODELS), {"segment_motion", "fem_motion", "analytic_motion"}, {"moving_surface"}, {"slider_run", "energy"}, {"compare", "travelling_wave"}, {"workbench"}, {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"}, {"rigid_surface", "pure_wave", "simulate"}, {"motion_arguments"}, {"motions"},
+    {"mode_quantities", "wave_quantities", "motion_quantities"}, {"work_precision"}, {"motion_study"}, {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
     {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 
