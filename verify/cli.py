@@ -89,6 +89,7 @@ def run(scene: str, overrides: tuple[str, ...], folder: Path, no_report: bool, a
 @click.option("--modes", metavar="LIST", help="Modes, for instance 1,5,22. Default: the scene's [convergence].")
 @click.option("--counts", metavar="LIST", help="Segments and elements, for instance 10,20,49,98.")
 @click.option("--wave", is_flag=True, help="The motor's figures over the counts instead of modes.")
+@click.option("--slider", is_flag=True, help="The slider's displacement and its run time over the counts.")
 @click.option(
     "--sweep",
     "sweeps",
@@ -112,12 +113,13 @@ def table(
     modes: str | None,
     counts: str | None,
     wave: bool,
+    slider: bool,
     sweeps: tuple[str, ...],
     quantity: str,
     as_json: bool,
     layout: str | None,
 ) -> None:
-    """Both discrete models side by side; the motor's figures over sizes; or a wave quantity over a sweep."""
+    """Both discrete models side by side; the motor's figures or the slider's over sizes; or a sweep."""
     from verify import tables
 
     asked = _load(scene, overrides)
@@ -125,6 +127,8 @@ def table(
         raise InputError(f"{arguments[0]!r}: KEY=VALUE arguments belong to a --sweep")
     if sweeps:
         job = tables.sweep(asked, sweeps, quantity, arguments)
+    elif slider:
+        job = tables.slider(asked, counts)
     else:
         job = tables.motor(asked, counts) if wave else tables.convergence(asked, modes, counts)
     with _progress(job.n_steps, quiet=as_json or bool(layout)) as step:

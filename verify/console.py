@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from verify.sizing import Choice
     from verify.studies import Cell, Row
     from verify.wave_study import MotorRow, Operation
+    from verify.work_precision import WorkRow
 
 
 class Terminal(Console):
@@ -164,6 +165,25 @@ def _operation(one: "Operation") -> tuple[str, str, str]:
     """SWR, axis ratio and crest speed, at most 8, 8 and 9 characters."""
     ratio = one.standing_wave_ratio
     return f"{ratio:.5f}" if ratio < 10 else f"{ratio:.4g}", f"{one.axis_ratio:+.5f}", f"{1e3 * one.crest_speed:+.5g}"
+
+
+def print_work(rows: "tuple[WorkRow, ...]") -> None:
+    """A slider's run time against its error, and both models at one error."""
+    from verify.work_precision import at_equal_error
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
+    for name in ("model", "N", "modes", "displacement, nm", "error %", "ms per ms", "set-up ms"):
+        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
+    for row in rows:
+        table.add_row(row.model, str(row.count), str(row.rows), f"{1e9 * row.displacement:+.6f}",
+                      _bare_percent(row.error), f"{row.run_ms_per_ms:.3g}", f"{row.set_up_ms:.3g}")  # fmt: skip
+    console = Terminal()
+    console.print(table)
+    console.print("[dim]errors against the exact beam at the same step; run time of the loop for a simulated "
+                  "millisecond, medians of interleaved rounds[/]")  # fmt: skip
+    if (answer := at_equal_error(rows)) is not None:
+        console.print(f"at an error of {100 * answer.error:.3g} % Hermite elements take {answer.ratio:.2f} times as "
+                      "long as segments")  # fmt: skip
 
 
 def print_map(found: "DesignMap") -> None:

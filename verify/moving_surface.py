@@ -28,6 +28,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n, len(x)); n = 0 where no mode is free."""
     drive_shapes: Shapes
     """(2 (degree + 1), len(x)): real and imaginary part of every power of t."""
+    load_rows: Callable[[float], Array]
+    """Position of a force -> (rows,), its reading of all rows: what its power is made of, reciprocal to its load."""
     edges: Array
     degree: int
     omega: float
@@ -147,9 +149,16 @@ def _stage(
             parts = parts + np.outer(growth, tail(x, derivative))
         return np.stack([parts.real, parts.imag], axis=1).reshape(2 * len(parts), len(x))
 
+    def load_rows(position: float) -> Array:
+        loads = basis.loads(position)
+        parts = loads @ forced.amplitudes
+        if tail:
+            parts = parts + growth * tail(np.array([position]), 0)[0]
+        return np.concatenate([loads, np.stack([parts.real, parts.imag], axis=1).ravel()])
+
     return Stage(
-        modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, edges=basis.edges,
-        degree=basis.degree, omega=forced.omega, origin=forced.origin, unit_s=forced.unit_s,
+        modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, load_rows=load_rows,
+        edges=basis.edges, degree=basis.degree, omega=forced.omega, origin=forced.origin, unit_s=forced.unit_s,
         ramped=forced.amplitudes.shape[1] > 1, n_steps=steps.n, dt=steps.dt, every=steps.every,
     )  # fmt: skip
 
@@ -171,6 +180,7 @@ def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: Tim
 
     modes = modal(basis, (), damping) if basis else NO_MODES
     return Stage(modal=modes, forced=None, free_shapes=basis.shapes if basis else nothing, drive_shapes=drive,
+                 load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
                  edges=edges, degree=degree, omega=field.omega, origin=origin, unit_s=1.0, ramped=False,
                  n_steps=steps.n, dt=steps.dt, every=steps.every)  # fmt: skip
 

@@ -267,7 +267,7 @@ def _with_slider(
     start = before.position if before else slider.start_on(request.beam)
     sliding = Sliding.fresh(start, sum(stage.n_steps // stage.every for stage in stages), request.points,
                             law_entries(slider, request.beam), coupling.two_way,
-                            request.accounts and basis is not None)  # fmt: skip
+                            request.accounts and request.start == "rest")  # fmt: skip
     sliding.motion[1:] = (before.speed, float(before.stuck)) if before else (slider.speed, 0.0)
     z = _begin(request, stages[0])
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)

@@ -75,8 +75,10 @@ def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) ->
     modes[0:2], modes[2], modes[3] = z, stage.modal.sigmas, stage.modal.omegas
     modes[4:6], modes[6:8] = turns(stage.modal, 0.5 * stage.dt), turns(stage.modal, stage.dt)
     amplitudes = np.array([phasor(f) for f in forces], dtype=complex)
-    places = np.array([f.position for f in forces])
-    return Feed(stage=stage, modes=modes, loads=np.ascontiguousarray(stage.rows(places).T),
+    loads = np.zeros((len(forces), len(stage.rows(np.zeros(1)))))
+    for row, force in zip(loads, forces, strict=True):
+        row[:] = stage.load_rows(force.position)
+    return Feed(stage=stage, modes=modes, loads=loads,
                 drive=np.array([stage.omega, stage.origin, stage.unit_s, float(stage.ramped)]),
                 forces=np.array([amplitudes.real, amplitudes.imag]),
                 points=np.ascontiguousarray(stage.rows(points).T))  # fmt: skip

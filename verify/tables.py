@@ -99,6 +99,29 @@ def _flat_motor(rows: Any) -> list[dict[str, Any]]:
     return flat
 
 
+def slider(scene: Scene, counts: str | None) -> Job:
+    """The slider's displacement, its error and its run time over sizes, both models. Raises InputError."""
+    if scene.slider is None or scene.motion is None:
+        from verify.errors import InputError
+
+        raise InputError("--slider takes a scene with [slider] and [motion], for instance paper-slider")
+    from verify.work_precision import ROUNDS
+
+    sizes = checked(list(_listed(counts) if counts is not None else scene.motion.counts), Counts, "counts")
+
+    def run(step: Step) -> Any:
+        from verify.work_precision import work_rows
+
+        return work_rows(scene, tuple(sizes), step)
+
+    def draw(rows: Any) -> None:
+        from verify.console import print_work
+
+        print_work(rows)
+
+    return Job(ROUNDS, run, lambda rows: [msgspec.to_builtins(row) for row in rows], draw)
+
+
 def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple[str, ...]) -> Job:
     """A wave quantity over one or two axes. Raises InputError."""
     from verify.design_map import design_map, parse_axis
