@@ -53,10 +53,18 @@ class Flat(NamedTuple):
     """N/m, axial, at the roller."""
     axial: bool
     """Whether the links have inertia along x."""
+    ledger: bool
+    """Whether the power of loads is worth a pass of its own."""
     load_links: Indices
     """(n_loads,)."""
     loads: Array
     """(n_loads, 6): arm from the link's middle, F_x, F_y, moment, circular frequency, phase."""
+    held_links: Indices
+    """(n_held,): links with a point whose y is prescribed; the roller's first, where there is one."""
+    held: Array
+    """(n_held, 4): arm from the link's middle, amplitude, circular frequency, phase."""
+    small: Array
+    """(n_held, n_held + 1), scratch."""
 
 
 def mobilities(half: Array, masses: Array, inertias: Array) -> Array:
@@ -134,21 +142,49 @@ def _moments(f: Flat, t: float, q: Array, v: Array, work: Array) -> Any:
 
 @njit(cache=True, fastmath={"contract"})
 def _loads(f: Flat, t: float, work: Array) -> None:
-    """Gravity and point loads: forces along and across each link into columns 4, 5, moments into 6."""
-    gx, gy = f.gravity[0], f.gravity[1]
-    if gx != 0.0 or gy != 0.0:
-        for i in range(f.masses.size):
-            c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
-            work[i, 4], work[i, 5] = f.masses[i] * (c * gx + s * gy), f.masses[i] * (c * gy - s * gx)
+    """Point loads: forces along and across each link into columns 4, 5; moments into 6, alone into 13."""
+    for k in range(f.load_links.size):
+        work[f.load_links[k], 13] = 0.0
     for k in range(f.load_links.size):
         i = f.load_links[k]
         arm, fx, fy, moment, omega, phase = f.loads[k]
         now = np.cos(omega * t + phase)
         c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
         along, across = now * (c * fx + s * fy), now * (c * fy - s * fx)
-        work[i, 4] += along
-        work[i, 5] += across
-        work[i, 6] += now * moment + arm * across
+        turn = now * moment + arm * across
+        work[i, 4], work[i, 5], work[i, 6] = work[i, 4] + along, work[i, 5] + across, work[i, 6] + turn
+        work[i, 13] += turn
+
+
+@njit(cache=True, fastmath={"contract"})
+def _load_power(f: Flat, work: Array) -> float:
+    """Power of the point loads, from velocities carried from link to link."""
+    last = -1
+    for k in range(f.load_links.size):
+        last = max(last, f.load_links[k])
+    v1, v2, power = 0.0, 0.0, 0.0
+    for i in range(last + 1):
+        if i > 0:
+            v1, v2 = _turned(work[i, 0], work[i, 1], v1, v2)
+        step = f.half[i] * work[i, 3]
+        power += work[i, 4] * v1 + work[i, 5] * (v2 + step)
+        v2 += 2.0 * step
+    for k in range(f.load_links.size):
+        i = f.load_links[k]
+        power += work[i, 13] * work[i, 3]
+        work[i, 13] = 0.0
+    return power
+
+
+@njit(cache=True, fastmath={"contract"})
+def _weigh(f: Flat, work: Array) -> None:
+    """Gravity into columns 4 and 5."""
+    gx, gy = f.gravity[0], f.gravity[1]
+    if gx != 0.0 or gy != 0.0:
+        for i in range(f.masses.size):
+            c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
+            work[i, 4] += f.masses[i] * (c * gx + s * gy)
+            work[i, 5] += f.masses[i] * (c * gy - s * gx)
 
 
 @njit(cache=True, inline="always", fastmath={"contract"})
@@ -182,17 +218,17 @@ def _from_tip(f: Flat, i: int, work: Array, y11: float, y12: float, y22: float, 
 
 
 @njit(cache=True, fastmath={"contract"})
-def _tip(f: Flat, work: Array) -> Any:
-    """The last link seen from its first joint: its free tip, or its roller's unknown force eliminated."""
+def _tip(f: Flat, pull: float, work: Array) -> Any:
+    """The last link seen from its first joint: its tip free, or the roller's unknown force eliminated.
+
+    `pull` is what the axial spring at the roller pulls back with.
+    """
     i = f.masses.size - 1
     a, b, o, s1, s2, e1, e2 = _terms(f, i, work)
     i11, i12, i22, r1, r2 = 0.0, 0.0, 0.0, 0.0, 0.0
     if f.tip == ROLLER:
         c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
-        along, across = 0.0, 0.0
-        if f.tip_spring > 0.0:
-            pull = -f.tip_spring * shortening(f, work)
-            along, across = pull * c, -pull * s
+        along, across = pull * c, -pull * s
         g = 1.0 / (a * s * s + b * c * c)
         i11, i12, i22 = g * s * s, g * s * c, g * c * c
         d1, d2 = e1 - a * along, e2 - b * across
@@ -212,11 +248,11 @@ def shortening(f: Flat, work: Array) -> float:
 
 
 @njit(cache=True, fastmath={"contract"})
-def _eliminate(f: Flat, work: Array) -> Any:
+def _eliminate(f: Flat, pull: float, work: Array) -> Any:
     """Both sides up to the middle joint; the force there, in the frame of the link behind it."""
     n = f.masses.size
     middle = n // 2
-    y11, y12, y22, u1, u2 = _tip(f, work)
+    y11, y12, y22, u1, u2 = _tip(f, pull, work)
     x11, x12, x22, z1, z2 = 0.0, 0.0, 0.0, 0.0, 0.0
     for j in range(middle):
         x11, x12, x22, z1, z2 = _from_base(f, j, work, x11, x12, x22, z1, z2)
@@ -245,8 +281,8 @@ def _across(f: Flat, i: int, work: Array, p1: float, p2: float) -> Any:
 
 
 @njit(cache=True, fastmath={"contract"})
-def _substitute(f: Flat, work: Array, p1: float, p2: float, out: Array) -> None:
-    """Joint forces from the middle outwards, angular accelerations, and from them relative ones."""
+def _substitute(f: Flat, work: Array, p1: float, p2: float) -> None:
+    """Joint forces from the middle outwards; the links' angular accelerations into column 12."""
     n = f.masses.size
     middle = n // 2
     b1, b2 = p1, p2
@@ -259,17 +295,320 @@ def _substitute(f: Flat, work: Array, p1: float, p2: float, out: Array) -> None:
         if i >= 0:
             b1, b2 = _turned(work[i + 1, 0], -work[i + 1, 1], b1, b2)
             b1, b2 = _across(f, i, work, b1, b2)
-    for i in range(1, n):
-        out[i] = work[i, 12] - work[i - 1, 12]
+
+
+@njit(cache=True, fastmath={"contract"})
+def _solve_transverse(f: Flat, pull: float, work: Array) -> None:
+    """The same for links without inertia along x, whose axial forces are static: one unknown for each joint."""
+    n = f.masses.size
+    axial, y, u = pull, 0.0, 0.0
+    for i in range(n - 1, -1, -1):
+        c, s, h = np.cos(work[i, 2]), np.sin(work[i, 2]), f.half[i]
+        behind = axial - (c * work[i, 4] - s * work[i, 5])
+        moment = work[i, 6] + h * s * (axial + behind)
+        lift, a, b = f.mobility[i, 0] * (s * work[i, 4] + c * work[i, 5]), f.mobility[i, 0], h * c * f.mobility[i, 2] * c
+        turn, inward = f.mobility[i, 2] * c * moment, h * work[i, 3] * work[i, 3] * s
+        g = 0.0 if i + 1 == n and f.tip == FREE else 1.0 / (a + b + y)
+        r = g * (lift + turn - inward - u)
+        work[i, 7], work[i, 8], work[i, 9], work[i, 10] = g, r, moment, c
+        y, u = a + b - (b - a) * (b - a) * g, lift - turn + inward + (b - a) * r
+        axial = behind
+    p = -u / y
+    for i in range(n):
+        b, a = f.half[i] * work[i, 10] * f.mobility[i, 2] * work[i, 10], f.mobility[i, 0]
+        beyond = work[i, 8] - work[i, 7] * (b - a) * p
+        work[i, 12] = work[i, 9] * f.mobility[i, 1] - f.mobility[i, 2] * work[i, 10] * (p + beyond)
+        p = beyond
+
+
+@njit(cache=True, fastmath={"contract"})
+def _solve(f: Flat, pull: float, work: Array) -> None:
+    """The links' angular accelerations into column 12 from what stands in columns 0 to 6."""
+    if f.axial:
+        p1, p2 = _eliminate(f, pull, work)
+        _substitute(f, work, p1, p2)
+    else:
+        _solve_transverse(f, pull, work)
+
+
+@njit(cache=True, fastmath={"contract"})
+def _rise(f: Flat, k: int, work: Array, spins: int) -> float:
+    """Vertical acceleration of a held point for the angular accelerations in a column; with column 3's rates."""
+    total, link = 0.0, f.held_links[k]
+    for i in range(link + 1):
+        c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
+        reach = 2.0 * f.half[i] if i < link else f.half[i] + f.held[k, 0]
+        total += reach * (c * work[i, spins] - s * work[i, 3] * work[i, 3])
+    return total
+
+
+@njit(cache=True)
+def _solve_small(a: Array, n: int) -> None:
+    """Gauss with row exchange on an (n, n + 1) array; the answer in its last column."""
+    for j in range(n):
+        best = j
+        for i in range(j + 1, n):
+            if abs(a[i, j]) > abs(a[best, j]):
+                best = i
+        for m in range(n + 1):
+            a[j, m], a[best, m] = a[best, m], a[j, m]
+        for i in range(n):
+            if i != j:
+                ratio = a[i, j] / a[j, j]
+                for m in range(j, n + 1):
+                    a[i, m] -= ratio * a[j, m]
+    for j in range(n):
+        a[j, n] /= a[j, j]
+
+
+@njit(cache=True, fastmath={"contract"})
+def _hold(f: Flat, t: float, work: Array) -> float:
+    """Forces of the actuators that keep their points on the prescribed y; their power.
+
+    Each actuator's unit force is solved for by itself: a Schur complement of the size of their number.
+    """
+    n, first = f.masses.size, 1 if f.tip == ROLLER else 0
+    count = f.held_links.size - first
+    for i in range(n):
+        work[i, 14] = work[i, 12]
+    for k in range(count):
+        phase = f.held[k + first, 2] * t + f.held[k + first, 3]
+        wanted = -f.held[k + first, 1] * f.held[k + first, 2] ** 2 * np.cos(phase)
+        f.small[k, count] = wanted - _rise(f, k + first, work, 14)
+    for i in range(n):
+        work[i, 15] = work[i, 3]
+        work[i, 3] = 0.0
+    for k in range(count):
+        for i in range(n):
+            work[i, 4], work[i, 5], work[i, 6] = 0.0, 0.0, 0.0
+        link = f.held_links[k + first]
+        work[link, 4], work[link, 5] = np.sin(work[link, 2]), np.cos(work[link, 2])
+        work[link, 6] = f.held[k + first, 0] * work[link, 5]
+        _solve(f, 0.0, work)
+        for i in range(n):
+            work[i, 16 + k] = work[i, 12]
+        for m in range(count):
+            f.small[m, k] = _rise(f, m + first, work, 12)
+    _solve_small(f.small, count)
+    power = 0.0
+    for i in range(n):
+        work[i, 3], work[i, 12] = work[i, 15], work[i, 14]
+    for k in range(count):
+        phase = f.held[k + first, 2] * t + f.held[k + first, 3]
+        power -= f.small[k, count] * f.held[k + first, 1] * f.held[k + first, 2] * np.sin(phase)
+        for i in range(n):
+            work[i, 12] += f.small[k, count] * work[i, 16 + k]
+    return power
 
 
 @njit(cache=True, fastmath={"contract"})
 def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -> Any:
-    """Relative angular accelerations, (N,), into `out`; (power lost, power put in by loads and hub)."""
+    """Relative angular accelerations, (N,), into `out`; (power lost, power put in by loads, actuators and hub)."""
     lost, power = _moments(f, t, q, v, work)
-    _cosines(q, work)
+    if f.axial or f.ledger:
+        _cosines(q, work)
     _loads(f, t, work)
-    p1, p2 = _eliminate(f, work)
-    _substitute(f, work, p1, p2, out)
+    if f.ledger:
+        power += _load_power(f, work)
+    _weigh(f, work)
+    pull = -f.tip_spring * shortening(f, work) if f.tip_spring > 0.0 else 0.0
+    _solve(f, pull, work)
+    if f.held_links.size > (1 if f.tip == ROLLER else 0):
+        power += _hold(f, t, work)
     out[0] = work[0, 12] - hub_motion(f.hub, t)[2]
+    for i in range(1, q.size):
+        out[i] = work[i, 12] - work[i - 1, 12]
     return lost, power
+
+
+@njit(cache=True, fastmath={"contract"})
+def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
+    """Angles and rates into columns 2, 3; positions and velocities of joints 0..N into 13 to 16."""
+    angle, rate, _ = hub_motion(f.hub, t)
+    x, y, vx, vy = 0.0, 0.0, 0.0, 0.0
+    for i in range(q.size):
+        work[i, 13], work[i, 14], work[i, 15], work[i, 16] = x, y, vx, vy
+        angle, rate = angle + q[i], rate + v[i]
+        work[i, 2], work[i, 3] = angle, rate
+        dx, dy = 2.0 * f.half[i] * np.cos(angle), 2.0 * f.half[i] * np.sin(angle)
+        x, y, vx, vy = x + dx, y + dy, vx - rate * dy, vy + rate * dx
+    n = q.size
+    work[n, 13], work[n, 14], work[n, 15], work[n, 16] = x, y, vx, vy
+
+
+@njit(cache=True, fastmath={"contract"})
+def _constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) -> None:
+    """Residuals of the held points (or of their rates), and derivatives by the dependent angles, into `small`."""
+    count = f.held_links.size
+    for k in range(count):
+        i, arm = f.held_links[k], f.half[f.held_links[k]] + f.held[k, 0]
+        share = arm / (2.0 * f.half[i])
+        omega, phase = f.held[k, 2], f.held[k, 2] * t + f.held[k, 3]
+        x = work[i, 13] + share * (work[i + 1, 13] - work[i, 13])
+        column = 16 if rates else 14
+        value = work[i, column] + share * (work[i + 1, column] - work[i, column])
+        wanted = -f.held[k, 1] * omega * np.sin(phase) if rates else f.held[k, 1] * np.cos(phase)
+        f.small[k, count] = value - wanted
+        for d in range(count):
+            f.small[k, d] = x - work[pivots[d], 13] if pivots[d] <= i else 0.0
+
+
+@njit(cache=True, fastmath={"contract"})
+def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array) -> float:
+    """Bring dependent angles (Newton) and rates onto the held points; the largest change of an angle.
+
+    Infinite where 20 steps do not suffice.
+    """
+    count, moved = f.held_links.size, 0.0
+    if count == 0:
+        return 0.0
+    for _ in range(20):
+        place(f, t, q, v, work)
+        _constraints(f, t, pivots, work, False)
+        _solve_small(f.small, count)
+        change = 0.0
+        for d in range(count):
+            q[pivots[d]] -= f.small[d, count]
+            change = max(change, abs(f.small[d, count]))
+        moved = max(moved, change)
+        if change < 1e-8:
+            _constraints(f, t, pivots, work, True)
+            _solve_small(f.small, count)
+            for d in range(count):
+                v[pivots[d]] -= f.small[d, count]
+            return moved
+    return np.inf
+
+
+@njit(cache=True, fastmath={"contract"})
+def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> Any:
+    """Kinetic, elastic (joints and axial spring) and gravitational energy, joule."""
+    place(f, t, q, v, work)
+    kinetic, elastic, height = 0.0, 0.0, 0.0
+    for i in range(q.size):
+        vx, vy = 0.5 * (work[i, 15] + work[i + 1, 15]), 0.5 * (work[i, 16] + work[i + 1, 16])
+        along = vx * vx if f.axial else 0.0
+        kinetic += 0.5 * (f.masses[i] * (along + vy * vy) + f.inertias[i] * work[i, 3] ** 2)
+        elastic += 0.5 * f.stiffness[i] * q[i] * q[i]
+        x, y = 0.5 * (work[i, 13] + work[i + 1, 13]), 0.5 * (work[i, 14] + work[i + 1, 14])
+        height -= f.masses[i] * (f.gravity[0] * x + f.gravity[1] * y)
+    if f.tip_spring > 0.0:
+        elastic += 0.5 * f.tip_spring * shortening(f, work) ** 2
+    return kinetic, elastic, height
+
+
+@njit(cache=True, fastmath={"contract"})
+def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
+    """Rates of the state (q, v, energy lost, work put in), (2N + 2,)."""
+    n = f.masses.size
+    out[2 * n], out[2 * n + 1] = accelerate(f, t, y[:n], y[n : 2 * n], work, out[n : 2 * n])
+    for i in range(n):
+        out[i] = y[n + i]
+
+
+@njit(cache=True, fastmath={"contract"})
+def _stages(f: Flat, t: float, h: float, y: Array, a: Array, c: Array, k: Array, new: Array, work: Array) -> None:
+    """Stages 1.. of an explicit Runge-Kutta step into k[1:], its answer (the last row of `a`) into `new`."""
+    stages = a.shape[1]
+    for s in range(1, stages + 1):
+        new[:] = y
+        for j in range(s):
+            if a[s, j] != 0.0:
+                weight = h * a[s, j]
+                for i in range(y.size):
+                    new[i] += weight * k[j, i]
+        if s < stages:
+            derivative(f, t + c[s] * h, new, work, k[s])
+
+
+@njit(cache=True, fastmath={"contract"})
+def _keep(t: float, h: float, at: float, y: Array, new: Array, k0: Array, k1: Array, n: int, out: Array) -> None:
+    """The state at a time within a step: quintic Hermite in the angles, its derivative in the rates."""
+    s = (at - t) / h
+    r = 1.0 - s
+    a0, a1 = r**3 * (1 + 3 * s + 6 * s * s), s**3 * (1 + 3 * r + 6 * r * r)
+    b0, b1 = h * r**3 * s * (1 + 3 * s), -h * s**3 * r * (1 + 3 * r)
+    c0, c1 = 0.5 * h * h * r**3 * s * s, 0.5 * h * h * s**3 * r * r
+    d = 30 * s * s * r * r / h
+    e0, e1 = r * r * (1 + 2 * s - 15 * s * s), s * s * (1 + 2 * r - 15 * r * r)
+    g0, g1 = 0.5 * h * s * r * r * (2 - 5 * s), -0.5 * h * r * s * s * (2 - 5 * r)
+    for i in range(n):
+        j = n + i
+        out[i] = a0 * y[i] + a1 * new[i] + b0 * y[j] + b1 * new[j] + c0 * k0[j] + c1 * k1[j]
+        out[j] = d * (new[i] - y[i]) + e0 * y[j] + e1 * new[j] + g0 * k0[j] + g1 * k1[j]
+    u0, u1 = r * r * (1 + 2 * s), s * s * (1 + 2 * r)
+    for i in range(2 * n, y.size):
+        out[i] = u0 * y[i] + u1 * new[i] + h * s * r * (r * k0[i] - s * k1[i])
+
+
+RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
+"""What `march` returns."""
+
+
+@njit(cache=True, fastmath={"contract"})
+def _error(n: int, h: float, k: Array, weights: Array, y: Array, scale: Array) -> float:
+    """Norm of a step's estimated error over its tolerance: angles and rates each by their root mean square.
+
+    `scale` is relative tolerance, absolute tolerance of the angles, of the rates, and the largest means so far.
+    """
+    worst = 0.0
+    for part in range(2):
+        error, size = 0.0, 0.0
+        for i in range(part * n, (part + 1) * n):
+            e = 0.0
+            for j in range(weights.size):
+                e += weights[j] * k[j, i]
+            error += e * e
+            size += y[i] * y[i]
+        scale[3 + part] = max(scale[3 + part], np.sqrt(size / n))
+        worst = max(worst, h * np.sqrt(error / n) / (scale[1 + part] + scale[0] * scale[3 + part]))
+    return worst
+
+
+@njit(cache=True, fastmath={"contract"})
+def _broken(y: Array, n: int, h: float) -> bool:
+    """Whether a state is not finite, or one step would turn a joint by more than half a turn."""
+    for i in range(n, 2 * n):
+        if not abs(y[i]) * h < np.pi:
+            return True
+    return False
+
+
+@njit(cache=True, fastmath={"contract"})
+def march(
+    f: Flat, y: Array, new: Array, clock: Array, counts: Indices, samples: Array, kept: Array, budget: int,
+    a: Array, c: Array, weights: Array, order: float, scale: Array, k: Array, pivots: Indices, work: Array,
+) -> int:
+    """Explicit Runge-Kutta over at most `budget` steps; samples are kept from within the steps.
+
+    `clock` is time and step, `counts` steps, rejected steps, evaluations and samples kept. k[0] holds the rates at y.
+    The step is fixed where `weights` is empty, and held to an error of `scale` elsewhere.
+    """  # fmt: skip
+    n = f.masses.size
+    for _ in range(budget):
+        if counts[3] >= samples.size:
+            return DONE
+        t, h = clock[0], clock[1]
+        if t + h == t:
+            return TOO_SMALL
+        _stages(f, t, h, y, a, c, k, new, work)
+        if _broken(new, n, h) and weights.size == 0:
+            return DIVERGED
+        project(f, t + h, new[:n], new[n : 2 * n], pivots, work)
+        last = k.shape[0] - 1
+        derivative(f, t + h, new, work, k[last])
+        counts[2] += a.shape[1]
+        if weights.size > 0:
+            error = _error(n, h, k, weights, new, scale)
+            factor = 0.9 * max(error, 1e-10) ** (-1.0 / order)
+            clock[1] = h * min(4.0, max(0.2, factor)) if error == error else 0.2 * h
+            if not error <= 1.0:
+                counts[1] += 1
+                continue
+        counts[0] += 1
+        clock[0] = t + h
+        while counts[3] < samples.size and samples[counts[3]] <= t + h * (1.0 + 1e-12):
+            _keep(t, h, samples[counts[3]], y, new, k[0], k[last], n, kept[counts[3]])
+            counts[3] += 1
+        y[:], k[0] = new, k[last]
+    return DONE if counts[3] >= samples.size else RUNNING
