@@ -480,6 +480,22 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array)
     return np.inf
 
 
+@njit(cache=True)
+def repivot(f: Flat, pivots: Indices, work: Array, loss: float) -> bool:
+    """Exchange the roller's dependent angle, where it is the only one, if its lever arm has become short."""
+    if f.held_links.size != 1:
+        return False
+    link, best = f.held_links[0], 0
+    x = work[link + 1, 13]
+    for i in range(link + 1):
+        if abs(x - work[i, 13]) > abs(x - work[best, 13]):
+            best = i
+    if abs(x - work[pivots[0], 13]) >= loss * abs(x - work[best, 13]):
+        return False
+    pivots[0] = best
+    return True
+
+
 @njit(cache=True, fastmath={"contract"})
 def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> Any:
     """Kinetic, elastic (joints and axial spring) and gravitational energy, joule."""
@@ -581,7 +597,8 @@ def march(
 ) -> int:
     """Explicit Runge-Kutta over at most `budget` steps; samples are kept from within the steps.
 
-    `clock` is time and step, `counts` steps, rejected steps, evaluations and samples kept. k[0] holds the rates at y.
+    `clock` is time, step and the share of the longest lever arm below which a dependent angle is exchanged; `counts`
+    steps, rejected steps, evaluations, samples kept and exchanges. k[0] holds the rates at y.
     The step is fixed where `weights` is empty, and held to an error of `scale` elsewhere.
     """  # fmt: skip
     n = f.masses.size
@@ -595,6 +612,7 @@ def march(
         if _broken(new, n, h) and weights.size == 0:
             return DIVERGED
         project(f, t + h, new[:n], new[n : 2 * n], pivots, work)
+        counts[4] += repivot(f, pivots, work, clock[2])
         last = k.shape[0] - 1
         derivative(f, t + h, new, work, k[last])
         counts[2] += a.shape[1]
