@@ -630,3 +630,153 @@ def march(
             counts[3] += 1
         y[:], k[0] = new, k[last]
     return DONE if counts[3] >= samples.size else RUNNING
+
+
+@njit(cache=True, fastmath={"contract"})
+def _expand(modes: Array, state: Array, rest: Array, q: Array, v: Array) -> None:
+    """Angles and rates from modal coordinates, (m, 2); `modes` is (m, N)."""
+    q[:] = rest
+    v[:] = 0.0
+    even = modes.shape[0] // 2 * 2
+    for j in range(0, even, 2):
+        a, b, c, d = state[j, 0], state[j, 1], state[j + 1, 0], state[j + 1, 1]
+        for i in range(q.size):
+            q[i] += a * modes[j, i] + c * modes[j + 1, i]
+            v[i] += b * modes[j, i] + d * modes[j + 1, i]
+    for j in range(even, modes.shape[0]):
+        for i in range(q.size):
+            q[i] += state[j, 0] * modes[j, i]
+            v[i] += state[j, 1] * modes[j, i]
+
+
+@njit(cache=True, fastmath={"contract", "reassoc"})
+def _reduce(duals: Array, a: Array, out: Array) -> None:
+    """Modal accelerations, (m,); `duals` is (m, N)."""
+    for j in range(duals.shape[0]):
+        total = 0.0
+        for i in range(a.size):
+            total += duals[j, i] * a[i]
+        out[j] = total
+
+
+@njit(cache=True, fastmath={"contract"})
+def _rotate(turns: Array, state: Array) -> None:
+    """Exact linear flow: `turns` (m, 3) holds cos, sin / omega and - omega sin of the step."""
+    for j in range(turns.shape[0]):
+        x, y = state[j, 0], state[j, 1]
+        state[j, 0], state[j, 1] = turns[j, 0] * x + turns[j, 1] * y, turns[j, 2] * x + turns[j, 0] * y
+
+
+@njit(cache=True, fastmath={"contract"})
+def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
+    """Steady answer of the modes to the harmonic loads, (m, 2); `shares` is (n_loads, m)."""
+    out[:] = 0.0
+    for k in range(drives.shape[0]):
+        phase = drives[k, 0] * t + drives[k, 1]
+        now, rate = np.cos(phase), -drives[k, 0] * np.sin(phase)
+        for j in range(shares.shape[1]):
+            out[j, 0] += shares[k, j] * now
+            out[j, 1] += shares[k, j] * rate
+
+
+@njit(cache=True, fastmath={"contract"})
+def _kick(
+    f: Flat, t: float, h: float, free: Array, modes: Array, duals: Array, rest: Array, squares: Array, drives: Array,
+    shares: Array, steady: Array, trial: Array, vectors: Array, force: Array, work: Array,
+) -> None:
+    """Nonlinear kick of a step h: what the linear flow leaves out of the accelerations, by the explicit mid-point.
+
+    `free` is the modal state without the steady answer, `squares` holds omega^2.
+    """  # fmt: skip
+    forced(t, drives, shares, steady)
+    for half in range(2):
+        for j in range(free.shape[0]):
+            trial[j, 0] = free[j, 0] + steady[j, 0]
+            trial[j, 1] = free[j, 1] + steady[j, 1] + (0.5 * h * force[j] if half else 0.0)
+        _expand(modes, trial, rest, vectors[0], vectors[1])
+        accelerate(f, t, vectors[0], vectors[1], work, vectors[2])
+        _reduce(duals, vectors[2], force)
+        for j in range(free.shape[0]):
+            force[j] += squares[j] * free[j, 0]
+        for k in range(drives.shape[0]):  # the steady answer's own acceleration
+            now = drives[k, 0] * drives[k, 0] * np.cos(drives[k, 0] * t + drives[k, 1])
+            for j in range(free.shape[0]):
+                force[j] += now * shares[k, j]
+    for j in range(free.shape[0]):
+        free[j, 1] += h * force[j]
+
+
+@njit(cache=True, fastmath={"contract"})
+def _close(f: Flat, tilt: float, duals: Array, free: Array, work: Array) -> None:
+    """One chord step of the roller's closure along the last mode, which turns the tip off its line by `tilt`."""
+    gap, speed = 0.0, 0.0
+    for i in range(f.half.size):
+        c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
+        gap += 2.0 * f.half[i] * s
+        speed += 2.0 * f.half[i] * c * work[i, 3]
+    last = free.shape[0] - 1
+    free[last, 0] -= gap / tilt
+    free[last, 1] -= speed / tilt
+
+
+@njit(cache=True, fastmath={"contract"})
+def _between(s: float, h: float, omega: Array, start: Array, miss: Array, steady: Array, out: Array) -> None:
+    """Modal state at a share s of a step: the linear flow from its start, and a cubic through what the kicks added."""
+    slow0, slow1 = s * s * (3.0 - 2.0 * s), h * s * s * (s - 1.0)
+    rate0, rate1 = 6.0 * s * (1.0 - s) / h, s * (3.0 * s - 2.0)
+    for j in range(omega.size):
+        w, x, y = omega[j], start[j, 0], start[j, 1]
+        c, si = np.cos(w * s * h), np.sin(w * s * h)
+        sinc = si / w if w > 0.0 else s * h
+        a, b = miss[j, 0], miss[j, 1]
+        if w * h > 2.0:
+            a, b = s * a, s * b
+            out[j, 0], out[j, 1] = a, b
+        else:
+            out[j, 0], out[j, 1] = slow0 * a + slow1 * b, rate0 * a + rate1 * b
+        out[j, 0] += c * x + sinc * y + steady[j, 0]
+        out[j, 1] += c * y - w * si * x + steady[j, 1]
+
+
+@njit(cache=True, fastmath={"contract"})
+def march_modal(
+    f: Flat, clock: Array, counts: Indices, samples: Array, kept: Array, budget: int, free: Array, start: Array,
+    kicks: Array, flows: Array, shares_of_step: Array, omega: Array, modes: Array, duals: Array, rest: Array,
+    drives: Array, shares: Array, steady: Array, trial: Array, vectors: Array, force: Array, tilt: float, work: Array,
+) -> int:
+    """Exact linear flow of the modes and nonlinear kicks in turn, a fixed step; modal states are kept.
+
+    A step is flow 0, kick 0, flow 1, ..., the last flow; `kicks` and `shares_of_step` are shares of the step, and
+    the last of `flows` is the whole step.
+    """  # fmt: skip
+    h, squares = clock[1], omega * omega
+    for _ in range(budget):
+        if counts[3] >= samples.size:
+            return DONE
+        t = clock[0]
+        start[:] = free
+        for k in range(kicks.size):
+            _rotate(flows[k], free)
+            t += shares_of_step[k] * h
+            _kick(f, t, kicks[k] * h, free, modes, duals, rest, squares, drives, shares, steady, trial, vectors,
+                  force, work)  # fmt: skip
+            if tilt != 0.0:
+                _close(f, tilt, duals, free, work)
+        _rotate(flows[kicks.size], free)
+        counts[0] += 1
+        counts[2] += 2 * kicks.size
+        if not abs(free[0, 1]) < np.inf or not abs(vectors[1, 0]) * h < np.pi:
+            return DIVERGED
+        end = clock[0] + h
+        if counts[3] < samples.size and samples[counts[3]] <= end * (1.0 + 1e-12):
+            trial[:] = start
+            _rotate(flows[kicks.size + 1], trial)
+            for j in range(free.shape[0]):
+                trial[j, 0], trial[j, 1] = free[j, 0] - trial[j, 0], free[j, 1] - trial[j, 1]
+        while counts[3] < samples.size and samples[counts[3]] <= end * (1.0 + 1e-12):
+            at = samples[counts[3]]
+            forced(at, drives, shares, steady)
+            _between((at - clock[0]) / h, h, omega, start, trial, steady, kept[counts[3]])
+            counts[3] += 1
+        clock[0] = end
+    return DONE if counts[3] >= samples.size else RUNNING
