@@ -189,7 +189,7 @@ def project(
     pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
     if len(pivots) != len(rows) or any(not 0 <= p < system.n_links for p in pivots):
         raise InputError(f"dependent = {dependent!r}: give {len(rows)} joints between 1 and {system.n_links}")
-    moved = kernels.project(flatten(system), state.time, q, v, pivots, workspace(system))
+    moved = kernels.project(flatten(system), state.time, q, v, pivots, 1e-14 * (1 + 0.1 * len(q)), workspace(system))
     if not np.isfinite(moved) or not np.isfinite(q).all():
         raise InputError(
             f"state.angles cannot be brought onto the held points by turning joint {int(pivots[0]) + 1}: "

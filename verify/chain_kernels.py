@@ -454,10 +454,10 @@ def _constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) -
 
 
 @njit(cache=True, fastmath={"contract"})
-def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array) -> float:
-    """Bring dependent angles (Newton) and rates onto the held points; the largest change of an angle.
+def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, settled: float, work: Array) -> float:
+    """Bring dependent angles (Newton, until a change is below `settled`) and rates onto the held points.
 
-    Infinite where 20 steps do not suffice.
+    The largest change of an angle; infinite where 20 steps do not suffice.
     """
     count, moved = f.held_links.size, 0.0
     if count == 0:
@@ -471,7 +471,7 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array)
             q[pivots[d]] -= f.small[d, count]
             change = max(change, abs(f.small[d, count]))
         moved = max(moved, change)
-        if change < 1e-8:
+        if change < settled:
             _constraints(f, t, pivots, work, True)
             _solve_small(f.small, count)
             for d in range(count):
@@ -611,7 +611,7 @@ def march(
         _stages(f, t, h, y, a, c, k, new, work)
         if _broken(new, n, h) and weights.size == 0:
             return DIVERGED
-        project(f, t + h, new[:n], new[n : 2 * n], pivots, work)
+        project(f, t + h, new[:n], new[n : 2 * n], pivots, 1e-9, work)
         counts[4] += repivot(f, pivots, work, clock[2])
         last = k.shape[0] - 1
         derivative(f, t + h, new, work, k[last])
