@@ -565,7 +565,7 @@ RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
 def _error(n: int, h: float, k: Array, weights: Array, y: Array, scale: Array) -> float:
     """Norm of a step's estimated error over its tolerance: angles and rates each by their root mean square.
 
-    `scale` is relative tolerance, absolute tolerance of the angles, of the rates, and the largest means so far.
+    `scale` is relative tolerance, absolute tolerance of the angles, of the rates, and the largest means of `y` so far.
     """
     worst = 0.0
     for part in range(2):
@@ -617,7 +617,7 @@ def march(
         derivative(f, t + h, new, work, k[last])
         counts[2] += a.shape[1]
         if weights.size > 0:
-            error = _error(n, h, k, weights, new, scale)
+            error = _error(n, h, k, weights, y, scale)
             factor = 0.9 * max(error, 1e-10) ** (-1.0 / order)
             clock[1] = h * min(4.0, max(0.2, factor)) if error == error else 0.2 * h
             if not error <= 1.0:

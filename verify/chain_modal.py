@@ -4,7 +4,8 @@ In modes about an equilibrium the linear chain, harmonic loads included, has a f
 the accelerations is small where the motion is small, and is put in as kicks. With one kick to a step that is
 Strang's splitting, of order 2 times the size of the nonlinearity; with two kicks at Gauss's points (J. Laskar and P.
 Robutel, Celest. Mech. Dyn. Astron. 80 (2001) 39) errors are of order 4 times that size and of order 2 times its
-square. With all modes a step costs O(N^2), with m of them O(N m); modes left out move as the linear chain's.
+square. With all modes a step costs O(N^2), with m of them O(N m). Modes left out move as the linear chain's; what they
+add to the axial inertia is lost, a part (up to a quarter was seen) of the nonlinear part of the motion.
 """
 
 from collections.abc import Sequence
