@@ -45,11 +45,12 @@ def equations(system, t, angles, rates):
     mass = np.diag(system.inertias.astype(float))
     for i in range(n):
         middle = reach_of(system, i + 1, system.lengths[i] / 2)
-        for gradient, bend, g in ((-middle * s, -middle * c, system.gravity[0]), (middle * c, -middle * s, system.gravity[1])):
-            if system.axial_inertia or gradient is not None and np.array_equal(gradient, middle * c):
+        along, across = -middle * s, middle * c
+        force += system.masses[i] * (system.gravity[0] * along + system.gravity[1] * across)
+        for felt, gradient, bend in ((system.axial_inertia, along, -middle * c), (True, across, -middle * s)):
+            if felt:
                 mass += system.masses[i] * np.outer(gradient, gradient)
                 force -= system.masses[i] * gradient * (bend @ w**2)
-            force += system.masses[i] * g * gradient
     for load in system.loads:
         now = np.cos(2 * np.pi * load.frequency_hz * t + np.deg2rad(load.phase_deg))
         reach = reach_of(system, load.link, load.at)

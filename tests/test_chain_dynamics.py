@@ -31,7 +31,9 @@ from verify.errors import InputError
 
 
 def beam(left="pinned", right="pinned", **more):
-    return Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0, supports=(left, right), **more)
+    return Beam(
+        length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0, supports=(left, right), **more
+    )
 
 
 def odd_chain(seed, n, **more):
@@ -212,7 +214,14 @@ def test_a_hanging_chain_of_one_and_two_links_swings_as_known(n, exact):
 def hanging(n, length=0.83, g=9.81):
     lengths, masses = np.full(n, length / n), np.full(n, 0.31 / n)
     still = np.zeros(n)
-    system = ChainSystem(lengths=lengths, masses=masses, inertias=masses * lengths**2 / 12, stiffness=still, dashpots=still, gravity=(g, 0.0))
+    system = ChainSystem(
+        lengths=lengths,
+        masses=masses,
+        inertias=masses * lengths**2 / 12,
+        stiffness=still,
+        dashpots=still,
+        gravity=(g, 0.0),
+    )
     return linearise(system, at_rest(system)).frequencies() * np.sqrt(length / g)
 
 
@@ -266,7 +275,11 @@ def test_the_roller_ended_chain_buckles_at_its_own_load():
 
 
 def test_an_equilibrium_stands_still_whatever_holds_it():
-    for kind in ({"tip": "roller", "axial_spring": 80.0}, {}, {"actuators": (Actuator(link=4, at=0.01, amplitude=0.02),)}):
+    for kind in (
+        {"tip": "roller", "axial_spring": 80.0},
+        {},
+        {"actuators": (Actuator(link=4, at=0.01, amplitude=0.02),)},
+    ):
         system = odd_chain(21, 9, rotation=Rotation(offset=-0.2), **kind)
         system = replace(system, loads=system.loads[:1])
         rest = solve_static(system)

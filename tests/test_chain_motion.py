@@ -8,8 +8,8 @@ from chain_reference import by_multipliers, woinowsky_krieger
 from scipy.integrate import solve_ivp
 from test_chain_dynamics import beam, odd_chain, some_state
 
-from verify import chain_motion, segment_model
 from verify import chain_kernels as kernels
+from verify import chain_motion, segment_model
 from verify.beam import PointForce
 from verify.chain_dynamics import at_rest, energies, linearise, positions, project
 from verify.chain_modal import modal_basis, simulate_linear, simulate_modal
@@ -72,7 +72,9 @@ def test_time_reversed_the_chain_returns():
 def test_one_link_with_spring_and_dashpot_decays_as_an_oscillator(method):
     inertia, spring, dashpot = 3e-5 + 0.02 * 0.05**2, 0.7, 1.3e-3
     one = np.ones(1)
-    system = ChainSystem(lengths=0.1 * one, masses=0.02 * one, inertias=3e-5 * one, stiffness=spring * one, dashpots=dashpot * one)
+    system = ChainSystem(
+        lengths=0.1 * one, masses=0.02 * one, inertias=3e-5 * one, stiffness=spring * one, dashpots=dashpot * one
+    )
     rate, omega = dashpot / (2 * inertia), np.sqrt(spring / inertia - (dashpot / (2 * inertia)) ** 2)
     times = np.linspace(0.01, 0.3, 7)
     options = {"step": 2e-4} if method == "rk4" else {"tolerance": 1e-10}
@@ -85,7 +87,14 @@ def test_one_link_with_spring_and_dashpot_decays_as_an_oscillator(method):
 def test_a_turning_hub_drives_one_link_as_its_spring_says():
     one, inertia, spring = np.ones(1), 4e-5 + 0.03 * 0.06**2, 0.9
     hub = Rotation(amplitude=0.3, frequency_hz=5.0)
-    system = ChainSystem(lengths=0.12 * one, masses=0.03 * one, inertias=4e-5 * one, stiffness=spring * one, dashpots=0 * one, rotation=hub)
+    system = ChainSystem(
+        lengths=0.12 * one,
+        masses=0.03 * one,
+        inertias=4e-5 * one,
+        stiffness=spring * one,
+        dashpots=0 * one,
+        rotation=hub,
+    )
     own, drive = np.sqrt(spring / inertia), 2 * np.pi * 5.0
     times = np.linspace(0.02, 0.5, 9)
     motion = simulate(system, ChainState(0 * one, -0.3 * drive * one), times, tolerance=1e-11)
@@ -119,13 +128,22 @@ def test_an_actuator_keeps_its_point_where_it_is_told():
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
 def test_a_double_pendulum_agrees_with_independent_integrators(method):
     g, still = (0.0, -9.81), np.zeros(2)
-    system = ChainSystem(lengths=np.array([0.31, 0.22]), masses=np.array([0.12, 0.2]), inertias=np.array([1e-3, 7e-4]), stiffness=still, dashpots=still, gravity=g)
+    system = ChainSystem(
+        lengths=np.array([0.31, 0.22]),
+        masses=np.array([0.12, 0.2]),
+        inertias=np.array([1e-3, 7e-4]),
+        stiffness=still,
+        dashpots=still,
+        gravity=g,
+    )
     start = ChainState(np.array([0.9, -1.7]), np.array([0.3, 2.0]))
 
     def slope(t, y):
         return np.concatenate([y[2:], by_multipliers(system, t, y[:2], y[2:])])
 
-    exact = solve_ivp(slope, (0.0, 0.8), np.concatenate([start.angles, start.rates]), method=method, rtol=1e-9, atol=1e-11)
+    exact = solve_ivp(
+        slope, (0.0, 0.8), np.concatenate([start.angles, start.rates]), method=method, rtol=1e-9, atol=1e-11
+    )
     motion = simulate(system, start, [0.8], tolerance=1e-11)
     assert np.concatenate([motion.angles[0], motion.rates[0]]) == pytest.approx(exact.y[:, -1], abs=2e-6)
     assert abs(motion.angles[0]).max() > 1.0
@@ -143,7 +161,14 @@ def test_no_result_depends_on_which_angle_is_dependent(dependent):
 def test_a_roller_carried_past_the_pivots_turn_takes_another_pivot():
     """A crank that turns all the way round and a rod hardly longer: folded back, the crank's angle decides nothing."""
     still = np.zeros(2)
-    system = ChainSystem(lengths=np.array([0.2, 0.21]), masses=np.array([0.2, 0.1]), inertias=np.array([2e-4, 6e-4]), stiffness=still, dashpots=still, tip="roller")
+    system = ChainSystem(
+        lengths=np.array([0.2, 0.21]),
+        masses=np.array([0.2, 0.1]),
+        inertias=np.array([2e-4, 6e-4]),
+        stiffness=still,
+        dashpots=still,
+        tip="roller",
+    )
     start, _ = project(system, ChainState(np.array([0.4, -0.6]), np.array([30.0, -40.0])), [2])
     motion = simulate(system, start, np.linspace(0.0, 1.0, 50), tolerance=1e-10)
     assert np.ptp(motion.angles[:, 0]) > 2 * np.pi
@@ -158,7 +183,9 @@ def test_small_motion_is_the_linear_chains():
     shape = modes.readings["raw"]()[2] * 1e-7
     theta = np.arcsin(np.diff(shape) / system.lengths)
     period = 1 / modes.frequencies_hz[2]
-    motion = simulate(system, at_rest(system, np.diff(theta, prepend=0.0)), [period / 4, period / 2, period], tolerance=1e-11)
+    motion = simulate(
+        system, at_rest(system, np.diff(theta, prepend=0.0)), [period / 4, period / 2, period], tolerance=1e-11
+    )
     middle = motion.deflection([float(system.nodes[4])])[:, 0]
     assert middle == pytest.approx(shape[4] * np.array([0.0, -1.0, 1.0]), abs=1e-6 * abs(shape[4]))
 
@@ -187,7 +214,10 @@ def test_immovable_ends_stiffen_as_woinowsky_and_krieger_say(n, amplitude):
 
 
 def driven(n, amplitude, **more):
-    forces = [PointForce(position=0.012, amplitude=amplitude, phase_deg=-90.0), PointForce(position=0.41, amplitude=amplitude)]
+    forces = [
+        PointForce(position=0.012, amplitude=amplitude, phase_deg=-90.0),
+        PointForce(position=0.41, amplitude=amplitude),
+    ]
     return build_system(beam(), n, forces, 3800.0, **more)
 
 
@@ -198,7 +228,9 @@ def rms(values):
 def test_fixed_steps_converge_with_order_four():
     system, times = driven(12, 3.0), [4e-4]
     exact = simulate(system, at_rest(system), times, tolerance=1e-12).angles
-    errors = [abs(simulate(system, at_rest(system), times, method="rk4", step=h).angles - exact).max() for h in (2e-5, 1e-5)]
+    errors = [
+        abs(simulate(system, at_rest(system), times, method="rk4", step=h).angles - exact).max() for h in (2e-5, 1e-5)
+    ]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)
 
 
@@ -207,7 +239,10 @@ def test_kicks_are_of_order_two_and_two_kicks_far_better_than_one(kicks, amplitu
     system, times = driven(20, amplitude), np.linspace(1e-5, 6e-4, 60)
     exact = simulate(system, at_rest(system), times, tolerance=1e-11).deflection([0.2])
     basis = modal_basis(system)
-    errors = [rms(simulate_modal(basis, at_rest(system), times, step=h, kicks=kicks).deflection([0.2]) - exact) / rms(exact) for h in (1e-5, 5e-6)]
+    errors = [
+        rms(simulate_modal(basis, at_rest(system), times, step=h, kicks=kicks).deflection([0.2]) - exact) / rms(exact)
+        for h in (1e-5, 5e-6)
+    ]
     assert np.log2(errors[0] / errors[1]) > 1.8
     assert errors[1] < (3e-4 if kicks == 1 else 3e-5)
 
@@ -339,7 +374,11 @@ def test_bad_requests_are_refused(request_, message):
 
 @pytest.mark.parametrize(
     ("request_", "message"),
-    [({"step": 0.0}, "step = 0.0"), ({"step": 1e-5, "kicks": 4}, "kicks = 4"), ({"step": 1e-5, "n_modes": 8}, "has modes 1 to 7")],
+    [
+        ({"step": 0.0}, "step = 0.0"),
+        ({"step": 1e-5, "kicks": 4}, "kicks = 4"),
+        ({"step": 1e-5, "n_modes": 8}, "has modes 1 to 7"),
+    ],
 )
 def test_bad_requests_of_kicks_are_refused(request_, message):
     system = driven(8, 1.0)

@@ -62,7 +62,7 @@ class Linearisation:
             values = eigh(stiffness, mass, eigvals_only=True)
         if values[0] < -1e-9 * values[-1]:
             raise InputError(f"the equilibrium is unstable: its lowest omega^2 is {values[0]:.3g} 1/s^2")
-        return np.sqrt(np.maximum(values, 0.0))
+        return np.asarray(np.sqrt(np.maximum(values, 0.0)), dtype=float)
 
 
 def flatten(system: ChainSystem, *, ledger: bool = True) -> kernels.Flat:
@@ -176,9 +176,7 @@ def keep_pivots(rows: Array, pivots: Indices) -> Indices:
     return pivots if now >= PIVOT_LOSS ** len(rows) * best else chosen
 
 
-def project(
-    system: ChainSystem, state: ChainState, dependent: Sequence[int] | None = None
-) -> tuple[ChainState, float]:
+def project(system: ChainSystem, state: ChainState, dependent: Sequence[int] | None = None) -> tuple[ChainState, float]:
     """The state brought onto the held points, and the largest change of an angle or (times 1 s) of a rate.
 
     Angles by Newton, rates by one linear solve; only the `dependent` joints (1..N, by pivot unless given) move.

@@ -109,7 +109,7 @@ def _cosines(angles: Array, work: Array) -> None:
     largest = 0.0
     for i in range(angles.size):
         largest = max(largest, abs(angles[i]))
-    if largest > _SMALL or largest != largest:
+    if not largest <= _SMALL:
         for i in range(angles.size):
             work[i, 0], work[i, 1] = np.cos(angles[i]), np.sin(angles[i])
         return
@@ -306,7 +306,11 @@ def _solve_transverse(f: Flat, pull: float, work: Array) -> None:
         c, s, h = np.cos(work[i, 2]), np.sin(work[i, 2]), f.half[i]
         behind = axial - (c * work[i, 4] - s * work[i, 5])
         moment = work[i, 6] + h * s * (axial + behind)
-        lift, a, b = f.mobility[i, 0] * (s * work[i, 4] + c * work[i, 5]), f.mobility[i, 0], h * c * f.mobility[i, 2] * c
+        lift, a, b = (
+            f.mobility[i, 0] * (s * work[i, 4] + c * work[i, 5]),
+            f.mobility[i, 0],
+            h * c * f.mobility[i, 2] * c,
+        )
         turn, inward = f.mobility[i, 2] * c * moment, h * work[i, 3] * work[i, 3] * s
         g = 0.0 if i + 1 == n and f.tip == FREE else 1.0 / (a + b + y)
         r = g * (lift + turn - inward - u)
@@ -584,16 +588,30 @@ def _error(n: int, h: float, k: Array, weights: Array, y: Array, scale: Array) -
 @njit(cache=True, fastmath={"contract"})
 def _broken(y: Array, n: int, h: float) -> bool:
     """Whether a state is not finite, or one step would turn a joint by more than half a turn."""
+    fine = True
     for i in range(n, 2 * n):
-        if not abs(y[i]) * h < np.pi:
-            return True
-    return False
+        fine = fine and abs(y[i]) * h < np.pi
+    return not fine
 
 
 @njit(cache=True, fastmath={"contract"})
 def march(
-    f: Flat, y: Array, new: Array, clock: Array, counts: Indices, samples: Array, kept: Array, budget: int,
-    a: Array, c: Array, weights: Array, order: float, scale: Array, k: Array, pivots: Indices, work: Array,
+    f: Flat,
+    y: Array,
+    new: Array,
+    clock: Array,
+    counts: Indices,
+    samples: Array,
+    kept: Array,
+    budget: int,
+    a: Array,
+    c: Array,
+    weights: Array,
+    order: float,
+    scale: Array,
+    k: Array,
+    pivots: Indices,
+    work: Array,
 ) -> int:
     """Explicit Runge-Kutta over at most `budget` steps; samples are kept from within the steps.
 
@@ -619,7 +637,7 @@ def march(
         if weights.size > 0:
             error = _error(n, h, k, weights, y, scale)
             factor = 0.9 * max(error, 1e-10) ** (-1.0 / order)
-            clock[1] = h * min(4.0, max(0.2, factor)) if error == error else 0.2 * h
+            clock[1] = h * min(4.0, max(0.2, factor)) if error >= 0.0 else 0.2 * h
             if not error <= 1.0:
                 counts[1] += 1
                 continue
@@ -681,8 +699,21 @@ def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
 
 @njit(cache=True, fastmath={"contract"})
 def _kick(
-    f: Flat, t: float, h: float, free: Array, modes: Array, duals: Array, rest: Array, squares: Array, drives: Array,
-    shares: Array, steady: Array, trial: Array, vectors: Array, force: Array, work: Array,
+    f: Flat,
+    t: float,
+    h: float,
+    free: Array,
+    modes: Array,
+    duals: Array,
+    rest: Array,
+    squares: Array,
+    drives: Array,
+    shares: Array,
+    steady: Array,
+    trial: Array,
+    vectors: Array,
+    force: Array,
+    work: Array,
 ) -> None:
     """Nonlinear kick of a step h: what the linear flow leaves out of the accelerations, by the explicit mid-point.
 
@@ -740,9 +771,29 @@ def _between(s: float, h: float, omega: Array, start: Array, miss: Array, steady
 
 @njit(cache=True, fastmath={"contract"})
 def march_modal(
-    f: Flat, clock: Array, counts: Indices, samples: Array, kept: Array, budget: int, free: Array, start: Array,
-    kicks: Array, flows: Array, shares_of_step: Array, omega: Array, modes: Array, duals: Array, rest: Array,
-    drives: Array, shares: Array, steady: Array, trial: Array, vectors: Array, force: Array, tilt: float, work: Array,
+    f: Flat,
+    clock: Array,
+    counts: Indices,
+    samples: Array,
+    kept: Array,
+    budget: int,
+    free: Array,
+    start: Array,
+    kicks: Array,
+    flows: Array,
+    shares_of_step: Array,
+    omega: Array,
+    modes: Array,
+    duals: Array,
+    rest: Array,
+    drives: Array,
+    shares: Array,
+    steady: Array,
+    trial: Array,
+    vectors: Array,
+    force: Array,
+    tilt: float,
+    work: Array,
 ) -> int:
     """Exact linear flow of the modes and nonlinear kicks in turn, a fixed step; modal states are kept.
 

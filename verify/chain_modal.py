@@ -163,7 +163,8 @@ def linear_states(basis: ModalBasis, free: Array, since: Array, times: Array, wh
     c, s = np.cos(turns), np.sin(turns)
     sinc = np.where(omega > 0.0, s / np.where(omega > 0.0, omega, 1.0), since[:, None])
     x, y = free[which].T
-    return _steady_at(basis, times)[:, which] + np.stack([c * x + sinc * y, c * y - omega * s * x], axis=2)
+    flow = np.stack([c * x + sinc * y, c * y - omega * s * x], axis=2)
+    return np.asarray(_steady_at(basis, times)[:, which] + flow)
 
 
 def _turns(omega: Array, h: float) -> Array:

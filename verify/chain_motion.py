@@ -77,9 +77,9 @@ class Statistics:
     evaluations: int
     seconds: float
     stopped: str
-    """"finished", or why not: "interrupted at ...", "diverged at ..."."""
+    """'finished', or why not: 'interrupted at ...', 'diverged at ...'."""
     started: str
-    """"consistent", or how far the start had to be moved onto the held points."""
+    """'consistent', or how far the start had to be moved onto the held points."""
     pivot_changes: int = 0
 
 

@@ -39,7 +39,7 @@ class Forces:
         """Forces on the held points, (n_held,), upwards, newton: least squares of the equilibrium of moments."""
         if not len(self.held_rows):
             return np.zeros(0)
-        return np.linalg.lstsq(self.held_rows.T, self.moments + self.springs, rcond=None)[0]
+        return np.asarray(np.linalg.lstsq(self.held_rows.T, self.moments + self.springs, rcond=None)[0], dtype=float)
 
 
 def mass_matrix(system: ChainSystem, theta: Array) -> Array:

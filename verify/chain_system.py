@@ -103,7 +103,7 @@ class ChainSystem:
     """Whether links resist acceleration along x. Rigid links pass it on undiminished, a real beam does not."""
     gravity: tuple[float, float] = (0.0, 0.0)
     """m/s^2."""
-    rotation: Rotation = Rotation()  # noqa: RUF009
+    rotation: Rotation = Rotation()
     """Of the hub that the base's spring is fastened to."""
     loads: tuple[LinkLoad, ...] = ()
     actuators: tuple[Actuator, ...] = ()
@@ -115,9 +115,9 @@ class ChainSystem:
             check_number("chain.gravity", value, "m/s^2")
         if self.tip not in ("free", "roller"):
             raise InputError(
-                f"chain.tip = {self.tip!r}: a straight chain of rigid links between two fixed ends cannot move, because "
-                "the sum of l cos theta equals L for theta = 0 alone; give 'free' or 'roller', with axial_spring = EA/L "
-                "for an immovable end"
+                f"chain.tip = {self.tip!r}: a straight chain of rigid links between two fixed ends cannot move: "
+                "the sum of l cos theta equals L for theta = 0 alone; give 'free' or 'roller', with axial_spring = "
+                "EA/L for an immovable end"
             )
         if self.axial_spring and self.tip == "free":
             raise InputError(f"chain.axial_spring = {self.axial_spring!r} acts at a roller: give tip = 'roller' or 0")
@@ -202,8 +202,8 @@ def build_system(
     left, right = beam.supports
     if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
         raise InputError(
-            f"beam.supports = {beam.supports!r}: the nonlinear chain starts at a pinned or clamped end and ends free or "
-            "pinned (as a roller); give such a pair, mirrored where need be"
+            f"beam.supports = {beam.supports!r}: the nonlinear chain starts at a pinned or clamped end and ends free "
+            "or pinned (as a roller); give such a pair, mirrored where need be"
         )
     if wall == "welded":
         raise InputError("wall = 'welded' is for the linear chain: choose another wall")
