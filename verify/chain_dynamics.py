@@ -67,31 +67,25 @@ class Linearisation:
 
 def flatten(system: ChainSystem, *, ledger: bool = True) -> kernels.Flat:
     """The chain as the kernels see it."""
-    half, rotation = system.lengths / 2.0, system.rotation
-    held = [(system.n_links, float(half[-1]), 0.0, 0.0, 0.0)] if system.tip == "roller" else []
-    held += [
-        (a.link, a.at - half[a.link - 1], a.amplitude, circular(a.frequency_hz), np.deg2rad(a.phase_deg))
-        for a in system.actuators
-    ]
-    loads = [
-        (p.at - half[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg))
-        for p in system.loads
-    ]
-    hub = (rotation.offset, rotation.rate, rotation.amplitude, circular(rotation.frequency_hz),
-           np.deg2rad(rotation.phase_deg))  # fmt: skip
-    masses, inertias = np.array(system.masses, dtype=float), np.array(system.inertias, dtype=float)
+    half, turn = system.lengths / 2.0, system.rotation
+    held = [(float(half[-1]), 0.0, 0.0, 0.0, system.n_links - 1)] if system.tip == "roller" else []
+    held += [(a.at - half[a.link - 1], a.amplitude, *_cycle(a), a.link - 1) for a in system.actuators]
+    loads = [(p.at - half[p.link - 1], *p.force, p.moment, *_cycle(p), p.link - 1) for p in system.loads]
+    own = np.stack([half, system.masses, system.inertias, system.stiffness, system.dashpots], axis=1)
     return kernels.Flat(
-        half=half, masses=masses, inertias=inertias, mobility=kernels.mobilities(half, masses, inertias),
-        stiffness=np.array(system.stiffness, dtype=float), dashpots=np.array(system.dashpots, dtype=float),
-        gravity=np.array(system.gravity, dtype=float), hub=np.array(hub, dtype=float),
-        tip=kernels.ROLLER if system.tip == "roller" else kernels.FREE, tip_spring=float(system.axial_spring),
-        axial=bool(system.axial_inertia), ledger=ledger,
-        load_links=np.array([p.link - 1 for p in system.loads], dtype=np.int64),
-        loads=np.array(loads, dtype=float).reshape(len(loads), 6),
-        held_links=np.array([h[0] - 1 for h in held], dtype=np.int64),
-        held=np.array([h[1:] for h in held], dtype=float).reshape(len(held), 4),
+        links=np.hstack([own, kernels.mobilities(half, own[:, kernels.MASS], own[:, kernels.INERTIA])]),
+        numbers=np.array([turn.offset, turn.rate, turn.amplitude, *_cycle(turn), *system.gravity], dtype=float),
+        loads=np.array(loads, dtype=float).reshape(len(loads), 7),
+        held=np.array(held, dtype=float).reshape(len(held), 5),
         small=np.zeros((len(held), len(held) + 1)),
+        tip=kernels.ROLLER if system.tip == "roller" else kernels.FREE,
+        tip_spring=float(system.axial_spring), axial=bool(system.axial_inertia), ledger=ledger,
     )  # fmt: skip
+
+
+def _cycle(one: Any) -> tuple[float, float]:
+    """Circular frequency and phase in radians of what moves harmonically."""
+    return circular(one.frequency_hz), float(np.deg2rad(one.phase_deg))
 
 
 def workspace(system: ChainSystem) -> Array:

@@ -29,24 +29,18 @@ _SMALL = 0.5
 
 
 class Flat(NamedTuple):
-    """A chain as the kernels see it. SI."""
+    """A chain as the kernels see it: few arrays, because every call hands all of them on. SI."""
 
-    half: Array
-    """(N,), half lengths."""
-    masses: Array
-    """(N,)."""
-    inertias: Array
-    """(N,), about the middles."""
-    mobility: Array
-    """(N, 5): 1/m, 1/J, h/J, and h^2/J + 1/m, h^2/J - 1/m."""
-    stiffness: Array
-    """(N,), joint springs, the base's first."""
-    dashpots: Array
-    """(N,)."""
-    gravity: Array
-    """(2,), m/s^2."""
-    hub: Array
-    """(5,): offset, rate, amplitude, circular frequency and phase of the base's rotation."""
+    links: Array
+    """(N, 10): half length, mass, inertia, joint spring, dashpot, and the columns of `mobilities`."""
+    numbers: Array
+    """(7,): offset, rate, amplitude, circular frequency and phase of the base's rotation; gravity along x and y."""
+    loads: Array
+    """(n_loads, 7): arm from the link's middle, F_x, F_y, moment, circular frequency, phase, link from 0."""
+    held: Array
+    """(n_held, 5), the roller first: arm, amplitude, circular frequency, phase of the y prescribed, link from 0."""
+    small: Array
+    """(n_held, n_held + 1), scratch."""
     tip: int
     """FREE or ROLLER."""
     tip_spring: float
@@ -55,20 +49,14 @@ class Flat(NamedTuple):
     """Whether the links have inertia along x."""
     ledger: bool
     """Whether the power of loads is worth a pass of its own."""
-    load_links: Indices
-    """(n_loads,)."""
-    loads: Array
-    """(n_loads, 6): arm from the link's middle, F_x, F_y, moment, circular frequency, phase."""
-    held_links: Indices
-    """(n_held,): links with a point whose y is prescribed; the roller's first, where there is one."""
-    held: Array
-    """(n_held, 4): arm from the link's middle, amplitude, circular frequency, phase."""
-    small: Array
-    """(n_held, n_held + 1), scratch."""
+
+
+HALF, MASS, INERTIA, SPRING, DASHPOT, MOBILITY = range(6)
+"""Columns of `Flat.links`."""
 
 
 def mobilities(half: Array, masses: Array, inertias: Array) -> Array:
-    """The columns of `Flat.mobility`."""
+    """What one link answers to forces at its joints, (N, 5): 1/m, 1/J, h/J, h^2/J + 1/m, h^2/J - 1/m."""
     a, spin = 1.0 / masses, 1.0 / inertias
     return np.stack([a, spin, half * spin, half**2 * spin + a, half**2 * spin - a], axis=1)
 
@@ -97,15 +85,34 @@ def _inverse(x11: float, x12: float, x22: float) -> Any:
 
 @njit(cache=True, fastmath={"contract"})
 def hub_motion(hub: Array, t: float) -> Any:
-    """Angle, rate and acceleration of the base's prescribed rotation."""
+    """Angle, rate and acceleration of the base's prescribed rotation, from `Flat.numbers`."""
+    if hub[2] == 0.0:
+        return hub[0] + hub[1] * t, hub[1], 0.0
     phase = hub[3] * t + hub[4]
     swing, speed = hub[2] * np.sin(phase), hub[2] * hub[3] * np.cos(phase)
     return hub[0] + hub[1] * t + swing, hub[1] + speed, -hub[3] * hub[3] * swing
 
 
+@njit(cache=True, inline="always", fastmath={"contract"})
+def _series(angle: float) -> Any:
+    """Cosine and sine of a small angle, to rounding."""
+    z = angle * angle
+    c = 1.0 / 24 - z * (1.0 / 720 - z * (1.0 / 40320 - z * (1.0 / 3628800 - z * (1 / 479001600 - z / 87178291200))))
+    s = 1 / 120 - z * (1 / 5040 - z * (1 / 362880 - z * (1 / 39916800 - z * (1 / 6227020800 - z / 1307674368000))))
+    return 1.0 - z * (0.5 - z * c), angle * (1.0 - z * (1.0 / 6 - z * s))
+
+
+@njit(cache=True, fastmath={"contract"})
+def _direction(angle: float) -> Any:
+    """Cosine and sine of an angle, by the short series where it is small."""
+    if abs(angle) < _SMALL:
+        return _series(angle)
+    return np.cos(angle), np.sin(angle)
+
+
 @njit(cache=True, fastmath={"contract"})
 def _cosines(angles: Array, work: Array) -> None:
-    """Cosine and sine of relative angles into columns 0 and 1; a short series where all of them are small."""
+    """Cosine and sine of relative angles into columns 0 and 1."""
     largest = 0.0
     for i in range(angles.size):
         largest = max(largest, abs(angles[i]))
@@ -114,27 +121,23 @@ def _cosines(angles: Array, work: Array) -> None:
             work[i, 0], work[i, 1] = np.cos(angles[i]), np.sin(angles[i])
         return
     for i in range(angles.size):
-        z = angles[i] * angles[i]
-        c = 1.0 / 24 - z * (1.0 / 720 - z * (1.0 / 40320 - z * (1.0 / 3628800 - z * (1 / 479001600 - z / 87178291200))))
-        s = 1 / 120 - z * (1 / 5040 - z * (1 / 362880 - z * (1 / 39916800 - z * (1 / 6227020800 - z / 1307674368000))))
-        work[i, 0] = 1.0 - z * (0.5 - z * c)
-        work[i, 1] = angles[i] * (1.0 - z * (1.0 / 6 - z * s))
+        work[i, 0], work[i, 1] = _series(angles[i])
 
 
 @njit(cache=True, fastmath={"contract"})
 def _moments(f: Flat, t: float, q: Array, v: Array, work: Array) -> Any:
     """Absolute angles, rates and joint moments into columns 2, 3, 6, forces cleared; (dissipation, hub's power)."""
-    angle, rate, _ = hub_motion(f.hub, t)
-    before = -f.stiffness[0] * q[0] - f.dashpots[0] * v[0]
-    lost, hub_power = f.dashpots[0] * v[0] * v[0], before * rate
+    angle, rate, _ = hub_motion(f.numbers, t)
+    before = -f.links[0, SPRING] * q[0] - f.links[0, DASHPOT] * v[0]
+    lost, hub_power = f.links[0, DASHPOT] * v[0] * v[0], before * rate
     n = q.size
     for i in range(n):
         angle += q[i]
         rate += v[i]
         after = 0.0
         if i + 1 < n:
-            after = -f.stiffness[i + 1] * q[i + 1] - f.dashpots[i + 1] * v[i + 1]
-            lost += f.dashpots[i + 1] * v[i + 1] * v[i + 1]
+            after = -f.links[i + 1, SPRING] * q[i + 1] - f.links[i + 1, DASHPOT] * v[i + 1]
+            lost += f.links[i + 1, DASHPOT] * v[i + 1] * v[i + 1]
         work[i, 2], work[i, 3], work[i, 4], work[i, 5], work[i, 6] = angle, rate, 0.0, 0.0, before - after
         before = after
     return lost, hub_power
@@ -143,13 +146,13 @@ def _moments(f: Flat, t: float, q: Array, v: Array, work: Array) -> Any:
 @njit(cache=True, fastmath={"contract"})
 def _loads(f: Flat, t: float, work: Array) -> None:
     """Point loads: forces along and across each link into columns 4, 5; moments into 6, alone into 13."""
-    for k in range(f.load_links.size):
-        work[f.load_links[k], 13] = 0.0
-    for k in range(f.load_links.size):
-        i = f.load_links[k]
-        arm, fx, fy, moment, omega, phase = f.loads[k]
+    for k in range(f.loads.shape[0]):
+        work[int(f.loads[k, 6]), 13] = 0.0
+    for k in range(f.loads.shape[0]):
+        i = int(f.loads[k, 6])
+        arm, fx, fy, moment, omega, phase, _ = f.loads[k]
         now = np.cos(omega * t + phase)
-        c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
+        c, s = _direction(work[i, 2])
         along, across = now * (c * fx + s * fy), now * (c * fy - s * fx)
         turn = now * moment + arm * across
         work[i, 4], work[i, 5], work[i, 6] = work[i, 4] + along, work[i, 5] + across, work[i, 6] + turn
@@ -160,17 +163,17 @@ def _loads(f: Flat, t: float, work: Array) -> None:
 def _load_power(f: Flat, work: Array) -> float:
     """Power of the point loads, from velocities carried from link to link."""
     last = -1
-    for k in range(f.load_links.size):
-        last = max(last, f.load_links[k])
+    for k in range(f.loads.shape[0]):
+        last = max(last, int(f.loads[k, 6]))
     v1, v2, power = 0.0, 0.0, 0.0
     for i in range(last + 1):
         if i > 0:
             v1, v2 = _turned(work[i, 0], work[i, 1], v1, v2)
-        step = f.half[i] * work[i, 3]
+        step = f.links[i, HALF] * work[i, 3]
         power += work[i, 4] * v1 + work[i, 5] * (v2 + step)
         v2 += 2.0 * step
-    for k in range(f.load_links.size):
-        i = f.load_links[k]
+    for k in range(f.loads.shape[0]):
+        i = int(f.loads[k, 6])
         power += work[i, 13] * work[i, 3]
         work[i, 13] = 0.0
     return power
@@ -179,20 +182,32 @@ def _load_power(f: Flat, work: Array) -> float:
 @njit(cache=True, fastmath={"contract"})
 def _weigh(f: Flat, work: Array) -> None:
     """Gravity into columns 4 and 5."""
-    gx, gy = f.gravity[0], f.gravity[1]
+    gx, gy = f.numbers[5], f.numbers[6]
     if gx != 0.0 or gy != 0.0:
-        for i in range(f.masses.size):
-            c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
-            work[i, 4] += f.masses[i] * (c * gx + s * gy)
-            work[i, 5] += f.masses[i] * (c * gy - s * gx)
+        for i in range(f.links.shape[0]):
+            c, s = _direction(work[i, 2])
+            work[i, 4] += f.links[i, MASS] * (c * gx + s * gy)
+            work[i, 5] += f.links[i, MASS] * (c * gy - s * gx)
 
 
 @njit(cache=True, inline="always", fastmath={"contract"})
 def _terms(f: Flat, i: int, work: Array) -> Any:
     """A = diag(a, b), O = diag(-a, o) of a link, and its ends' accelerations without joint forces."""
-    a, along, inward = f.mobility[i, 0], f.mobility[i, 0] * work[i, 4], f.half[i] * work[i, 3] * work[i, 3]
-    across, turn = a * work[i, 5], f.mobility[i, 2] * work[i, 6]
-    return a, f.mobility[i, 3], f.mobility[i, 4], along + inward, across - turn, along - inward, across + turn
+    a, along, inward = (
+        f.links[i, MOBILITY],
+        f.links[i, MOBILITY] * work[i, 4],
+        f.links[i, HALF] * work[i, 3] * work[i, 3],
+    )
+    across, turn = a * work[i, 5], f.links[i, MOBILITY + 2] * work[i, 6]
+    return (
+        a,
+        f.links[i, MOBILITY + 3],
+        f.links[i, MOBILITY + 4],
+        along + inward,
+        across - turn,
+        along - inward,
+        across + turn,
+    )
 
 
 @njit(cache=True, inline="always", fastmath={"contract"})
@@ -223,11 +238,11 @@ def _tip(f: Flat, pull: float, work: Array) -> Any:
 
     `pull` is what the axial spring at the roller pulls back with.
     """
-    i = f.masses.size - 1
+    i = f.links.shape[0] - 1
     a, b, o, s1, s2, e1, e2 = _terms(f, i, work)
     i11, i12, i22, r1, r2 = 0.0, 0.0, 0.0, 0.0, 0.0
     if f.tip == ROLLER:
-        c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
+        c, s = _direction(work[i, 2])
         along, across = pull * c, -pull * s
         g = 1.0 / (a * s * s + b * c * c)
         i11, i12, i22 = g * s * s, g * s * c, g * c * c
@@ -241,16 +256,16 @@ def _tip(f: Flat, pull: float, work: Array) -> Any:
 def shortening(f: Flat, work: Array) -> float:
     """How far the tip stands back from the straight chain's, from absolute angles in column 2, metres."""
     total = 0.0
-    for i in range(f.half.size):
-        s = np.sin(0.5 * work[i, 2])
-        total += 4.0 * f.half[i] * s * s
+    for i in range(f.links.shape[0]):
+        s = _direction(0.5 * work[i, 2])[1]
+        total += 4.0 * f.links[i, HALF] * s * s
     return total
 
 
 @njit(cache=True, fastmath={"contract"})
 def _eliminate(f: Flat, pull: float, work: Array) -> Any:
     """Both sides up to the middle joint; the force there, in the frame of the link behind it."""
-    n = f.masses.size
+    n = f.links.shape[0]
     middle = n // 2
     y11, y12, y22, u1, u2 = _tip(f, pull, work)
     x11, x12, x22, z1, z2 = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -272,18 +287,18 @@ def _eliminate(f: Flat, pull: float, work: Array) -> Any:
 @njit(cache=True, inline="always", fastmath={"contract"})
 def _across(f: Flat, i: int, work: Array, p1: float, p2: float) -> Any:
     """The force at the other end of link i (both in its frame), and the link's angular acceleration."""
-    a, o = f.mobility[i, 0], f.mobility[i, 4]
+    a, o = f.links[i, MOBILITY], f.links[i, MOBILITY + 4]
     i11, i12, i22 = work[i, 7], work[i, 8], work[i, 9]
     g1, g2 = a * p1, -o * p2
     o1, o2 = work[i, 10] + i11 * g1 + i12 * g2, work[i, 11] + i12 * g1 + i22 * g2
-    work[i, 12] = work[i, 6] * f.mobility[i, 1] - f.mobility[i, 2] * (p2 + o2)
+    work[i, 12] = work[i, 6] * f.links[i, MOBILITY + 1] - f.links[i, MOBILITY + 2] * (p2 + o2)
     return o1, o2
 
 
 @njit(cache=True, fastmath={"contract"})
 def _substitute(f: Flat, work: Array, p1: float, p2: float) -> None:
     """Joint forces from the middle outwards; the links' angular accelerations into column 12."""
-    n = f.masses.size
+    n = f.links.shape[0]
     middle = n // 2
     b1, b2 = p1, p2
     for j in range(n - middle):
@@ -300,18 +315,18 @@ def _substitute(f: Flat, work: Array, p1: float, p2: float) -> None:
 @njit(cache=True, fastmath={"contract"})
 def _solve_transverse(f: Flat, pull: float, work: Array) -> None:
     """The same for links without inertia along x, whose axial forces are static: one unknown for each joint."""
-    n = f.masses.size
+    n = f.links.shape[0]
     axial, y, u = pull, 0.0, 0.0
     for i in range(n - 1, -1, -1):
-        c, s, h = np.cos(work[i, 2]), np.sin(work[i, 2]), f.half[i]
+        (c, s), h = _direction(work[i, 2]), f.links[i, HALF]
         behind = axial - (c * work[i, 4] - s * work[i, 5])
         moment = work[i, 6] + h * s * (axial + behind)
         lift, a, b = (
-            f.mobility[i, 0] * (s * work[i, 4] + c * work[i, 5]),
-            f.mobility[i, 0],
-            h * c * f.mobility[i, 2] * c,
+            f.links[i, MOBILITY] * (s * work[i, 4] + c * work[i, 5]),
+            f.links[i, MOBILITY],
+            h * c * f.links[i, MOBILITY + 2] * c,
         )
-        turn, inward = f.mobility[i, 2] * c * moment, h * work[i, 3] * work[i, 3] * s
+        turn, inward = f.links[i, MOBILITY + 2] * c * moment, h * work[i, 3] * work[i, 3] * s
         g = 0.0 if i + 1 == n and f.tip == FREE else 1.0 / (a + b + y)
         r = g * (lift + turn - inward - u)
         work[i, 7], work[i, 8], work[i, 9], work[i, 10] = g, r, moment, c
@@ -319,9 +334,9 @@ def _solve_transverse(f: Flat, pull: float, work: Array) -> None:
         axial = behind
     p = -u / y
     for i in range(n):
-        b, a = f.half[i] * work[i, 10] * f.mobility[i, 2] * work[i, 10], f.mobility[i, 0]
+        b, a = f.links[i, HALF] * work[i, 10] * f.links[i, MOBILITY + 2] * work[i, 10], f.links[i, MOBILITY]
         beyond = work[i, 8] - work[i, 7] * (b - a) * p
-        work[i, 12] = work[i, 9] * f.mobility[i, 1] - f.mobility[i, 2] * work[i, 10] * (p + beyond)
+        work[i, 12] = work[i, 9] * f.links[i, MOBILITY + 1] - f.links[i, MOBILITY + 2] * work[i, 10] * (p + beyond)
         p = beyond
 
 
@@ -338,10 +353,10 @@ def _solve(f: Flat, pull: float, work: Array) -> None:
 @njit(cache=True, fastmath={"contract"})
 def _rise(f: Flat, k: int, work: Array, spins: int) -> float:
     """Vertical acceleration of a held point for the angular accelerations in a column; with column 3's rates."""
-    total, link = 0.0, f.held_links[k]
+    total, link = 0.0, int(f.held[k, 4])
     for i in range(link + 1):
-        c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
-        reach = 2.0 * f.half[i] if i < link else f.half[i] + f.held[k, 0]
+        c, s = _direction(work[i, 2])
+        reach = 2.0 * f.links[i, HALF] if i < link else f.links[i, HALF] + f.held[k, 0]
         total += reach * (c * work[i, spins] - s * work[i, 3] * work[i, 3])
     return total
 
@@ -371,8 +386,8 @@ def _hold(f: Flat, t: float, work: Array) -> float:
 
     Each actuator's unit force is solved for by itself: a Schur complement of the size of their number.
     """
-    n, first = f.masses.size, 1 if f.tip == ROLLER else 0
-    count = f.held_links.size - first
+    n, first = f.links.shape[0], 1 if f.tip == ROLLER else 0
+    count = f.held.shape[0] - first
     for i in range(n):
         work[i, 14] = work[i, 12]
     for k in range(count):
@@ -385,8 +400,8 @@ def _hold(f: Flat, t: float, work: Array) -> float:
     for k in range(count):
         for i in range(n):
             work[i, 4], work[i, 5], work[i, 6] = 0.0, 0.0, 0.0
-        link = f.held_links[k + first]
-        work[link, 4], work[link, 5] = np.sin(work[link, 2]), np.cos(work[link, 2])
+        link = int(f.held[k + first, 4])
+        work[link, 5], work[link, 4] = _direction(work[link, 2])
         work[link, 6] = f.held[k + first, 0] * work[link, 5]
         _solve(f, 0.0, work)
         for i in range(n):
@@ -417,9 +432,9 @@ def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -
     _weigh(f, work)
     pull = -f.tip_spring * shortening(f, work) if f.tip_spring > 0.0 else 0.0
     _solve(f, pull, work)
-    if f.held_links.size > (1 if f.tip == ROLLER else 0):
+    if f.held.shape[0] > (1 if f.tip == ROLLER else 0):
         power += _hold(f, t, work)
-    out[0] = work[0, 12] - hub_motion(f.hub, t)[2]
+    out[0] = work[0, 12] - hub_motion(f.numbers, t)[2]
     for i in range(1, q.size):
         out[i] = work[i, 12] - work[i - 1, 12]
     return lost, power
@@ -428,13 +443,14 @@ def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -
 @njit(cache=True, fastmath={"contract"})
 def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
     """Angles and rates into columns 2, 3; positions and velocities of joints 0..N into 13 to 16."""
-    angle, rate, _ = hub_motion(f.hub, t)
+    angle, rate, _ = hub_motion(f.numbers, t)
     x, y, vx, vy = 0.0, 0.0, 0.0, 0.0
     for i in range(q.size):
         work[i, 13], work[i, 14], work[i, 15], work[i, 16] = x, y, vx, vy
         angle, rate = angle + q[i], rate + v[i]
         work[i, 2], work[i, 3] = angle, rate
-        dx, dy = 2.0 * f.half[i] * np.cos(angle), 2.0 * f.half[i] * np.sin(angle)
+        c, s = _direction(angle)
+        dx, dy = 2.0 * f.links[i, HALF] * c, 2.0 * f.links[i, HALF] * s
         x, y, vx, vy = x + dx, y + dy, vx - rate * dy, vy + rate * dx
     n = q.size
     work[n, 13], work[n, 14], work[n, 15], work[n, 16] = x, y, vx, vy
@@ -443,10 +459,10 @@ def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
 @njit(cache=True, fastmath={"contract"})
 def _constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) -> None:
     """Residuals of the held points (or of their rates), and derivatives by the dependent angles, into `small`."""
-    count = f.held_links.size
+    count = f.held.shape[0]
     for k in range(count):
-        i, arm = f.held_links[k], f.half[f.held_links[k]] + f.held[k, 0]
-        share = arm / (2.0 * f.half[i])
+        i, arm = int(f.held[k, 4]), f.links[int(f.held[k, HALF, 4])] + f.held[k, 0]
+        share = arm / (2.0 * f.links[i, HALF])
         omega, phase = f.held[k, 2], f.held[k, 2] * t + f.held[k, 3]
         x = work[i, 13] + share * (work[i + 1, 13] - work[i, 13])
         column = 16 if rates else 14
@@ -463,7 +479,7 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, settled: flo
 
     The largest change of an angle; infinite where 20 steps do not suffice.
     """
-    count, moved = f.held_links.size, 0.0
+    count, moved = f.held.shape[0], 0.0
     if count == 0:
         return 0.0
     for _ in range(20):
@@ -487,9 +503,9 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, settled: flo
 @njit(cache=True)
 def repivot(f: Flat, pivots: Indices, work: Array, loss: float) -> bool:
     """Exchange the roller's dependent angle, where it is the only one, if its lever arm has become short."""
-    if f.held_links.size != 1:
+    if f.held.shape[0] != 1:
         return False
-    link, best = f.held_links[0], 0
+    link, best = int(f.held[0, 4]), 0
     x = work[link + 1, 13]
     for i in range(link + 1):
         if abs(x - work[i, 13]) > abs(x - work[best, 13]):
@@ -508,10 +524,10 @@ def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> Any:
     for i in range(q.size):
         vx, vy = 0.5 * (work[i, 15] + work[i + 1, 15]), 0.5 * (work[i, 16] + work[i + 1, 16])
         along = vx * vx if f.axial else 0.0
-        kinetic += 0.5 * (f.masses[i] * (along + vy * vy) + f.inertias[i] * work[i, 3] ** 2)
-        elastic += 0.5 * f.stiffness[i] * q[i] * q[i]
+        kinetic += 0.5 * (f.links[i, MASS] * (along + vy * vy) + f.links[i, INERTIA] * work[i, 3] ** 2)
+        elastic += 0.5 * f.links[i, SPRING] * q[i] * q[i]
         x, y = 0.5 * (work[i, 13] + work[i + 1, 13]), 0.5 * (work[i, 14] + work[i + 1, 14])
-        height -= f.masses[i] * (f.gravity[0] * x + f.gravity[1] * y)
+        height -= f.links[i, MASS] * (f.numbers[5] * x + f.numbers[6] * y)
     if f.tip_spring > 0.0:
         elastic += 0.5 * f.tip_spring * shortening(f, work) ** 2
     return kinetic, elastic, height
@@ -520,7 +536,7 @@ def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> Any:
 @njit(cache=True, fastmath={"contract"})
 def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
     """Rates of the state (q, v, energy lost, work put in), (2N + 2,)."""
-    n = f.masses.size
+    n = f.links.shape[0]
     out[2 * n], out[2 * n + 1] = accelerate(f, t, y[:n], y[n : 2 * n], work, out[n : 2 * n])
     for i in range(n):
         out[i] = y[n + i]
@@ -586,12 +602,20 @@ def _error(n: int, h: float, k: Array, weights: Array, y: Array, scale: Array) -
 
 
 @njit(cache=True, fastmath={"contract"})
-def _broken(y: Array, n: int, h: float) -> bool:
-    """Whether a state is not finite, or one step would turn a joint by more than half a turn."""
+def _torn(rates: Array, h: float) -> bool:
+    """Whether rates are not finite, or one step would turn a joint by more than half a turn."""
     fine = True
-    for i in range(n, 2 * n):
-        fine = fine and abs(y[i]) * h < np.pi
+    for i in range(rates.size):
+        fine = fine and abs(rates[i]) * h < np.pi
     return not fine
+
+
+@njit(cache=True, fastmath={"contract"})
+def _propose(error: float, order: float, h: float) -> Any:
+    """The next step after one with this error over its tolerance."""
+    if not error >= 0.0:
+        return 0.2 * h
+    return h * min(4.0, max(0.2, 0.9 * max(error, 1e-10) ** (-1.0 / order)))
 
 
 @njit(cache=True, fastmath={"contract"})
@@ -619,7 +643,7 @@ def march(
     steps, rejected steps, evaluations, samples kept and exchanges. k[0] holds the rates at y.
     The step is fixed where `weights` is empty, and held to an error of `scale` elsewhere.
     """  # fmt: skip
-    n = f.masses.size
+    n = f.links.shape[0]
     for _ in range(budget):
         if counts[3] >= samples.size:
             return DONE
@@ -627,7 +651,7 @@ def march(
         if t + h == t:
             return TOO_SMALL
         _stages(f, t, h, y, a, c, k, new, work)
-        if _broken(new, n, h) and weights.size == 0:
+        if _torn(new[n : 2 * n], h) and weights.size == 0:
             return DIVERGED
         project(f, t + h, new[:n], new[n : 2 * n], pivots, 1e-9, work)
         counts[4] += repivot(f, pivots, work, clock[2])
@@ -636,14 +660,13 @@ def march(
         counts[2] += a.shape[1]
         if weights.size > 0:
             error = _error(n, h, k, weights, y, scale)
-            factor = 0.9 * max(error, 1e-10) ** (-1.0 / order)
-            clock[1] = h * min(4.0, max(0.2, factor)) if error >= 0.0 else 0.2 * h
+            clock[1] = _propose(error, order, h)
             if not error <= 1.0:
                 counts[1] += 1
                 continue
         counts[0] += 1
         clock[0] = t + h
-        while counts[3] < samples.size and samples[counts[3]] <= t + h * (1.0 + 1e-12):
+        while counts[3] < samples.size and samples[counts[3]] <= (t + h) * (1.0 + 1e-12):
             _keep(t, h, samples[counts[3]], y, new, k[0], k[last], n, kept[counts[3]])
             counts[3] += 1
         y[:], k[0] = new, k[last]
@@ -698,136 +721,153 @@ def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
 
 
 @njit(cache=True, fastmath={"contract"})
-def _kick(
-    f: Flat,
-    t: float,
-    h: float,
-    free: Array,
-    modes: Array,
-    duals: Array,
-    rest: Array,
-    squares: Array,
-    drives: Array,
-    shares: Array,
-    steady: Array,
-    trial: Array,
-    vectors: Array,
-    force: Array,
-    work: Array,
-) -> None:
-    """Nonlinear kick of a step h: what the linear flow leaves out of the accelerations, by the explicit mid-point.
-
-    `free` is the modal state without the steady answer, `squares` holds omega^2.
-    """  # fmt: skip
-    forced(t, drives, shares, steady)
-    for half in range(2):
-        for j in range(free.shape[0]):
-            trial[j, 0] = free[j, 0] + steady[j, 0]
-            trial[j, 1] = free[j, 1] + steady[j, 1] + (0.5 * h * force[j] if half else 0.0)
-        _expand(modes, trial, rest, vectors[0], vectors[1])
-        accelerate(f, t, vectors[0], vectors[1], work, vectors[2])
-        _reduce(duals, vectors[2], force)
-        for j in range(free.shape[0]):
-            force[j] += squares[j] * free[j, 0]
-        for k in range(drives.shape[0]):  # the steady answer's own acceleration
-            now = drives[k, 0] * drives[k, 0] * np.cos(drives[k, 0] * t + drives[k, 1])
-            for j in range(free.shape[0]):
-                force[j] += now * shares[k, j]
-    for j in range(free.shape[0]):
-        free[j, 1] += h * force[j]
-
-
-@njit(cache=True, fastmath={"contract"})
-def _close(f: Flat, tilt: float, duals: Array, free: Array, work: Array) -> None:
+def _close(f: Flat, tilt: float, free: Array, work: Array) -> None:
     """One chord step of the roller's closure along the last mode, which turns the tip off its line by `tilt`."""
     gap, speed = 0.0, 0.0
-    for i in range(f.half.size):
-        c, s = np.cos(work[i, 2]), np.sin(work[i, 2])
-        gap += 2.0 * f.half[i] * s
-        speed += 2.0 * f.half[i] * c * work[i, 3]
+    for i in range(f.links.shape[0]):
+        c, s = _direction(work[i, 2])
+        gap += 2.0 * f.links[i, HALF] * s
+        speed += 2.0 * f.links[i, HALF] * c * work[i, 3]
     last = free.shape[0] - 1
     free[last, 0] -= gap / tilt
     free[last, 1] -= speed / tilt
 
 
 @njit(cache=True, fastmath={"contract"})
-def _between(s: float, h: float, omega: Array, start: Array, miss: Array, steady: Array, out: Array) -> None:
+def _flow(omega: Array, time: float, start: Array, out: Array) -> None:
+    """Exact linear flow of a time from one state to another."""
+    for j in range(omega.size):
+        w, x, y = omega[j], start[j, 0], start[j, 1]
+        c, s = np.cos(w * time), np.sin(w * time)
+        out[j, 0] = c * x + (s / w if w > 0.0 else time) * y
+        out[j, 1] = c * y - w * s * x
+
+
+@njit(cache=True, fastmath={"contract"})
+def _between(s: float, h: float, omega: Array, flowing: Array, miss: Array, steady: Array, out: Array) -> None:
     """Modal state at a share s of a step: the linear flow from its start, and a cubic through what the kicks added."""
     slow0, slow1 = s * s * (3.0 - 2.0 * s), h * s * s * (s - 1.0)
     rate0, rate1 = 6.0 * s * (1.0 - s) / h, s * (3.0 * s - 2.0)
     for j in range(omega.size):
-        w, x, y = omega[j], start[j, 0], start[j, 1]
-        c, si = np.cos(w * s * h), np.sin(w * s * h)
-        sinc = si / w if w > 0.0 else s * h
         a, b = miss[j, 0], miss[j, 1]
-        if w * h > 2.0:
-            a, b = s * a, s * b
-            out[j, 0], out[j, 1] = a, b
+        if omega[j] * h > 2.0:
+            out[j, 0], out[j, 1] = s * a, s * b
         else:
             out[j, 0], out[j, 1] = slow0 * a + slow1 * b, rate0 * a + rate1 * b
-        out[j, 0] += c * x + sinc * y + steady[j, 0]
-        out[j, 1] += c * y - w * si * x + steady[j, 1]
+        out[j, 0] += flowing[j, 0] + steady[j, 0]
+        out[j, 1] += flowing[j, 1] + steady[j, 1]
+
+
+class Modal(NamedTuple):
+    """A splitting in modal coordinates as the kernels see it, and its scratch."""
+
+    kicks: Array
+    """(n_kicks,), shares of the step."""
+    shares_of_step: Array
+    """(n_kicks + 1,), of the flows between them."""
+    flows: Array
+    """(n_kicks + 2, m, 3): turns of those flows, and of the whole step."""
+    spacing: Array
+    """(m, 3): turns between two samples where these are evenly spaced; empty elsewhere."""
+    omega: Array
+    """(m,), rad/s."""
+    modes: Array
+    """(m, N)."""
+    duals: Array
+    """(m, N)."""
+    rest: Array
+    """(N,), angles that the modes are about."""
+    drives: Array
+    """(n_loads, 2), circular frequencies and phases."""
+    shares: Array
+    """(n_loads, m), steady amplitudes."""
+    tilt: float
+    """Metres: how far the last mode moves the tip off the roller's line; 0 without a roller."""
+    start: Array
+    """(m, 2)."""
+    steady: Array
+    """(m, 2)."""
+    trial: Array
+    """(m, 2)."""
+    vectors: Array
+    """(3, N)."""
+    force: Array
+    """(m,)."""
+
+
+@njit(cache=True, fastmath={"contract"})
+def _kick(f: Flat, d: Modal, t: float, h: float, free: Array, work: Array) -> None:
+    """Nonlinear kick of a step h: what the linear flow leaves out of the accelerations, by the explicit mid-point.
+
+    `free` is the modal state without the steady answer.
+    """
+    forced(t, d.drives, d.shares, d.steady)
+    for half in range(2):
+        for j in range(free.shape[0]):
+            d.trial[j, 0] = free[j, 0] + d.steady[j, 0]
+            d.trial[j, 1] = free[j, 1] + d.steady[j, 1] + (0.5 * h * d.force[j] if half else 0.0)
+        _expand(d.modes, d.trial, d.rest, d.vectors[0], d.vectors[1])
+        accelerate(f, t, d.vectors[0], d.vectors[1], work, d.vectors[2])
+        _reduce(d.duals, d.vectors[2], d.force)
+        for j in range(free.shape[0]):
+            d.force[j] += d.omega[j] * d.omega[j] * free[j, 0]
+        for k in range(d.drives.shape[0]):  # the steady answer's own acceleration
+            now = d.drives[k, 0] * d.drives[k, 0] * np.cos(d.drives[k, 0] * t + d.drives[k, 1])
+            for j in range(free.shape[0]):
+                d.force[j] += now * d.shares[k, j]
+    for j in range(free.shape[0]):
+        free[j, 1] += h * d.force[j]
+
+
+@njit(cache=True, fastmath={"contract"})
+def _keep_modal(d: Modal, t: float, h: float, counts: Indices, samples: Array, kept: Array, free: Array) -> None:
+    """Samples within a step that went from `d.start` to `free`; an even spacing takes one sine for each mode."""
+    miss, first = d.trial, True
+    miss[:] = d.start
+    _rotate(d.flows[d.kicks.size + 1], miss)
+    for j in range(free.shape[0]):
+        miss[j, 0], miss[j, 1] = free[j, 0] - miss[j, 0], free[j, 1] - miss[j, 1]
+    while counts[3] < samples.size and samples[counts[3]] <= (t + h) * (1.0 + 1e-12):
+        at = samples[counts[3]]
+        if first or d.spacing.shape[0] == 0:
+            if first:
+                _flow(d.omega, at - t, d.start, d.start)
+            else:
+                _flow(d.omega, at - samples[counts[3] - 1], d.start, d.start)
+        else:
+            _rotate(d.spacing, d.start)
+        first = False
+        forced(at, d.drives, d.shares, d.steady)
+        _between((at - t) / h, h, d.omega, d.start, miss, d.steady, kept[counts[3]])
+        counts[3] += 1
 
 
 @njit(cache=True, fastmath={"contract"})
 def march_modal(
-    f: Flat,
-    clock: Array,
-    counts: Indices,
-    samples: Array,
-    kept: Array,
-    budget: int,
-    free: Array,
-    start: Array,
-    kicks: Array,
-    flows: Array,
-    shares_of_step: Array,
-    omega: Array,
-    modes: Array,
-    duals: Array,
-    rest: Array,
-    drives: Array,
-    shares: Array,
-    steady: Array,
-    trial: Array,
-    vectors: Array,
-    force: Array,
-    tilt: float,
-    work: Array,
+    f: Flat, d: Modal, clock: Array, counts: Indices, samples: Array, kept: Array, budget: int, free: Array, work: Array
 ) -> int:
     """Exact linear flow of the modes and nonlinear kicks in turn, a fixed step; modal states are kept.
 
-    A step is flow 0, kick 0, flow 1, ..., the last flow; `kicks` and `shares_of_step` are shares of the step, and
-    the last of `flows` is the whole step.
-    """  # fmt: skip
-    h, squares = clock[1], omega * omega
+    A step is flow 0, kick 0, flow 1, ..., the last flow.
+    """
+    h = clock[1]
     for _ in range(budget):
         if counts[3] >= samples.size:
             return DONE
         t = clock[0]
-        start[:] = free
-        for k in range(kicks.size):
-            _rotate(flows[k], free)
-            t += shares_of_step[k] * h
-            _kick(f, t, kicks[k] * h, free, modes, duals, rest, squares, drives, shares, steady, trial, vectors,
-                  force, work)  # fmt: skip
-            if tilt != 0.0:
-                _close(f, tilt, duals, free, work)
-        _rotate(flows[kicks.size], free)
-        counts[0] += 1
-        counts[2] += 2 * kicks.size
-        if not abs(free[0, 1]) < np.inf or not abs(vectors[1, 0]) * h < np.pi:
+        d.start[:] = free
+        for k in range(d.kicks.size):
+            _rotate(d.flows[k], free)
+            t += d.shares_of_step[k] * h
+            _kick(f, d, t, d.kicks[k] * h, free, work)
+            if d.tilt != 0.0:
+                _close(f, d.tilt, free, work)
+        _rotate(d.flows[d.kicks.size], free)
+        if _torn(d.vectors[1], h):
             return DIVERGED
-        end = clock[0] + h
-        if counts[3] < samples.size and samples[counts[3]] <= end * (1.0 + 1e-12):
-            trial[:] = start
-            _rotate(flows[kicks.size + 1], trial)
-            for j in range(free.shape[0]):
-                trial[j, 0], trial[j, 1] = free[j, 0] - trial[j, 0], free[j, 1] - trial[j, 1]
-        while counts[3] < samples.size and samples[counts[3]] <= end * (1.0 + 1e-12):
-            at = samples[counts[3]]
-            forced(at, drives, shares, steady)
-            _between((at - clock[0]) / h, h, omega, start, trial, steady, kept[counts[3]])
-            counts[3] += 1
-        clock[0] = end
+        counts[0] += 1
+        counts[2] += 2 * d.kicks.size
+        if counts[3] < samples.size and samples[counts[3]] <= (clock[0] + h) * (1.0 + 1e-12):
+            _keep_modal(d, clock[0], h, counts, samples, kept, free)
+        clock[0] += h
     return DONE if counts[3] >= samples.size else RUNNING

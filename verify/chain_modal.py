@@ -175,6 +175,23 @@ def _turns(omega: Array, h: float) -> Array:
     )
 
 
+def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kicks: int) -> kernels.Modal:
+    """The splitting as the kernels see it."""
+    flows, weights = SCHEMES[kicks]
+    omega, m, n = basis.omega[chosen], len(chosen), basis.system.n_links
+    gaps = np.diff(samples)
+    even = len(gaps) > 1 and np.ptp(gaps) < 1e-9 * gaps[0]
+    return kernels.Modal(
+        kicks=np.array(weights), shares_of_step=np.array(flows), omega=omega,
+        flows=np.array([_turns(omega, share * step) for share in (*flows, 1.0)]),
+        spacing=_turns(omega, float(gaps.mean())) if even else np.zeros((0, 3)),
+        modes=np.ascontiguousarray(basis.modes[chosen]), duals=np.ascontiguousarray(basis.duals[chosen]),
+        rest=basis.rest.angles, drives=basis.drives, shares=np.ascontiguousarray(basis.shares[:, chosen]),
+        tilt=basis.tilt, start=np.zeros((m, 2)), steady=np.zeros((m, 2)), trial=np.zeros((m, 2)),
+        vectors=np.zeros((3, n)), force=np.zeros(m),
+    )  # fmt: skip
+
+
 class _Modal:
     """Arrays of one run."""
 
@@ -193,23 +210,15 @@ class _Modal:
         while self.counts[3] < len(samples) and samples[self.counts[3]] <= start.time:
             self.kept[self.counts[3]] = (self.begin + steady)[chosen]
             self.counts[3] += 1
-        flows, weights = SCHEMES[kicks]
-        omega = basis.omega[chosen]
-        m = len(chosen)
-        self.arguments: tuple[Any, ...] = (
-            np.ascontiguousarray(self.begin[chosen]), np.zeros((m, 2)), np.array(weights),
-            np.array([_turns(omega, share * step) for share in (*flows, 1.0)]), np.array(flows), omega,
-            np.ascontiguousarray(basis.modes[chosen]), np.ascontiguousarray(basis.duals[chosen]), basis.rest.angles,
-            basis.drives, np.ascontiguousarray(basis.shares[:, chosen]), np.zeros((m, 2)), np.zeros((m, 2)),
-            np.zeros((3, n)), np.zeros(m), basis.tilt, self.work,
-        )  # fmt: skip
+        self.free = np.ascontiguousarray(self.begin[chosen])
+        self.modal = _flattened(basis, chosen, samples, step, kicks)
 
     def march(self) -> str:
         """Step until every sample is kept; why it stopped."""
         try:
             while True:
                 status = kernels.march_modal(
-                    self.flat, self.clock, self.counts, self.samples, self.kept, 256, *self.arguments
+                    self.flat, self.modal, self.clock, self.counts, self.samples, self.kept, 256, self.free, self.work
                 )
                 if status == kernels.DONE:
                     return "finished"

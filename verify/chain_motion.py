@@ -126,25 +126,25 @@ class ChainMotion:
 
     def points(self, x: Sequence[float]) -> Array:
         """Places of material points at x of the straight chain, (n, len(x), 2), metres, on their links."""
-        found = np.zeros((len(self.times), len(x), 2))
+        found, theta = np.zeros((len(self.times), len(x), 2)), self.directions()
         for k, position in enumerate(x):
             check_number("x", position, "metres", at_least=0)
             if position > self.system.length * (1 + 1e-12):
                 raise InputError(f"x = {position!r} lies off the chain: give up to {self.system.length!r} m")
-            found[:, k] = self._point(*link_at(self.system, position))
+            link, at = link_at(self.system, position)
+            reach = np.append(self.system.lengths[: link - 1], at)
+            found[:, k, 0], found[:, k, 1] = np.cos(theta[:, :link]) @ reach, np.sin(theta[:, :link]) @ reach
         return found
-
-    def _point(self, link: int, at: float) -> Array:
-        from verify.chain_kernels import hub_motion
-
-        reach = np.append(self.system.lengths[: link - 1], at)
-        hub = np.array([hub_motion(flatten(self.system).hub, t)[0] for t in self.times])
-        theta = np.cumsum(self.angles[:, :link], axis=1) + hub[:, None]
-        return np.stack([np.cos(theta) @ reach, np.sin(theta) @ reach], axis=1)
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Y of material points on their links, (n, len(x)), metres."""
         return np.asarray(self.points(x)[:, :, 1])
+
+    def directions(self) -> Array:
+        """Absolute angles of the links, (n, N), radians."""
+        hub = flatten(self.system).numbers
+        turned = np.array([kernels.hub_motion(hub, t)[0] for t in self.times]) if hub[:3].any() else np.zeros(1)
+        return np.asarray(np.cumsum(self.angles, axis=1) + turned[:, None])
 
 
 def simulate(
@@ -234,7 +234,7 @@ class _Run:
                 )  # fmt: skip
                 if status != kernels.RUNNING:
                     return self.ended(status)
-                if self.flat.held_links.size > 1 and self.clock[2] > 0.0:
+                if self.flat.held.shape[0] > 1 and self.clock[2] > 0.0:
                     self.keep_pivots()
         except KeyboardInterrupt:
             return f"interrupted at t = {self.clock[0]:.6g} s"
