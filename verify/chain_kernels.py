@@ -461,7 +461,8 @@ def _constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) -
     """Residuals of the held points (or of their rates), and derivatives by the dependent angles, into `small`."""
     count = f.held.shape[0]
     for k in range(count):
-        i, arm = int(f.held[k, 4]), f.links[int(f.held[k, HALF, 4])] + f.held[k, 0]
+        i = int(f.held[k, 4])
+        arm = f.links[i, HALF] + f.held[k, 0]
         share = arm / (2.0 * f.links[i, HALF])
         omega, phase = f.held[k, 2], f.held[k, 2] * t + f.held[k, 3]
         x = work[i, 13] + share * (work[i + 1, 13] - work[i, 13])
