@@ -12,7 +12,7 @@ from verify import chain_kernels as kernels
 from verify import chain_motion, segment_model
 from verify.beam import PointForce
 from verify.chain_dynamics import at_rest, energies, linearise, positions, project
-from verify.chain_modal import modal_basis, simulate_linear, simulate_modal
+from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, simulate_modal
 from verify.chain_motion import simulate, step_limit
 from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
@@ -277,6 +277,15 @@ def test_the_exact_linear_flow_is_the_limit_of_small_forces():
     exact = simulate(system, at_rest(system), times, tolerance=1e-11).deflection([0.2, 0.31])
     flow = simulate_linear(modal_basis(system), at_rest(system), times).deflection([0.2, 0.31])
     assert rms(flow - exact) < 1e-7 * rms(exact)
+
+
+def test_one_points_linear_motion_is_read_without_all_the_others():
+    system, times = driven(25, 2.0), np.linspace(3e-5, 5e-4, 83)
+    basis, start = modal_basis(system), at_rest(driven(25, 2.0), np.linspace(-1e-4, 1e-4, 25))
+    flow = simulate_linear(basis, start, times).deflection([0.21])[:, 0]
+    assert linear_deflection(basis, start, times, 0.21) == pytest.approx(flow, abs=1e-6 * abs(flow).max())
+    with pytest.raises(InputError, match="evenly spaced"):
+        linear_deflection(basis, start, np.array([0.0, 1e-5, 3e-5]), 0.21)
 
 
 def test_samples_inside_a_step_are_as_good_as_its_ends():

@@ -157,18 +157,20 @@ def simulate(
     tolerance: float = 1e-8,
     dependent: Sequence[int] | None = None,
     ledger: bool = True,
+    limit: float | None = None,
 ) -> ChainMotion:
     """The motion from `start`, kept at `times` (ascending, from start.time on).
 
     "rk4" takes a fixed `step` and is refused above its stability limit (`step_limit`); "adaptive" is Dormand and
     Prince's pair of orders 5 and 4, its error per step held to `tolerance` of the largest motion so far. Both are of
     order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
+    `limit` is the stability limit where it is known already, which spares finding it.
     `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. Raises InputError.
     """
     samples = _checked(start, times, method, step, tolerance)
     begin, moved = project(system, start, dependent)
     if method == "rk4" and step is not None:
-        refuse_unstable(system, begin, step)
+        refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
     run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
     clock = perf_counter()
     stopped = run.march()
@@ -327,9 +329,8 @@ def step_limit(system: ChainSystem, state: ChainState) -> float:
     return float(z[np.argmin(stable) - 1] / fastest) if not stable.all() else float(3.0 / fastest)
 
 
-def refuse_unstable(system: ChainSystem, state: ChainState, step: float) -> None:
+def refuse_unstable(step: float, limit: float) -> None:
     """Raise InputError for a fixed step above the limit, naming the limit."""
-    limit = step_limit(system, state)
     if step > limit:
         raise InputError(
             f"step = {step!r} s lies above the stability limit {limit:.4g} s of rk4 on this chain: "
