@@ -84,7 +84,7 @@ def converged(case: Case, times: Array) -> Array:
 
 
 def kicks(case: Case) -> Run:
-    """This suite: exact linear flow and one nonlinear kick to a step."""
+    """Ours: exact linear flow and one nonlinear kick to a step."""
     system = system_of(case)
     basis, start = modal_basis(system), at_rest(system)
     modes = min(MODES, case.n - 1)
@@ -98,7 +98,7 @@ def kicks(case: Case) -> Run:
 
 
 def fixed_steps(case: Case) -> Run:
-    """This suite: RK4 on the O(N) recursion."""
+    """Ours: RK4 on the O(N) recursion."""
     system = system_of(case)
     start = at_rest(system)
     limit = step_limit(system, start)
@@ -112,7 +112,7 @@ def fixed_steps(case: Case) -> Run:
 
 
 def linear_flow(case: Case) -> Run:
-    """This suite: the exact linear flow, read at mid-span; no step."""
+    """Ours: the exact linear flow, read at mid-span; no step."""
     system = system_of(case)
     basis, start = modal_basis(system), at_rest(system)
 
@@ -126,7 +126,10 @@ def linear_flow(case: Case) -> Run:
 def runners(case: Case, race: int) -> dict[str, tuple[Run, float]]:
     """Engines and the first step to try, seconds; peers that are not installed are left out, and said."""
     limit = step_limit(system_of(case), at_rest(system_of(case)))
-    found: dict[str, tuple[Run, float]] = {"ours, kicks": (kicks(case), 8e-5), "ours, RK4": (fixed_steps(case), 0.97 * limit)}
+    found: dict[str, tuple[Run, float]] = {
+        "ours, kicks": (kicks(case), 8e-5),
+        "ours, RK4": (fixed_steps(case), 0.97 * limit),
+    }
     if race == 1:
         found["ours, linear flow"] = linear_flow(case), END
     for name, module in PEERS.items():

@@ -132,13 +132,16 @@ def energies(system: ChainSystem, state: ChainState) -> tuple[float, float, floa
 
 def held_rows(system: ChainSystem, state: ChainState) -> Array:
     """Derivatives of the held points' y by the relative angles, (n_held, N), metres."""
-    joints = positions(system, state)[0]
-    rows = []
-    for link, at in held_points(system):
+    return _rows(system, positions(system, state)[0][:, 0])
+
+
+def _rows(system: ChainSystem, x: Array) -> Array:
+    """The same from the joints' x, (N + 1,)."""
+    rows = np.zeros((len(held := held_points(system)), system.n_links))
+    for row, (link, at) in zip(rows, held, strict=True):
         share = at / system.lengths[link - 1]
-        x = joints[link - 1, 0] + share * (joints[link, 0] - joints[link - 1, 0])
-        rows.append(np.where(np.arange(system.n_links) < link, x - joints[:-1, 0], 0.0))
-    return np.array(rows).reshape(len(rows), system.n_links)
+        row[:link] = x[link - 1] + share * (x[link] - x[link - 1]) - x[:link]
+    return rows
 
 
 def choose_pivots(rows: Array) -> Indices:
@@ -177,11 +180,13 @@ def project(system: ChainSystem, state: ChainState, dependent: Sequence[int] | N
     Raises InputError where Newton finds no position.
     """
     q, v = _arrays(system, state)
-    rows = held_rows(system, state)
+    flat, work = flatten(system), workspace(system)
+    kernels.place(flat, state.time, q, v, work)
+    rows = _rows(system, work[:, 13])
     pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
     if len(pivots) != len(rows) or any(not 0 <= p < system.n_links for p in pivots):
         raise InputError(f"dependent = {dependent!r}: give {len(rows)} joints between 1 and {system.n_links}")
-    moved = kernels.project(flatten(system), state.time, q, v, pivots, 1e-14 * (1 + 0.1 * len(q)), workspace(system))
+    moved = kernels.project(flat, state.time, q, v, pivots, 1e-14 * (1 + 0.1 * len(q)), work)
     if not np.isfinite(moved) or not np.isfinite(q).all():
         raise InputError(
             f"state.angles cannot be brought onto the held points by turning joint {int(pivots[0]) + 1}: "

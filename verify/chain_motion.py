@@ -126,19 +126,23 @@ class ChainMotion:
 
     def points(self, x: Sequence[float]) -> Array:
         """Places of material points at x of the straight chain, (n, len(x), 2), metres, on their links."""
-        found, theta = np.zeros((len(self.times), len(x), 2)), self.directions()
+        return np.stack([self._read(x, np.cos), self._read(x, np.sin)], axis=2)
+
+    def _read(self, x: Sequence[float], share: Any) -> Array:
+        """One coordinate of material points, (n, len(x)): links by the cosine or the sine of their angles."""
+        found, theta = np.zeros((len(self.times), len(x))), self.directions()
         for k, position in enumerate(x):
             check_number("x", position, "metres", at_least=0)
             if position > self.system.length * (1 + 1e-12):
                 raise InputError(f"x = {position!r} lies off the chain: give up to {self.system.length!r} m")
             link, at = link_at(self.system, position)
             reach = np.append(self.system.lengths[: link - 1], at)
-            found[:, k, 0], found[:, k, 1] = np.cos(theta[:, :link]) @ reach, np.sin(theta[:, :link]) @ reach
+            found[:, k] = share(theta[:, :link]) @ reach
         return found
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Y of material points on their links, (n, len(x)), metres."""
-        return np.asarray(self.points(x)[:, :, 1])
+        return self._read(x, np.sin)
 
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), radians."""
