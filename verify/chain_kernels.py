@@ -619,59 +619,73 @@ def _propose(error: float, order: float, h: float) -> Any:
     return h * min(4.0, max(0.2, 0.9 * max(error, 1e-10) ** (-1.0 / order)))
 
 
-@njit(cache=True, fastmath={"contract"})
-def march(
-    f: Flat,
-    y: Array,
-    new: Array,
-    clock: Array,
-    counts: Indices,
-    samples: Array,
-    kept: Array,
-    budget: int,
-    a: Array,
-    c: Array,
-    weights: Array,
-    order: float,
-    scale: Array,
-    k: Array,
-    pivots: Indices,
-    work: Array,
-) -> int:
-    """Explicit Runge-Kutta over at most `budget` steps; samples are kept from within the steps.
+class March(NamedTuple):
+    """An explicit Runge-Kutta run as the kernels see it: its method, its state and what it keeps."""
 
-    `clock` is time, step and the share of the longest lever arm below which a dependent angle is exchanged; `counts`
-    steps, rejected steps, evaluations, samples kept and exchanges. k[0] holds the rates at y.
-    The step is fixed where `weights` is empty, and held to an error of `scale` elsewhere.
-    """  # fmt: skip
-    n = f.links.shape[0]
+    a: Array
+    """(s + 1, s), the last row the answer."""
+    c: Array
+    """(s,)."""
+    weights: Array
+    """(s + 1,), of the error estimate; empty for a fixed step."""
+    order: float
+    y: Array
+    """(2N + 2,): angles, rates, energy lost, work put in."""
+    new: Array
+    """(2N + 2,), scratch."""
+    k: Array
+    """(s + 1, 2N + 2); k[0] holds the rates at y."""
+    clock: Array
+    """(3,): time, step, and the share of the longest lever arm below which a dependent angle is exchanged."""
+    counts: Indices
+    """(5,): steps, rejected steps, evaluations, samples kept, exchanges."""
+    samples: Array
+    """(n,), times to keep."""
+    kept: Array
+    """(n, 2N + 2)."""
+    scale: Array
+    """(5,): relative tolerance, absolute ones of angles and rates, the largest means of both so far."""
+    pivots: Indices
+    """(n_held,), dependent angles."""
+
+
+@njit(cache=True, fastmath={"contract"})
+def _keep_samples(m: March, t: float, h: float) -> None:
+    """What lies within an accepted step."""
+    last, n = m.k.shape[0] - 1, m.y.size // 2 - 1
+    while m.counts[3] < m.samples.size and m.samples[m.counts[3]] <= (t + h) * (1.0 + 1e-12):
+        _keep(t, h, m.samples[m.counts[3]], m.y, m.new, m.k[0], m.k[last], n, m.kept[m.counts[3]])
+        m.counts[3] += 1
+
+
+@njit(cache=True, fastmath={"contract"})
+def march(f: Flat, m: March, budget: int, work: Array) -> int:
+    """At most `budget` steps, fixed or held to the tolerances of `scale`; each ends on the held points."""
+    n, last = f.links.shape[0], m.k.shape[0] - 1
     for _ in range(budget):
-        if counts[3] >= samples.size:
+        if m.counts[3] >= m.samples.size:
             return DONE
-        t, h = clock[0], clock[1]
+        t, h = m.clock[0], m.clock[1]
         if t + h == t:
             return TOO_SMALL
-        _stages(f, t, h, y, a, c, k, new, work)
-        if _torn(new[n : 2 * n], h) and weights.size == 0:
+        _stages(f, t, h, m.y, m.a, m.c, m.k, m.new, work)
+        if _torn(m.new[n : 2 * n], h) and m.weights.size == 0:
             return DIVERGED
-        project(f, t + h, new[:n], new[n : 2 * n], pivots, 1e-9, work)
-        counts[4] += repivot(f, pivots, work, clock[2])
-        last = k.shape[0] - 1
-        derivative(f, t + h, new, work, k[last])
-        counts[2] += a.shape[1]
-        if weights.size > 0:
-            error = _error(n, h, k, weights, y, scale)
-            clock[1] = _propose(error, order, h)
+        project(f, t + h, m.new[:n], m.new[n : 2 * n], m.pivots, 1e-9, work)
+        m.counts[4] += repivot(f, m.pivots, work, m.clock[2])
+        derivative(f, t + h, m.new, work, m.k[last])
+        m.counts[2] += m.a.shape[1]
+        if m.weights.size > 0:
+            error = _error(n, h, m.k, m.weights, m.y, m.scale)
+            m.clock[1] = _propose(error, m.order, h)
             if not error <= 1.0:
-                counts[1] += 1
+                m.counts[1] += 1
                 continue
-        counts[0] += 1
-        clock[0] = t + h
-        while counts[3] < samples.size and samples[counts[3]] <= (t + h) * (1.0 + 1e-12):
-            _keep(t, h, samples[counts[3]], y, new, k[0], k[last], n, kept[counts[3]])
-            counts[3] += 1
-        y[:], k[0] = new, k[last]
-    return DONE if counts[3] >= samples.size else RUNNING
+        m.counts[0] += 1
+        m.clock[0] = t + h
+        _keep_samples(m, t, h)
+        m.y[:], m.k[0] = m.new, m.k[last]
+    return DONE if m.counts[3] >= m.samples.size else RUNNING
 
 
 @njit(cache=True, fastmath={"contract"})

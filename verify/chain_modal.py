@@ -232,9 +232,8 @@ class _Modal:
         self.flat, self.work = flatten(basis.system, ledger=False), workspace(basis.system)
         self.kept = np.zeros((len(samples), len(chosen), 2))
         self.clock, self.counts = np.array([start.time, step]), np.zeros(5, dtype=np.int64)
-        while self.counts[3] < len(samples) and samples[self.counts[3]] <= start.time:
-            self.kept[self.counts[3]] = (self.begin + steady)[chosen]
-            self.counts[3] += 1
+        at_start = int(np.searchsorted(samples, start.time, side="right"))
+        self.kept[:at_start], self.counts[3] = (self.begin + steady)[chosen], at_start
         self.free = np.ascontiguousarray(self.begin[chosen])
         self.modal = _flattened(basis, chosen, samples, step, kicks)
 

@@ -211,62 +211,61 @@ class _Run:
         self, system: ChainSystem, start: ChainState, samples: Array, table: Tableau, step: float | None,
         tolerance: float, dependent: Sequence[int] | None, ledger: bool,
     ) -> None:  # fmt: skip
-        n = system.n_links
-        self.system, self.samples, self.table = system, samples, table
+        size = 2 * system.n_links + 2
+        self.system = system
         self.flat, self.work = flatten(system, ledger=ledger), workspace(system)
-        self.y = np.concatenate([start.angles, start.rates, [0.0, 0.0]])
-        self.new, self.kept = np.zeros_like(self.y), np.zeros((len(samples), 2 * n + 2))
-        self.k = np.zeros((len(table.c) + 1, 2 * n + 2))
         rows = held_rows(system, start)
-        self.pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
-        self.counts = np.zeros(5, dtype=np.int64)
         fastest = 0.0 if step else highest_rate(system, start)
         first = step or min(0.1 / max(fastest, 1e-12), max(samples[-1] - start.time, 1e-12))
-        self.clock = np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS])
-        self.scale = np.array([tolerance, 1e-3 * tolerance**1.5, 1e-3 * tolerance**1.5 * max(fastest, 1.0), 0.0, 0.0])
-        kernels.derivative(self.flat, start.time, self.y, self.work, self.k[0])
-        while self.counts[3] < len(samples) and samples[self.counts[3]] <= start.time:
-            self.kept[self.counts[3]] = self.y
-            self.counts[3] += 1
+        floor = 1e-3 * tolerance**1.5
+        self.m = kernels.March(
+            a=table.a, c=table.c, weights=table.weights, order=table.order,
+            y=np.concatenate([start.angles, start.rates, [0.0, 0.0]]), new=np.zeros(size),
+            k=np.zeros((len(table.c) + 1, size)), samples=samples, kept=np.zeros((len(samples), size)),
+            clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]), counts=np.zeros(5, dtype=np.int64),
+            scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0]),
+            pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
+        )  # fmt: skip
+        kernels.derivative(self.flat, start.time, self.m.y, self.work, self.m.k[0])
+        at_start = int(np.searchsorted(samples, start.time, side="right"))
+        self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
 
     def march(self) -> str:
         """Step until every sample is kept; why it stopped."""
         budget = max(_BUDGET // self.system.n_links, 16)
         try:
             while True:
-                status = kernels.march(
-                    self.flat, self.y, self.new, self.clock, self.counts, self.samples, self.kept, budget, self.table.a,
-                    self.table.c, self.table.weights, self.table.order, self.scale, self.k, self.pivots, self.work,
-                )  # fmt: skip
+                status = kernels.march(self.flat, self.m, budget, self.work)
                 if status != kernels.RUNNING:
                     return self.ended(status)
-                if self.flat.held.shape[0] > 1 and self.clock[2] > 0.0:
+                if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
                     self.keep_pivots()
         except KeyboardInterrupt:
-            return f"interrupted at t = {self.clock[0]:.6g} s"
+            return f"interrupted at t = {self.m.clock[0]:.6g} s"
 
     def keep_pivots(self) -> None:
         """Exchange dependent angles that have become poor."""
         n = self.system.n_links
-        rows = held_rows(self.system, ChainState(self.y[:n], self.y[n : 2 * n], float(self.clock[0])))
-        better = keep_pivots(rows, self.pivots)
-        self.counts[4] += int((better != self.pivots).any())
-        self.pivots[:] = better
+        rows = held_rows(self.system, ChainState(self.m.y[:n], self.m.y[n : 2 * n], float(self.m.clock[0])))
+        better = keep_pivots(rows, self.m.pivots)
+        self.m.counts[4] += int((better != self.m.pivots).any())
+        self.m.pivots[:] = better
 
     def ended(self, status: int) -> str:
         """The end in words."""
         if status == kernels.DONE:
             return "finished"
-        at = f"at t = {self.clock[0]:.6g} s with a step of {self.clock[1]:.3g} s"
+        at = f"at t = {self.m.clock[0]:.6g} s with a step of {self.m.clock[1]:.3g} s"
         return f"diverged {at}" if status == kernels.DIVERGED else f"stopped {at}, too small to go on"
 
     def motion(self, method: str, seconds: float, stopped: str, started: str) -> ChainMotion:
         """What was kept."""
-        n, kept = self.system.n_links, int(self.counts[3])
-        steps, rejected, evaluations, _, changes = (int(c) for c in self.counts)
+        n, kept = self.system.n_links, int(self.m.counts[3])
+        steps, rejected, evaluations, _, changes = (int(c) for c in self.m.counts)
+        rows = self.m.kept[:kept]
         return ChainMotion(
-            system=self.system, times=self.samples[:kept], angles=self.kept[:kept, :n],
-            rates=self.kept[:kept, n : 2 * n], dissipated=self.kept[:kept, 2 * n], work_in=self.kept[:kept, 2 * n + 1],
+            system=self.system, times=self.m.samples[:kept], angles=rows[:, :n], rates=rows[:, n : 2 * n],
+            dissipated=rows[:, 2 * n], work_in=rows[:, 2 * n + 1],
             statistics=Statistics(method=method, steps=steps, rejected=rejected, evaluations=evaluations,
                                   seconds=seconds, stopped=stopped, started=started, pivot_changes=changes),
         )  # fmt: skip

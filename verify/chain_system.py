@@ -199,6 +199,21 @@ def build_system(
     ("lever") or on the four joints around it ("reciprocal", `point_loads`). `immovable` holds the roller by an axial
     spring EA/L. Raises InputError for other supports and for forces off the beam.
     """
+    _check_buildable(beam, wall)
+    check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
+    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
+    unit, mass = chain.unit, beam.mass_per_length
+    stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
+    system = ChainSystem(
+        lengths=chain.lengths * unit, masses=chain.masses * mass * unit, inertias=chain.inertias * mass * unit**3,
+        stiffness=stiffness, dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0), axial_inertia=axial_inertia,
+        tip="roller" if beam.supports[1] == "pinned" else "free",
+        axial_spring=beam.youngs_modulus * beam.area / beam.length if immovable else 0.0,
+    )  # fmt: skip
+    return replace(system, loads=transverse_loads(chain, system, forces, frequency_hz, load))
+
+
+def _check_buildable(beam: Beam, wall: str) -> None:
     left, right = beam.supports
     if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
         raise InputError(
@@ -207,17 +222,6 @@ def build_system(
         )
     if wall == "welded":
         raise InputError("wall = 'welded' is for the linear chain: choose another wall")
-    check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
-    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
-    unit, mass = chain.unit, beam.mass_per_length
-    stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
-    system = ChainSystem(
-        lengths=chain.lengths * unit, masses=chain.masses * mass * unit, inertias=chain.inertias * mass * unit**3,
-        stiffness=stiffness, dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0), axial_inertia=axial_inertia,
-        tip="roller" if right == "pinned" else "free",
-        axial_spring=beam.youngs_modulus * beam.area / beam.length if immovable else 0.0,
-    )  # fmt: skip
-    return replace(system, loads=transverse_loads(chain, system, forces, frequency_hz, load))
 
 
 def transverse_loads(
