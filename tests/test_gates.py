@@ -1,5 +1,6 @@
 """The paper's gates are green, and each turns red when the fault it exists for is planted."""
 
+from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
@@ -9,6 +10,11 @@ from msgspec import structs
 from verify import (
     analytic_harmonic,
     chain,
+    chain_dynamics,
+    chain_kernels,
+    chain_modal,
+    chain_studies,
+    chain_system,
     chain_walls,
     closed_forms,
     compare,
@@ -331,7 +337,70 @@ def singular_values_squared(patch):
     patch.setattr(travelling_wave, "travelling_index", lambda deflection: true(deflection) ** 2)
 
 
+def links_that_feel_no_inertia_of_the_links_beyond(patch):
+    true = chain_dynamics.mass_matrix
+    patch.setattr(chain_dynamics, "mass_matrix", lambda system, theta: np.diag(np.diag(true(system, theta))))
+
+
+def hanging_links_with_inertia_about_their_ends(patch):
+    patch.setattr(chain_studies, "link_inertia", lambda mass, length: mass * length**2 / 3)
+
+
+def axial_spring_of_half_the_section(patch):
+    true = chain_studies.build_system
+
+    def softened(*given, **more):
+        system = true(*given, **more)
+        return replace(system, axial_spring=0.5 * system.axial_spring)
+
+    patch.setattr(chain_studies, "build_system", softened)
+
+
+def recursion_with_another_inertia_than_the_energy(patch):
+    true = chain_kernels.mobilities
+    patch.setattr(chain_kernels, "mobilities", lambda half, masses, inertias: true(half, masses, 1.01 * inertias))
+
+
+def forces_that_lag_instead_of_lead(patch):
+    true = chain_system.transverse_loads
+
+    def lagging(*given):
+        return tuple(replace(load, phase_deg=-load.phase_deg) for load in true(*given))
+
+    patch.setattr(chain_system, "transverse_loads", lagging)
+
+
+def kicks_of_no_strength(patch):
+    patch.setitem(chain_modal.SCHEMES, 2, (chain_modal.SCHEMES[2][0], (0.0, 0.0)))
+
+
+def axial_inertia_forgotten(patch):
+    true = chain_studies.build_system
+    patch.setattr(
+        chain_studies, "build_system", lambda *given, **more: replace(true(*given, **more), axial_inertia=False)
+    )
+
+
+def axial_inertia_kept_where_it_was_to_go(patch):
+    true = chain_studies.build_system
+    patch.setattr(
+        chain_studies, "build_system", lambda *given, **more: replace(true(*given, **more), axial_inertia=True)
+    )
+
+
 FAULTS_ELSEWHERE = {
+    "chain": {
+        wall_joint_as_stiff_as_any_other: {"elastica-deflection", "elastica-shortening", "rollup-gap-of-gregory"},
+        joint_stiffness_doubled: {"elastica-deflection", "elastica-shortening", "rollup-closes", "rollup-gap-of-gregory", "small-force"},
+        links_that_feel_no_inertia_of_the_links_beyond: {"hanging-two-links", "hanging-limit"},
+        hanging_links_with_inertia_about_their_ends: {"hanging-one-link", "hanging-two-links"},
+        axial_spring_of_half_the_section: {"large-amplitude"},
+        recursion_with_another_inertia_than_the_energy: {"energy-is-kept", "small-force", "ten-newton"},
+        forces_that_lag_instead_of_lead: {"small-force", "ten-newton", "ten-newton-by-kicks", "ten-newton-without-axial-inertia"},
+        kicks_of_no_strength: {"ten-newton-by-kicks"},
+        axial_inertia_forgotten: {"ten-newton", "ten-newton-by-kicks"},
+        axial_inertia_kept_where_it_was_to_go: {"ten-newton-without-axial-inertia"},
+    },
     "paper-wave": {
         phase_of_the_wrong_sign: {"reversal-turns-the-wave", "surface-ellipse", "flux", "mid-span"},
         second_force_a_tenth_nearer: {"distance-sets-the-amplitude", "pure-wave", "reversal-turns-the-wave", "mid-span"},

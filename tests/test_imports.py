@@ -14,10 +14,15 @@ PACKAGE = Path(verify.__file__).parent
 MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
-    {"errors", "timing", "search"}, {"beam", "checked", "files", "contact_kernels"}, {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis"},
-    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives", "forcing", "contact"}, {"point_loads", "motion", "validity"},
-    set(MODELS), {"segment_motion", "fem_motion", "analytic_motion"}, {"moving_surface"}, {"slider_run", "energy"}, {"compare", "travelling_wave"}, {"workbench"}, {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"}, {"rigid_surface", "pure_wave", "simulate"}, {"motion_arguments"}, {"motions"},
-    {"mode_quantities", "wave_quantities", "motion_quantities"}, {"work_precision"}, {"motion_study"}, {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
+    {"errors", "timing", "search"}, {"beam", "checked", "files", "contact_kernels", "chain_kernels"},
+    {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis"},
+    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives", "forcing", "contact"},
+    {"point_loads", "motion", "validity"},
+    {"chain_system", *MODELS}, {"segment_motion", "fem_motion", "analytic_motion", "chain_statics"}, {"moving_surface", "chain_dynamics"},
+    {"slider_run", "energy", "chain_motion"}, {"chain_modal"}, {"chain_studies"}, {"compare", "travelling_wave"}, {"workbench"},
+    {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"}, {"rigid_surface", "pure_wave", "simulate"}, {"motion_arguments"}, {"motions"},
+    {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"}, {"work_precision"}, {"motion_study"},
+    {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
     {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import msgspec
 
+from verify.chain_quantities import CHAIN_QUANTITIES
 from verify.checked import checked
 from verify.errors import InputError, near_name
 from verify.mode_quantities import MODE_QUANTITIES
@@ -19,7 +20,9 @@ from verify.workbench import Need, Workbench
 if TYPE_CHECKING:
     from verify.scene import Scene
 
-QUANTITIES: dict[str, Quantity] = {q.name: q for q in (*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES)}
+QUANTITIES: dict[str, Quantity] = {
+    q.name: q for q in (*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES, *CHAIN_QUANTITIES)
+}
 
 
 def quantity(name: str) -> Quantity:

@@ -1,0 +1,217 @@
+"""The nonlinear finite-segment chain: states on its constraints, energies, equilibria, exact linearisation.
+
+The chain is the paper's: rigid links in relative joint coordinates q_i = theta_i - theta_{i-1}, closed at the right
+by a roller of which only y_N = 0 is asked. The closure is a matter of coordinate partitioning (R. A. Wehage and E. J.
+Haug, J. Mech. Design 104 (1982) 247): as many angles as there are held points depend on the others, chosen by pivot.
+Forward dynamics is compiled (`chain_kernels`), motion in time is in `chain_motion`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from verify import chain_kernels as kernels
+from verify.chain_statics import forces_at, mass_matrix
+from verify.chain_system import ChainState, ChainSystem, circular, held_points
+from verify.division import Array
+from verify.errors import InputError
+
+Indices = NDArray[np.int64]
+PIVOT_LOSS = 0.1
+"""A dependent angle is kept until its lever arm falls below this share of the longest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """M q'' + C q' + K q = 0 about an equilibrium, on the q with `constraint` q = 0; relative angles."""
+
+    mass: Array
+    """(N, N), kg m^2."""
+    damping: Array
+    """(N, N), N m s."""
+    stiffness: Array
+    """(N, N), N m; with the geometric terms of loads and of the forces in the held points."""
+    constraint: Array
+    """(n_held, N), metres: derivatives of the held points' y."""
+
+    def independent(self) -> Array:
+        """Columns that span the motions left free, (N, N - n_held): coordinate partitioning by pivot."""
+        n = self.mass.shape[0]
+        rows = self.constraint
+        if not len(rows):
+            return np.eye(n)
+        pivots = choose_pivots(rows)
+        others = np.setdiff1d(np.arange(n), pivots)
+        basis = np.zeros((n, n - len(pivots)))
+        basis[others, np.arange(len(others))] = 1.0
+        basis[pivots] = -np.linalg.solve(rows[:, pivots], rows[:, others])
+        return basis
+
+    def frequencies(self) -> Array:
+        """Undamped circular frequencies, (N - n_held,), ascending, rad/s. Raises InputError at an unstable place."""
+        from scipy.linalg import LinAlgError, eigh
+
+        basis = self.independent()
+        mass, stiffness = basis.T @ self.mass @ basis, basis.T @ self.stiffness @ basis
+        try:  # the inverse problem keeps the low ones accurate
+            return np.asarray(1.0 / np.sqrt(eigh(mass, stiffness, eigvals_only=True))[::-1])
+        except LinAlgError:
+            values = eigh(stiffness, mass, eigvals_only=True)
+        if values[0] < -1e-9 * values[-1]:
+            raise InputError(f"the equilibrium is unstable: its lowest omega^2 is {values[0]:.3g} 1/s^2")
+        return np.asarray(np.sqrt(np.maximum(values, 0.0)), dtype=float)
+
+
+def flatten(system: ChainSystem, *, ledger: bool = True) -> kernels.Flat:
+    """The chain as the kernels see it."""
+    half, turn = system.lengths / 2.0, system.rotation
+    held = [(float(half[-1]), 0.0, 0.0, 0.0, system.n_links - 1)] if system.tip == "roller" else []
+    held += [(a.at - half[a.link - 1], a.amplitude, *_cycle(a), a.link - 1) for a in system.actuators]
+    loads = [(p.at - half[p.link - 1], *p.force, p.moment, *_cycle(p), p.link - 1) for p in system.loads]
+    own = np.stack([half, system.masses, system.inertias, system.stiffness, system.dashpots], axis=1)
+    return kernels.Flat(
+        links=np.hstack([own, kernels.mobilities(half, own[:, kernels.MASS], own[:, kernels.INERTIA])]),
+        numbers=np.array([turn.offset, turn.rate, turn.amplitude, *_cycle(turn), *system.gravity], dtype=float),
+        loads=np.array(loads, dtype=float).reshape(len(loads), 7),
+        held=np.array(held, dtype=float).reshape(len(held), 5),
+        small=np.zeros((len(held), len(held) + 1)),
+        tip=kernels.ROLLER if system.tip == "roller" else kernels.FREE,
+        tip_spring=float(system.axial_spring), axial=bool(system.axial_inertia), ledger=ledger,
+    )  # fmt: skip
+
+
+def _cycle(one: Any) -> tuple[float, float]:
+    """Circular frequency and phase in radians of what moves harmonically."""
+    return circular(one.frequency_hz), float(np.deg2rad(one.phase_deg))
+
+
+def workspace(system: ChainSystem) -> Array:
+    """Scratch for the kernels, (N + 1, columns)."""
+    return np.zeros((system.n_links + 1, kernels.WORK_COLUMNS))
+
+
+def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
+    """A state without motion, straight unless angles are given, on the held points."""
+    still = np.zeros(system.n_links)
+    return project(system, ChainState(still if angles is None else np.array(angles, dtype=float), still))[0]
+
+
+def accelerations(system: ChainSystem, state: ChainState) -> Array:
+    """Relative angular accelerations, (N,), rad/s^2."""
+    out = np.zeros(system.n_links)
+    kernels.accelerate(flatten(system), state.time, *_arrays(system, state), workspace(system), out)
+    return out
+
+
+def _arrays(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
+    """Copies of angles and rates. Raises InputError for a wrong shape or a value that is not finite."""
+    arrays = []
+    for name in ("angles", "rates"):
+        values = np.array(getattr(state, name), dtype=float)
+        if values.shape != (system.n_links,) or not np.isfinite(values).all():
+            raise InputError(f"state.{name}: give {system.n_links} finite numbers, one for each joint")
+        arrays.append(values)
+    return arrays[0], arrays[1]
+
+
+def positions(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
+    """Joints 0..N, (N + 1, 2) metres, and their velocities, (N + 1, 2) m/s."""
+    work = workspace(system)
+    kernels.place(flatten(system), state.time, *_arrays(system, state), work)
+    return work[:, 13:15].copy(), work[:, 15:17].copy()
+
+
+def energies(system: ChainSystem, state: ChainState) -> tuple[float, float, float]:
+    """Kinetic, elastic and gravitational energy, joule."""
+    found = kernels.energies(flatten(system), state.time, *_arrays(system, state), workspace(system))
+    return float(found[0]), float(found[1]), float(found[2])
+
+
+def held_rows(system: ChainSystem, state: ChainState) -> Array:
+    """Derivatives of the held points' y by the relative angles, (n_held, N), metres."""
+    return _rows(system, positions(system, state)[0][:, 0])
+
+
+def _rows(system: ChainSystem, x: Array) -> Array:
+    """The same from the joints' x, (N + 1,)."""
+    rows = np.zeros((len(held := held_points(system)), system.n_links))
+    for row, (link, at) in zip(rows, held, strict=True):
+        share = at / system.lengths[link - 1]
+        row[:link] = x[link - 1] + share * (x[link] - x[link - 1]) - x[:link]
+    return rows
+
+
+def choose_pivots(rows: Array) -> Indices:
+    """Which angles depend on the others, (n_held,): complete pivoting on the constraint rows.
+
+    Raises InputError where the held points leave no angle to depend on: a chain that stands upright under its
+    roller, or two held points in one place.
+    """
+    left, pivots = rows.copy(), np.zeros(len(rows), dtype=np.int64)
+    free, largest = list(range(len(rows))), abs(rows).max() if rows.size else 0.0
+    for _ in range(len(rows)):
+        row = free[int(abs(left[free]).max(axis=1).argmax())]
+        column = int(abs(left[row]).argmax())
+        if abs(left[row, column]) <= 1e-9 * largest:
+            raise InputError("chain: its held points cannot be held at once in this position; move one or drop one")
+        pivots[row] = column
+        free.remove(row)
+        for other in free:
+            left[other] -= left[other, column] / left[row, column] * left[row]
+    return pivots
+
+
+def keep_pivots(rows: Array, pivots: Indices) -> Indices:
+    """The same dependent angles while they are good enough, better ones else."""
+    chosen = choose_pivots(rows)
+    if not len(rows):
+        return chosen
+    now, best = (abs(float(np.linalg.det(rows[:, p]))) for p in (pivots, chosen))
+    return pivots if now >= PIVOT_LOSS ** len(rows) * best else chosen
+
+
+def project(system: ChainSystem, state: ChainState, dependent: Sequence[int] | None = None) -> tuple[ChainState, float]:
+    """The state brought onto the held points, and the largest change of an angle or (times 1 s) of a rate.
+
+    Angles by Newton, rates by one linear solve; only the `dependent` joints (1..N, by pivot unless given) move.
+    Raises InputError where Newton finds no position.
+    """
+    q, v = _arrays(system, state)
+    flat, work = flatten(system), workspace(system)
+    kernels.place(flat, state.time, q, v, work)
+    rows = _rows(system, work[:, 13])
+    pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
+    if len(pivots) != len(rows) or any(not 0 <= p < system.n_links for p in pivots):
+        raise InputError(f"dependent = {dependent!r}: give {len(rows)} joints between 1 and {system.n_links}")
+    moved = kernels.project(flat, state.time, q, v, pivots, 1e-14 * (1 + 0.1 * len(q)), work)
+    if not np.isfinite(moved) or not np.isfinite(q).all():
+        raise InputError(
+            f"state.angles cannot be brought onto the held points by turning joint {int(pivots[0]) + 1}: "
+            "give angles that nearly meet them"
+        )
+    changed = max(abs(q - state.angles).max(), abs(v - state.rates).max())
+    return ChainState(q, v, state.time), float(changed)
+
+
+def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
+    """Exact derivatives of the chain's equations at a state of equilibrium under its constant loads.
+
+    In absolute angles the stiffness is tridiagonal, a diagonal of dead loads and held forces, and the axial spring's
+    outer product; relative angles follow by their sums. Equal at rest to the matrices of `segment_model`.
+    """
+    q, _ = _arrays(system, state)
+    theta = np.cumsum(q) + system.rotation.offset
+    found = forces_at(system, q, 1.0)
+    held = found.multipliers()
+    stiffness = np.diag(found.geometric + held @ found.held_bends)
+    stiffness += np.outer(found.reach_x, found.reach_x) * system.axial_spring
+    sums: Any = np.tril(np.ones((system.n_links, system.n_links)))
+    return Linearisation(
+        mass=sums.T @ mass_matrix(system, theta) @ sums,
+        damping=np.diag(system.dashpots.astype(float)),
+        stiffness=sums.T @ stiffness @ sums + np.diag(system.stiffness.astype(float)),
+        constraint=found.held_rows @ sums,
+    )

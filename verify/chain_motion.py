@@ -1,0 +1,341 @@
+"""The nonlinear chain in time: explicit Runge-Kutta with a fixed or a controlled step, and what came of it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from verify import chain_kernels as kernels
+from verify.beam import check_number
+from verify.chain_dynamics import (
+    PIVOT_LOSS,
+    choose_pivots,
+    flatten,
+    held_rows,
+    keep_pivots,
+    project,
+    workspace,
+)
+from verify.chain_system import ChainState, ChainSystem, link_at
+from verify.division import Array
+from verify.errors import InputError, near_name
+
+Method = Literal["rk4", "adaptive"]
+METHODS: tuple[str, ...] = get_args(Method)
+PROJECTED = 1e-9
+"""A start is said to be inconsistent where projection changes an angle or rate by more than this share."""
+_BUDGET = 100_000
+"""Link steps between two looks at the keyboard: some tens of milliseconds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tableau:
+    """An explicit Runge-Kutta method of s stages; its last row of `a` is its answer."""
+
+    a: Array
+    """(s + 1, s)."""
+    c: Array
+    """(s,)."""
+    weights: Array
+    """(s + 1,) of the error estimate, the last for the rates at the answer; empty without one."""
+    order: float
+
+
+def _tableau(rows: list[list[float]], c: list[float], weights: list[float], order: float) -> Tableau:
+    a = np.zeros((len(c) + 1, len(c)))
+    for i, row in enumerate(rows, start=1):
+        a[i, : len(row)] = row
+    return Tableau(a, np.array(c), np.array(weights, dtype=float), order)
+
+
+RK4 = _tableau([[0.5], [0, 0.5], [0, 0, 1], [1 / 6, 1 / 3, 1 / 3, 1 / 6]], [0, 0.5, 0.5, 1], [], 4)
+DORMAND_PRINCE = _tableau(
+    [
+        [1 / 5],
+        [3 / 40, 9 / 40],
+        [44 / 45, -56 / 15, 32 / 9],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656],
+        [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
+    ],
+    [0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1],
+    [71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40],
+    5,
+)
+"""J. R. Dormand and P. J. Prince, J. Comp. Appl. Math. 6 (1980) 19."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Statistics:
+    """What a run cost and how it ended."""
+
+    method: str
+    steps: int
+    rejected: int
+    evaluations: int
+    seconds: float
+    stopped: str
+    """'finished', or why not: 'interrupted at ...', 'diverged at ...'."""
+    started: str
+    """'consistent', or how far the start had to be moved onto the held points."""
+    pivot_changes: int = 0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChainMotion:
+    """States of a chain at the times kept, and its energy ledger."""
+
+    system: ChainSystem
+    times: Array
+    """(n,), s; fewer than asked for where the run was stopped."""
+    angles: Array
+    """(n, N), relative, radians."""
+    rates: Array
+    """(n, N), rad/s."""
+    dissipated: Array
+    """(n,), joule since the start."""
+    work_in: Array
+    """(n,), joule put in by loads, actuators and hub since the start; zero where no ledger was asked for."""
+    statistics: Statistics
+
+    @property
+    def finished(self) -> bool:
+        """Whether every time asked for is here."""
+        return self.statistics.stopped == "finished"
+
+    def state(self, index: int) -> ChainState:
+        """The state at one of the times."""
+        return ChainState(self.angles[index], self.rates[index], float(self.times[index]))
+
+    def energies(self) -> tuple[Array, Array, Array]:
+        """Kinetic, elastic and gravitational energy, (n,) each, joule."""
+        flat, work = flatten(self.system), workspace(self.system)
+        rows = [
+            kernels.energies(flat, t, q, v, work) for t, q, v in zip(self.times, self.angles, self.rates, strict=True)
+        ]
+        kinetic, elastic, height = np.array(rows, dtype=float).reshape(len(rows), 3).T
+        return kinetic, elastic, height
+
+    def residual(self) -> Array:
+        """Energy now less energy at first less work put in plus what was lost, (n,), joule: zero but for the step."""
+        total = np.sum(self.energies(), axis=0)
+        changed: Array = total - total[0] - (self.work_in - self.work_in[0]) + (self.dissipated - self.dissipated[0])
+        return changed
+
+    def points(self, x: Sequence[float]) -> Array:
+        """Places of material points at x of the straight chain, (n, len(x), 2), metres, on their links."""
+        return np.stack([self._read(x, np.cos), self._read(x, np.sin)], axis=2)
+
+    def _read(self, x: Sequence[float], share: Any) -> Array:
+        """One coordinate of material points, (n, len(x)): links by the cosine or the sine of their angles."""
+        found, theta = np.zeros((len(self.times), len(x))), self.directions()
+        for k, position in enumerate(x):
+            check_number("x", position, "metres", at_least=0)
+            if position > self.system.length * (1 + 1e-12):
+                raise InputError(f"x = {position!r} lies off the chain: give up to {self.system.length!r} m")
+            link, at = link_at(self.system, position)
+            reach = np.append(self.system.lengths[: link - 1], at)
+            found[:, k] = share(theta[:, :link]) @ reach
+        return found
+
+    def deflection(self, x: Sequence[float]) -> Array:
+        """Y of material points on their links, (n, len(x)), metres."""
+        return self._read(x, np.sin)
+
+    def directions(self) -> Array:
+        """Absolute angles of the links, (n, N), radians."""
+        hub = flatten(self.system).numbers
+        turned = np.array([kernels.hub_motion(hub, t)[0] for t in self.times]) if hub[:3].any() else np.zeros(1)
+        return np.asarray(np.cumsum(self.angles, axis=1) + turned[:, None])
+
+
+def simulate(
+    system: ChainSystem,
+    start: ChainState,
+    times: Sequence[float] | Array,
+    *,
+    method: Method = "adaptive",
+    step: float | None = None,
+    tolerance: float = 1e-8,
+    dependent: Sequence[int] | None = None,
+    ledger: bool = True,
+    limit: float | None = None,
+) -> ChainMotion:
+    """The motion from `start`, kept at `times` (ascending, from start.time on).
+
+    "rk4" takes a fixed `step` and is refused above its stability limit (`step_limit`); "adaptive" is Dormand and
+    Prince's pair of orders 5 and 4, its error per step held to `tolerance` of the largest motion so far. Both are of
+    order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
+    `limit` is the stability limit where it is known already, which spares finding it.
+    `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. Raises InputError.
+    """
+    samples = _checked(start, times, method, step, tolerance)
+    begin, moved = project(system, start, dependent)
+    if method == "rk4" and step is not None:
+        refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
+    run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
+    clock = perf_counter()
+    stopped = run.march()
+    return run.motion(method, perf_counter() - clock, stopped, _said(moved, start))
+
+
+def _checked(start: ChainState, times: Any, method: str, step: float | None, tolerance: float) -> Array:
+    """The times as an array. Raises InputError."""
+    samples = np.atleast_1d(np.asarray(times, dtype=float))
+    if method not in METHODS:
+        raise InputError(f"method = {method!r} is not known: {near_name(method, METHODS)}")
+    if (method == "rk4") != (step is not None):
+        raise InputError(f"step = {step!r}: give a step in seconds with method = 'rk4', and none with 'adaptive'")
+    if step is not None:
+        check_number("step", step, "seconds", above=0)
+    check_number("tolerance", tolerance, "relative", above=0, below=0.1)
+    if not samples.size or not np.isfinite(samples).all() or (np.diff(samples) <= 0).any() or samples[0] < start.time:
+        raise InputError(f"times: give ascending finite times from {start.time!r} s on")
+    return samples
+
+
+def _said(moved: float, start: ChainState) -> str:
+    """Whether the start was consistent, in words."""
+    size = max(abs(start.angles).max(), abs(start.rates).max(), 1e-300)
+    if moved <= PROJECTED * size:
+        return "consistent"
+    return f"projected onto the held points: an angle or rate changed by {moved:.3g}"
+
+
+class _Run:
+    """Arrays of one run."""
+
+    def __init__(
+        self, system: ChainSystem, start: ChainState, samples: Array, table: Tableau, step: float | None,
+        tolerance: float, dependent: Sequence[int] | None, ledger: bool,
+    ) -> None:  # fmt: skip
+        size = 2 * system.n_links + 2
+        self.system = system
+        self.flat, self.work = flatten(system, ledger=ledger), workspace(system)
+        rows = held_rows(system, start)
+        fastest = 0.0 if step else highest_rate(system, start)
+        first = step or min(0.1 / max(fastest, 1e-12), max(samples[-1] - start.time, 1e-12))
+        floor = 1e-3 * tolerance**1.5
+        self.m = kernels.March(
+            a=table.a, c=table.c, weights=table.weights, order=table.order,
+            y=np.concatenate([start.angles, start.rates, [0.0, 0.0]]), new=np.zeros(size),
+            k=np.zeros((len(table.c) + 1, size)), samples=samples, kept=np.zeros((len(samples), size)),
+            clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]), counts=np.zeros(5, dtype=np.int64),
+            scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0]),
+            pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
+        )  # fmt: skip
+        kernels.derivative(self.flat, start.time, self.m.y, self.work, self.m.k[0])
+        at_start = int(np.searchsorted(samples, start.time, side="right"))
+        self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
+
+    def march(self) -> str:
+        """Step until every sample is kept; why it stopped."""
+        budget = max(_BUDGET // self.system.n_links, 16)
+        try:
+            while True:
+                status = kernels.march(self.flat, self.m, budget, self.work)
+                if status != kernels.RUNNING:
+                    return self.ended(status)
+                if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
+                    self.keep_pivots()
+        except KeyboardInterrupt:
+            return f"interrupted at t = {self.m.clock[0]:.6g} s"
+
+    def keep_pivots(self) -> None:
+        """Exchange dependent angles that have become poor."""
+        n = self.system.n_links
+        rows = held_rows(self.system, ChainState(self.m.y[:n], self.m.y[n : 2 * n], float(self.m.clock[0])))
+        better = keep_pivots(rows, self.m.pivots)
+        self.m.counts[4] += int((better != self.m.pivots).any())
+        self.m.pivots[:] = better
+
+    def ended(self, status: int) -> str:
+        """The end in words."""
+        if status == kernels.DONE:
+            return "finished"
+        at = f"at t = {self.m.clock[0]:.6g} s with a step of {self.m.clock[1]:.3g} s"
+        return f"diverged {at}" if status == kernels.DIVERGED else f"stopped {at}, too small to go on"
+
+    def motion(self, method: str, seconds: float, stopped: str, started: str) -> ChainMotion:
+        """What was kept."""
+        n, kept = self.system.n_links, int(self.m.counts[3])
+        steps, rejected, evaluations, _, changes = (int(c) for c in self.m.counts)
+        rows = self.m.kept[:kept]
+        return ChainMotion(
+            system=self.system, times=self.m.samples[:kept], angles=rows[:, :n], rates=rows[:, n : 2 * n],
+            dissipated=rows[:, 2 * n], work_in=rows[:, 2 * n + 1],
+            statistics=Statistics(method=method, steps=steps, rejected=rejected, evaluations=evaluations,
+                                  seconds=seconds, stopped=stopped, started=started, pivot_changes=changes),
+        )  # fmt: skip
+
+
+def _largest(apply: Callable[[Array], Array], n: int) -> float:
+    """The largest eigenvalue, by modulus, of a linear map given by its action."""
+    if n <= 8:
+        values = np.linalg.eigvals(np.array([apply(column) for column in np.eye(n)]).T)
+        return float(abs(values).max())
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
+
+    operator = LinearOperator((n, n), matvec=lambda u: apply(np.ravel(u)), dtype=float)
+    start = np.random.default_rng(49).standard_normal(n)
+    try:
+        values = eigs(operator, k=1, which="LM", v0=start, tol=1e-3, return_eigenvectors=False)
+    except ArpackNoConvergence as error:  # the limit is then a little on the bold side; divergence is caught anyway
+        values = error.eigenvalues if len(error.eigenvalues) else np.array([0.0])
+    return float(abs(values[0]))
+
+
+def _slopes(system: ChainSystem, state: ChainState) -> tuple[Callable[[Array], Array], Callable[[Array], Array]]:
+    """Derivatives of the accelerations by angles and by rates, as maps."""
+    flat, work = flatten(system, ledger=False), workspace(system)
+    base, out = np.zeros(system.n_links), np.zeros(system.n_links)
+    still = np.zeros(system.n_links)
+    kernels.accelerate(flat, state.time, state.angles, still, work, base)
+
+    def by_angles(u: Array) -> Array:
+        size = 1e-6 / max(float(abs(u).max()), 1e-300)
+        kernels.accelerate(flat, state.time, state.angles + size * u, still, work, out)
+        return np.asarray((out - base) / size)
+
+    def by_rates(u: Array) -> Array:
+        size = 1e-6 / max(float(abs(u).max()), 1e-300)
+        kernels.accelerate(flat, state.time, state.angles, size * u, work, out)
+        return np.asarray((out - base) / size)
+
+    return by_angles, by_rates
+
+
+def highest_rate(system: ChainSystem, state: ChainState) -> float:
+    """The highest circular frequency of the chain held still in a state, rad/s."""
+    return float(np.sqrt(_largest(_slopes(system, state)[0], system.n_links)))
+
+
+def step_limit(system: ChainSystem, state: ChainState) -> float:
+    """The longest stable step of RK4 about a state, seconds: |R(h lambda)| <= 1 for the fastest modes.
+
+    2 sqrt(2) over the highest circular frequency without dashpots.
+    """
+    by_angles, by_rates = _slopes(system, state)
+    omega2 = _largest(by_angles, system.n_links)
+    damping = _largest(by_rates, system.n_links) if system.dashpots.any() else 0.0
+    root = np.sqrt(complex(0.25 * damping**2 - omega2))
+    fastest = max(abs(-0.5 * damping + root), abs(-0.5 * damping - root))
+    if fastest == 0.0:
+        return float("inf")
+    z = np.linspace(0.0, 3.0, 30001)[1:]
+    stable = np.ones(len(z), dtype=bool)
+    for value in (-0.5 * damping + root, -0.5 * damping - root):
+        w = z * value / fastest
+        stable &= abs(1 + w + w**2 / 2 + w**3 / 6 + w**4 / 24) <= 1.0 + 1e-12
+    return float(z[np.argmin(stable) - 1] / fastest) if not stable.all() else float(3.0 / fastest)
+
+
+def refuse_unstable(step: float, limit: float) -> None:
+    """Raise InputError for a fixed step above the limit, naming the limit."""
+    if step > limit:
+        raise InputError(
+            f"step = {step!r} s lies above the stability limit {limit:.4g} s of rk4 on this chain: "
+            "give a smaller step, fewer segments or method = 'adaptive'"
+        )

@@ -1,0 +1,166 @@
+"""Named figures of the nonlinear chain."""
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from msgspec import Meta
+
+from verify.errors import InputError
+from verify.quantity_types import Arguments, Mode, Quantity, Size, Wall
+from verify.workbench import Workbench
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+Links = Annotated[int, Meta(ge=1, description="links of the chain; segments and count mean the same")]
+Load = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]
+Component = Annotated[
+    Literal["deflection", "shortening"], Meta(description="of the tip: w/L, or 1 - x/L along the beam")
+]
+Radii = Annotated[float, Meta(gt=0, description="at mid-span, in radii of gyration h / sqrt(12)")]
+Step = Annotated[float, Meta(gt=0, description="fixed step of the motion, s; adaptive unless given")]
+Tolerance = Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step, relative")]
+Method = Annotated[
+    Literal["adaptive", "rk4", "modal", "linear"],
+    Meta(description="modal: exact linear flow and kicks; linear: that flow alone; default rk4 with a step"),
+]
+Inertia = Annotated[
+    Literal["full", "transverse"], Meta(description="of the links: transverse takes the inertia along x away")
+]
+
+
+class Chained(Arguments, frozen=True, kw_only=True):
+    """A chain of so many links."""
+
+    segments: Links | None = None
+    count: Size | None = None
+
+    def __post_init__(self) -> None:
+        if self.segments is None and self.count is None:
+            raise InputError("segments is missing: give the number of links of the chain")
+        if self.segments is not None and self.count not in (None, self.segments):
+            raise InputError(f"segments = {self.segments!r} and count = {self.count!r} mean the same: give one")
+
+    @property
+    def links(self) -> int:
+        """N."""
+        return self.segments or self.count or 0
+
+
+class TipUnderLoad(Chained, frozen=True, kw_only=True):
+    """A loaded cantilever."""
+
+    load: Load
+    component: Component = "deflection"
+    wall: Wall = "gregory"
+
+
+class RolledUp(Chained, frozen=True, kw_only=True):
+    """A cantilever rolled up once."""
+
+    wall: Wall = "half"
+
+
+class Hanging(Chained, frozen=True, kw_only=True):
+    """One mode of a hanging chain."""
+
+    mode: Mode
+
+
+class LargeAmplitude(Chained, frozen=True, kw_only=True):
+    """A hinged beam between immovable ends."""
+
+    amplitude: Radii
+
+
+class FreeMotion(Chained, frozen=True, kw_only=True):
+    """An undamped chain let go."""
+
+    amplitude: Annotated[float, Meta(gt=0, le=0.1, description="at mid-span, over L")] = 0.05
+    periods: Annotated[float, Meta(gt=0, le=1000, description="of the linear first mode")] = 1.0
+    step: Step | None = None
+    tolerance: Tolerance = 1e-8
+
+
+class FromRest(Chained, frozen=True, kw_only=True):
+    """The driven chain at one time and place."""
+
+    time: Annotated[float, Meta(gt=0, description="s after the forces of the scene's drive set in")]
+    x: Annotated[float, Meta(ge=0, description="m from the left end, on the links")]
+    step: Step | None = None
+    force: Annotated[float, Meta(gt=0, description="N, of every force; default those of the scene's drive")] | None = (
+        None
+    )
+    method: Method | None = None
+    inertia: Inertia = "full"
+    tolerance: Tolerance = 1e-9
+
+
+def _cantilever_tip(a: TipUnderLoad, scene: "Scene", bench: Workbench) -> float:
+    from verify import chain_studies
+
+    return float(getattr(chain_studies.cantilever_tip(a.load, a.links, a.wall), a.component))
+
+
+def _rollup_gap(a: RolledUp, scene: "Scene", bench: Workbench) -> float:
+    from verify import chain_studies
+
+    return chain_studies.rollup_gap(a.links, a.wall)
+
+
+def _hanging_frequency(a: Hanging, scene: "Scene", bench: Workbench) -> float:
+    from verify import chain_studies
+
+    return chain_studies.hanging_frequency(a.mode, a.links)
+
+
+def _large_amplitude_frequency(a: LargeAmplitude, scene: "Scene", bench: Workbench) -> float:
+    from verify import chain_studies
+
+    return chain_studies.large_amplitude_frequency(scene.beam, a.amplitude, a.links)
+
+
+def _energy_drift(a: FreeMotion, scene: "Scene", bench: Workbench) -> float:
+    from verify import chain_studies
+
+    return chain_studies.energy_drift(scene.beam, a.links, a.amplitude, a.periods, a.step, a.tolerance)
+
+
+def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> float:
+    from msgspec.structs import replace
+
+    from verify import chain_studies
+
+    if scene.drive is None or scene.drive.kind != "force" or not scene.drive.force:
+        raise InputError(
+            "chain.transient_deflection: the scene has no drive by forces; give it a [drive] of kind force"
+        )
+    forces = [force.on(scene.beam) for force in scene.drive.force]
+    if a.force is not None:
+        forces = [replace(force, amplitude=a.force) for force in forces]
+    method = a.method or ("rk4" if a.step is not None else "adaptive")
+    motion = chain_studies.transient(
+        scene.beam, forces, scene.drive.frequency_hz, [a.time], a.links, step=a.step, method=method,
+        axial_inertia=a.inertia == "full", tolerance=a.tolerance,
+    )  # fmt: skip
+    return float(motion.deflection([a.x])[0, 0])
+
+
+def _nothing(a: Any, scene: "Scene") -> tuple[()]:
+    """The nonlinear chain takes no modes of others."""
+    return ()
+
+
+CHAIN_QUANTITIES = (
+    Quantity("chain.cantilever_tip", "1", "Tip of a cantilever under a dead transverse force: w/L or 1 - x/L.",
+             TipUnderLoad, _nothing, _cantilever_tip),
+    Quantity("chain.rollup_gap", "1", "Distance of the ends over L under an end moment 2 pi EI/L.",
+             RolledUp, _nothing, _rollup_gap),
+    Quantity("chain.hanging_frequency", "1", "Omega sqrt(L/g) of a hanging chain of uniform links.",
+             Hanging, _nothing, _hanging_frequency),
+    Quantity("chain.large_amplitude_frequency", "1", "First frequency between immovable hinges over the linear one.",
+             LargeAmplitude, _nothing, _large_amplitude_frequency),
+    Quantity("chain.energy_drift", "1", "Largest change of energy of an undamped chain over its energy.",
+             FreeMotion, _nothing, _energy_drift),
+    Quantity("chain.transient_deflection", "m", "Deflection of the chain from rest under the scene's forces.",
+             FromRest, _nothing, _transient_deflection),
+)  # fmt: skip

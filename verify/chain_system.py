@@ -1,0 +1,271 @@
+"""The nonlinear chain described: rigid links, joints, supports, loads. Data checked, no mechanics.
+
+Links are numbered 1..N from the base; joint i lies at the near end of link i. x runs along the straight chain, y
+across it. Sections 2 and 7 of the paper's formalism: relative joint coordinates q_i = theta_i - theta_{i-1}.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import isfinite, pi
+from typing import Literal
+
+import numpy as np
+
+from verify.beam import Beam, PointForce, check_number
+from verify.chain import Chain, Joints, build_chain
+from verify.chain_walls import Wall
+from verify.division import Array
+from verify.errors import InputError
+from verify.point_loads import Load, joint_weights
+
+Tip = Literal["free", "roller"]
+MAX_ACTUATORS = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rotation:
+    """The base's prescribed angle, offset + rate t + amplitude sin(2 pi f t + phase), radians."""
+
+    offset: float = 0.0
+    rate: float = 0.0
+    """rad/s."""
+    amplitude: float = 0.0
+    frequency_hz: float = 0.0
+    phase_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field in ("offset", "rate", "amplitude", "frequency_hz", "phase_deg"):
+            check_number(f"rotation.{field}", getattr(self, field), "SI, degrees for the phase")
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkLoad:
+    """A dead force and moment on one link, times cos(2 pi f t + phase)."""
+
+    link: int
+    """1..N."""
+    at: float
+    """Metres from the link's near joint."""
+    force: tuple[float, float] = (0.0, 0.0)
+    """(F_x, F_y), newton; it keeps its direction."""
+    moment: float = 0.0
+    """N m."""
+    frequency_hz: float = 0.0
+    phase_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in zip(("force x", "force y"), self.force, strict=True):
+            check_number(f"load.{name}", value, "newton")
+        check_number("load.moment", self.moment, "N m")
+        check_number("load.frequency_hz", self.frequency_hz, "hertz, 0 for a constant load", at_least=0)
+        check_number("load.phase_deg", self.phase_deg, "degrees")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Actuator:
+    """A point of a link kept at y = amplitude cos(2 pi f t + phase)."""
+
+    link: int
+    at: float
+    amplitude: float = 0.0
+    """Metres."""
+    frequency_hz: float = 0.0
+    phase_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_number("actuator.amplitude", self.amplitude, "metres")
+        check_number("actuator.frequency_hz", self.frequency_hz, "hertz, 0 for a fixed point", at_least=0)
+        check_number("actuator.phase_deg", self.phase_deg, "degrees")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChainSystem:
+    """N rigid links, joint springs and dashpots, a base, a tip, loads. SI.
+
+    Raises InputError for a link without length, mass or inertia, negative springs or dashpots, loads on links that
+    do not exist, and a tip that cannot move along x.
+    """
+
+    lengths: Array
+    """(N,)."""
+    masses: Array
+    """(N,)."""
+    inertias: Array
+    """(N,), about the middles."""
+    stiffness: Array
+    """(N,), N m/rad; the first is the base's own, 0 for a pin."""
+    dashpots: Array
+    """(N,), N m s/rad."""
+    tip: Tip = "free"
+    axial_spring: float = 0.0
+    """N/m between the roller and the place where the straight chain ends; EA/L makes an end immovable."""
+    axial_inertia: bool = True
+    """Whether links resist acceleration along x. Rigid links pass it on undiminished, a real beam does not."""
+    gravity: tuple[float, float] = (0.0, 0.0)
+    """m/s^2."""
+    rotation: Rotation = Rotation()
+    """Of the hub that the base's spring is fastened to."""
+    loads: tuple[LinkLoad, ...] = ()
+    actuators: tuple[Actuator, ...] = ()
+
+    def __post_init__(self) -> None:
+        _check_arrays(self)
+        check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
+        for value in self.gravity:
+            check_number("chain.gravity", value, "m/s^2")
+        if self.tip not in ("free", "roller"):
+            raise InputError(
+                f"chain.tip = {self.tip!r}: a straight chain of rigid links between two fixed ends cannot move: "
+                "the sum of l cos theta equals L for theta = 0 alone; give 'free' or 'roller', with axial_spring = "
+                "EA/L for an immovable end"
+            )
+        if self.axial_spring and self.tip == "free":
+            raise InputError(f"chain.axial_spring = {self.axial_spring!r} acts at a roller: give tip = 'roller' or 0")
+        for kind, held in (("load", self.loads), ("actuator", self.actuators)):
+            for one in held:
+                _check_place(self, kind, one.link, one.at)
+        if len(self.actuators) > MAX_ACTUATORS:
+            raise InputError(f"chain.actuators are {len(self.actuators)}: give at most {MAX_ACTUATORS}")
+
+    @property
+    def n_links(self) -> int:
+        """N."""
+        return len(self.lengths)
+
+    @property
+    def length(self) -> float:
+        """Of the straight chain, metres."""
+        return float(self.lengths.sum())
+
+    @property
+    def nodes(self) -> Array:
+        """Joints of the straight chain, (N + 1,), metres."""
+        return np.concatenate([[0.0], np.cumsum(self.lengths)])
+
+
+@dataclass(frozen=True, eq=False)
+class ChainState:
+    """Relative angles and rates at one time."""
+
+    angles: Array
+    """(N,), radians; the first from the base's own direction."""
+    rates: Array
+    """(N,), rad/s."""
+    time: float = 0.0
+    """s."""
+
+
+def _check_arrays(system: ChainSystem) -> None:
+    n = len(system.lengths)
+    if n == 0:
+        raise InputError("chain.lengths is empty: give at least one link")
+    limits = {"lengths": "above 0", "masses": "above 0", "inertias": "above 0", "stiffness": "at least 0",
+              "dashpots": "at least 0"}  # fmt: skip
+    for field, limit in limits.items():
+        values = np.asarray(getattr(system, field), dtype=float)
+        if values.shape != (n,):
+            raise InputError(f"chain.{field} has the shape {values.shape}: give one value for each of {n} links")
+        for i, value in enumerate(values, start=1):
+            if not isfinite(value) or value < 0 or (value == 0 and limit == "above 0"):
+                raise InputError(f"chain.{field} of link {i} = {float(value)!r}: give a finite number, {limit} (SI)")
+
+
+def _check_place(system: ChainSystem, kind: str, link: int, at: float) -> None:
+    if not 1 <= link <= system.n_links:
+        raise InputError(f"{kind}.link = {link!r}: the chain has links 1 to {system.n_links}")
+    length = float(system.lengths[link - 1])
+    check_number(f"{kind}.at", at, "metres from the link's near joint")
+    if not -1e-12 * length <= at <= length * (1 + 1e-12):
+        raise InputError(f"{kind}.at = {at!r} lies off link {link}: give a place between 0 and {length!r} m")
+
+
+def build_system(
+    beam: Beam,
+    n_segments: int,
+    forces: Sequence[PointForce] = (),
+    frequency_hz: float = 0.0,
+    *,
+    load: Load = "lever",
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+    joint_dashpot: float = 0.0,
+    axial_inertia: bool = True,
+    immovable: bool = False,
+) -> ChainSystem:
+    """The nonlinear chain of a beam, its joints those of `segment_model`, under transverse harmonic forces.
+
+    Pinned or clamped on the left; free, or pinned as a roller, on the right. `load` puts a force on its link
+    ("lever") or on the four joints around it ("reciprocal", `point_loads`). `immovable` holds the roller by an axial
+    spring EA/L. Raises InputError for other supports and for forces off the beam.
+    """
+    _check_buildable(beam, wall)
+    check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
+    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
+    unit, mass = chain.unit, beam.mass_per_length
+    stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
+    system = ChainSystem(
+        lengths=chain.lengths * unit, masses=chain.masses * mass * unit, inertias=chain.inertias * mass * unit**3,
+        stiffness=stiffness, dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0), axial_inertia=axial_inertia,
+        tip="roller" if beam.supports[1] == "pinned" else "free",
+        axial_spring=beam.youngs_modulus * beam.area / beam.length if immovable else 0.0,
+    )  # fmt: skip
+    return replace(system, loads=transverse_loads(chain, system, forces, frequency_hz, load))
+
+
+def _check_buildable(beam: Beam, wall: str) -> None:
+    left, right = beam.supports
+    if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
+        raise InputError(
+            f"beam.supports = {beam.supports!r}: the nonlinear chain starts at a pinned or clamped end and ends free "
+            "or pinned (as a roller); give such a pair, mirrored where need be"
+        )
+    if wall == "welded":
+        raise InputError("wall = 'welded' is for the linear chain: choose another wall")
+
+
+def transverse_loads(
+    chain: Chain, system: ChainSystem, forces: Sequence[PointForce], frequency_hz: float, rule: str
+) -> tuple[LinkLoad, ...]:
+    """Point forces of a beam on the links of its chain. Raises InputError for one off the beam."""
+    found = []
+    for force in forces:
+        if force.position > system.length * (1.0 + 1e-12):
+            raise InputError(
+                f"force.position = {force.position!r} lies off the beam: give a position up to {system.length!r} m"
+            )
+        for link, at, share in _shares(chain, system, force.position, rule):
+            found.append(
+                LinkLoad(link=link, at=at, force=(0.0, share * force.amplitude), frequency_hz=frequency_hz,
+                         phase_deg=force.phase_deg)
+            )  # fmt: skip
+    return tuple(found)
+
+
+def link_at(system: ChainSystem, position: float) -> tuple[int, float]:
+    """The link that holds a place of the straight chain, 1..N, and the place on it in metres from its near joint."""
+    nodes = system.nodes
+    i = int(np.clip(np.searchsorted(nodes, position, side="right") - 1, 0, system.n_links - 1))
+    return i + 1, float(np.clip(position - nodes[i], 0.0, system.lengths[i]))
+
+
+def _shares(chain: Chain, system: ChainSystem, position: float, rule: str) -> list[tuple[int, float, float]]:
+    if rule == "lever":
+        return [(*link_at(system, position), 1.0)]
+    weights = joint_weights(chain, position, rule)
+    return [
+        (max(i, 1), float(system.lengths[i - 1]) if i else 0.0, float(weight))
+        for i, weight in enumerate(weights)
+        if weight
+    ]
+
+
+def held_points(system: ChainSystem) -> list[tuple[int, float]]:
+    """(link, metres from its near joint) of the roller and the actuators."""
+    roller = [(system.n_links, float(system.lengths[-1]))] if system.tip == "roller" else []
+    return roller + [(a.link, a.at) for a in system.actuators]
+
+
+def circular(frequency_hz: float) -> float:
+    """2 pi f, rad/s."""
+    return 2.0 * pi * frequency_hz
