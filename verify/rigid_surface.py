@@ -40,9 +40,7 @@ def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) 
     from verify.contact_kernels import slide_on_belt
 
     if not abs(pull) <= HELD * mu * gravity:
-        raise InputError(
-            f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull"
-        )
+        raise InputError(f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull")
     state, law = np.array([0.0, 0.0, 0.0]), _law(False, mu * gravity, 0.0, slope)
     step = 1.0 / (mu * gravity * slope)
     for _ in range(DOUBLINGS):
