@@ -429,7 +429,8 @@ def _slip(
         return float(slip[CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
     r, used = 0.0 if stuck else v - s0, 0.0
-    stuck = stuck or (r == 0.0 and abs(a0) <= law[STATIC])
+    if abs(r) <= 1e-9 * law[KINETIC] * dt and abs(a0) <= law[STATIC]:
+        r, stuck = 0.0, True  # put on a surface at rest, to rounding
     for _ in range(20):
         span, r, stuck, event = coulomb_span(
             r, a0 + (a1 - a0) * used / dt, a1, law[KINETIC], law[STATIC], dt - used, stuck
