@@ -23,7 +23,9 @@ def linear_motion(mass, stiffness, damping, loads, times, soft_s=0.0, y0=None):
     inverse = np.linalg.inv(mass)
 
     def rates(t, y):
-        push = sum(f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in zip(FORCES, loads, strict=True))
+        push = sum(
+            f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in zip(FORCES, loads, strict=True)
+        )
         return np.concatenate([y[n:], inverse @ (grown(t, soft_s) * push - damping @ y[n:] - stiffness @ y[:n])])
 
     start = np.zeros(2 * n) if y0 is None else y0

@@ -32,7 +32,7 @@ def test_a_slider_that_leaves_the_beam_stops_with_the_time_and_keeps_its_history
     assert found.statistics.stopped == "left the beam"
     assert found.end.time == pytest.approx(time, rel=3e-3)
     assert found.times[-1] <= found.end.time < found.times[-1] + 3e-5
-    assert found.position[-1] <= STRIP.length
+    assert np.all(found.position[:-1] <= STRIP.length)  # the step that crosses the end may be a sample
     assert found.end.position > STRIP.length
     assert len(found.times) == len(found.travelled) == len(found.speed) == len(found.deflection) > 200
     assert np.all(np.diff(found.position) > 0)

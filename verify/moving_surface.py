@@ -152,17 +152,22 @@ def stages_from_rest(
     if tail:  # its third derivative jumps where a force acts
         basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
     if ramp:
-        stages.append(_stage(basis, answer(modes, omega, SMOOTH_STEP, ramp.n * ramp.dt, origin), modes, ramp, tail))
+        stages.append(
+            _stage(basis, SMOOTH_STEP, answer(modes, omega, SMOOTH_STEP, ramp.n * ramp.dt, origin), modes, ramp, tail)
+        )
         origin += ramp.n * ramp.dt
     if rest:
-        stages.append(_stage(basis, answer(modes, omega, CONSTANT, 1.0, origin), modes, rest, tail))
+        stages.append(_stage(basis, CONSTANT, answer(modes, omega, CONSTANT, 1.0, origin), modes, rest, tail))
     return stages
 
 
 def _stage(
-    basis: TimeBasis, forced: Answer, modes: Modal, steps: Steps, tail: Callable[[Array, int], ComplexArray] | None
-) -> Stage:
-    growth = SMOOTH_STEP if forced.amplitudes.shape[1] > 1 else CONSTANT
+    basis: TimeBasis, own: Array, forced: Answer, modes: Modal, steps: Steps,
+    tail: Callable[[Array, int], ComplexArray] | None,
+) -> Stage:  # fmt: skip
+    """`own` is the growth of the forces, which the tail follows at once."""
+    growth = np.zeros(forced.amplitudes.shape[1])
+    growth[: len(own)] = own
 
     def drive(x: Array, derivative: int) -> Array:
         parts = forced.amplitudes.T @ basis.shapes(x, derivative)
