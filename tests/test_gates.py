@@ -448,7 +448,9 @@ def one_way_for_two_way(patch):
 def raw_line_for_the_spline(patch):
     true = simulate.basis_of
     patch.setattr(
-        simulate, "basis_of", lambda beam, model, *given: true(beam, model, *given[:2], "raw" if model == "segment" else "spline")
+        simulate,
+        "basis_of",
+        lambda beam, model, *given: true(beam, model, *given[:2], "raw" if model == "segment" else "spline"),
     )
 
 
@@ -481,7 +483,7 @@ def lumped_element_mass_in_time(patch):
 
 def link_inertia_left_out_in_time(patch):
     link_inertia_left_out(patch)
-    patch.setattr(segment_motion, "_mass_share", lambda square: np.ones_like(square))
+    patch.setattr(segment_motion, "_mass_share", np.ones_like)
 
 
 def drift_of_second_order_dropped(patch):
@@ -541,7 +543,9 @@ def friction_under_another_gravity(patch):
 def static_friction_for_kinetic(patch):
     true = rigid_surface._law
     patch.setattr(
-        rigid_surface, "_law", lambda coulomb, kinetic, static, slope: true(coulomb, 0.9 * kinetic + 0.1 * static, static, slope)
+        rigid_surface,
+        "_law",
+        lambda coulomb, kinetic, static, slope: true(coulomb, 0.9 * kinetic + 0.1 * static, static, slope),
     )
 
 
