@@ -189,6 +189,21 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
 
 
 @njit(cache=True)
+def _tanh_on_belt(
+    x: float, v: float, dt: float, kinetic: float, slope: float, belt: float, stiffness: float, pull: float
+) -> Any:
+    """(x, v) after a step of a spring-held slider under Eq. (3): the spring's mean force, friction solved exactly."""
+    start = pull - stiffness * x
+    rate = start - kinetic * np.tanh(slope * (v - belt))
+    middle = pull - stiffness * (x + 0.5 * dt * v + 0.125 * dt * dt * rate)
+    end = pull - stiffness * (x + dt * v + 0.5 * dt * dt * rate)
+    given = dt * (start + 4.0 * middle + end) / 6.0
+    v1 = v + given + tanh_speed_change(v - belt, -given / dt, kinetic, slope, dt)
+    rate1 = end - kinetic * np.tanh(slope * (v1 - belt))
+    return x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
+
+
+@njit(cache=True)
 def slide_on_belt(
     n_steps: int, dt: float, law: Any, belt: float, stiffness: float, pull: float, state: Any, events: Any
 ) -> int:
@@ -199,22 +214,14 @@ def slide_on_belt(
     """
     x, v, stuck = state[0], state[1], state[2] > 0.0
     kind, kinetic, static, slope = law[KIND], law[KINETIC], law[STATIC], law[SLOPE]
-    n_events, time = 0, 0.0
+    n_events = 0
     for step in range(n_steps):
-        time = step * dt
         left = dt
         while left > 0.0:
             force0 = pull - stiffness * x
             if kind == TANH:
-                rate = force0 - kinetic * np.tanh(slope * (v - belt))
-                middle = pull - stiffness * (x + 0.5 * left * v + 0.125 * left * left * rate)
-                end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
-                given = left * (force0 + 4.0 * middle + end) / 6.0
-                v1 = v + given + tanh_speed_change(v - belt, -given / left, kinetic, slope, left)
-                rate1 = end - kinetic * np.tanh(slope * (v1 - belt))
-                x += 0.5 * left * (v + v1) + left * left * (rate - rate1) / 12.0
-                v, left = v1, 0.0
-                continue
+                x, v = _tanh_on_belt(x, v, dt, kinetic, slope, belt, stiffness, pull)
+                break
             rate = 0.0 if stuck else force0 - kinetic * np.sign(v - belt)
             end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
             used, r1, stuck1, event = coulomb_span(v - belt, -force0, -end, kinetic, static, left, stuck)
@@ -222,7 +229,7 @@ def slide_on_belt(
             x += 0.5 * used * (v + belt + r1) + used * used * (rate - rate1) / 12.0
             v, stuck, left = belt + r1, stuck1, left - used
             if event != 0.0 and n_events < len(events):
-                events[n_events, 0], events[n_events, 1], events[n_events, 2] = time + dt - left, event, x
+                events[n_events, 0], events[n_events, 1], events[n_events, 2] = (step + 1) * dt - left, event, x
                 n_events += 1
             if used <= 0.0 and event == 0.0:
                 left = 0.0
@@ -541,6 +548,21 @@ def _account(
     ledger[RUBBED] -= on_slider + pressed
 
 
+@njit(cache=True)
+def _move(rate: float, dt: float, motion: Any, law: Any, seen: Any, slip: Any) -> float:
+    """Advance the slider under what `slip` says; how far its own speed has taken it (Hermite's quadrature)."""
+    v = motion[V]
+    v1 = v + slip[GIVEN_END] + slip[CHANGE]
+    if slip[STICKING] > 0.0:
+        v1, rate1 = seen[2, SURFACE], rate
+    else:
+        rate1 = seen[2, PULL] + _friction(v1 - seen[2, SURFACE], law)
+    moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
+    motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
+    motion[V], motion[STUCK] = v1, slip[STICKING]
+    return float(moved)
+
+
 @njit(cache=True, error_model="numpy", inline="always")
 def _step(
     number: int, dt: float, piece: int, fresh: bool, modes: Any, drive: Any, table: Any, edges: Any, motion: Any,
@@ -576,16 +598,9 @@ def _step(
             _correct_pull(dt, x1, v1, piece, edges, local, law, seen, slip)
     else:
         _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
-    v1 = v + slip[GIVEN_END] + slip[CHANGE]
-    if slip[STICKING] > 0.0:
-        v1, rate1 = seen[2, SURFACE], rate
-    else:
-        rate1 = seen[2, PULL] + _friction(v1 - seen[2, SURFACE], law)
-    moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
-    motion[X] = x + moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
-    motion[V], motion[STUCK] = v1, slip[STICKING]
+    moved = _move(rate, dt, motion, law, seen, slip)
     if accounts:
-        _account(v, v1, moved, pressed, two_way, dt, law, seen, ledger)
+        _account(v, motion[V], moved, pressed, two_way, dt, law, seen, ledger)
 
 
 @njit(cache=True)
