@@ -6,11 +6,14 @@ z' = (-sigma + i omega) z, which a rotation advances exactly by any step. The re
 imaginary part of (t/T)^d e^{i omega t}.
 """
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numba import njit
 
+# nothing here allocates: without numba's memory runtime no loop counts references, which doubles the speed
+_compiled = partial(njit, _nrt=False)
 _FAST = {"reassoc", "contract", "nsz"}
 # entries of `motion`: what the slider carries from step to step
 X, V, STUCK = range(3)
@@ -39,7 +42,7 @@ CHANGE, STICKING, EVENT, GIVEN_MIDDLE, GIVEN_END = range(5)
 KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE = range(4)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> float:
     """What friction -b tanh(slope r) adds to a slider's speed in dt, while r' = -b tanh(slope r) - a exactly.
 
@@ -59,7 +62,7 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
     return float(side * (change + alpha * tau) / slope)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _brief_change(rho: float, alpha: float, tau: float) -> float:
     """What friction adds to rho in a short tau: four stages, off by less than 1e-11 of it, where logarithms cancel."""
     first = np.tanh(rho)
@@ -69,7 +72,7 @@ def _brief_change(rho: float, alpha: float, tau: float) -> float:
     return float(-tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0)
 
 
-@njit(cache=True, error_model="numpy")
+@_compiled(cache=True, error_model="numpy")
 def _swept_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), alpha > 1: there is no speed at rest with the surface.
 
@@ -96,13 +99,13 @@ def _swept_change(rho: float, alpha: float, tau: float) -> float:
     return float(change)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _ln_cosh(delta: float) -> float:
     """Ln(2 cosh delta), without overflow."""
     return float(abs(delta) + np.log1p(np.exp(-2.0 * abs(delta))))
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _held_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1: rho tends to rest = -artanh alpha.
 
@@ -127,17 +130,17 @@ def _held_change(rho: float, alpha: float, tau: float) -> float:
     return float(side * _arsinh_exp(level) + rest - rho)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _ln_sinh(eta: float) -> float:
     return float(np.log(np.sinh(eta))) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _arsinh_exp(level: float) -> float:
     return float(np.arcsinh(np.exp(level))) if level < 20.0 else level + np.log(2.0)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def coulomb_span(r: float, a0: float, a1: float, kinetic: float, static: float, dt: float, stuck: bool) -> Any:
     """Until friction changes its mind: (time used, r at its end, whether stuck then, kind of event or 0).
 
@@ -160,7 +163,7 @@ def coulomb_span(r: float, a0: float, a1: float, kinetic: float, static: float, 
     return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     """The first t in (0, dt) where r - slowing t - rate t^2/2 changes sign, else dt."""
     if r == 0.0:
@@ -180,7 +183,7 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     return best
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def slide_on_belt(
     n_steps: int, dt: float, law: Any, belt: float, stiffness: float, pull: float, state: Any, events: Any
 ) -> int:
@@ -222,7 +225,7 @@ def slide_on_belt(
     return n_events
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _rotate_half(modes: Any) -> None:
     """Advance every free mode by half a step."""
     for j in range(modes.shape[1]):
@@ -231,7 +234,7 @@ def _rotate_half(modes: Any) -> None:
         modes[Z_RE, j] = real
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _set_factors(time: float, modes: Any, drive: Any, factors: Any) -> None:
     """Time factors of all rows and their rates: modes first, then (t/ramp)^d (cos, -sin) of the drive."""
     n = modes.shape[1]
@@ -251,7 +254,7 @@ def _set_factors(time: float, modes: Any, drive: Any, factors: Any) -> None:
         power = power * time / unit
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _set_local(table: Any, piece: int, factors: Any, local: Any) -> None:
     """Polynomials of deflection and velocity on one piece; table is (pieces, degree + 1, rows)."""
     for d in range(table.shape[1]):
@@ -262,7 +265,7 @@ def _set_local(table: Any, piece: int, factors: Any, local: Any) -> None:
         local[STILL, d], local[MOVING, d] = still, moving
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def find_piece(edges: Any, x: float, piece: int) -> int:
     """The piece that holds x, from the one that did; -1 off the pieces."""
     while piece >= 0 and x < edges[piece]:
@@ -274,18 +277,19 @@ def find_piece(edges: Any, x: float, piece: int) -> int:
     return piece if piece < len(edges) - 1 else -1
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _material(local: Any, edges: Any, piece: int, x: float, half: float) -> float:
     """The local coordinate of the material point under x: X = x + (h/2) w'."""
     length = edges[piece + 1] - edges[piece]
     xi = (x - edges[piece]) / length
-    first = 0.0
+    value, first = 0.0, 0.0
     for d in range(local.shape[1] - 1, 0, -1):
-        first = first * xi + float(d) * local[STILL, d]
+        value = value * xi + local[STILL, d]
+        first = first * xi + value
     return float(xi + half * first / (length * length))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any, seen: Any, row: int) -> None:
     """The surface under x: tangential velocity of its material, and what a slider that follows it feels.
 
@@ -293,21 +297,22 @@ def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any,
     """
     length = edges[piece + 1] - edges[piece]
     at = _material(local, edges, piece, x, law[HALF])
-    rise, slope, turn, bend = 0.0, 0.0, 0.0, 0.0
+    deflection, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
     for d in range(local.shape[1] - 1, -1, -1):  # Horner for values and derivatives together
         bend = bend * at + slope
-        slope = slope * at + (local[STILL, d + 1] * (d + 1.0) if d + 1 < local.shape[1] else 0.0)
+        slope = slope * at + deflection
+        deflection = deflection * at + local[STILL, d]
         turn = turn * at + rise
         rise = rise * at + local[MOVING, d]
     slope, turn = slope / length, turn / length
     seen[row, SURFACE] = (rise * slope - law[HALF] * turn) / np.sqrt(1.0 + slope * slope)
     seen[row, PULL], seen[row, DRIFT] = 0.0, 0.0
     if law[FOLLOWING] > 0.0:
-        seen[row, PULL] = rise * (turn + bend / (length * length) * speed) - law[GRAVITY] * slope
+        seen[row, PULL] = rise * (turn + 2.0 * bend / (length * length) * speed) - law[GRAVITY] * slope
         seen[row, DRIFT] = -slope * rise
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: float, modes: Any) -> None:
     """How a unit tangential force on the surface at x loads every mode: -(h/2) on its slope, w' on its rise."""
     length = edges[piece + 1] - edges[piece]
@@ -322,7 +327,7 @@ def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: 
         modes[LEVER, j] = (slope * value - half * first / length) / stretch
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _mobility(modes: Any, turn: int) -> float:
     """Speed of the surface after a constant unit force has acted for half a step or a whole one, m/s per newton."""
     total = 0.0
@@ -331,7 +336,7 @@ def _mobility(modes: Any, turn: int) -> float:
     return total
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _press(force: float, modes: Any) -> None:
     """Add what a constant force over the whole step adds to the modes: (1 - turn) about the shifted rest position."""
     for j in range(modes.shape[1]):
@@ -342,7 +347,7 @@ def _press(force: float, modes: Any) -> None:
         modes[Z_IM, j] += imaginary - (modes[FULL_RE, j] * imaginary + modes[FULL_IM, j] * real)
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _power(drive: Any, loads: Any, forces: Any, time: float, factors: Any) -> float:
     """Power of the driving forces, watts; loads is (n_forces, rows), forces (2, n_forces) real and imaginary."""
     angle = drive[FREQUENCY] * (drive[ORIGIN] + time)
@@ -358,7 +363,7 @@ def _power(drive: Any, loads: Any, forces: Any, time: float, factors: Any) -> fl
     return total
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _loss(modes: Any, factors: Any) -> float:
     """Power lost in the modes, watts."""
     total = 0.0
@@ -367,7 +372,7 @@ def _loss(modes: Any, factors: Any) -> float:
     return total
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _pressed_speed(modes: Any) -> float:
     """Displacement of the free modes along the levers, metres."""
     total = 0.0
@@ -376,7 +381,7 @@ def _pressed_speed(modes: Any) -> float:
     return total
 
 
-@njit(cache=True, inline="always")
+@_compiled(cache=True, inline="always")
 def _friction(r: float, law: Any) -> float:
     """Friction per mass at relative speed r where it does not depend on sticking."""
     if law[KIND] == TANH:
@@ -384,7 +389,7 @@ def _friction(r: float, law: Any) -> float:
     return float(-law[KINETIC] * np.sign(r))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _slip(
     v: float, stuck: bool, push: float, half: float, full: float, law: Any, dt: float, seen: Any, slip: Any
 ) -> float:
@@ -417,7 +422,7 @@ def _slip(
     return float(slip[CHANGE])
 
 
-@njit(cache=True, error_model="numpy")
+@_compiled(cache=True, error_model="numpy")
 def _balance(v: float, stuck: bool, half: float, full: float, law: Any, dt: float, seen: Any, slip: Any) -> float:
     """The contact force, newton, mean over the step, at which slider and beam agree: regula falsi (Illinois).
 
@@ -442,7 +447,7 @@ def _balance(v: float, stuck: bool, half: float, full: float, law: Any, dt: floa
     return float(force)
 
 
-@njit(cache=True, inline="always")
+@_compiled(cache=True, inline="always")
 def _see(
     row: int, time: float, x: float, speed: float, piece: int, modes: Any, drive: Any, table: Any, edges: Any, law: Any,
     loads: Any, forces: Any, accounts: bool, factors: Any, local: Any, seen: Any, fresh: bool,
@@ -457,7 +462,7 @@ def _see(
         seen[row, LOSS] = _loss(modes, factors)
 
 
-@njit(cache=True, inline="always")
+@_compiled(cache=True, inline="always")
 def _account(
     v: float, v1: float, moved: float, pressed: float, two_way: bool, dt: float, law: Any, seen: Any, ledger: Any
 ) -> None:
@@ -474,7 +479,7 @@ def _account(
     ledger[RUBBED] -= on_slider + pressed
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _step(
     number: int, dt: float, piece: int, fresh: bool, modes: Any, drive: Any, table: Any, edges: Any, motion: Any,
     law: Any, two_way: bool, loads: Any, forces: Any, accounts: bool, ledger: Any, factors: Any, local: Any, seen: Any,
@@ -517,11 +522,11 @@ def _step(
         _account(v, v1, moved, pressed, two_way, dt, law, seen, ledger)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def slide(
     n_steps: int, first: int, dt: float, modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any,
     two_way: bool, loads: Any, forces: Any, accounts: bool, ledger: Any, every: int, kept: Any, points: Any,
-    deflections: Any, events: Any,
+    deflections: Any, events: Any, factors: Any, local: Any, seen: Any, slip: Any,
 ) -> Any:  # fmt: skip
     """Advance beam and slider by n_steps from step number `first`; (steps done, why, rows kept, events).
 
@@ -529,8 +534,6 @@ def slide(
     (capacity, 4), filled every `every` steps together with the deflections at `points` (n_points, rows); `events`
     is (capacity, 3): time, kind, x.
     """
-    factors, local = np.empty((2, table.shape[2])), np.empty((2, table.shape[1]))
-    seen, slip = np.zeros((3, 5)), np.zeros(5)
     piece, fresh, n_kept, n_events = 0, True, 0, 0
     for number in range(first, first + n_steps):
         here = find_piece(edges, motion[X], max(piece, 0))
@@ -553,7 +556,7 @@ def slide(
     return n_steps, DONE, n_kept, n_events
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _keep(
     motion: Any, law: Any, mean_friction: float, seen: Any, factors: Any, points: Any, kept: Any, deflections: Any,
     row: int,
@@ -569,10 +572,11 @@ def _keep(
         deflections[row, p] = total
 
 
-@njit(cache=True)
-def look(modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any) -> Any:
+@_compiled(cache=True)
+def look(
+    modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any, factors: Any, local: Any, seen: Any
+) -> Any:
     """(speed of the surface under the slider, friction per mass) at time 0."""
-    factors, local, seen = np.empty((2, table.shape[2])), np.empty((2, table.shape[1])), np.zeros((3, 5))
     piece = max(find_piece(edges, motion[X], 0), 0)
     _set_factors(0.0, modes, drive, factors)
     _set_local(table, piece, factors, local)

@@ -99,11 +99,17 @@ def window(stage: Stage, start: float, travelled: float) -> Window | None:
     return stage.table(first, last), stage.edges[first : last + 1] - start
 
 
+def room(around: Window) -> tuple[Array, Array, Array, Array]:
+    """Working space of the compiled loop: time factors, local polynomials, what is seen, how it slips."""
+    rows, degree = around[0].shape[2], around[0].shape[1]
+    return np.empty((2, rows)), np.empty((2, degree)), np.zeros((3, 5)), np.zeros(5)
+
+
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     """The first sample: the slider as it is put on, before any step."""
     from verify import contact_kernels as kernels
 
-    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law)
+    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law, *room(around)[:3])
     sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed
     if len(sliding.points):
         sliding.first_deflection[:] = fed.stage.deflection(fed.z, np.zeros(1), sliding.points)[0]
@@ -140,12 +146,12 @@ def _run_stage(fed: Feed, around: Window, sliding: Sliding, tell: Callable[[int]
     """One stage in chunks; why it ended."""
     from verify import contact_kernels as kernels
 
-    s, stage, number = sliding, fed.stage, 0
+    s, stage, number, space = sliding, fed.stage, 0, room(around)
     while number < stage.n_steps:
         done, why, kept, events = kernels.slide(
             min(CHUNK, stage.n_steps - number), number, stage.dt, fed.modes, fed.drive, *around, s.motion, s.law,
             s.two_way, fed.loads, fed.forces, s.accounts, s.ledger, stage.every, s.kept[s.n_kept :], fed.points,
-            s.deflections[s.n_kept :], s.events[s.n_events :],
+            s.deflections[s.n_kept :], s.events[s.n_events :], *space,
         )  # fmt: skip
         s.events[s.n_events : s.n_events + events, 0] += stage.origin
         s.steps, s.n_kept, s.n_events, number = s.steps + done, s.n_kept + kept, s.n_events + events, number + done
