@@ -34,8 +34,8 @@ STICKS, SLIPS, TURNS = 1.0, 2.0, 3.0
 Z_RE, Z_IM, SIGMA, OMEGA, HALF_RE, HALF_IM, FULL_RE, FULL_IM, LEVER = range(9)
 # rows of `factors`, (2, rows), and of `local`, (2, degree + 1): deflection and velocity
 STILL, MOVING = range(2)
-# entries of `drive`: the forces grow as 3 p^2 - 2 p^3 over RAMP seconds where RAMPED; RAMP is the unit of time of rows
-FREQUENCY, ORIGIN, RAMP, RAMPED = range(4)
+# entries of `drive`; from GROWTH on, the forces' amplitude as a polynomial in t/RAMP; RAMP is the rows' unit of time
+FREQUENCY, ORIGIN, RAMP, GROWTH = range(4)
 # entries of `slip`: what friction adds to the speed, sticking at the end, time of the last event, what else adds
 CHANGE, STICKING, EVENT, GIVEN_MIDDLE, GIVEN_END = range(5)
 # columns of `kept`
@@ -352,8 +352,9 @@ def _power(drive: Any, loads: Any, forces: Any, time: float, factors: Any) -> fl
     """Power of the driving forces, watts; loads is (n_forces, rows), forces (2, n_forces) real and imaginary."""
     angle = drive[FREQUENCY] * (drive[ORIGIN] + time)
     c, s = np.cos(angle), np.sin(angle)
-    part = time / drive[RAMP]
-    grown = part * part * (3.0 - 2.0 * part) if drive[RAMPED] > 0.0 else 1.0
+    part, grown = time / drive[RAMP], 0.0
+    for d in range(len(drive) - 1, GROWTH - 1, -1):
+        grown = grown * part + drive[d]
     total = 0.0
     for f in range(loads.shape[0]):
         speed = 0.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-from verify.forcing import CONSTANT, SMOOTH_STEP, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
+from verify.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 from verify.time_basis import Array, ComplexArray, TimeBasis, taylor_table
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     omega: float
     origin: float
     unit_s: float
-    ramped: bool
+    growth: Array
+    """Amplitude of the forces as a polynomial in t / unit_s, (degree + 1,)."""
     n_steps: int
     dt: float
     every: int
@@ -123,25 +124,36 @@ def cut(duration: float, longest: float, samples: int) -> Steps:
     return Steps(every * samples, duration / (every * samples), every)
 
 
+class Growth(msgspec.Struct, frozen=True, eq=False):
+    """A stretch of time in which the forces' amplitude is one polynomial of (t / duration)."""
+
+    steps: Steps
+    coefficients: Array
+
+
 def stages_from_rest(
-    basis: TimeBasis, forces: Sequence[PointForce], omega: float, damping: float, ramp: Steps | None,
-    rest: Steps | None, origin: float,
-) -> list[Stage]:  # fmt: skip
-    """The growth of the forces, if it is asked for, and what follows."""
+    basis: TimeBasis,
+    forces: Sequence[PointForce],
+    omega: float,
+    damping: float,
+    pieces: Sequence[Growth],
+    origin: float,
+) -> list[Stage]:
+    """One stage for every piece of the forces' envelope."""
     modes, stages = modal(basis, forces, damping), []
     tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail else None
-    if ramp:
-        stages.append(_stage(basis, answer(modes, omega, SMOOTH_STEP, ramp.n * ramp.dt, origin), modes, ramp, tail))
-        origin += ramp.n * ramp.dt
-    if rest:
-        stages.append(_stage(basis, answer(modes, omega, CONSTANT, 1.0, origin), modes, rest, tail))
+    for piece in pieces:
+        duration = piece.steps.n * piece.steps.dt
+        forced = answer(modes, omega, piece.coefficients, duration, origin)
+        stages.append(_stage(basis, forced, modes, piece, tail))
+        origin += duration
     return stages
 
 
 def _stage(
-    basis: TimeBasis, forced: Answer, modes: Modal, steps: Steps, tail: Callable[[Array, int], ComplexArray] | None
+    basis: TimeBasis, forced: Answer, modes: Modal, piece: Growth, tail: Callable[[Array, int], ComplexArray] | None
 ) -> Stage:
-    growth = SMOOTH_STEP if forced.amplitudes.shape[1] > 1 else CONSTANT
+    growth, steps = piece.coefficients, piece.steps
 
     def drive(x: Array, derivative: int) -> Array:
         parts = forced.amplitudes.T @ basis.shapes(x, derivative)
@@ -159,7 +171,7 @@ def _stage(
     return Stage(
         modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, load_rows=load_rows,
         edges=basis.edges, degree=basis.degree, omega=forced.omega, origin=forced.origin, unit_s=forced.unit_s,
-        ramped=forced.amplitudes.shape[1] > 1, n_steps=steps.n, dt=steps.dt, every=steps.every,
+        growth=growth, n_steps=steps.n, dt=steps.dt, every=steps.every,
     )  # fmt: skip
 
 
@@ -181,7 +193,7 @@ def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: Tim
     modes = modal(basis, (), damping) if basis else NO_MODES
     return Stage(modal=modes, forced=None, free_shapes=basis.shapes if basis else nothing, drive_shapes=drive,
                  load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
-                 edges=edges, degree=degree, omega=field.omega, origin=origin, unit_s=1.0, ramped=False,
+                 edges=edges, degree=degree, omega=field.omega, origin=origin, unit_s=1.0, growth=CONSTANT,
                  n_steps=steps.n, dt=steps.dt, every=steps.every)  # fmt: skip
 
 

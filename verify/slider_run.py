@@ -79,7 +79,7 @@ def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) ->
     for row, force in zip(loads, forces, strict=True):
         row[:] = stage.load_rows(force.position)
     return Feed(stage=stage, modes=modes, loads=loads,
-                drive=np.array([stage.omega, stage.origin, stage.unit_s, float(stage.ramped)]),
+                drive=np.array([stage.omega, stage.origin, stage.unit_s, *stage.growth]),
                 forces=np.array([amplitudes.real, amplitudes.imag]),
                 points=np.ascontiguousarray(stage.rows(points).T))  # fmt: skip
 
