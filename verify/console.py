@@ -213,12 +213,12 @@ def _map_table(found: "DesignMap") -> Table:
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
     first, *second = found.axes
-    table.add_column(first.name, justify="right", no_wrap=True)
+    table.add_column(" \\ ".join(axis.name for axis in found.axes), justify="right", no_wrap=True)
     grid = found.values.reshape(len(first.values), -1)
     few = ((grid.shape[0], 13), (grid.shape[1], 7))
     rows, columns = (np.unique(np.linspace(0, n - 1, most).round().astype(int)) for n, most in few)
     for j in columns:
-        head = f"{second[0].name} {second[0].values[j]:g}" if second else found.quantity
+        head = f"{second[0].values[j]:g}" if second else found.quantity
         table.add_column(head, justify="right", overflow="fold")
     for i in rows:
         table.add_row(f"{first.values[i]:g}", *("–" if np.isnan(v) else f"{v:.4g}" for v in grid[i, columns]))
