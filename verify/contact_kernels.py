@@ -480,6 +480,28 @@ def _account(
     ledger[RUBBED] -= on_slider + pressed
 
 
+@_compiled(cache=True)
+def _give(dt: float, seen: Any, slip: Any) -> None:
+    """What everything but friction adds to the speed by the middle and the end of a step."""
+    slip[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
+    slip[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+
+
+@_compiled(cache=True)
+def _advance(dt: float, rate: float, motion: Any, law: Any, seen: Any, slip: Any) -> float:
+    """Move the slider to the end of a step; the distance that its own speed made. `rate` was its acceleration."""
+    v = motion[V]
+    v1 = v + slip[GIVEN_END] + slip[CHANGE]
+    if slip[STICKING] > 0.0:
+        v1, rate1 = seen[2, SURFACE], rate
+    else:
+        rate1 = seen[2, PULL] + _friction(v1 - seen[2, SURFACE], law)
+    moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
+    motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
+    motion[V], motion[STUCK] = v1, slip[STICKING]
+    return float(moved)
+
+
 @_compiled(cache=True, error_model="numpy", inline="always")
 def _step(
     number: int, dt: float, piece: int, fresh: bool, modes: Any, drive: Any, table: Any, edges: Any, motion: Any,
@@ -501,8 +523,7 @@ def _step(
         t = 0.5 * row * dt
         _see(row, (number + 0.5 * row) * dt, x + t * along + 0.5 * t * t * rate, v + t * rate, piece, modes, drive,
              table, edges, law, loads, forces, accounts, factors, local, seen, True)  # fmt: skip
-    slip[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
-    slip[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+    _give(dt, seen, slip)
     if two_way:
         force = _balance(v, stuck, half, full, law, dt, seen, slip)
         _press(-force, modes)
@@ -511,16 +532,9 @@ def _step(
         pressed = -force * (_pressed_speed(modes) - pressed)
     else:
         _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
-    v1 = v + slip[GIVEN_END] + slip[CHANGE]
-    if slip[STICKING] > 0.0:
-        v1, rate1 = seen[2, SURFACE], rate
-    else:
-        rate1 = seen[2, PULL] + _friction(v1 - seen[2, SURFACE], law)
-    moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
-    motion[X] = x + moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
-    motion[V], motion[STUCK] = v1, slip[STICKING]
+    moved = _advance(dt, rate, motion, law, seen, slip)
     if accounts:
-        _account(v, v1, moved, pressed, two_way, dt, law, seen, ledger)
+        _account(v, motion[V], moved, pressed, two_way, dt, law, seen, ledger)
 
 
 @_compiled(cache=True)
@@ -571,6 +585,36 @@ def _keep(
         for j in range(points.shape[1]):
             total += points[p, j] * factors[STILL, j]
         deflections[row, p] = total
+
+
+@_compiled(cache=True)
+def slide_given(
+    n_steps: int, dt: float, local: Any, along: Any, edges: Any, motion: Any, law: Any, kept: Any, seen: Any, slip: Any
+) -> int:
+    """The same steps on a surface that is given at every half step, one way; how many were done on its piece.
+
+    `local` is (2 n + 1, 2, degree + 1), `along` (2 n + 1,) a speed of the whole surface along x, `edges` (2,).
+    """
+    for number in range(n_steps + 1):
+        x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
+        if x < edges[0] or x > edges[1]:
+            return max(number - 1, 0)
+        _touch(local[2 * number], edges, 0, x, v, law, seen, 0)
+        seen[0, SURFACE] += along[2 * number]
+        rate = seen[0, PULL] + (0.0 if stuck else _friction(v - seen[0, SURFACE], law))
+        kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
+        kept[number, KEPT_FRICTION] = slip[CHANGE] / dt if stuck else rate - seen[0, PULL]
+        if number == n_steps:
+            break
+        ahead = v + seen[0, DRIFT]
+        for row in range(1, 3):
+            t = 0.5 * row * dt
+            _touch(local[2 * number + row], edges, 0, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
+            seen[row, SURFACE] += along[2 * number + row]
+        _give(dt, seen, slip)
+        _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
+        _advance(dt, rate, motion, law, seen, slip)
+    return n_steps
 
 
 @_compiled(cache=True)
