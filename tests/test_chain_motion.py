@@ -149,6 +149,19 @@ def test_a_double_pendulum_agrees_with_independent_integrators(method):
     assert abs(motion.angles[0]).max() > 1.0
 
 
+@pytest.mark.parametrize("method", ["DOP853", "Radau"])
+def test_a_driven_chain_on_its_roller_agrees_with_independent_integrators(method):
+    system = driven(6, 200.0)
+
+    def slope(t, y):
+        return np.concatenate([y[6:], by_multipliers(system, t, y[:6], y[6:])])
+
+    exact = solve_ivp(slope, (0.0, 6e-4), np.zeros(12), method=method, rtol=1e-9, atol=1e-11)
+    motion = simulate(system, at_rest(system), [6e-4], tolerance=1e-11)
+    assert motion.angles[0] == pytest.approx(exact.y[:6, -1], abs=3e-8)
+    assert abs(motion.angles[0]).max() > 1e-3
+
+
 @pytest.mark.parametrize("dependent", [2, 5, 6])
 def test_no_result_depends_on_which_angle_is_dependent(dependent):
     system = odd_chain(6, 6, tip="roller", rotation=Rotation())
