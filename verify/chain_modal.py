@@ -192,12 +192,12 @@ def linear_states(basis: ModalBasis, free: Array, since: Array, times: Array, wh
     return np.asarray(_steady_at(basis, times)[:, which] + flow)
 
 
-def _turns(omega: Array, h: float) -> Array:
-    """(m, 3) for the exact flow of a time h."""
-    safe = np.where(omega > 0.0, omega, 1.0)
-    return np.stack(
-        [np.cos(omega * h), np.where(omega > 0.0, np.sin(omega * h) / safe, h), -omega * np.sin(omega * h)], axis=1
-    )
+def _turns(omega: Array, times: Array) -> Array:
+    """(n, m, 3) for the exact flows of some times: cosine, sine over omega, -omega times sine."""
+    turns = times[:, None] * omega
+    c, s = np.cos(turns), np.sin(turns)
+    sinc = np.where(omega > 0.0, s / np.where(omega > 0.0, omega, 1.0), times[:, None])
+    return np.stack([c, sinc, -omega * s], axis=2)
 
 
 def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kicks: int) -> kernels.Modal:
@@ -208,8 +208,8 @@ def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kick
     even = len(gaps) > 1 and np.ptp(gaps) < 1e-9 * gaps[0]
     return kernels.Modal(
         kicks=np.array(weights), shares_of_step=np.array(flows), omega=omega,
-        flows=np.array([_turns(omega, share * step) for share in (*flows, 1.0)]),
-        spacing=_turns(omega, float(gaps.mean())) if even else np.zeros((0, 3)),
+        flows=_turns(omega, step * np.array([*flows, 1.0])),
+        spacing=_turns(omega, gaps[:1])[0] if even else np.zeros((0, 3)),
         modes=np.ascontiguousarray(basis.modes[chosen]), duals=np.ascontiguousarray(basis.duals[chosen]),
         rest=basis.rest.angles, drives=basis.drives, shares=np.ascontiguousarray(basis.shares[:, chosen]),
         tilt=basis.tilt, start=np.zeros((m, 2)), steady=np.zeros((m, 2)), trial=np.zeros((m, 2)),
@@ -226,14 +226,14 @@ class _Modal:
         n, held = basis.system.n_links, int(basis.tilt != 0.0)
         self.basis, self.samples, self.started = basis, samples, start.time
         chosen = np.concatenate([np.arange(n_modes), np.arange(n - held, n)]).astype(np.int64)
-        self.chosen, self.others = chosen, np.setdiff1d(np.arange(n), chosen)
+        self.chosen, self.others = chosen, np.arange(n_modes, n - held)
         steady = _steady_at(basis, np.array([start.time]))[0]
         self.begin = _free(basis, start)
         self.flat, self.work = flatten(basis.system, ledger=False), workspace(basis.system)
-        self.kept = np.zeros((len(samples), len(chosen), 2))
+        self.kept = np.zeros((len(samples), 2, len(chosen)))
         self.clock, self.counts = np.array([start.time, step]), np.zeros(5, dtype=np.int64)
         at_start = int(np.searchsorted(samples, start.time, side="right"))
-        self.kept[:at_start], self.counts[3] = (self.begin + steady)[chosen], at_start
+        self.kept[:at_start], self.counts[3] = (self.begin + steady)[chosen].T, at_start
         self.free = np.ascontiguousarray(self.begin[chosen])
         self.modal = _flattened(basis, chosen, samples, step, kicks)
 
@@ -254,17 +254,18 @@ class _Modal:
     def motion(self, kicks: int, seconds: float, stopped: str) -> ChainMotion:
         """What was kept, back in angles."""
         kept, basis = int(self.counts[3]), self.basis
-        times = self.samples[:kept]
-        state = np.zeros((kept, basis.system.n_links, 2))
-        state[:, self.chosen] = self.kept[:kept]
+        times, modes = self.samples[:kept], self.modal.modes
+        angles, rates = self.kept[:kept, 0] @ modes + basis.rest.angles, self.kept[:kept, 1] @ modes
         if len(self.others):
-            state[:, self.others] = linear_states(basis, self.begin, times - self.started, times, self.others)
+            state = linear_states(basis, self.begin, times - self.started, times, self.others)
+            angles += state[:, :, 0] @ basis.modes[self.others]
+            rates += state[:, :, 1] @ basis.modes[self.others]
         none = np.zeros(kept)
         statistics = Statistics(
             method=f"modal, {kicks} kicks", steps=int(self.counts[0]), rejected=0, evaluations=int(self.counts[2]),
             seconds=seconds, stopped=stopped, started="consistent",
         )  # fmt: skip
         return ChainMotion(
-            system=basis.system, times=times, angles=state[:, :, 0] @ basis.modes + basis.rest.angles,
-            rates=state[:, :, 1] @ basis.modes, dissipated=none, work_in=none, statistics=statistics,
+            system=basis.system, times=times, angles=angles, rates=rates, dissipated=none, work_in=none,
+            statistics=statistics,
         )  # fmt: skip
