@@ -399,13 +399,56 @@ def test_bad_requests_are_refused(request_, message):
     [
         ({"step": 0.0}, "step = 0.0"),
         ({"step": 1e-5, "kicks": 4}, "kicks = 4"),
-        ({"step": 1e-5, "n_modes": 8}, "has modes 1 to 7"),
+        ({"step": 1e-5, "n_modes": 8}, "there are modes 1 to 7"),
     ],
 )
 def test_bad_requests_of_kicks_are_refused(request_, message):
     system = driven(8, 1.0)
     with pytest.raises(InputError, match=message):
         simulate_modal(modal_basis(system), at_rest(system), [1e-4], **request_)
+
+
+@pytest.mark.parametrize(
+    "supports", [("pinned", "pinned"), ("clamped", "free"), ("clamped", "pinned"), ("pinned", "free")]
+)
+def test_the_lowest_modes_alone_are_the_first_of_all(supports):
+    system = build_system(beam(*supports), 24, [PointForce(position=0.1)], 900.0)
+    every, few = modal_basis(system), modal_basis(system, n_modes=9)
+    rigid = supports == ("pinned", "free")
+    held = supports[1] == "pinned"
+    same = slice(int(rigid), 9 + int(rigid))
+    assert few.omega[:9] == pytest.approx(every.omega[same], rel=1e-9)
+    assert abs(few.shares[:, :9]) == pytest.approx(abs(every.shares[:, same]), rel=1e-6)
+    assert few.duals @ few.modes.T == pytest.approx(np.eye(9 + held), abs=1e-9)
+    assert few.tilt == pytest.approx(every.tilt, rel=1e-9)
+
+
+def test_three_thousand_links_move_in_steps_a_thousand_times_the_explicit_limit():
+    times, step = np.linspace(1e-5, 3e-4, 30), 1e-5
+    forces = [PointForce(position=0.043, amplitude=10.0, phase_deg=-90.0), PointForce(position=0.387, amplitude=10.0)]
+
+    def middle(n):
+        system = build_system(beam(), n, forces, 3800.0)
+        motion = simulate_modal(modal_basis(system, n_modes=50), at_rest(system), times, step=step, kicks=1)
+        return motion.deflection([0.215])[:, 0]
+
+    long = build_system(beam(), 3000)
+    assert step > 1000 * 2 * np.sqrt(2) / (np.sqrt(48) * beam().wave_constant / long.lengths[0] ** 2)
+    assert rms(middle(3000) - middle(1000)) < 3e-3 * rms(middle(1000))
+
+
+@pytest.mark.parametrize(
+    ("change", "request_", "message"),
+    [
+        ({}, {"n_modes": 8}, "elastic modes 1 to 7"),
+        ({"gravity": (0.0, -9.81)}, {"n_modes": 3}, "unloaded chain"),
+        ({"stiffness": np.zeros(8)}, {"n_modes": 3}, "joints without a spring"),
+        ({}, {"n_modes": 3, "rest": ChainState(np.zeros(8), np.zeros(8))}, "give n_modes or rest"),
+    ],
+)
+def test_lowest_modes_that_are_not_there_are_refused(change, request_, message):
+    with pytest.raises(InputError, match=message):
+        modal_basis(replace(driven(8, 1.0), **change), **request_)
 
 
 def test_what_has_no_modal_flow_is_refused():

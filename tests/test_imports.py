@@ -16,7 +16,7 @@ MODELS = ("analytic_modes", "fem_beam", "segment_model")
 FLOORS = [
     {"errors", "timing"}, {"beam", "checked", "files"}, {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls"},
     {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives"}, {"point_loads", "chain_kernels", "elastic_kernels"},
-    {"chain_system", *MODELS}, {"chain_statics", "chain_elastic"}, {"chain_dynamics"}, {"chain_motion"}, {"chain_modal"}, {"chain_studies"},
+    {"chain_system", *MODELS}, {"chain_statics", "chain_elastic", "chain_modes"}, {"chain_dynamics"}, {"chain_motion"}, {"chain_modal"}, {"chain_studies"},
     {"compare", "travelling_wave"}, {"workbench"}, {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"},
     {"mode_quantities", "wave_quantities", "chain_quantities"}, {"quantities", "scene"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
     {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},

@@ -5,7 +5,8 @@ the accelerations is small where the motion is small, and is put in as kicks. Wi
 Strang's splitting, of order 2 times the size of the nonlinearity; with two kicks at Gauss's points (J. Laskar and P.
 Robutel, Celest. Mech. Dyn. Astron. 80 (2001) 39) errors are of order 4 times that size and of order 2 times its
 square. With all modes a step costs O(N^2), with m of them O(N m). Modes left out move as the linear chain's; what they
-add to the axial inertia is lost, a part (up to a quarter was seen) of the nonlinear part of the motion.
+add to the axial inertia is lost, a part (up to a quarter was seen) of the nonlinear part of the motion. The kicks
+are explicit: where the nonlinearity is not small in a step the motion diverges, is stopped and says so.
 """
 
 from collections.abc import Sequence
@@ -18,6 +19,7 @@ import numpy as np
 from verify import chain_kernels as kernels
 from verify.beam import check_number
 from verify.chain_dynamics import at_rest, flatten, linearise, project, workspace
+from verify.chain_modes import lowest_modes
 from verify.chain_motion import ChainMotion, Statistics
 from verify.chain_system import ChainState, ChainSystem, circular, link_at
 from verify.division import Array
@@ -33,34 +35,46 @@ SCHEMES: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ModalBasis:
-    """All modes of a chain about an equilibrium, ascending; with a roller, last, the motion off its line."""
+    """Modes of a chain about an equilibrium, ascending; with a roller, last, the motion off its line."""
 
     system: ChainSystem
     rest: ChainState
     omega: Array
-    """(N,), rad/s; 0 for the motion off the roller's line."""
+    """(m,), rad/s; 0 for the motion off the roller's line."""
     modes: Array
-    """(N, N): row j holds the relative angles of mode j, of unit modal mass."""
+    """(m, N): row j holds the relative angles of mode j, of unit modal mass."""
     duals: Array
-    """(N, N): row j takes relative angles to modal coordinate j."""
+    """(m, N): row j takes relative angles to modal coordinate j."""
     drives: Array
     """(n_loads, 2), circular frequencies and phases of the harmonic loads."""
     shares: Array
-    """(n_loads, N), steady modal amplitudes."""
+    """(n_loads, m), steady modal amplitudes."""
     tilt: float
     """How far the last motion moves the tip off its line, metres; 0 without a roller."""
 
 
-def modal_basis(system: ChainSystem, rest: ChainState | None = None) -> ModalBasis:
+def modal_basis(system: ChainSystem, rest: ChainState | None = None, n_modes: int | None = None) -> ModalBasis:
     """Modes of the chain about an equilibrium (straight unless given), for `simulate_modal`.
 
-    Raises InputError for actuators and moving hubs, which the linear flow does not know.
+    All of them by dense matrices, O(N^3); or the lowest `n_modes` of an unloaded straight chain by Lanczos, which goes
+    to 10^4 links and leaves the others out of the linear motion too. Raises InputError for actuators and moving
+    hubs, which the linear flow does not know.
     """
-    from scipy.linalg import eigh
-
     if system.actuators or system.rotation.rate or system.rotation.amplitude:
         raise InputError("chain: actuators and a turning base have no modal flow; give method = 'adaptive' or 'rk4'")
+    if n_modes is not None and rest is not None:
+        raise InputError("n_modes: the lowest modes alone are those about straight; give n_modes or rest")
     rest = at_rest(system) if rest is None else rest
+    omega, modes, duals, tilt = _all_modes(system, rest) if n_modes is None else lowest_modes(system, n_modes)
+    drives, shares = _steady(system, rest, omega, duals)
+    return ModalBasis(system=system, rest=rest, omega=omega, modes=modes, duals=duals, drives=drives, shares=shares,
+                      tilt=tilt)  # fmt: skip
+
+
+def _all_modes(system: ChainSystem, rest: ChainState) -> tuple[Array, Array, Array, float]:
+    """Frequencies, modes, duals, and the tilt of the motion off the roller's line, which comes last."""
+    from scipy.linalg import eigh
+
     linear = linearise(system, rest)
     basis = linear.independent()
     values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
@@ -71,10 +85,7 @@ def modal_basis(system: ChainSystem, rest: ChainState | None = None) -> ModalBas
         normal /= np.sqrt(normal @ linear.mass @ normal)
         modes, omega = np.vstack([modes, normal]), np.append(omega, 0.0)
         tilt = float(linear.constraint[0] @ normal)
-    duals = modes @ linear.mass
-    drives, shares = _steady(system, rest, omega, duals)
-    return ModalBasis(system=system, rest=rest, omega=omega, modes=modes, duals=duals, drives=drives, shares=shares,
-                      tilt=tilt)  # fmt: skip
+    return omega, modes, modes @ linear.mass, tilt
 
 
 def _steady(system: ChainSystem, rest: ChainState, omega: Array, duals: Array) -> tuple[Array, Array]:
@@ -116,9 +127,9 @@ def simulate_modal(
     check_number("step", step, "seconds", above=0)
     if kicks not in SCHEMES:
         raise InputError(f"kicks = {kicks!r}: give 1, 2 or 3 kicks to a step")
-    n, held = basis.system.n_links, int(basis.tilt != 0.0)
+    n, held = len(basis.omega), int(basis.tilt != 0.0)
     if n_modes is not None and not 1 <= n_modes <= n - held:
-        raise InputError(f"n_modes = {n_modes!r}: the chain has modes 1 to {n - held}")
+        raise InputError(f"n_modes = {n_modes!r}: there are modes 1 to {n - held}")
     samples = np.atleast_1d(np.asarray(times, dtype=float))
     begin, _ = project(basis.system, start)
     run = _Modal(basis, begin, samples, step, kicks, n - held if n_modes is None else n_modes)
@@ -131,7 +142,7 @@ def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float]
     """The linearised chain's motion, exact at any time, in the relative angles of the nonlinear one."""
     clock = perf_counter()
     samples = np.atleast_1d(np.asarray(times, dtype=float))
-    every = np.arange(basis.system.n_links)
+    every = np.arange(len(basis.omega))
     state = linear_states(basis, _free(basis, start), samples - start.time, samples, every)
     angles, rates = state[:, :, 0] @ basis.modes + basis.rest.angles, state[:, :, 1] @ basis.modes
     statistics = Statistics(
@@ -223,7 +234,7 @@ class _Modal:
     def __init__(
         self, basis: ModalBasis, start: ChainState, samples: Array, step: float, kicks: int, n_modes: int
     ) -> None:
-        n, held = basis.system.n_links, int(basis.tilt != 0.0)
+        n, held = len(basis.omega), int(basis.tilt != 0.0)
         self.basis, self.samples, self.started = basis, samples, start.time
         chosen = np.concatenate([np.arange(n_modes), np.arange(n - held, n)]).astype(np.int64)
         self.chosen, self.others = chosen, np.arange(n_modes, n - held)
