@@ -14,7 +14,7 @@ from verify.beam import PointForce
 from verify.chain_dynamics import at_rest, energies, linearise, positions, project
 from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, simulate_modal
 from verify.chain_motion import simulate, step_limit
-from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, axial_inertia_size, build_system
 from verify.errors import InputError
 
 
@@ -358,6 +358,44 @@ def test_ctrl_c_returns_what_is_kept(monkeypatch):
     assert 10 < len(motion.times) < 400
 
 
+def test_ctrl_c_returns_the_kicks_that_were_taken(monkeypatch):
+    true, calls = kernels.march_modal, []
+
+    def interrupted(*given):
+        calls.append(1)
+        if len(calls) > 2:
+            raise KeyboardInterrupt
+        return true(*given)
+
+    monkeypatch.setattr(kernels, "march_modal", interrupted)
+    system = driven(8, 1.0)
+    motion = simulate_modal(modal_basis(system), at_rest(system), np.linspace(0.0, 1e-2, 400), step=1e-5)
+    assert motion.statistics.stopped.startswith("interrupted at t = ")
+    assert 100 < len(motion.times) < 400
+
+
+def test_kicks_too_strong_for_their_step_are_stopped_and_said():
+    system = driven(20, 3e4)
+    motion = simulate_modal(modal_basis(system), at_rest(system), np.linspace(0.0, 5e-3, 50), step=1e-4)
+    assert motion.statistics.stopped.startswith("diverged at t = ")
+    assert len(motion.times) < 50
+    assert np.isfinite(motion.angles).all()
+
+
+def test_axial_inertia_makes_the_roller_ended_chain_nonlinear_with_the_square_of_its_slopes():
+    times, departures = np.linspace(0.0, 8e-4, 161), []
+    for amplitude in (3.0, 6.0):
+        system = driven(49, amplitude)
+        linear = simulate_linear(modal_basis(system), at_rest(system), times).deflection([0.215])
+        full = simulate(system, at_rest(system), times, tolerance=1e-9, ledger=False)
+        light = simulate(replace(system, axial_inertia=False), at_rest(system), times, tolerance=1e-9, ledger=False)
+        departures.append(rms(full.deflection([0.215]) - linear) / rms(linear))
+        size = axial_inertia_size(beam(), 3800.0, rms(full.directions()) ** 2)
+        assert 0.2 < departures[-1] / size < 5.0
+        assert rms(light.deflection([0.215]) - linear) < 0.02 * departures[-1] * rms(linear)
+    assert departures[1] / departures[0] == pytest.approx(4.0, rel=0.05)
+
+
 def test_an_inconsistent_start_is_projected_and_said():
     system = driven(9, 1.0)
     bent = ChainState(np.full(9, 0.02), np.full(9, 0.5))
@@ -365,6 +403,8 @@ def test_an_inconsistent_start_is_projected_and_said():
     assert motion.statistics.started.startswith("projected onto the held points")
     assert positions(system, motion.state(0))[0][-1, 1] == pytest.approx(0.0, abs=1e-14)
     assert simulate(system, at_rest(system), [1e-5]).statistics.started == "consistent"
+    kicked = simulate_modal(modal_basis(system), bent, [1e-5], step=1e-5)
+    assert kicked.statistics.started == motion.statistics.started
 
 
 def test_results_repeat_to_the_last_bit():

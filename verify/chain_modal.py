@@ -20,7 +20,7 @@ from verify import chain_kernels as kernels
 from verify.beam import check_number
 from verify.chain_dynamics import at_rest, flatten, linearise, project, workspace
 from verify.chain_modes import lowest_modes
-from verify.chain_motion import ChainMotion, Statistics
+from verify.chain_motion import ChainMotion, Statistics, checked_times, how_started
 from verify.chain_system import ChainState, ChainSystem, circular, link_at
 from verify.division import Array
 from verify.errors import InputError
@@ -130,18 +130,18 @@ def simulate_modal(
     n, held = len(basis.omega), int(basis.tilt != 0.0)
     if n_modes is not None and not 1 <= n_modes <= n - held:
         raise InputError(f"n_modes = {n_modes!r}: there are modes 1 to {n - held}")
-    samples = np.atleast_1d(np.asarray(times, dtype=float))
-    begin, _ = project(basis.system, start)
+    samples = checked_times(start, times)
+    begin, moved = project(basis.system, start)
     run = _Modal(basis, begin, samples, step, kicks, n - held if n_modes is None else n_modes)
     clock = perf_counter()
     stopped = run.march()
-    return run.motion(kicks, perf_counter() - clock, stopped)
+    return run.motion(kicks, perf_counter() - clock, stopped, how_started(moved, start))
 
 
 def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float] | Array) -> ChainMotion:
     """The linearised chain's motion, exact at any time, in the relative angles of the nonlinear one."""
     clock = perf_counter()
-    samples = np.atleast_1d(np.asarray(times, dtype=float))
+    samples = checked_times(start, times)
     every = np.arange(len(basis.omega))
     state = linear_states(basis, _free(basis, start), samples - start.time, samples, every)
     angles, rates = state[:, :, 0] @ basis.modes + basis.rest.angles, state[:, :, 1] @ basis.modes
@@ -262,7 +262,7 @@ class _Modal:
         except KeyboardInterrupt:
             return f"interrupted at t = {self.clock[0]:.6g} s"
 
-    def motion(self, kicks: int, seconds: float, stopped: str) -> ChainMotion:
+    def motion(self, kicks: int, seconds: float, stopped: str, started: str) -> ChainMotion:
         """What was kept, back in angles."""
         kept, basis = int(self.counts[3]), self.basis
         times, modes = self.samples[:kept], self.modal.modes
@@ -274,7 +274,7 @@ class _Modal:
         none = np.zeros(kept)
         statistics = Statistics(
             method=f"modal, {kicks} kicks", steps=int(self.counts[0]), rejected=0, evaluations=int(self.counts[2]),
-            seconds=seconds, stopped=stopped, started="consistent",
+            seconds=seconds, stopped=stopped, started=started,
         )  # fmt: skip
         return ChainMotion(
             system=basis.system, times=times, angles=angles, rates=rates, dissipated=none, work_in=none,

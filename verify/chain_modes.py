@@ -59,8 +59,8 @@ def _answer_of_tip(system: ChainSystem) -> Array:
     diagonal, coupling = _mass(system)
     force = np.zeros(system.n_links)
     force[-1] = 1.0
-    answer = np.asarray(solveh_banded(np.stack([np.append(0.0, coupling), diagonal]), force))
-    return answer / np.sqrt(answer[-1])
+    answer = solveh_banded(np.stack([np.append(0.0, coupling), diagonal]), force)
+    return np.asarray(answer / np.sqrt(answer[-1]), dtype=float)
 
 
 def _angles(system: ChainSystem, places: Array) -> Array:
