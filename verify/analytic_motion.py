@@ -6,7 +6,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.analytic_modes import mode_shape, solve_harmonic, solve_modes
-from verify.beam import Beam, PointForce
+from verify.beam import Beam, PointForce, check_whole
 from verify.closed_forms import check_uniform
 from verify.errors import InputError
 from verify.fields import phasor
@@ -14,14 +14,17 @@ from verify.time_basis import Array, ComplexArray, TimeBasis, check_held
 
 DEGREE = 8
 """Of the Taylor pieces: the fastest mode is followed to 1e-9, the others far closer."""
+MOST = 5000
+"""Modes kept: their shapes are evaluated one by one."""
 
 
 def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
-    """The first n_modes exact modes. Raises InputError for stepped beams, rigid motions and n_modes < 1."""
+    """The first n_modes exact modes. Raises InputError for stepped beams, rigid motions and n_modes not in 1..MOST."""
     check_uniform(beam)
     check_held(beam)
-    if n_modes < 1:
-        raise InputError(f"n_modes = {n_modes!r}: ask for at least one mode")
+    check_whole("modes", n_modes, 1)
+    if n_modes > MOST:
+        raise InputError(f"modes = {n_modes!r}: the exact beam keeps at most {MOST}, the rest follow at once")
     modes = solve_modes(beam, n_modes)
     omegas = 2.0 * np.pi * modes.frequencies_hz
     fourth = omegas**2 / beam.wave_constant**2  # beta^4

@@ -24,6 +24,8 @@ KIND, KINETIC, STATIC, SLOPE, MASS, HALF, GRAVITY, FOLLOWING = range(8)
 TANH, COULOMB = 0.0, 1.0
 # entries of `ledger`
 ON_BEAM, ON_SLIDER, DRIVEN, DAMPED, RUBBED = range(5)
+# entries of `tally`: steps of this stage, samples and events of the whole run
+STEP, SAMPLES, EVENTS = range(3)
 # why a loop came back
 DONE, OFF_PIECES, NOT_FINITE = range(3)
 # kinds of events
@@ -56,8 +58,12 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
     alpha, rho = side * alpha, side * slope * r
     if (1.0 + alpha) * tau < 0.01:
         return float(side * _brief_change(rho, alpha, tau) / slope)
+    if min(rho, rho - (alpha + 1.0) * tau) > 20.0:
+        return -side * b * dt  # |tanh| is 1 throughout, to e^-40
+    if max(rho, rho - (alpha - 1.0) * tau) < -20.0:
+        return side * b * dt
     if abs(alpha - 1.0) < 1e-7:
-        alpha = 1.0 + 1e-7  # 1e-7 of b in this step; the formulas part there
+        alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)  # 1e-7 of b in this step; the formulas part there
     change = _held_change(rho, alpha, tau) if alpha < 1.0 else _swept_change(rho, alpha, tau)
     return float(side * (change + alpha * tau) / slope)
 
@@ -149,7 +155,9 @@ def coulomb_span(r: float, a0: float, a1: float, kinetic: float, static: float, 
     under `kinetic` until r = 0, where it sticks if it can.
     """
     rate = (a1 - a0) / dt
-    if stuck and abs(a0) <= static * (1.0 + 1e-12):
+    if stuck and abs(a0) > static * (1.0 + 1e-12):
+        return 0.0, 0.0, False, SLIPS
+    if stuck:
         for bound in (static, -static):
             beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
             if beyond > 0.0 and rate != 0.0:
@@ -313,8 +321,11 @@ def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any,
 
 
 @_compiled(cache=True, fastmath=_FAST, error_model="numpy")
-def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: float, modes: Any) -> None:
-    """How a unit tangential force on the surface at x loads every mode: -(h/2) on its slope, w' on its rise."""
+def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: float, modes: Any) -> Any:
+    """How a unit tangential force on the surface at x loads every mode: -(h/2) on its slope, w' on its rise.
+
+    Returns the local coordinate of the material there and w'.
+    """
     length = edges[piece + 1] - edges[piece]
     at = _material(local, edges, piece, x, half)
     slope = (at - (x - edges[piece]) / length) * length / half
@@ -325,6 +336,7 @@ def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: 
             first = first * at + value
             value = value * at + table[piece, d, j]
         modes[LEVER, j] = (slope * value - half * first / length) / stretch
+    return at, slope
 
 
 @_compiled(cache=True, fastmath=_FAST, error_model="numpy")
@@ -365,21 +377,34 @@ def _power(drive: Any, loads: Any, forces: Any, time: float, factors: Any) -> fl
 
 
 @_compiled(cache=True, fastmath=_FAST)
-def _loss(modes: Any, factors: Any) -> float:
-    """Power lost in the modes, watts."""
-    total = 0.0
-    for j in range(modes.shape[1]):
-        total += 2.0 * modes[SIGMA, j] * factors[MOVING, j] * factors[MOVING, j]
+def _loss(modes: Any, answers: Any, factors: Any) -> float:
+    """Power lost in the modes, watts; answers is (n, drive rows), the forced part of every mode."""
+    total, n = 0.0, modes.shape[1]
+    for j in range(n):
+        rate = factors[MOVING, j]
+        for d in range(answers.shape[1]):
+            rate += answers[j, d] * factors[MOVING, n + d]
+        total += 2.0 * modes[SIGMA, j] * rate * rate
     return total
 
 
 @_compiled(cache=True, fastmath=_FAST)
-def _pressed_speed(modes: Any) -> float:
-    """Displacement of the free modes along the levers, metres."""
+def _given_way(modes: Any) -> float:
+    """How far the free modes have moved the surface along the levers, metres."""
     total = 0.0
     for j in range(modes.shape[1]):
         total += modes[LEVER, j] * modes[Z_RE, j]
     return total
+
+
+@_compiled(cache=True, error_model="numpy")
+def _carried(local: Any, edges: Any, piece: int, at: float, slope: float, half: float) -> float:
+    """How far the whole motion has moved the surface at `at` along a tangent of this slope, metres."""
+    value, first = 0.0, 0.0
+    for d in range(local.shape[1] - 1, -1, -1):
+        first = first * at + value
+        value = value * at + local[STILL, d]
+    return float((slope * value - half * first / (edges[piece + 1] - edges[piece])) / np.sqrt(1.0 + slope * slope))
 
 
 @_compiled(cache=True, inline="always")
@@ -410,6 +435,7 @@ def _slip(
         return float(slip[CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
     r, used = 0.0 if stuck else v - s0, 0.0
+    stuck = stuck or (r == 0.0 and abs(a0) <= law[STATIC])
     for _ in range(20):
         span, r, stuck, event = coulomb_span(
             r, a0 + (a1 - a0) * used / dt, a1, law[KINETIC], law[STATIC], dt - used, stuck
@@ -451,7 +477,7 @@ def _balance(v: float, stuck: bool, half: float, full: float, law: Any, dt: floa
 @_compiled(cache=True, inline="always")
 def _see(
     row: int, time: float, x: float, speed: float, piece: int, modes: Any, drive: Any, table: Any, edges: Any, law: Any,
-    loads: Any, forces: Any, accounts: bool, factors: Any, local: Any, seen: Any, fresh: bool,
+    loads: Any, forces: Any, answers: Any, accounts: bool, factors: Any, local: Any, seen: Any, fresh: bool,
 ) -> None:  # fmt: skip
     """Fill one row of `seen`: the surface at x and, with accounts, the powers of drive and damping."""
     if fresh:
@@ -460,7 +486,18 @@ def _see(
     _touch(local, edges, piece, x, speed, law, seen, row)
     if accounts:
         seen[row, POWER] = _power(drive, loads, forces, time, factors)
-        seen[row, LOSS] = _loss(modes, factors)
+        seen[row, LOSS] = _loss(modes, answers, factors)
+
+
+@_compiled(cache=True)
+def _correct_powers(
+    time: float, modes: Any, drive: Any, loads: Any, forces: Any, answers: Any, factors: Any, seen: Any
+) -> None:
+    """Powers at the end of a step with what the contact has added to the speeds since its start, half at mid-step."""
+    power, loss = _power(drive, loads, forces, time, factors), _loss(modes, answers, factors)
+    seen[1, POWER] += 0.5 * (power - seen[2, POWER])
+    seen[1, LOSS] += 0.5 * (loss - seen[2, LOSS])
+    seen[2, POWER], seen[2, LOSS] = power, loss
 
 
 @_compiled(cache=True, inline="always")
@@ -505,31 +542,35 @@ def _advance(dt: float, rate: float, motion: Any, law: Any, seen: Any, slip: Any
 @_compiled(cache=True, error_model="numpy", inline="always")
 def _step(
     number: int, dt: float, piece: int, fresh: bool, modes: Any, drive: Any, table: Any, edges: Any, motion: Any,
-    law: Any, two_way: bool, loads: Any, forces: Any, accounts: bool, ledger: Any, factors: Any, local: Any, seen: Any,
-    slip: Any,
+    law: Any, two_way: bool, loads: Any, forces: Any, answers: Any, accounts: bool, ledger: Any, factors: Any,
+    local: Any, seen: Any, slip: Any,
 ) -> None:  # fmt: skip
     """One step of beam and slider."""
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
-    _see(0, number * dt, x, v, piece, modes, drive, table, edges, law, loads, forces, accounts, factors, local, seen,
-         fresh)  # fmt: skip
+    _see(0, number * dt, x, v, piece, modes, drive, table, edges, law, loads, forces, answers, accounts, factors, local,
+         seen, fresh)  # fmt: skip
     rate = seen[0, PULL] + (0.0 if stuck else _friction(v - seen[0, SURFACE], law))
     along = v + seen[0, DRIFT]
-    half, full, pressed = 0.0, 0.0, 0.0
+    half, full, at, slope, pressed = 0.0, 0.0, 0.0, 0.0, 0.0
     if two_way:
-        _set_levers(table, piece, edges, local, x, law[HALF], modes)
-        half, full, pressed = _mobility(modes, HALF_IM), _mobility(modes, FULL_IM), _pressed_speed(modes)
+        at, slope = _set_levers(table, piece, edges, local, x, law[HALF], modes)
+        half, full = _mobility(modes, HALF_IM), _mobility(modes, FULL_IM)
+        pressed = _carried(local, edges, piece, at, slope, law[HALF])
     for row in range(1, 3):
         _rotate_half(modes)
         t = 0.5 * row * dt
         _see(row, (number + 0.5 * row) * dt, x + t * along + 0.5 * t * t * rate, v + t * rate, piece, modes, drive,
-             table, edges, law, loads, forces, accounts, factors, local, seen, True)  # fmt: skip
+             table, edges, law, loads, forces, answers, accounts, factors, local, seen, True)  # fmt: skip
     _give(dt, seen, slip)
     if two_way:
         force = _balance(v, stuck, half, full, law, dt, seen, slip)
+        pressed = _carried(local, edges, piece, at, slope, law[HALF]) - pressed - _given_way(modes)
         _press(-force, modes)
-        _set_factors((number + 1) * dt, modes, drive, factors)
+        pressed = -force * (pressed + _given_way(modes))
         seen[2, SURFACE] -= force * full
-        pressed = -force * (_pressed_speed(modes) - pressed)
+        _set_factors((number + 1) * dt, modes, drive, factors)
+        if accounts:
+            _correct_powers((number + 1) * dt, modes, drive, loads, forces, answers, factors, seen)
     else:
         _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
     moved = _advance(dt, rate, motion, law, seen, slip)
@@ -539,36 +580,38 @@ def _step(
 
 @_compiled(cache=True)
 def slide(
-    n_steps: int, first: int, dt: float, modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any,
-    two_way: bool, loads: Any, forces: Any, accounts: bool, ledger: Any, every: int, kept: Any, points: Any,
-    deflections: Any, events: Any, factors: Any, local: Any, seen: Any, slip: Any,
-) -> Any:  # fmt: skip
-    """Advance beam and slider by n_steps from step number `first`; (steps done, why, rows kept, events).
+    n_steps: int, dt: float, modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any, two_way: bool,
+    loads: Any, forces: Any, answers: Any, accounts: bool, ledger: Any, every: int, kept: Any, points: Any,
+    deflections: Any, events: Any, tally: Any, factors: Any, local: Any, seen: Any, slip: Any,
+) -> int:  # fmt: skip
+    """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
-    Time is the step's number times dt. `modes`, `motion` and `ledger` are advanced in place. `kept` is
-    (capacity, 4), filled every `every` steps together with the deflections at `points` (n_points, rows); `events`
-    is (capacity, 3): time, kind, x.
+    Time is the step's number times dt. `modes`, `motion`, `ledger` and `tally` are advanced in place, together, so
+    that they agree whenever the caller is interrupted. `kept` is (capacity, 4), filled every `every` steps together
+    with the deflections at `points` (n_points, rows); `events` is (capacity, 3): time, kind, x.
     """
-    piece, fresh, n_kept, n_events = 0, True, 0, 0
-    for number in range(first, first + n_steps):
+    piece, fresh = 0, True
+    for _ in range(n_steps):
         here = find_piece(edges, motion[X], max(piece, 0))
         if here < 0:
-            return number - first, OFF_PIECES, n_kept, n_events
+            return OFF_PIECES
         fresh = fresh or here != piece or two_way
-        piece = here
-        _step(number, dt, piece, fresh, modes, drive, table, edges, motion, law, two_way, loads, forces, accounts,
-              ledger, factors, local, seen, slip)  # fmt: skip
+        piece, number = here, tally[STEP]
+        _step(number, dt, piece, fresh, modes, drive, table, edges, motion, law, two_way, loads, forces, answers,
+              accounts, ledger, factors, local, seen, slip)  # fmt: skip
         fresh = False
+        tally[STEP] += 1
         if not np.isfinite(motion[V] + factors[STILL, 0]):
-            return number + 1 - first, NOT_FINITE, n_kept, n_events
-        if slip[EVENT] >= 0.0 and n_events < len(events):
-            events[n_events, 0], events[n_events, 2] = number * dt + slip[EVENT], motion[X]
-            events[n_events, 1] = STICKS if motion[STUCK] > 0.0 else SLIPS
-            n_events += 1
-        if (number + 1) % every == 0:
-            _keep(motion, law, slip[CHANGE] / dt, seen, factors, points, kept, deflections, n_kept)
-            n_kept += 1
-    return n_steps, DONE, n_kept, n_events
+            return NOT_FINITE
+        if slip[EVENT] >= 0.0 and tally[EVENTS] < len(events):
+            row = tally[EVENTS]
+            events[row, 0], events[row, 2] = drive[ORIGIN] + number * dt + slip[EVENT], motion[X]
+            events[row, 1] = STICKS if motion[STUCK] > 0.0 else SLIPS
+            tally[EVENTS] += 1
+        if tally[STEP] % every == 0:
+            _keep(motion, law, slip[CHANGE] / dt, seen, factors, points, kept, deflections, tally[SAMPLES])
+            tally[SAMPLES] += 1
+    return DONE
 
 
 @_compiled(cache=True)

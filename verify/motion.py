@@ -53,8 +53,8 @@ class EndState(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n,), all of every mode's motion, its forced part included; empty for a steady beam."""
     rates: Array
     """(n,), dq/dt."""
-    position: float = 0.0
-    """Of the slider, metres."""
+    position: float | None = None
+    """Of the slider, metres; None where there was none."""
     speed: float = 0.0
     stuck: bool = False
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
@@ -56,6 +57,14 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         degree = 0 if self.forced is None else self.forced.amplitudes.shape[1] - 1
         powers = (t[:, None] / self.unit_s) ** np.arange(degree + 1) * turn[:, None]
         return np.stack([powers.real, -powers.imag], axis=2).reshape(len(t), -1)
+
+    @property
+    def answers(self) -> Array:
+        """The forced part of every mode over the drive's time factors, (n, drive rows); zero in a steady field."""
+        if self.forced is None:
+            return np.zeros((len(self.modal.squares), 2))
+        amplitudes = self.forced.amplitudes
+        return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), -1)
 
     def deflection(self, z: Array, t: Array, x: Array) -> Array:
         """Closed form, (len(t), len(x)): free modes from z at t = 0 and the drive."""
@@ -109,6 +118,16 @@ def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = 
     return segments(beam, count, line=line)  # type: ignore[arg-type]
 
 
+def check_line(model: str, start: str, line: str) -> None:
+    """Raise InputError where the rigid links' own edges are asked for and cannot be had."""
+    if line == "raw" and model != "segment":
+        raise InputError(
+            f"slider.line = 'raw' is the edge of rigid links, which model = {model} has none of: leave it out"
+        )
+    if line == "raw" and start == "steady":
+        raise InputError("slider.line = 'raw' is for a start from rest: its steady state is read through the spline")
+
+
 class Steps(msgspec.Struct, frozen=True):
     """How a stretch of time is cut."""
 
@@ -142,6 +161,8 @@ def stages_from_rest(
     """One stage for every piece of the forces' envelope."""
     modes, stages = modal(basis, forces, damping), []
     tail = basis.tail(forces, omega / (2.0 * np.pi), damping) if basis.tail else None
+    if tail:  # its third derivative jumps where a force acts
+        basis = replace(basis, edges=np.union1d(basis.edges, [f.position for f in forces]))
     for piece in pieces:
         duration = piece.steps.n * piece.steps.dt
         forced = answer(modes, omega, piece.coefficients, duration, origin)
@@ -170,9 +191,14 @@ def _stage(
 
     return Stage(
         modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, load_rows=load_rows,
-        edges=basis.edges, degree=basis.degree, omega=forced.omega, origin=forced.origin, unit_s=forced.unit_s,
-        growth=growth, n_steps=steps.n, dt=steps.dt, every=steps.every,
+        edges=to_the_end(basis.edges, basis.beam), degree=basis.degree, omega=forced.omega, origin=forced.origin,
+        unit_s=forced.unit_s, growth=growth, n_steps=steps.n, dt=steps.dt, every=steps.every,
     )  # fmt: skip
+
+
+def to_the_end(edges: Array, beam: Beam) -> Array:
+    """Edges of which the last is the beam's end to the last digit."""
+    return np.append(edges[:-1], beam.length)
 
 
 NO_MODES = Modal(sigmas=np.empty(0), omegas=np.empty(0), squares=np.empty(0), loads=np.empty(0, dtype=complex))
@@ -181,6 +207,8 @@ NO_MODES = Modal(sigmas=np.empty(0), omegas=np.empty(0), squares=np.empty(0), lo
 def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: TimeBasis | None, damping: float) -> Stage:
     """A beam in its steady state; with a basis its modes are there to be pushed, at rest at first."""
     edges, degree = steady_edges(field)
+    if basis:
+        edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
 
     def drive(x: Array, derivative: int) -> Array:
         higher, rest = divmod(derivative, 4) if field.model == "analytic" else (0, derivative)
@@ -190,11 +218,15 @@ def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: Tim
     def nothing(x: Array, derivative: int) -> Array:
         return np.empty((0, len(x)))
 
+    def load_rows(position: float) -> Array:
+        own = basis.loads(position) if basis else np.empty(0)
+        return np.concatenate([own, drive(np.array([position]), 0)[:, 0]])
+
     modes = modal(basis, (), damping) if basis else NO_MODES
     return Stage(modal=modes, forced=None, free_shapes=basis.shapes if basis else nothing, drive_shapes=drive,
-                 load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
-                 edges=edges, degree=degree, omega=field.omega, origin=origin, unit_s=1.0, growth=CONSTANT,
-                 n_steps=steps.n, dt=steps.dt, every=steps.every)  # fmt: skip
+                 load_rows=load_rows, edges=to_the_end(edges, field.beam), degree=degree, omega=field.omega,
+                 origin=origin, unit_s=1.0, growth=CONSTANT, n_steps=steps.n, dt=steps.dt,
+                 every=steps.every)  # fmt: skip
 
 
 def steady_edges(field: "HarmonicField") -> tuple[Array, int]:

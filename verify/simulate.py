@@ -6,14 +6,15 @@ from typing import Literal
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.contact import Coupling, Margins, coupling_of, law_entries
 from verify.errors import InputError
 from verify.fields import check_drive
 from verify.forcing import CONSTANT, SMOOTH_STEP, check_no_resonance
 from verify.motion import EndState, Ledger, Motion, Statistics
-from verify.moving_surface import Growth, Stage, basis_of, cut, free_at, stages_from_rest, steady_stage
+from verify.moving_surface import Growth, Stage, basis_of, check_line, cut, free_at, stages_from_rest, steady_stage
 from verify.slider import Slider
 from verify.slider_run import Sliding, run_stages
 from verify.time_basis import Array, TimeBasis
@@ -55,6 +56,11 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def n_steps(self) -> int:
         """Of all pieces."""
         return sum(piece.steps.n for piece in self.pieces)
+
+    @property
+    def damping_replaced(self) -> bool:
+        """Whether the ratio of every mode is another than half the beam's loss factor."""
+        return self.damping != 0.5 * self.beam.loss_factor
 
     @property
     def line(self) -> str:
@@ -118,7 +124,8 @@ def _request(
         raise InputError(f"soft_start_periods = {soft!r}: a beam that moves already has no start, leave it out")
     if soft and envelope:
         raise InputError(f"soft_start_periods = {soft!r} and an envelope: give one of the two")
-    if not 2 <= samples <= 10_000_000:
+    check_whole("samples", samples, 2)
+    if samples > 10_000_000:
         raise InputError(f"samples = {samples!r}: keep between 2 and 10000000 of them")
     zeta = 0.5 * beam.loss_factor if damping is None else damping
     check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
@@ -129,6 +136,7 @@ def _request(
     check_number("step", longest, "seconds", above=0)
     if duration / longest > 2e9:
         raise InputError(f"step = {longest!r} takes more than 2e9 steps: lengthen the step or shorten the duration")
+    check_line(model, start, slider.line if slider else "spline")
     grown = (
         ((soft / frequency_hz, SMOOTH_STEP),) if soft else tuple((s, np.asarray(c, dtype=float)) for s, c in envelope)
     )
@@ -175,12 +183,13 @@ def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling 
 def _steady(request: Request, basis: TimeBasis | None) -> Stage:
     from verify.waves import solve_by_model
 
-    if request.line == "raw":
-        raise InputError("slider.line = 'raw' is for a start from rest: its steady state is read through the spline")
     if request.model != "analytic" and request.count is None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {request.model}")
-    settings = {} if request.beam.loss_factor or not request.damping else {"modal_damping": request.damping}
-    field = solve_by_model(request.model, request.beam, request.forces, request.frequency_hz, request.count, settings)
+    beam, settings = request.beam, {}
+    if request.damping_replaced:
+        beam = replace(beam, loss_factor=2.0 * request.damping if request.model == "analytic" else 0.0)
+        settings = {} if request.model == "analytic" else {"modal_damping": request.damping}
+    field = solve_by_model(request.model, beam, request.forces, request.frequency_hz, request.count, settings)
     return steady_stage(field, request.pieces[-1].steps, request.origin, basis, request.damping)
 
 
@@ -222,14 +231,26 @@ def _begin(request: Request, stage: Stage) -> Array:
 
 def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
     notes = [f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"]
-    if request.damping:
-        notes.append(
-            f"damping: ratio {request.damping:g} of every mode, at a resonance the same as a loss factor twice it"
-        )
+    notes += _damping_notes(request, basis)
     if len(request.pieces) > 1:
         grown = sum(piece.steps.n * piece.steps.dt for piece in request.pieces[:-1])
         notes.append(f"forces grow over {grown:.6g} s")
     return tuple(notes)
+
+
+def _damping_notes(request: Request, basis: TimeBasis | None) -> list[str]:
+    """Which damping acts, and what it stands for: a ratio and a loss factor twice it agree at a resonance only."""
+    ratio, eta = f"a ratio {request.damping:g} of every mode", request.beam.loss_factor
+    if request.start == "steady" and request.model == "analytic" and request.damping_replaced:
+        return [f"damping: a loss factor {2.0 * request.damping:g} in the steady field in place of {ratio}"]
+    notes = []
+    if request.start == "steady" and eta and not request.damping_replaced:
+        notes.append(f"damping: the loss factor {eta:g} in the steady field")
+    if request.damping and (basis or not notes):
+        notes.append(f"damping: {ratio}" + (f" in place of the loss factor {eta:g}" if eta else ""))
+    elif eta and request.damping_replaced:
+        notes.append(f"damping: none, in place of the loss factor {eta:g}")
+    return notes
 
 
 def _closed_form(request: Request, stages: list[Stage], basis: TimeBasis | None, began: float) -> Motion:
@@ -277,12 +298,11 @@ def _with_slider(
 ) -> Motion:  # fmt: skip
     slider = request.slider
     assert slider is not None
-    before = request.before
-    start = before.position if before else slider.start_on(request.beam)
+    start, speed, stuck = _put_on(request, slider)
     sliding = Sliding.fresh(start, sum(stage.n_steps // stage.every for stage in stages), request.points,
                             law_entries(slider, request.beam), coupling.two_way,
                             request.accounts and request.start == "rest")  # fmt: skip
-    sliding.motion[1:] = (before.speed, float(before.stuck)) if before else (slider.speed, 0.0)
+    sliding.motion[1:] = speed, stuck
     z = _begin(request, stages[0])
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
     ready = perf_counter()
@@ -306,6 +326,18 @@ def _with_slider(
                      position=start + float(sliding.motion[0]), speed=float(sliding.motion[1]),
                      stuck=bool(sliding.motion[2] > 0.0)),
     )  # fmt: skip
+
+
+def _put_on(request: Request, slider: Slider) -> tuple[float, float, float]:
+    """(position, speed, whether it sticks) at the start: where the run before left it, else as the slider says."""
+    before = request.before
+    if before is None or before.position is None:
+        return slider.start_on(request.beam), slider.speed, 0.0
+    if not 0.0 <= before.position <= request.beam.length:
+        raise InputError(
+            f"continue_from ended with the slider at {before.position!r} m, off the beam: give a run that stays on it"
+        )
+    return before.position, before.speed, float(before.stuck and slider.law == "coulomb")
 
 
 def _reached(stages: list[Stage], steps: int) -> float:

@@ -1,13 +1,18 @@
 """The slider as a scene or a script states it. Data, no numerics."""
 
-from typing import Literal
+from typing import Literal, get_args
 
 import msgspec
 
 from verify.beam import Beam, check_number
-from verify.errors import InputError
+from verify.errors import InputError, near_name
 
 GRAVITY = 9.81
+Law = Literal["tanh", "coulomb"]
+CouplingChoice = Literal["auto", "one-way", "two-way"]
+Line = Literal["spline", "raw"]
+Kinematics = Literal["tangential", "following"]
+_WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics}
 
 
 class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -23,7 +28,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Coefficient of (kinetic) friction."""
     slope: float = 1e4
     """K of Eq. (3), s/m."""
-    law: Literal["tanh", "coulomb"] = "tanh"
+    law: Law = "tanh"
     mu_static: float | None = None
     """Of Coulomb's law at rest; as `mu` unless given."""
     position: float | None = None
@@ -34,15 +39,19 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """Newton pressing it on, beside its weight."""
     gravity: float = GRAVITY
     """m/s^2."""
-    coupling: Literal["auto", "one-way", "two-way"] = "auto"
+    coupling: CouplingChoice = "auto"
     """Whether the beam feels the slider; auto decides by size."""
-    line: Literal["spline", "raw"] = "spline"
+    line: Line = "spline"
     """Contact line on a chain: the paper's C2 spline, or the links' own straight edges."""
-    kinematics: Literal["tangential", "following"] = "tangential"
+    kinematics: Kinematics = "tangential"
     """tangential: m dv/dt = F and dx/dt = v, as in the paper. following: the path of a point that follows the
     surface exactly, with dx/dt = v - w' dw/dt and the inertia of the turning tangent."""
 
     def __post_init__(self) -> None:
+        for name, kind in _WORDS.items():
+            word, known = getattr(self, name), get_args(kind)
+            if word not in known:
+                raise InputError(f"slider.{name} = {word!r} is not known: {near_name(str(word), known)}")
         check_number("slider.mass", self.mass, "kg", above=0)
         check_number("slider.mu", self.mu, "coefficient of friction", above=0)
         check_number("slider.slope", self.slope, "s/m", above=0)
@@ -51,6 +60,10 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         check_number("slider.preload", self.preload, "newton", at_least=0)
         if self.mu_static is not None:
             check_number("slider.mu_static", self.mu_static, "coefficient of friction", at_least=self.mu)
+            if self.law != "coulomb":
+                raise InputError(
+                    f"slider.mu_static = {self.mu_static!r} is for law = 'coulomb': Eq. (3) never sticks, leave it out"
+                )
         if self.position is not None:
             check_number("slider.position", self.position, "metres")
         if self.normal_force == 0.0:

@@ -5,6 +5,7 @@ from time import perf_counter
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from verify.beam import PointForce
 from verify.fields import phasor
@@ -37,9 +38,10 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     ledger: Array
     first: Array
     first_deflection: Array
-    steps: int = 0
-    n_kept: int = 0
-    n_events: int = 0
+    tally: NDArray[np.int64]
+    """(3,): steps of the present stage, samples and events so far; advanced by the loop together with the motion."""
+    steps_before: int = 0
+    """Of the stages that are over."""
     set_up_s: float = 0.0
     """Wall time spent on tables, not on steps."""
 
@@ -49,7 +51,22 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
         return cls(start=start, motion=np.zeros(3), law=law, two_way=two_way, points=points,
                    kept=np.zeros((samples, 4)), deflections=np.zeros((samples, len(points))),
                    events=np.zeros((EVENTS, 3)), accounts=accounts, ledger=np.zeros(5), first=np.zeros(4),
-                   first_deflection=np.zeros(len(points)))  # fmt: skip
+                   first_deflection=np.zeros(len(points)), tally=np.zeros(3, dtype=np.int64))  # fmt: skip
+
+    @property
+    def steps(self) -> int:
+        """Of all stages so far."""
+        return self.steps_before + int(self.tally[0])
+
+    @property
+    def n_kept(self) -> int:
+        """Samples so far."""
+        return int(self.tally[1])
+
+    @property
+    def n_events(self) -> int:
+        """Events so far."""
+        return int(self.tally[2])
 
 
 class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -61,6 +78,8 @@ class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     drive: Array
     loads: Array
     forces: Array
+    answers: Array
+    """(n, drive rows): the forced part of every mode over the drive's time factors; zero in a steady field."""
     points: Array
 
     @property
@@ -80,7 +99,7 @@ def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) ->
         row[:] = stage.load_rows(force.position)
     return Feed(stage=stage, modes=modes, loads=loads,
                 drive=np.array([stage.omega, stage.origin, stage.unit_s, *stage.growth]),
-                forces=np.array([amplitudes.real, amplitudes.imag]),
+                forces=np.array([amplitudes.real, amplitudes.imag]), answers=stage.answers,
                 points=np.ascontiguousarray(stage.rows(points).T))  # fmt: skip
 
 
@@ -90,26 +109,26 @@ Window = tuple[Array, Array]
 
 def window(stage: Stage, start: float, travelled: float) -> Window | None:
     """The polynomials around start + travelled, their edges counted from start; None off the beam."""
-    x = start + travelled
-    pieces = len(stage.edges) - 1
-    if not stage.edges[0] <= x <= stage.edges[-1]:
+    edges = stage.edges - start
+    pieces = len(edges) - 1
+    if not edges[0] <= travelled <= edges[-1]:
         return None
-    here = int(np.clip(np.searchsorted(stage.edges, x, side="right") - 1, 0, pieces - 1))
+    here = int(np.clip(np.searchsorted(edges, travelled, side="right") - 1, 0, pieces - 1))
     first, last = max(here - REACH, 0), min(here + REACH + 1, pieces)
-    return stage.table(first, last), stage.edges[first : last + 1] - start
+    return stage.table(first, last), edges[first : last + 1]
 
 
-def room(around: Window) -> tuple[Array, Array, Array, Array]:
+def room(fed: Feed) -> tuple[Array, Array, Array, Array]:
     """Working space of the compiled loop: time factors, local polynomials, what is seen, how it slips."""
-    rows, degree = around[0].shape[2], around[0].shape[1]
-    return np.empty((2, rows)), np.empty((2, degree)), np.zeros((3, 5)), np.zeros(5)
+    rows = fed.points.shape[1]
+    return np.empty((2, rows)), np.empty((2, fed.stage.degree + 1)), np.zeros((3, 5)), np.zeros(5)
 
 
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     """The first sample: the slider as it is put on, before any step."""
     from verify import contact_kernels as kernels
 
-    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law, *room(around)[:3])
+    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law, *room(fed)[:3])
     sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed
     if len(sliding.points):
         sliding.first_deflection[:] = fed.stage.deflection(fed.z, np.zeros(1), sliding.points)[0]
@@ -127,40 +146,35 @@ def run_stages(
         began = perf_counter()
         fed = feed(stage, z if i == 0 else stage.start(*state), forces, sliding.points)
         around = window(stage, sliding.start, float(sliding.motion[0]))
-        assert around is not None
-        if i == 0:
+        if i == 0 and around:
             look(fed, around, sliding)
         sliding.set_up_s += perf_counter() - began
-        before = sliding.steps
+        sliding.steps_before, sliding.tally[0] = sliding.steps, 0
         try:
             stopped = _run_stage(fed, around, sliding, tell)
         except KeyboardInterrupt:
             stopped = "interrupted"
-        state = stage.state(fed.z, (sliding.steps - before) * stage.dt)
+        state = stage.state(fed.z, int(sliding.tally[0]) * stage.dt)
         if stopped != "end":
             break
     return stopped, *state
 
 
-def _run_stage(fed: Feed, around: Window, sliding: Sliding, tell: Callable[[int], None]) -> str:
-    """One stage in chunks; why it ended."""
+def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callable[[int], None]) -> str:
+    """One stage in chunks; why it ended. The loop keeps its own books, so that an interrupt finds them closed."""
     from verify import contact_kernels as kernels
 
-    s, stage, number, space = sliding, fed.stage, 0, room(around)
-    while number < stage.n_steps:
-        done, why, kept, events = kernels.slide(
-            min(CHUNK, stage.n_steps - number), number, stage.dt, fed.modes, fed.drive, *around, s.motion, s.law,
-            s.two_way, fed.loads, fed.forces, s.accounts, s.ledger, stage.every, s.kept[s.n_kept :], fed.points,
-            s.deflections[s.n_kept :], s.events[s.n_events :], *space,
+    s, stage, space = sliding, fed.stage, room(fed)
+    while around and s.tally[0] < stage.n_steps:
+        why = kernels.slide(
+            min(CHUNK, stage.n_steps - s.tally[0]), stage.dt, fed.modes, fed.drive, *around, s.motion, s.law, s.two_way,
+            fed.loads, fed.forces, fed.answers, s.accounts, s.ledger, stage.every, s.kept, fed.points, s.deflections,
+            s.events, s.tally, *space,
         )  # fmt: skip
-        s.events[s.n_events : s.n_events + events, 0] += stage.origin
-        s.steps, s.n_kept, s.n_events, number = s.steps + done, s.n_kept + kept, s.n_events + events, number + done
         tell(s.steps)
         if why == kernels.NOT_FINITE:
             return "diverged"
         if why == kernels.OFF_PIECES:
-            fresh = window(stage, s.start, float(s.motion[0]))
-            if fresh is None:
-                return "left the beam"
-            around = fresh
-    return "end"
+            around = window(stage, s.start, float(s.motion[0]))
+    off = around is None or window(stage, s.start, float(s.motion[0])) is None
+    return "left the beam" if off else "end"

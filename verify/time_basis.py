@@ -1,7 +1,7 @@
 """What every model brings to time: its free modes, read along the beam, and how point forces load them."""
 
 from collections.abc import Callable, Sequence
-from math import factorial
+from math import comb, factorial
 
 import msgspec
 import numpy as np
@@ -41,10 +41,17 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:
-    """Coefficients in xi = (x - edge) / length of pieces first..last-1, (pieces, degree + 1, rows)."""
-    starts, lengths = edges[first:last], np.diff(edges[first : last + 1])
-    parts = [shapes(starts, d) * lengths**d / factorial(d) for d in range(degree + 1)]
-    return np.ascontiguousarray(np.array(parts).transpose(2, 0, 1))
+    """Coefficients in xi = (x - edge) / length of pieces first..last-1, (pieces, degree + 1, rows).
+
+    Expanded about the middle of each piece: an edge that rounding puts on the wrong side of a node would be read
+    off the neighbour.
+    """
+    lengths = np.diff(edges[first : last + 1])
+    middles = edges[first:last] + 0.5 * lengths
+    parts = np.array([shapes(middles, d) * lengths**d / factorial(d) for d in range(degree + 1)])
+    powers = range(degree + 1)
+    shift = np.array([[comb(d, k) * (-0.5) ** (d - k) if d >= k else 0.0 for d in powers] for k in powers])
+    return np.ascontiguousarray(np.einsum("kd,drp->pkr", shift, parts))
 
 
 def check_held(beam: Beam) -> None:
