@@ -107,12 +107,17 @@ Window = tuple[Array, Array]
 """Polynomials of the pieces around the slider, (pieces, degree + 1, rows), and their edges, metres."""
 
 
+def on_beam(stage: Stage, start: float, travelled: float) -> bool:
+    """Whether a slider is on the beam."""
+    return bool(stage.edges[0] - start <= travelled <= stage.edges[-1] - start)
+
+
 def window(stage: Stage, start: float, travelled: float) -> Window | None:
     """The polynomials around start + travelled, their edges counted from start; None off the beam."""
+    if not on_beam(stage, start, travelled):
+        return None
     edges = stage.edges - start
     pieces = len(edges) - 1
-    if not edges[0] <= travelled <= edges[-1]:
-        return None
     here = int(np.clip(np.searchsorted(edges, travelled, side="right") - 1, 0, pieces - 1))
     first, last = max(here - REACH, 0), min(here + REACH + 1, pieces)
     return stage.table(first, last), edges[first : last + 1]
@@ -176,5 +181,4 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
             return "diverged"
         if why == kernels.OFF_PIECES:
             around = window(stage, s.start, float(s.motion[0]))
-    off = around is None or window(stage, s.start, float(s.motion[0])) is None
-    return "left the beam" if off else "end"
+    return "end" if around and on_beam(stage, s.start, float(s.motion[0])) else "left the beam"
