@@ -36,7 +36,7 @@ def test_segments_and_count_are_one_argument(name):
 def test_a_chain_needs_its_number_of_links_once(name):
     with pytest.raises(InputError, match="segments is missing"):
         figure(name, **ASKED[name])
-    with pytest.raises(InputError, match="segments = 9 and count = 10 mean the same"):
+    with pytest.raises(InputError, match="count = 10 and segments = 9 mean the same"):
         figure(name, segments=9, count=10, **ASKED[name])
 
 
