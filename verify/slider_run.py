@@ -15,7 +15,7 @@ from verify.time_basis import Array
 
 CHUNK = 20_000
 """Steps between two looks at the keyboard."""
-REACH = 4
+REACH = 1
 """Pieces of the beam kept ready on each side of the slider."""
 EVENTS = 20_000
 
