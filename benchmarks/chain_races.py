@@ -3,7 +3,7 @@
 The paper's beam from rest for two milliseconds, forces sin and cos at 11.6 mm from both ends. Race 1: 0.1 N against
 the exact linear chain. Race 2: 10 N against the converged nonlinear chain. Every engine takes its own longest step
 for an rms error of 1e-3 at mid-span over 200 samples or more; models and modes are made beforehand; medians of rounds
-in which all take turns.
+in which all take turns of at least 20 ms.
 Run: OMP_NUM_THREADS=1 python -m benchmarks.chain_races [links ...]       (needs the `peers` extra for the others)
 """
 
@@ -16,7 +16,7 @@ from time import perf_counter
 import numpy as np
 from scipy.linalg import eigh
 
-from benchmarks.peers.case import Array, Case, Run
+from benchmarks.peers.case import Array, Case, Run, matrices
 from verify.beam import Beam, PointForce
 from verify.chain_dynamics import at_rest, flatten, workspace
 from verify.chain_kernels import accelerate
@@ -29,6 +29,8 @@ END, SAMPLES, WANTED = 2e-3, 200, 1e-3
 BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 FREQUENCY = 4276.0
 PEERS = {"MuJoCo": "mujoco_chain", "Pinocchio": "pinocchio_chain", "Exudyn": "exudyn_chain"}
+TURN_S = 0.02
+"""Shortest turn of a round."""
 MODES = 60
 """Modes that take part in the nonlinear motion, where the chain has more: 15 kHz at 49 links, 33 kHz at 199."""
 
@@ -50,12 +52,7 @@ def system_of(case: Case) -> ChainSystem:
 def exact_linear(case: Case, times: Array) -> Array:
     """Mid-span of the linear chain: dense matrices of joint positions, a sum over all modes, from rest."""
     n, link = case.n, case.link
-    mass, stiffness, bend = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1)), np.array([1.0, -2.0, 1.0]) / link
-    own, shared = case.mass / 4 + case.inertia / link**2, case.mass / 4 - case.inertia / link**2
-    for i in range(n):
-        mass[i : i + 2, i : i + 2] += np.array([[own, shared], [shared, own]])
-    for i in range(1, n):
-        stiffness[i - 1 : i + 2, i - 1 : i + 2] += case.spring * np.outer(bend, bend)
+    mass, stiffness = matrices(case)
     values, shapes = eigh(stiffness[1:-1, 1:-1], mass[1:-1, 1:-1])
     omega, drive = np.sqrt(values), 2 * np.pi * case.frequency_hz
 
@@ -159,6 +156,23 @@ def longest_step(run: Run, first: float, reference: Callable[[Array], Array]) ->
     return step, found
 
 
+def timed(entries: dict[str, tuple[Run, float]]) -> dict[str, float]:
+    """Median seconds of one run of each, in rounds where all take turns; short runs are repeated in their turn."""
+    jobs, repeats = [], []
+    for run, step in entries.values():
+        begin = perf_counter()
+        run(step, END)
+        repeats.append(max(1, int(TURN_S / (perf_counter() - begin))))
+
+        def job(run: Run = run, step: float = step, times: int = repeats[-1]) -> None:
+            for _ in range(times):
+                run(step, END)
+
+        jobs.append(job)
+    medians = interleaved_medians(jobs, 12.0)
+    return {name: median / times for name, median, times in zip(entries, medians, repeats, strict=True)}
+
+
 def race(number: int, n: int) -> None:
     """One race at one size."""
     case = case_of(n, 0.1 if number == 1 else 10.0)
@@ -174,8 +188,7 @@ def race(number: int, n: int) -> None:
     entries = runners(case, number)
     steps = {name: longest_step(run, first, reference) for name, (run, first) in entries.items()}
     ready = [name for name in entries if steps[name][1] <= WANTED]
-    medians = interleaved_medians([lambda name=name: entries[name][0](steps[name][0], END) for name in ready], 12.0)  # type: ignore[misc]
-    taken = dict(zip(ready, medians, strict=True))
+    taken = timed({name: (entries[name][0], steps[name][0]) for name in ready})
     peers = [taken[name] for name in PEERS if name in taken]
     print(f"  {'engine':<20}{'step':>12}{'rms error':>12}{'per simulated ms':>20}{'fastest peer / this':>22}")
     for name in entries:

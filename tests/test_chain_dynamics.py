@@ -20,6 +20,7 @@ from verify.chain_dynamics import (
     energies,
     flatten,
     held_rows,
+    keep_pivots,
     linearise,
     positions,
     project,
@@ -160,6 +161,15 @@ def test_the_base_joint_is_the_best_pivot_of_a_straight_chain():
     rows = held_rows(system, at_rest(system))
     assert rows[0] == pytest.approx(0.43 * (1 - np.arange(12) / 12))
     assert list(choose_pivots(rows)) == [0]
+
+
+def test_dependent_angles_are_kept_until_their_lever_arms_are_short():
+    rows = np.array([[1.0, 0.7, 0.05], [0.4, 0.3, 0.0]])
+    assert list(keep_pivots(rows[:1], np.array([1]))) == [1]
+    assert list(keep_pivots(rows[:1], np.array([2]))) == [0]
+    assert sorted(choose_pivots(rows)) == [0, 1]
+    assert list(keep_pivots(rows, np.array([2, 1]))) == [2, 1]
+    assert sorted(keep_pivots(np.array([[1.0, 0.7, 0.005], [0.4, 0.1, 0.0]]), np.array([1, 2]))) == [0, 1]
 
 
 def test_points_that_cannot_be_held_at_once_are_refused():

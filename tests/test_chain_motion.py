@@ -14,7 +14,7 @@ from verify.beam import PointForce
 from verify.chain_dynamics import at_rest, energies, linearise, positions, project
 from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, simulate_modal
 from verify.chain_motion import simulate, step_limit
-from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, axial_inertia_size, build_system
 from verify.errors import InputError
 
 
@@ -147,6 +147,19 @@ def test_a_double_pendulum_agrees_with_independent_integrators(method):
     motion = simulate(system, start, [0.8], tolerance=1e-11)
     assert np.concatenate([motion.angles[0], motion.rates[0]]) == pytest.approx(exact.y[:, -1], abs=2e-6)
     assert abs(motion.angles[0]).max() > 1.0
+
+
+@pytest.mark.parametrize("method", ["DOP853", "Radau"])
+def test_a_driven_chain_on_its_roller_agrees_with_independent_integrators(method):
+    system = driven(6, 200.0)
+
+    def slope(t, y):
+        return np.concatenate([y[6:], by_multipliers(system, t, y[:6], y[6:])])
+
+    exact = solve_ivp(slope, (0.0, 6e-4), np.zeros(12), method=method, rtol=1e-9, atol=1e-11)
+    motion = simulate(system, at_rest(system), [6e-4], tolerance=1e-11)
+    assert motion.angles[0] == pytest.approx(exact.y[:6, -1], abs=3e-8)
+    assert abs(motion.angles[0]).max() > 1e-3
 
 
 @pytest.mark.parametrize("dependent", [2, 5, 6])
@@ -345,6 +358,44 @@ def test_ctrl_c_returns_what_is_kept(monkeypatch):
     assert 10 < len(motion.times) < 400
 
 
+def test_ctrl_c_returns_the_kicks_that_were_taken(monkeypatch):
+    true, calls = kernels.march_modal, []
+
+    def interrupted(*given):
+        calls.append(1)
+        if len(calls) > 2:
+            raise KeyboardInterrupt
+        return true(*given)
+
+    monkeypatch.setattr(kernels, "march_modal", interrupted)
+    system = driven(8, 1.0)
+    motion = simulate_modal(modal_basis(system), at_rest(system), np.linspace(0.0, 1e-2, 400), step=1e-5)
+    assert motion.statistics.stopped.startswith("interrupted at t = ")
+    assert 100 < len(motion.times) < 400
+
+
+def test_kicks_too_strong_for_their_step_are_stopped_and_said():
+    system = driven(20, 3e4)
+    motion = simulate_modal(modal_basis(system), at_rest(system), np.linspace(0.0, 5e-3, 50), step=1e-4)
+    assert motion.statistics.stopped.startswith("diverged at t = ")
+    assert len(motion.times) < 50
+    assert np.isfinite(motion.angles).all()
+
+
+def test_axial_inertia_makes_the_roller_ended_chain_nonlinear_with_the_square_of_its_slopes():
+    times, departures = np.linspace(0.0, 8e-4, 161), []
+    for amplitude in (3.0, 6.0):
+        system = driven(49, amplitude)
+        linear = simulate_linear(modal_basis(system), at_rest(system), times).deflection([0.215])
+        full = simulate(system, at_rest(system), times, tolerance=1e-9, ledger=False)
+        light = simulate(replace(system, axial_inertia=False), at_rest(system), times, tolerance=1e-9, ledger=False)
+        departures.append(rms(full.deflection([0.215]) - linear) / rms(linear))
+        size = axial_inertia_size(beam(), 3800.0, rms(full.directions()) ** 2)
+        assert 0.2 < departures[-1] / size < 5.0
+        assert rms(light.deflection([0.215]) - linear) < 0.02 * departures[-1] * rms(linear)
+    assert departures[1] / departures[0] == pytest.approx(4.0, rel=0.05)
+
+
 def test_an_inconsistent_start_is_projected_and_said():
     system = driven(9, 1.0)
     bent = ChainState(np.full(9, 0.02), np.full(9, 0.5))
@@ -352,6 +403,8 @@ def test_an_inconsistent_start_is_projected_and_said():
     assert motion.statistics.started.startswith("projected onto the held points")
     assert positions(system, motion.state(0))[0][-1, 1] == pytest.approx(0.0, abs=1e-14)
     assert simulate(system, at_rest(system), [1e-5]).statistics.started == "consistent"
+    kicked = simulate_modal(modal_basis(system), bent, [1e-5], step=1e-5)
+    assert kicked.statistics.started == motion.statistics.started
 
 
 def test_results_repeat_to_the_last_bit():
@@ -386,13 +439,56 @@ def test_bad_requests_are_refused(request_, message):
     [
         ({"step": 0.0}, "step = 0.0"),
         ({"step": 1e-5, "kicks": 4}, "kicks = 4"),
-        ({"step": 1e-5, "n_modes": 8}, "has modes 1 to 7"),
+        ({"step": 1e-5, "n_modes": 8}, "there are modes 1 to 7"),
     ],
 )
 def test_bad_requests_of_kicks_are_refused(request_, message):
     system = driven(8, 1.0)
     with pytest.raises(InputError, match=message):
         simulate_modal(modal_basis(system), at_rest(system), [1e-4], **request_)
+
+
+@pytest.mark.parametrize(
+    "supports", [("pinned", "pinned"), ("clamped", "free"), ("clamped", "pinned"), ("pinned", "free")]
+)
+def test_the_lowest_modes_alone_are_the_first_of_all(supports):
+    system = build_system(beam(*supports), 24, [PointForce(position=0.1)], 900.0)
+    every, few = modal_basis(system), modal_basis(system, n_modes=9)
+    rigid = supports == ("pinned", "free")
+    held = supports[1] == "pinned"
+    same = slice(int(rigid), 9 + int(rigid))
+    assert few.omega[:9] == pytest.approx(every.omega[same], rel=1e-9)
+    assert abs(few.shares[:, :9]) == pytest.approx(abs(every.shares[:, same]), rel=1e-6)
+    assert few.duals @ few.modes.T == pytest.approx(np.eye(9 + held), abs=1e-9)
+    assert few.tilt == pytest.approx(every.tilt, rel=1e-9)
+
+
+def test_three_thousand_links_move_in_steps_a_thousand_times_the_explicit_limit():
+    times, step = np.linspace(1e-5, 3e-4, 30), 1e-5
+    forces = [PointForce(position=0.043, amplitude=10.0, phase_deg=-90.0), PointForce(position=0.387, amplitude=10.0)]
+
+    def middle(n):
+        system = build_system(beam(), n, forces, 3800.0)
+        motion = simulate_modal(modal_basis(system, n_modes=50), at_rest(system), times, step=step, kicks=1)
+        return motion.deflection([0.215])[:, 0]
+
+    long = build_system(beam(), 3000)
+    assert step > 1000 * 2 * np.sqrt(2) / (np.sqrt(48) * beam().wave_constant / long.lengths[0] ** 2)
+    assert rms(middle(3000) - middle(1000)) < 3e-3 * rms(middle(1000))
+
+
+@pytest.mark.parametrize(
+    ("change", "request_", "message"),
+    [
+        ({}, {"n_modes": 8}, "elastic modes 1 to 7"),
+        ({"gravity": (0.0, -9.81)}, {"n_modes": 3}, "unloaded chain"),
+        ({"stiffness": np.zeros(8)}, {"n_modes": 3}, "joints without a spring"),
+        ({}, {"n_modes": 3, "rest": ChainState(np.zeros(8), np.zeros(8))}, "give n_modes or rest"),
+    ],
+)
+def test_lowest_modes_that_are_not_there_are_refused(change, request_, message):
+    with pytest.raises(InputError, match=message):
+        modal_basis(replace(driven(8, 1.0), **change), **request_)
 
 
 def test_what_has_no_modal_flow_is_refused():

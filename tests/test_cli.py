@@ -485,3 +485,11 @@ def test_a_spectrum_that_does_not_fit_into_memory_is_refused_not_left_empty(veri
 def test_the_module_runs_as_a_program():
     done = subprocess.run([sys.executable, "-m", "verify", "--version"], capture_output=True, text=True, check=True)
     assert done.stdout.startswith("verify, version ")
+
+
+def test_segments_and_count_are_one_argument_everywhere(verify):
+    by_count = verify("measure", "mode.frequency", "model=segment", "mode=5", "count=37", "--json")
+    assert by_count == verify("measure", "mode.frequency", "model=segment", "mode=5", "segments=37", "--json")
+    status, _, err = verify("measure", "mode.frequency", "model=segment", "mode=5", "segments=37", "count=9")
+    assert status == 2
+    assert "mean the same" in err

@@ -456,7 +456,7 @@ def raw_line_for_the_spline(patch):
 
 def step_load_for_the_soft_start(patch):
     true = simulate._laid_out
-    patch.setattr(simulate, "_laid_out", lambda duration, growth, *given: true(duration, 0.0, *given))
+    patch.setattr(simulate, "_laid_out", lambda duration, grown, *given: true(duration, (), *given))
 
 
 def load_in_time_on_the_next_joint(patch):

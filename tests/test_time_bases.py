@@ -13,7 +13,8 @@ from verify.chain import build_chain
 from verify.division import divide
 from verify.errors import InputError
 from verify.fields import phasor
-from verify.moving_surface import Steps, basis_of, stages_from_rest, steady_stage
+from verify.forcing import SMOOTH_STEP
+from verify.moving_surface import Growth, Steps, basis_of, stages_from_rest, steady_stage
 from verify.time_basis import taylor_table
 
 HELD = [("pinned", "pinned"), ("clamped", "free"), ("clamped", "clamped"), ("guided", "pinned"), ("pinned", "clamped")]
@@ -176,7 +177,9 @@ def test_the_pieces_a_slider_sees_are_the_shapes(model, count, start):
     beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
     basis = basis_of(beam, model, count, 40)
     if start == "rest":
-        stage = stages_from_rest(basis, FORCES, 2 * np.pi * FREQUENCY, 0.01, Steps(1, 1e-4, 1), None, 0.0)[0]
+        stage = stages_from_rest(
+            basis, FORCES, 2 * np.pi * FREQUENCY, 0.01, [Growth(Steps(1, 1e-4, 1), SMOOTH_STEP)], 0.0
+        )[0]
     else:
         from verify.waves import solve_by_model
 

@@ -760,17 +760,17 @@ def _flow(omega: Array, time: float, start: Array, out: Array) -> None:
 
 @njit(cache=True, fastmath={"contract"})
 def _between(s: float, h: float, omega: Array, flowing: Array, miss: Array, steady: Array, out: Array) -> None:
-    """Modal state at a share s of a step: the linear flow from its start, and a cubic through what the kicks added."""
+    """Modal state at a share s of a step, (2, m): the linear flow from its start, a cubic through what kicks added."""
     slow0, slow1 = s * s * (3.0 - 2.0 * s), h * s * s * (s - 1.0)
     rate0, rate1 = 6.0 * s * (1.0 - s) / h, s * (3.0 * s - 2.0)
     for j in range(omega.size):
         a, b = miss[j, 0], miss[j, 1]
         if omega[j] * h > 2.0:
-            out[j, 0], out[j, 1] = s * a, s * b
+            out[0, j], out[1, j] = s * a, s * b
         else:
-            out[j, 0], out[j, 1] = slow0 * a + slow1 * b, rate0 * a + rate1 * b
-        out[j, 0] += flowing[j, 0] + steady[j, 0]
-        out[j, 1] += flowing[j, 1] + steady[j, 1]
+            out[0, j], out[1, j] = slow0 * a + slow1 * b, rate0 * a + rate1 * b
+        out[0, j] += flowing[j, 0] + steady[j, 0]
+        out[1, j] += flowing[j, 1] + steady[j, 1]
 
 
 class Modal(NamedTuple):

@@ -5,7 +5,8 @@ the accelerations is small where the motion is small, and is put in as kicks. Wi
 Strang's splitting, of order 2 times the size of the nonlinearity; with two kicks at Gauss's points (J. Laskar and P.
 Robutel, Celest. Mech. Dyn. Astron. 80 (2001) 39) errors are of order 4 times that size and of order 2 times its
 square. With all modes a step costs O(N^2), with m of them O(N m). Modes left out move as the linear chain's; what they
-add to the axial inertia is lost, a part (up to a quarter was seen) of the nonlinear part of the motion.
+add to the axial inertia is lost, a part (up to a quarter was seen) of the nonlinear part of the motion. The kicks
+are explicit: where the nonlinearity is not small in a step the motion diverges, is stopped and says so.
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,8 @@ import numpy as np
 from verify import chain_kernels as kernels
 from verify.beam import check_number
 from verify.chain_dynamics import at_rest, flatten, linearise, project, workspace
-from verify.chain_motion import ChainMotion, Statistics
+from verify.chain_modes import lowest_modes
+from verify.chain_motion import ChainMotion, Statistics, checked_times, how_started
 from verify.chain_system import ChainState, ChainSystem, circular, link_at
 from verify.division import Array
 from verify.errors import InputError
@@ -33,34 +35,46 @@ SCHEMES: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ModalBasis:
-    """All modes of a chain about an equilibrium, ascending; with a roller, last, the motion off its line."""
+    """Modes of a chain about an equilibrium, ascending; with a roller, last, the motion off its line."""
 
     system: ChainSystem
     rest: ChainState
     omega: Array
-    """(N,), rad/s; 0 for the motion off the roller's line."""
+    """(m,), rad/s; 0 for the motion off the roller's line."""
     modes: Array
-    """(N, N): row j holds the relative angles of mode j, of unit modal mass."""
+    """(m, N): row j holds the relative angles of mode j, of unit modal mass."""
     duals: Array
-    """(N, N): row j takes relative angles to modal coordinate j."""
+    """(m, N): row j takes relative angles to modal coordinate j."""
     drives: Array
     """(n_loads, 2), circular frequencies and phases of the harmonic loads."""
     shares: Array
-    """(n_loads, N), steady modal amplitudes."""
+    """(n_loads, m), steady modal amplitudes."""
     tilt: float
     """How far the last motion moves the tip off its line, metres; 0 without a roller."""
 
 
-def modal_basis(system: ChainSystem, rest: ChainState | None = None) -> ModalBasis:
+def modal_basis(system: ChainSystem, rest: ChainState | None = None, n_modes: int | None = None) -> ModalBasis:
     """Modes of the chain about an equilibrium (straight unless given), for `simulate_modal`.
 
-    Raises InputError for actuators and moving hubs, which the linear flow does not know.
+    All of them by dense matrices, O(N^3); or the lowest `n_modes` of an unloaded straight chain by Lanczos, which goes
+    to 10^4 links and leaves the others out of the linear motion too. Raises InputError for actuators and moving
+    hubs, which the linear flow does not know.
     """
-    from scipy.linalg import eigh
-
     if system.actuators or system.rotation.rate or system.rotation.amplitude:
         raise InputError("chain: actuators and a turning base have no modal flow; give method = 'adaptive' or 'rk4'")
+    if n_modes is not None and rest is not None:
+        raise InputError("n_modes: the lowest modes alone are those about straight; give n_modes or rest")
     rest = at_rest(system) if rest is None else rest
+    omega, modes, duals, tilt = _all_modes(system, rest) if n_modes is None else lowest_modes(system, n_modes)
+    drives, shares = _steady(system, rest, omega, duals)
+    return ModalBasis(system=system, rest=rest, omega=omega, modes=modes, duals=duals, drives=drives, shares=shares,
+                      tilt=tilt)  # fmt: skip
+
+
+def _all_modes(system: ChainSystem, rest: ChainState) -> tuple[Array, Array, Array, float]:
+    """Frequencies, modes, duals, and the tilt of the motion off the roller's line, which comes last."""
+    from scipy.linalg import eigh
+
     linear = linearise(system, rest)
     basis = linear.independent()
     values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
@@ -71,10 +85,7 @@ def modal_basis(system: ChainSystem, rest: ChainState | None = None) -> ModalBas
         normal /= np.sqrt(normal @ linear.mass @ normal)
         modes, omega = np.vstack([modes, normal]), np.append(omega, 0.0)
         tilt = float(linear.constraint[0] @ normal)
-    duals = modes @ linear.mass
-    drives, shares = _steady(system, rest, omega, duals)
-    return ModalBasis(system=system, rest=rest, omega=omega, modes=modes, duals=duals, drives=drives, shares=shares,
-                      tilt=tilt)  # fmt: skip
+    return omega, modes, modes @ linear.mass, tilt
 
 
 def _steady(system: ChainSystem, rest: ChainState, omega: Array, duals: Array) -> tuple[Array, Array]:
@@ -116,22 +127,22 @@ def simulate_modal(
     check_number("step", step, "seconds", above=0)
     if kicks not in SCHEMES:
         raise InputError(f"kicks = {kicks!r}: give 1, 2 or 3 kicks to a step")
-    n, held = basis.system.n_links, int(basis.tilt != 0.0)
+    n, held = len(basis.omega), int(basis.tilt != 0.0)
     if n_modes is not None and not 1 <= n_modes <= n - held:
-        raise InputError(f"n_modes = {n_modes!r}: the chain has modes 1 to {n - held}")
-    samples = np.atleast_1d(np.asarray(times, dtype=float))
-    begin, _ = project(basis.system, start)
+        raise InputError(f"n_modes = {n_modes!r}: there are modes 1 to {n - held}")
+    samples = checked_times(start, times)
+    begin, moved = project(basis.system, start)
     run = _Modal(basis, begin, samples, step, kicks, n - held if n_modes is None else n_modes)
     clock = perf_counter()
     stopped = run.march()
-    return run.motion(kicks, perf_counter() - clock, stopped)
+    return run.motion(kicks, perf_counter() - clock, stopped, how_started(moved, start))
 
 
 def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float] | Array) -> ChainMotion:
     """The linearised chain's motion, exact at any time, in the relative angles of the nonlinear one."""
     clock = perf_counter()
-    samples = np.atleast_1d(np.asarray(times, dtype=float))
-    every = np.arange(basis.system.n_links)
+    samples = checked_times(start, times)
+    every = np.arange(len(basis.omega))
     state = linear_states(basis, _free(basis, start), samples - start.time, samples, every)
     angles, rates = state[:, :, 0] @ basis.modes + basis.rest.angles, state[:, :, 1] @ basis.modes
     statistics = Statistics(
@@ -192,12 +203,12 @@ def linear_states(basis: ModalBasis, free: Array, since: Array, times: Array, wh
     return np.asarray(_steady_at(basis, times)[:, which] + flow)
 
 
-def _turns(omega: Array, h: float) -> Array:
-    """(m, 3) for the exact flow of a time h."""
-    safe = np.where(omega > 0.0, omega, 1.0)
-    return np.stack(
-        [np.cos(omega * h), np.where(omega > 0.0, np.sin(omega * h) / safe, h), -omega * np.sin(omega * h)], axis=1
-    )
+def _turns(omega: Array, times: Array) -> Array:
+    """(n, m, 3) for the exact flows of some times: cosine, sine over omega, -omega times sine."""
+    turns = times[:, None] * omega
+    c, s = np.cos(turns), np.sin(turns)
+    sinc = np.where(omega > 0.0, s / np.where(omega > 0.0, omega, 1.0), times[:, None])
+    return np.stack([c, sinc, -omega * s], axis=2)
 
 
 def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kicks: int) -> kernels.Modal:
@@ -208,8 +219,8 @@ def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kick
     even = len(gaps) > 1 and np.ptp(gaps) < 1e-9 * gaps[0]
     return kernels.Modal(
         kicks=np.array(weights), shares_of_step=np.array(flows), omega=omega,
-        flows=np.array([_turns(omega, share * step) for share in (*flows, 1.0)]),
-        spacing=_turns(omega, float(gaps.mean())) if even else np.zeros((0, 3)),
+        flows=_turns(omega, step * np.array([*flows, 1.0])),
+        spacing=_turns(omega, gaps[:1])[0] if even else np.zeros((0, 3)),
         modes=np.ascontiguousarray(basis.modes[chosen]), duals=np.ascontiguousarray(basis.duals[chosen]),
         rest=basis.rest.angles, drives=basis.drives, shares=np.ascontiguousarray(basis.shares[:, chosen]),
         tilt=basis.tilt, start=np.zeros((m, 2)), steady=np.zeros((m, 2)), trial=np.zeros((m, 2)),
@@ -223,17 +234,17 @@ class _Modal:
     def __init__(
         self, basis: ModalBasis, start: ChainState, samples: Array, step: float, kicks: int, n_modes: int
     ) -> None:
-        n, held = basis.system.n_links, int(basis.tilt != 0.0)
+        n, held = len(basis.omega), int(basis.tilt != 0.0)
         self.basis, self.samples, self.started = basis, samples, start.time
         chosen = np.concatenate([np.arange(n_modes), np.arange(n - held, n)]).astype(np.int64)
-        self.chosen, self.others = chosen, np.setdiff1d(np.arange(n), chosen)
+        self.chosen, self.others = chosen, np.arange(n_modes, n - held)
         steady = _steady_at(basis, np.array([start.time]))[0]
         self.begin = _free(basis, start)
         self.flat, self.work = flatten(basis.system, ledger=False), workspace(basis.system)
-        self.kept = np.zeros((len(samples), len(chosen), 2))
+        self.kept = np.zeros((len(samples), 2, len(chosen)))
         self.clock, self.counts = np.array([start.time, step]), np.zeros(5, dtype=np.int64)
         at_start = int(np.searchsorted(samples, start.time, side="right"))
-        self.kept[:at_start], self.counts[3] = (self.begin + steady)[chosen], at_start
+        self.kept[:at_start], self.counts[3] = (self.begin + steady)[chosen].T, at_start
         self.free = np.ascontiguousarray(self.begin[chosen])
         self.modal = _flattened(basis, chosen, samples, step, kicks)
 
@@ -251,20 +262,21 @@ class _Modal:
         except KeyboardInterrupt:
             return f"interrupted at t = {self.clock[0]:.6g} s"
 
-    def motion(self, kicks: int, seconds: float, stopped: str) -> ChainMotion:
+    def motion(self, kicks: int, seconds: float, stopped: str, started: str) -> ChainMotion:
         """What was kept, back in angles."""
         kept, basis = int(self.counts[3]), self.basis
-        times = self.samples[:kept]
-        state = np.zeros((kept, basis.system.n_links, 2))
-        state[:, self.chosen] = self.kept[:kept]
+        times, modes = self.samples[:kept], self.modal.modes
+        angles, rates = self.kept[:kept, 0] @ modes + basis.rest.angles, self.kept[:kept, 1] @ modes
         if len(self.others):
-            state[:, self.others] = linear_states(basis, self.begin, times - self.started, times, self.others)
+            state = linear_states(basis, self.begin, times - self.started, times, self.others)
+            angles += state[:, :, 0] @ basis.modes[self.others]
+            rates += state[:, :, 1] @ basis.modes[self.others]
         none = np.zeros(kept)
         statistics = Statistics(
             method=f"modal, {kicks} kicks", steps=int(self.counts[0]), rejected=0, evaluations=int(self.counts[2]),
-            seconds=seconds, stopped=stopped, started="consistent",
+            seconds=seconds, stopped=stopped, started=started,
         )  # fmt: skip
         return ChainMotion(
-            system=basis.system, times=times, angles=state[:, :, 0] @ basis.modes + basis.rest.angles,
-            rates=state[:, :, 1] @ basis.modes, dissipated=none, work_in=none, statistics=statistics,
+            system=basis.system, times=times, angles=angles, rates=rates, dissipated=none, work_in=none,
+            statistics=statistics,
         )  # fmt: skip

@@ -171,19 +171,19 @@ def simulate(
     `limit` is the stability limit where it is known already, which spares finding it.
     `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. Raises InputError.
     """
-    samples = _checked(start, times, method, step, tolerance)
+    _check_method(method, step, tolerance)
+    samples = checked_times(start, times)
     begin, moved = project(system, start, dependent)
     if method == "rk4" and step is not None:
         refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
     run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
     clock = perf_counter()
     stopped = run.march()
-    return run.motion(method, perf_counter() - clock, stopped, _said(moved, start))
+    return run.motion(method, perf_counter() - clock, stopped, how_started(moved, start))
 
 
-def _checked(start: ChainState, times: Any, method: str, step: float | None, tolerance: float) -> Array:
-    """The times as an array. Raises InputError."""
-    samples = np.atleast_1d(np.asarray(times, dtype=float))
+def _check_method(method: str, step: float | None, tolerance: float) -> None:
+    """Raise InputError for settings that do not go together."""
     if method not in METHODS:
         raise InputError(f"method = {method!r} is not known: {near_name(method, METHODS)}")
     if (method == "rk4") != (step is not None):
@@ -191,12 +191,17 @@ def _checked(start: ChainState, times: Any, method: str, step: float | None, tol
     if step is not None:
         check_number("step", step, "seconds", above=0)
     check_number("tolerance", tolerance, "relative", above=0, below=0.1)
+
+
+def checked_times(start: ChainState, times: Any) -> Array:
+    """The times as an array. Raises InputError unless they ascend from the start's on."""
+    samples = np.atleast_1d(np.asarray(times, dtype=float))
     if not samples.size or not np.isfinite(samples).all() or (np.diff(samples) <= 0).any() or samples[0] < start.time:
         raise InputError(f"times: give ascending finite times from {start.time!r} s on")
     return samples
 
 
-def _said(moved: float, start: ChainState) -> str:
+def how_started(moved: float, start: ChainState) -> str:
     """Whether the start was consistent, in words."""
     size = max(abs(start.angles).max(), abs(start.rates).max(), 1e-300)
     if moved <= PROJECTED * size:

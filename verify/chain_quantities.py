@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.quantity_types import Arguments, Mode, Quantity, Size, Wall
+from verify.quantity_types import Arguments, Mode, Quantity, Wall
 from verify.workbench import Workbench
 
 if TYPE_CHECKING:
@@ -31,19 +31,12 @@ Inertia = Annotated[
 class Chained(Arguments, frozen=True, kw_only=True):
     """A chain of so many links."""
 
-    segments: Links | None = None
-    count: Size | None = None
-
-    def __post_init__(self) -> None:
-        if self.segments is None and self.count is None:
-            raise InputError("segments is missing: give the number of links of the chain")
-        if self.segments is not None and self.count not in (None, self.segments):
-            raise InputError(f"segments = {self.segments!r} and count = {self.count!r} mean the same: give one")
+    segments: Links
 
     @property
     def links(self) -> int:
         """N."""
-        return self.segments or self.count or 0
+        return self.segments
 
 
 class TipUnderLoad(Chained, frozen=True, kw_only=True):

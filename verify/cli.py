@@ -16,6 +16,7 @@ from verify.errors import InputError
 if TYPE_CHECKING:
     from verify.scene import Scene
 
+PERCENT = 100
 BAD_INPUT, GATE_FAILED, INTERRUPTED, NO_READER = 2, 1, 130, 141
 
 _overrides = click.option(
@@ -155,7 +156,10 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
     given = given_arguments(arguments)
     checked = quantities.arguments_of(found, given)
     asked = _load(scene, overrides)
-    value = quantities.evaluate(found, checked, asked, Workbench(asked.beam))
+    bench = Workbench(asked.beam)
+    with _progress(PERCENT, quiet=as_json) as step:
+        bench.tell = _in_percent(step)
+        value = quantities.evaluate(found, checked, asked, bench)
     plain = quantities.as_plain(value)
     if as_json:
         shown = quantities.arguments_as_plain(checked, given)
@@ -277,6 +281,19 @@ def _command_line(command: str, scene: str, overrides: tuple[str, ...]) -> str:
     from shlex import join
 
     return join(["verify", command, scene, *(word for text in overrides for word in ("--set", text))])
+
+
+def _in_percent(step: Callable[[str], None]) -> Callable[[float], None]:
+    """Parts of a whole, told to a bar of a hundred steps."""
+    shown = 0
+
+    def tell(part: float) -> None:
+        nonlocal shown
+        while shown < int(PERCENT * part):
+            shown += 1
+            step("motion in time")
+
+    return tell
 
 
 @contextmanager

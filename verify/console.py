@@ -14,12 +14,13 @@ from rich.text import Text
 if TYPE_CHECKING:
     from verify.design_map import DesignMap
     from verify.gates import GateResult
+    from verify.motion_study import MotionStudy
     from verify.plan import Plan
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Cell, Row
     from verify.wave_study import MotorRow, Operation
-    from verify.work_precision import WorkRow
+    from verify.work_precision import Comparison, WorkRow
 
 
 class Terminal(Console):
@@ -75,12 +76,34 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     verdict = f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]" if n_failed else (
         f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates"
     )  # fmt: skip
-    console.print(
-        f"{verdict} in {seconds_in_words(result.seconds)}, "
-        f"{len(result.solves)} modal solves, {result.n_fields} driven fields"
-    )
+    if result.motion:
+        _print_slider(console, result.motion)
+    console.print(f"{verdict} in {seconds_in_words(result.seconds)}: {work_in_words(result)}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True)
+
+
+def work_in_words(result: "RunResult") -> str:
+    """What a run solved, by kind; kinds of which there is nothing are left out."""
+    kinds = {"modal solves": len(result.solves), "driven fields": result.n_fields, "motions in time": result.n_motions}
+    return ", ".join(f"{n} {name}" for name, n in kinds.items() if n) or "closed forms only"
+
+
+def _print_slider(console: Console, study: "MotionStudy") -> None:
+    """What the slider was found to do, how far that can be believed, and what it costs."""
+    for fact in study.facts:
+        console.print(Text(f"{'holds ' if fact.holds else 'not so'}  {fact.what}: {fact.found}"), soft_wrap=False)
+    margins = study.runs["segment"].margins
+    console.print(Text(f"margins of the run: acceleration over what presses the slider on {margins.lift_off:.3g}, "
+                       f"(kL)^2 <theta^2> {margins.nonlinearity:.1e}"))  # fmt: skip
+    if study.answer:
+        console.print(answer_in_words(study.answer))
+
+
+def answer_in_words(answer: "Comparison") -> str:
+    """Both models at one error."""
+    return (f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take {answer.ratio:.2f} "
+            "times as long as segments")  # fmt: skip
 
 
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
@@ -182,8 +205,7 @@ def print_work(rows: "tuple[WorkRow, ...]") -> None:
     console.print("[dim]errors against the exact beam at the same step; run time of the loop for a simulated "
                   "millisecond, medians of interleaved rounds[/]")  # fmt: skip
     if (answer := at_equal_error(rows)) is not None:
-        console.print(f"at an error of {100 * answer.error:.3g} % Hermite elements take {answer.ratio:.2f} times as "
-                      "long as segments")  # fmt: skip
+        console.print(answer_in_words(answer))
 
 
 def print_map(found: "DesignMap") -> None:
@@ -213,12 +235,12 @@ def _map_table(found: "DesignMap") -> Table:
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
     first, *second = found.axes
-    table.add_column(first.name, justify="right", no_wrap=True)
+    table.add_column(" \\ ".join(axis.name for axis in found.axes), justify="right", no_wrap=True)
     grid = found.values.reshape(len(first.values), -1)
     few = ((grid.shape[0], 13), (grid.shape[1], 7))
     rows, columns = (np.unique(np.linspace(0, n - 1, most).round().astype(int)) for n, most in few)
     for j in columns:
-        head = f"{second[0].name} {second[0].values[j]:g}" if second else found.quantity
+        head = f"{second[0].values[j]:g}" if second else found.quantity
         table.add_column(head, justify="right", overflow="fold")
     for i in rows:
         table.add_row(f"{first.values[i]:g}", *("–" if np.isnan(v) else f"{v:.4g}" for v in grid[i, columns]))

@@ -6,11 +6,14 @@ z' = (-sigma + i omega) z, which a rotation advances exactly by any step. The re
 imaginary part of (t/T)^d e^{i omega t}.
 """
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numba import njit
 
+# nothing here allocates: without numba's memory runtime no loop counts references, which doubles the speed
+_compiled = partial(njit, _nrt=False)
 _FAST = {"reassoc", "contract", "nsz"}
 # entries of `motion`: what the slider carries from step to step
 X, V, STUCK = range(3)
@@ -33,15 +36,15 @@ STICKS, SLIPS, TURNS = 1.0, 2.0, 3.0
 Z_RE, Z_IM, SIGMA, OMEGA, HALF_RE, HALF_IM, FULL_RE, FULL_IM, LEVER = range(9)
 # rows of `factors`, (2, rows), and of `local`, (3, degree + 1): deflection, velocity, deflection a step before
 STILL, MOVING, BEFORE = range(3)
-# entries of `drive`: the forces grow as 3 p^2 - 2 p^3 over RAMP seconds where RAMPED; RAMP is the unit of time of rows
-FREQUENCY, ORIGIN, RAMP, RAMPED = range(4)
+# entries of `drive`; from GROWTH on, the forces' amplitude as a polynomial in t/RAMP; RAMP is the rows' unit of time
+FREQUENCY, ORIGIN, RAMP, GROWTH = range(4)
 # entries of `slip`: what friction adds to the speed, sticking at the end, time of the last event, what else adds
 CHANGE, STICKING, EVENT, GIVEN_MIDDLE, GIVEN_END = range(5)
 # columns of `kept`
 KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE = range(4)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> float:
     """What friction -b tanh(slope r) adds to a slider's speed in dt, while r' = -b tanh(slope r) - a exactly.
 
@@ -65,7 +68,7 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
     return float(side * (change + alpha * tau) / slope)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _brief_change(rho: float, alpha: float, tau: float) -> float:
     """What friction adds to rho in a short tau: four stages, off by less than 1e-11 of it, where logarithms cancel."""
     first = np.tanh(rho)
@@ -75,7 +78,7 @@ def _brief_change(rho: float, alpha: float, tau: float) -> float:
     return float(-tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0)
 
 
-@njit(cache=True, error_model="numpy")
+@_compiled(cache=True, error_model="numpy")
 def _swept_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), alpha > 1: there is no speed at rest with the surface.
 
@@ -102,13 +105,13 @@ def _swept_change(rho: float, alpha: float, tau: float) -> float:
     return float(change)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _ln_cosh(delta: float) -> float:
     """Ln(2 cosh delta), without overflow."""
     return float(abs(delta) + np.log1p(np.exp(-2.0 * abs(delta))))
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _held_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1: rho tends to rest = -artanh alpha.
 
@@ -133,17 +136,17 @@ def _held_change(rho: float, alpha: float, tau: float) -> float:
     return float(side * _arsinh_exp(level) + rest - rho)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _ln_sinh(eta: float) -> float:
     return float(np.log(np.sinh(eta))) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _arsinh_exp(level: float) -> float:
     return float(np.arcsinh(np.exp(level))) if level < 20.0 else level + np.log(2.0)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def coulomb_span(r: float, a0: float, a1: float, kinetic: float, static: float, dt: float, stuck: bool) -> Any:
     """Until friction changes its mind: (time used, r at its end, whether stuck then, kind of event or 0).
 
@@ -168,7 +171,7 @@ def coulomb_span(r: float, a0: float, a1: float, kinetic: float, static: float, 
     return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     """The first t in (0, dt) where r - slowing t - rate t^2/2 changes sign, else dt."""
     if r == 0.0:
@@ -188,7 +191,7 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     return best
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _tanh_on_belt(
     x: float, v: float, dt: float, kinetic: float, slope: float, belt: float, stiffness: float, pull: float
 ) -> Any:
@@ -203,7 +206,7 @@ def _tanh_on_belt(
     return x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def slide_on_belt(
     n_steps: int, dt: float, law: Any, belt: float, stiffness: float, pull: float, state: Any, events: Any
 ) -> int:
@@ -237,7 +240,7 @@ def slide_on_belt(
     return n_events
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _rotate_half(modes: Any) -> None:
     """Advance every free mode by half a step."""
     for j in range(modes.shape[1]):
@@ -246,7 +249,7 @@ def _rotate_half(modes: Any) -> None:
         modes[Z_RE, j] = real
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _set_factors(time: float, modes: Any, drive: Any, factors: Any) -> None:
     """Time factors of all rows and their rates: modes first, then (t/ramp)^d (cos, -sin) of the drive."""
     n = modes.shape[1]
@@ -266,7 +269,7 @@ def _set_factors(time: float, modes: Any, drive: Any, factors: Any) -> None:
         power = power * time / unit
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _set_local(table: Any, piece: int, factors: Any, local: Any) -> None:
     """Polynomials of deflection and velocity on one piece; table is (pieces, degree + 1, rows)."""
     for d in range(table.shape[1]):
@@ -277,7 +280,7 @@ def _set_local(table: Any, piece: int, factors: Any, local: Any) -> None:
         local[STILL, d], local[MOVING, d] = still, moving
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def find_piece(edges: Any, x: float, piece: int) -> int:
     """The piece that holds x, from the one that did; -1 off the pieces."""
     while piece >= 0 and x < edges[piece]:
@@ -289,18 +292,19 @@ def find_piece(edges: Any, x: float, piece: int) -> int:
     return piece if piece < len(edges) - 1 else -1
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _material(local: Any, edges: Any, piece: int, x: float, half: float) -> float:
     """The local coordinate of the material point under x: X = x + (h/2) w'."""
     length = edges[piece + 1] - edges[piece]
     xi = (x - edges[piece]) / length
-    first = 0.0
+    value, first = 0.0, 0.0
     for d in range(local.shape[1] - 1, 0, -1):
-        first = first * xi + float(d) * local[STILL, d]
+        value = value * xi + local[STILL, d]
+        first = first * xi + value
     return float(xi + half * first / (length * length))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any, seen: Any, row: int) -> None:
     """The surface under x: tangential velocity of its material, and what a slider that follows it feels.
 
@@ -308,21 +312,22 @@ def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any,
     """
     length = edges[piece + 1] - edges[piece]
     at = _material(local, edges, piece, x, law[HALF])
-    rise, slope, turn, bend = 0.0, 0.0, 0.0, 0.0
+    deflection, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
     for d in range(local.shape[1] - 1, -1, -1):  # Horner for values and derivatives together
         bend = bend * at + slope
-        slope = slope * at + (local[STILL, d + 1] * (d + 1.0) if d + 1 < local.shape[1] else 0.0)
+        slope = slope * at + deflection
+        deflection = deflection * at + local[STILL, d]
         turn = turn * at + rise
         rise = rise * at + local[MOVING, d]
     slope, turn = slope / length, turn / length
     seen[row, SURFACE] = (rise * slope - law[HALF] * turn) / np.sqrt(1.0 + slope * slope)
     seen[row, PULL], seen[row, DRIFT] = 0.0, 0.0
     if law[FOLLOWING] > 0.0:
-        seen[row, PULL] = rise * (turn + bend / (length * length) * speed) - law[GRAVITY] * slope
+        seen[row, PULL] = rise * (turn + 2.0 * bend / (length * length) * speed) - law[GRAVITY] * slope
         seen[row, DRIFT] = -slope * rise
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: float, modes: Any) -> Any:
     """How a unit tangential force on the surface at x loads every mode: -(h/2) on its slope, w' on its rise.
 
@@ -341,7 +346,7 @@ def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: 
     return at, slope
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _mobility(modes: Any, turn: int) -> float:
     """Speed of the surface after a constant unit force has acted for half a step or a whole one, m/s per newton."""
     total = 0.0
@@ -350,7 +355,7 @@ def _mobility(modes: Any, turn: int) -> float:
     return total
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _press(force: float, modes: Any) -> None:
     """Add what a constant force over the whole step adds to the modes: (1 - turn) about the shifted rest position."""
     for j in range(modes.shape[1]):
@@ -361,13 +366,14 @@ def _press(force: float, modes: Any) -> None:
         modes[Z_IM, j] += imaginary - (modes[FULL_RE, j] * imaginary + modes[FULL_IM, j] * real)
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _power(drive: Any, loads: Any, forces: Any, time: float, factors: Any) -> float:
     """Power of the driving forces, watts; loads is (n_forces, rows), forces (2, n_forces) real and imaginary."""
     angle = drive[FREQUENCY] * (drive[ORIGIN] + time)
     c, s = np.cos(angle), np.sin(angle)
-    part = time / drive[RAMP]
-    grown = part * part * (3.0 - 2.0 * part) if drive[RAMPED] > 0.0 else 1.0
+    part, grown = time / drive[RAMP], 0.0
+    for d in range(len(drive) - 1, GROWTH - 1, -1):
+        grown = grown * part + drive[d]
     total = 0.0
     for f in range(loads.shape[0]):
         speed = 0.0
@@ -377,7 +383,7 @@ def _power(drive: Any, loads: Any, forces: Any, time: float, factors: Any) -> fl
     return total
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _loss(modes: Any, answers: Any, factors: Any) -> float:
     """Power lost in the modes, watts; answers is (n, drive rows), the forced part of every mode."""
     total, n = 0.0, modes.shape[1]
@@ -389,7 +395,7 @@ def _loss(modes: Any, answers: Any, factors: Any) -> float:
     return total
 
 
-@njit(cache=True, fastmath=_FAST)
+@_compiled(cache=True, fastmath=_FAST)
 def _given_way(modes: Any) -> float:
     """How far the free modes have moved the surface along the levers, metres."""
     total = 0.0
@@ -398,7 +404,7 @@ def _given_way(modes: Any) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@_compiled(cache=True, error_model="numpy")
 def _carried(local: Any, edges: Any, piece: int, at: float, slope: float, half: float) -> float:
     """How far the whole motion moves the surface in a step, at `at` along a tangent of this slope, metres."""
     value, first = 0.0, 0.0
@@ -408,7 +414,7 @@ def _carried(local: Any, edges: Any, piece: int, at: float, slope: float, half: 
     return float((slope * value - half * first / (edges[piece + 1] - edges[piece])) / np.sqrt(1.0 + slope * slope))
 
 
-@njit(cache=True, inline="always")
+@_compiled(cache=True, inline="always")
 def _friction(r: float, law: Any) -> float:
     """Friction per mass at relative speed r where it does not depend on sticking."""
     if law[KIND] == TANH:
@@ -416,7 +422,7 @@ def _friction(r: float, law: Any) -> float:
     return float(-law[KINETIC] * np.sign(r))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _slip(
     v: float, stuck: bool, push: float, half: float, full: float, law: Any, dt: float, seen: Any, slip: Any
 ) -> float:
@@ -451,7 +457,7 @@ def _slip(
     return float(slip[CHANGE])
 
 
-@njit(cache=True, error_model="numpy")
+@_compiled(cache=True, error_model="numpy")
 def _balance(v: float, stuck: bool, half: float, full: float, law: Any, dt: float, seen: Any, slip: Any) -> float:
     """The contact force, newton, mean over the step, at which slider and beam agree: regula falsi (Illinois).
 
@@ -476,7 +482,7 @@ def _balance(v: float, stuck: bool, half: float, full: float, law: Any, dt: floa
     return float(force)
 
 
-@njit(cache=True, inline="always")
+@_compiled(cache=True, inline="always")
 def _see(
     row: int, time: float, x: float, speed: float, piece: int, modes: Any, drive: Any, table: Any, edges: Any, law: Any,
     loads: Any, forces: Any, answers: Any, accounts: bool, factors: Any, local: Any, seen: Any, fresh: bool,
@@ -491,7 +497,7 @@ def _see(
         seen[row, LOSS] = _loss(modes, answers, factors)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _push_back(
     v: float, stuck: bool, dt: float, at: float, slope: float, piece: int, modes: Any, edges: Any, local: Any, law: Any,
     seen: Any, slip: Any,
@@ -508,7 +514,7 @@ def _push_back(
     return float(-force * (way + _given_way(modes)))
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _correct_pull(
     dt: float, x: float, speed: float, piece: int, edges: Any, local: Any, law: Any, seen: Any, slip: Any
 ) -> None:
@@ -520,7 +526,7 @@ def _correct_pull(
     slip[GIVEN_END] += 0.5 * dt * (seen[2, PULL] - pull)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _correct_powers(
     time: float, modes: Any, drive: Any, loads: Any, forces: Any, answers: Any, factors: Any, seen: Any
 ) -> None:
@@ -531,7 +537,7 @@ def _correct_powers(
     seen[2, POWER], seen[2, LOSS] = power, loss
 
 
-@njit(cache=True, inline="always")
+@_compiled(cache=True, inline="always")
 def _account(
     v: float, v1: float, moved: float, pressed: float, two_way: bool, dt: float, law: Any, seen: Any, ledger: Any
 ) -> None:
@@ -548,9 +554,16 @@ def _account(
     ledger[RUBBED] -= on_slider + pressed
 
 
-@njit(cache=True)
-def _move(rate: float, dt: float, motion: Any, law: Any, seen: Any, slip: Any) -> float:
-    """Advance the slider under what `slip` says; how far its own speed has taken it (Hermite's quadrature)."""
+@_compiled(cache=True)
+def _give(dt: float, seen: Any, slip: Any) -> None:
+    """What everything but friction adds to the speed by the middle and the end of a step."""
+    slip[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
+    slip[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+
+
+@_compiled(cache=True)
+def _advance(dt: float, rate: float, motion: Any, law: Any, seen: Any, slip: Any) -> float:
+    """Move the slider to the end of a step; the distance that its own speed made. `rate` was its acceleration."""
     v = motion[V]
     v1 = v + slip[GIVEN_END] + slip[CHANGE]
     if slip[STICKING] > 0.0:
@@ -563,7 +576,7 @@ def _move(rate: float, dt: float, motion: Any, law: Any, seen: Any, slip: Any) -
     return float(moved)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@_compiled(cache=True, error_model="numpy", inline="always")
 def _step(
     number: int, dt: float, piece: int, fresh: bool, modes: Any, drive: Any, table: Any, edges: Any, motion: Any,
     law: Any, two_way: bool, loads: Any, forces: Any, answers: Any, accounts: bool, ledger: Any, factors: Any,
@@ -577,7 +590,8 @@ def _step(
     along = v + seen[0, DRIFT]
     at, slope, pressed, x1, v1 = 0.0, 0.0, 0.0, x, v
     if two_way:
-        local[BEFORE] = local[STILL]
+        for d in range(local.shape[1]):
+            local[BEFORE, d] = local[STILL, d]
     for row in range(1, 3):
         _rotate_half(modes)
         t = 0.5 * row * dt
@@ -586,8 +600,7 @@ def _step(
              accounts, factors, local, seen, True)  # fmt: skip
         if two_way and row == 1:
             at, slope = _set_levers(table, piece, edges, local, x1, law[HALF], modes)
-    slip[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
-    slip[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+    _give(dt, seen, slip)
     if two_way:
         pressed = _push_back(v, stuck, dt, at, slope, piece, modes, edges, local, law, seen, slip)
         _set_factors((number + 1) * dt, modes, drive, factors)
@@ -598,16 +611,16 @@ def _step(
             _correct_pull(dt, x1, v1, piece, edges, local, law, seen, slip)
     else:
         _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
-    moved = _move(rate, dt, motion, law, seen, slip)
+    moved = _advance(dt, rate, motion, law, seen, slip)
     if accounts:
         _account(v, motion[V], moved, pressed, two_way, dt, law, seen, ledger)
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def slide(
     n_steps: int, dt: float, modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any, two_way: bool,
     loads: Any, forces: Any, answers: Any, accounts: bool, ledger: Any, every: int, kept: Any, points: Any,
-    deflections: Any, events: Any, tally: Any,
+    deflections: Any, events: Any, tally: Any, factors: Any, local: Any, seen: Any, slip: Any,
 ) -> int:  # fmt: skip
     """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
@@ -615,8 +628,6 @@ def slide(
     that they agree whenever the caller is interrupted. `kept` is (capacity, 4), filled every `every` steps together
     with the deflections at `points` (n_points, rows); `events` is (capacity, 3): time, kind, x.
     """
-    factors, local = np.empty((2, table.shape[2])), np.empty((3, table.shape[1]))
-    seen, slip = np.zeros((3, 5)), np.zeros(5)
     piece, fresh = 0, True
     for _ in range(n_steps):
         here = find_piece(edges, motion[X], max(piece, 0))
@@ -641,7 +652,7 @@ def slide(
     return DONE
 
 
-@njit(cache=True)
+@_compiled(cache=True)
 def _keep(
     motion: Any, law: Any, mean_friction: float, seen: Any, factors: Any, points: Any, kept: Any, deflections: Any,
     row: int,
@@ -657,10 +668,41 @@ def _keep(
         deflections[row, p] = total
 
 
-@njit(cache=True)
-def look(modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any) -> Any:
+@_compiled(cache=True)
+def slide_given(
+    n_steps: int, dt: float, local: Any, along: Any, edges: Any, motion: Any, law: Any, kept: Any, seen: Any, slip: Any
+) -> int:
+    """The same steps on a surface that is given at every half step, one way; how many were done on its piece.
+
+    `local` is (2 n + 1, 2, degree + 1), `along` (2 n + 1,) a speed of the whole surface along x, `edges` (2,).
+    """
+    for number in range(n_steps + 1):
+        x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
+        if x < edges[0] or x > edges[1]:
+            return max(number - 1, 0)
+        _touch(local[2 * number], edges, 0, x, v, law, seen, 0)
+        seen[0, SURFACE] += along[2 * number]
+        rate = seen[0, PULL] + (0.0 if stuck else _friction(v - seen[0, SURFACE], law))
+        kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
+        kept[number, KEPT_FRICTION] = slip[CHANGE] / dt if stuck else rate - seen[0, PULL]
+        if number == n_steps:
+            break
+        ahead = v + seen[0, DRIFT]
+        for row in range(1, 3):
+            t = 0.5 * row * dt
+            _touch(local[2 * number + row], edges, 0, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
+            seen[row, SURFACE] += along[2 * number + row]
+        _give(dt, seen, slip)
+        _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
+        _advance(dt, rate, motion, law, seen, slip)
+    return n_steps
+
+
+@_compiled(cache=True)
+def look(
+    modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any, factors: Any, local: Any, seen: Any
+) -> Any:
     """(speed of the surface under the slider, friction per mass) at time 0."""
-    factors, local, seen = np.empty((2, table.shape[2])), np.empty((2, table.shape[1])), np.zeros((3, 5))
     piece = max(find_piece(edges, motion[X], 0), 0)
     _set_factors(0.0, modes, drive, factors)
     _set_local(table, piece, factors, local)

@@ -54,7 +54,6 @@ def _rates(stage: Stage, z0: Array, t: Array) -> Array:
 
 def _loads(stage: Stage, t: Array) -> Array:
     """Generalised forces at the times t, (len(t), n)."""
-    part = np.clip(t / stage.unit_s, 0.0, 1.0)
-    grown = part**2 * (3.0 - 2.0 * part) if stage.ramped else np.ones_like(t)
+    grown = np.polynomial.polynomial.polyval(t / stage.unit_s, stage.growth)
     turn = grown * np.exp(1j * stage.omega * (t + stage.origin))
     return np.asarray((turn[:, None] * stage.modal.loads).real)

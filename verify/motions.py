@@ -53,8 +53,12 @@ def with_slider(a: Any, scene: "Scene", bench: "Workbench", samples: int = 2, le
         step = 1.0 / (scene.motion.steps_per_period * asked["frequency_hz"])
     key = ("slider", scene.beam, slider, step, samples, ledger, *asked.values())
     if key not in bench.motions:
-        bench.motions[key] = simulate(scene.beam, slider=slider, step=step, samples=samples, ledger=ledger, **asked)
+        bench.motions[key] = simulate(
+            scene.beam, slider=slider, step=step, samples=samples, ledger=ledger, progress=bench.tell, **asked
+        )
     found: Motion = bench.motions[key]
+    if found.statistics.stopped == "interrupted":
+        raise KeyboardInterrupt
     if found.statistics.stopped != "end":
         raise InputError(
             f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {asked['duration']!r} s: "

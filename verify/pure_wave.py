@@ -5,6 +5,7 @@ import numpy as np
 from verify.beam import Beam, check_number
 from verify.contact import law_entries
 from verify.errors import InputError
+from verify.forcing import CONSTANT
 from verify.moving_surface import ANALYTIC_DEGREE, NO_MODES, Stage
 from verify.slider import Slider
 from verify.slider_run import Sliding, run_stages
@@ -25,9 +26,11 @@ def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 
 
     return Stage(
         modal=NO_MODES, forced=None, free_shapes=lambda x, derivative: np.empty((0, len(x))), drive_shapes=drive,
+        from_modes=None,
         load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
         edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2), degree=ANALYTIC_DEGREE, omega=omega,
-        origin=0.0, unit_s=1.0, ramped=False, n_steps=STEPS, dt=2.0 * np.pi / (omega - k * mean) / STEPS, every=STEPS,
+        origin=0.0, unit_s=1.0, growth=CONSTANT, n_steps=STEPS, every=STEPS,
+        dt=2.0 * np.pi / (omega - k * mean) / STEPS,
     )  # fmt: skip
 
 

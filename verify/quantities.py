@@ -34,9 +34,18 @@ def quantity(name: str) -> Quantity:
 
 def arguments_of(found: Quantity, given: dict[str, Any]) -> Arguments:
     """Arguments checked against the quantity's types; one number stands for a list of one. Raises InputError."""
-    lists = {f.name for f in msgspec.structs.fields(found.arguments) if _type_words(f.type).startswith("list")}
+    fields = msgspec.structs.fields(found.arguments)
+    lists = {f.name for f in fields if _type_words(f.type).startswith("list")}
     data = {k: [v] if k in lists and not isinstance(v, list) else v for k, v in given.items()}
-    return checked(data, found.arguments)
+    return checked(_one_name(data, {f.name for f in fields}), found.arguments)
+
+
+def _one_name(given: dict[str, Any], known: set[str]) -> dict[str, Any]:
+    """`segments` for `count` where a quantity knows one of the two alone. Raises InputError for both."""
+    other = {"segments": "count", "count": "segments"}
+    if set(given) >= set(other):
+        raise InputError(f"count = {given['count']!r} and segments = {given['segments']!r} mean the same: give one")
+    return {other[k] if k in other and k not in known and other[k] in known else k: v for k, v in given.items()}
 
 
 def needs_of(found: Quantity, arguments: Arguments, scene: "Scene") -> tuple[Need, ...]:
@@ -61,7 +70,7 @@ def as_plain(value: Any) -> Any:
 def arguments_as_plain(arguments: Arguments, given: dict[str, Any]) -> dict[str, Any]:
     """What was asked, as it was understood."""
     plain: dict[str, Any] = msgspec.to_builtins(arguments)
-    return {key: plain[key] for key in given}
+    return {key: plain[key] for key in _one_name(given, set(plain))}
 
 
 def in_words(plain: Any) -> str:

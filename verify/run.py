@@ -31,6 +31,8 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     solves: tuple[Solve, ...]
     n_fields: int
     """How many driven fields were solved, those of superposed maps not counted."""
+    n_motions: int
+    """How many simulations gates asked for, and three models' of a slider study."""
     seconds: float
 
     @property
@@ -79,7 +81,8 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
         motion = motion_study(found, progress)
     return RunResult(
         scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity, wave=wave,
-        motion=motion, solves=tuple(bench.solves), n_fields=bench.n_fields, seconds=perf_counter() - start,
+        motion=motion, solves=tuple(bench.solves), n_fields=bench.n_fields,
+        n_motions=len(bench.motions) + (len(motion.runs) if motion else 0), seconds=perf_counter() - start,
     )  # fmt: skip
 
 

@@ -12,14 +12,16 @@ from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.contact import Coupling, Margins, coupling_of, law_entries
 from verify.errors import InputError
 from verify.fields import check_drive
-from verify.forcing import check_no_resonance
+from verify.forcing import CONSTANT, SMOOTH_STEP, check_no_resonance
 from verify.motion import EndState, Ledger, Motion, Statistics
-from verify.moving_surface import Stage, Steps, basis_of, check_line, cut, free_at, stages_from_rest, steady_stage
+from verify.moving_surface import Growth, Stage, basis_of, check_line, cut, free_at, stages_from_rest, steady_stage
 from verify.slider import Slider
 from verify.slider_run import Sliding, run_stages
 from verify.time_basis import Array, TimeBasis
 
 STEPS_PER_PERIOD = 64
+Envelope = Sequence[tuple[float, Sequence[float]]]
+"""Pieces (seconds, coefficients of powers of t / seconds) of the forces' amplitude."""
 CLOSED_FORM_ROWS = 2000
 
 
@@ -36,8 +38,7 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     damping: float
     slider: Slider | None
     points: Array
-    ramp: Steps | None
-    rest: Steps | None
+    pieces: tuple[Growth, ...]
     accounts: bool
     before: EndState | None
 
@@ -53,8 +54,8 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def n_steps(self) -> int:
-        """Of the growth and the rest."""
-        return sum(part.n for part in (self.ramp, self.rest) if part)
+        """Of all pieces."""
+        return sum(piece.steps.n for piece in self.pieces)
 
     @property
     def damping_replaced(self) -> bool:
@@ -78,6 +79,7 @@ def simulate(
     modes: int = 400,
     start: Literal["rest", "steady"] = "rest",
     soft_start_periods: float = 0.0,
+    envelope: Envelope = (),
     modal_damping: float | None = None,
     slider: Slider | None = None,
     at: Sequence[float] = (),
@@ -90,15 +92,15 @@ def simulate(
     """A driven beam from rest or in its steady state for `duration` seconds, with a slider or without.
 
     Forces are amplitude cos(omega t + phase): from rest cos(0) = 1 is a step load, which `soft_start_periods`
-    spreads as 3 p^2 - 2 p^3. Modes advance exactly by any step; `step` (default a 64th of a period) is the
-    slider's alone. The exact beam keeps `modes` modes from rest and none in its steady state. Damping is a ratio
-    of every mode, half the beam's loss factor unless given. `at` are metres where the deflection is kept.
-    Returns what was reached where the run was interrupted or the slider left the beam, and says so. Raises
-    InputError.
+    spreads as 3 p^2 - 2 p^3; any other growth is an `envelope` of polynomial pieces, after which the amplitudes are
+    those given. Modes advance exactly by any step; `step` (default a 64th of a period) is the slider's alone. The
+    exact beam keeps `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half
+    the beam's loss factor unless given. `at` are metres where the deflection is kept. Returns what was reached
+    where the run was interrupted or the slider left the beam, and says so. Raises InputError.
     """
     began = perf_counter()
     request = _request(beam, tuple(forces), frequency_hz, duration, model, count, modes, start, soft_start_periods,
-                       modal_damping, slider, at, samples, step, ledger, continue_from)  # fmt: skip
+                       envelope, modal_damping, slider, at, samples, step, ledger, continue_from)  # fmt: skip
     stages, basis, coupling = _prepare(request)
     if slider is None:
         return _closed_form(request, stages, basis, began)
@@ -108,8 +110,8 @@ def simulate(
 
 def _request(
     beam: Beam, forces: tuple[PointForce, ...], frequency_hz: float, duration: float, model: str, count: int | None,
-    modes: int, start: str, soft: float, damping: float | None, slider: Slider | None, at: Sequence[float],
-    samples: int, step: float | None, ledger: bool, before: Motion | None,
+    modes: int, start: str, soft: float, envelope: Envelope, damping: float | None, slider: Slider | None,
+    at: Sequence[float], samples: int, step: float | None, ledger: bool, before: Motion | None,
 ) -> Request:  # fmt: skip
     check_drive(beam, forces, frequency_hz)
     check_number("duration", duration, "seconds", above=0)
@@ -118,8 +120,10 @@ def _request(
         raise InputError(f"model = {model!r} is not known: known are analytic, fem, segment")
     if start not in ("rest", "steady"):
         raise InputError(f"start = {start!r} is not known: known are rest, steady")
-    if soft and (start == "steady" or before):
+    if (soft or envelope) and (start == "steady" or before):
         raise InputError(f"soft_start_periods = {soft!r}: a beam that moves already has no start, leave it out")
+    if soft and envelope:
+        raise InputError(f"soft_start_periods = {soft!r} and an envelope: give one of the two")
     check_whole("samples", samples, 2)
     if samples > 10_000_000:
         raise InputError(f"samples = {samples!r}: keep between 2 and 10000000 of them")
@@ -133,20 +137,34 @@ def _request(
     if duration / longest > 2e9:
         raise InputError(f"step = {longest!r} takes more than 2e9 steps: lengthen the step or shorten the duration")
     check_line(model, start, slider.line if slider else "spline")
-    ramp, rest = _laid_out(duration, soft / frequency_hz, longest, samples - 1)
+    grown = (
+        ((soft / frequency_hz, SMOOTH_STEP),) if soft else tuple((s, np.asarray(c, dtype=float)) for s, c in envelope)
+    )
     return Request(beam=beam, forces=forces, frequency_hz=frequency_hz, model=model, count=count, modes=modes,
-                   start=start, damping=zeta, slider=slider, points=points, ramp=ramp, rest=rest, accounts=ledger,
-                   before=before.end if before else None)  # fmt: skip
+                   start=start, damping=zeta, slider=slider, points=points, accounts=ledger,
+                   before=before.end if before else None,
+                   pieces=_laid_out(duration, grown, longest, samples - 1))  # fmt: skip
 
 
-def _laid_out(duration: float, growth: float, longest: float, samples: int) -> tuple[Steps | None, Steps | None]:
-    """Steps of the growth of the forces and of what follows, with the samples shared between them."""
-    if growth <= 0.0:
-        return None, cut(duration, longest, samples)
-    if growth >= duration:
-        raise InputError(f"soft_start_periods lasts {growth!r} s of duration = {duration!r} s: shorten it")
-    shared = min(max(round(samples * growth / duration), 1), max(samples - 1, 1))
-    return cut(growth, longest, shared), cut(duration - growth, longest, max(samples - shared, 1))
+def _laid_out(
+    duration: float, grown: Sequence[tuple[float, Array]], longest: float, samples: int
+) -> tuple[Growth, ...]:
+    """Steps of every piece of the envelope and of the constant forces after it, samples shared by length."""
+    lengths = [seconds for seconds, _ in grown]
+    if any(not 0.0 < s < np.inf for s in lengths) or any(not len(c) or not np.all(np.isfinite(c)) for _, c in grown):
+        raise InputError(
+            "envelope: give pieces (seconds, coefficients), each longer than 0 s and of finite coefficients"
+        )
+    rest = duration - sum(lengths)
+    if grown and rest < -1e-12 * duration:
+        raise InputError(
+            f"the forces grow over {sum(lengths)!r} s of duration = {duration!r} s: shorten soft_start_periods or "
+            "envelope, or lengthen the duration"
+        )
+    pieces = list(grown) + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
+    shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]
+    shares[-1] = max(samples - sum(shares[:-1]), 1)
+    return tuple(Growth(cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))
 
 
 def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling | None]:
@@ -154,9 +172,7 @@ def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling 
     if request.start == "rest":
         basis = basis_of(request.beam, request.model, request.count, request.modes, request.line)
         check_no_resonance(basis, request.frequency_hz, request.damping)
-        stages = stages_from_rest(
-            basis, request.forces, request.omega, request.damping, request.ramp, request.rest, request.origin
-        )
+        stages = stages_from_rest(basis, request.forces, request.omega, request.damping, request.pieces, request.origin)
         return stages, basis, _coupling(request, stages[-1])
     stage = _steady(request, None)
     coupling = _coupling(request, stage)
@@ -176,8 +192,7 @@ def _steady(request: Request, basis: TimeBasis | None) -> Stage:
         beam = replace(beam, loss_factor=2.0 * request.damping if request.model == "analytic" else 0.0)
         settings = {} if request.model == "analytic" else {"modal_damping": request.damping}
     field = solve_by_model(request.model, beam, request.forces, request.frequency_hz, request.count, settings)
-    assert request.rest is not None
-    return steady_stage(field, request.rest, request.origin, basis, request.damping)
+    return steady_stage(field, request.pieces[-1].steps, request.origin, basis, request.damping)
 
 
 def _coupling(request: Request, stage: Stage) -> Coupling | None:
@@ -219,8 +234,9 @@ def _begin(request: Request, stage: Stage) -> Array:
 def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
     notes = [f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"]
     notes += _damping_notes(request, basis)
-    if request.ramp:
-        notes.append(f"forces grow over {request.ramp.n * request.ramp.dt:.6g} s")
+    if len(request.pieces) > 1:
+        grown = sum(piece.steps.n * piece.steps.dt for piece in request.pieces[:-1])
+        notes.append(f"forces grow over {grown:.6g} s")
     return tuple(notes)
 
 

@@ -15,7 +15,7 @@ from verify.time_basis import Array
 
 CHUNK = 20_000
 """Steps between two looks at the keyboard."""
-REACH = 4
+REACH = 1
 """Pieces of the beam kept ready on each side of the slider."""
 EVENTS = 20_000
 
@@ -98,7 +98,7 @@ def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) ->
     for row, force in zip(loads, forces, strict=True):
         row[:] = stage.load_rows(force.position)
     return Feed(stage=stage, modes=modes, loads=loads,
-                drive=np.array([stage.omega, stage.origin, stage.unit_s, float(stage.ramped)]),
+                drive=np.array([stage.omega, stage.origin, stage.unit_s, *stage.growth]),
                 forces=np.array([amplitudes.real, amplitudes.imag]), answers=stage.answers,
                 points=np.ascontiguousarray(stage.rows(points).T))  # fmt: skip
 
@@ -123,11 +123,17 @@ def window(stage: Stage, start: float, travelled: float) -> Window | None:
     return stage.table(first, last), edges[first : last + 1]
 
 
+def room(fed: Feed) -> tuple[Array, Array, Array, Array]:
+    """Working space of the compiled loop: time factors, local polynomials, what is seen, how it slips."""
+    rows = fed.points.shape[1]
+    return np.empty((2, rows)), np.zeros((3, fed.stage.degree + 1)), np.zeros((3, 5)), np.zeros(5)
+
+
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     """The first sample: the slider as it is put on, before any step."""
     from verify import contact_kernels as kernels
 
-    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law)
+    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law, *room(fed)[:3])
     sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed
     if len(sliding.points):
         sliding.first_deflection[:] = fed.stage.deflection(fed.z, np.zeros(1), sliding.points)[0]
@@ -163,12 +169,12 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
     """One stage in chunks; why it ended. The loop keeps its own books, so that an interrupt finds them closed."""
     from verify import contact_kernels as kernels
 
-    s, stage = sliding, fed.stage
+    s, stage, space = sliding, fed.stage, room(fed)
     while around and s.tally[0] < stage.n_steps:
         why = kernels.slide(
             min(CHUNK, stage.n_steps - s.tally[0]), stage.dt, fed.modes, fed.drive, *around, s.motion, s.law, s.two_way,
             fed.loads, fed.forces, fed.answers, s.accounts, s.ledger, stage.every, s.kept, fed.points, s.deflections,
-            s.events, s.tally,
+            s.events, s.tally, *space,
         )  # fmt: skip
         tell(s.steps)
         if why == kernels.NOT_FINITE:
@@ -177,5 +183,4 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
             began = perf_counter()
             around = window(stage, s.start, float(s.motion[0]))
             s.set_up_s += perf_counter() - began
-    on = around and on_beam(stage, s.start, float(s.motion[0]))
-    return "end" if on else "left the beam"
+    return "end" if around and on_beam(stage, s.start, float(s.motion[0])) else "left the beam"

@@ -1,5 +1,7 @@
 """Which errors a run carries that no step size removes: the theory's and the division's."""
 
+from math import pi
+
 from verify.beam import Beam
 from verify.closed_forms import frequency_hz
 from verify.error_laws import leading_error
@@ -7,7 +9,8 @@ from verify.error_laws import leading_error
 
 def nearest_mode(beam: Beam, drive_hz: float) -> int:
     """The exact mode whose frequency lies nearest a drive's."""
-    mode = 1
+    turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
+    mode = max(int(turns) - 1, 1)
     while frequency_hz(beam, mode) < drive_hz:
         mode += 1
     below = frequency_hz(beam, mode - 1) if mode > 1 else 0.0

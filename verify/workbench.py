@@ -1,6 +1,6 @@
 """Where models are solved: lazily, once for everybody who asks, with a record of what it cost."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -92,6 +92,8 @@ class Workbench:
         self.solves: list[Solve] = []
         self.n_fields = 0
         """How many driven fields were solved; a map forgets those it has passed."""
+        self.tell: Callable[[float], None] = lambda part: None
+        """Hears how much of a long simulation is done."""
         self._wanted = merged(needs)
         self._modes: dict[Key, Modes] = {}
         self._index: dict[tuple[Key, int], int] = {}

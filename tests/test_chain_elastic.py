@@ -1,0 +1,108 @@
+"""The chain whose links stretch: conservation, orders, its limits of small motion and of stiff links, immovable ends."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from chain_reference import woinowsky_krieger
+from test_chain_dynamics import beam, odd_chain
+from test_chain_motion import driven, rms
+
+from verify.chain_dynamics import at_rest
+from verify.chain_elastic import elastic_step_limit, simulate_elastic
+from verify.chain_modal import modal_basis, simulate_linear
+from verify.chain_motion import simulate
+from verify.chain_system import Actuator, LinkLoad, Rotation, build_system
+from verify.errors import InputError
+
+EA = beam().youngs_modulus * beam().area
+
+
+@pytest.mark.parametrize("immovable", [True, False])
+def test_an_undamped_chain_keeps_its_energy_with_order_five_in_the_step(immovable):
+    system = odd_chain(5, 6, tip="roller", dashpots=np.zeros(6), loads=(), rotation=Rotation(), gravity=(1.0, -9.81))
+    bent = 0.01 * np.sin(np.pi * system.nodes / system.length) + 0.004 * np.sin(
+        2 * np.pi * system.nodes / system.length
+    )
+    limit = elastic_step_limit(system, 900.0)
+    drifts = []
+    for share in (0.2, 0.1):
+        times = np.linspace(0.0, 0.02, 11)
+        motion = simulate_elastic(system, 900.0, times, step=share * limit, immovable=immovable, deflected=bent)
+        drifts.append(abs(motion.energies - motion.energies[0]).max() / motion.energies[0])
+    assert drifts[1] < 1e-4
+    assert np.log2(drifts[0] / drifts[1]) == pytest.approx(5.0, abs=0.7)
+
+
+def test_small_motion_is_the_linear_chains():
+    system, times = driven(20, 1e-3), np.linspace(0.0, 4e-4, 41)
+    linear = simulate_linear(modal_basis(system), at_rest(system), times).deflection([0.2])
+    assert rms(simulate_elastic(system, EA, times).deflection([0.2]) - linear) < 1e-6 * rms(linear)
+
+
+def test_stiff_links_go_over_into_rigid_ones_with_the_inverse_of_their_stiffness():
+    system, times = driven(12, 60.0), np.linspace(0.0, 4e-4, 41)
+    rigid = simulate(system, at_rest(system), times, tolerance=1e-10, ledger=False).deflection([0.2])
+    gaps = [rms(simulate_elastic(system, factor * EA, times).deflection([0.2]) - rigid) for factor in (40.0, 4000.0)]
+    assert gaps[1] < 0.05 * gaps[0]
+    assert gaps[1] < 1e-4 * rms(rigid)
+
+
+def test_links_as_soft_as_the_beam_lose_most_of_the_rigid_links_nonlinearity():
+    system, times = driven(49, 10.0), np.linspace(0.0, 8e-4, 161)
+    linear = simulate_linear(modal_basis(system), at_rest(system), times).deflection([0.215])
+    rigid = simulate(system, at_rest(system), times, tolerance=1e-9, ledger=False).deflection([0.215])
+    soft = simulate_elastic(system, EA, times).deflection([0.215])
+    assert 0.01 * rms(rigid - linear) < rms(soft - linear) < 0.5 * rms(rigid - linear)
+
+
+@pytest.mark.parametrize("amplitude", [0.8, 2.0])
+def test_immovable_ends_stiffen_as_woinowsky_and_krieger_say(amplitude):
+    which, n = beam(), 16
+    radius, omega = which.thickness / np.sqrt(12), np.pi**2 * which.wave_constant / which.length**2
+    system = build_system(which, n)
+    shape = amplitude * radius * np.sin(np.pi * np.arange(n + 1) / n)
+    times = np.linspace(0.0, 1.01 * np.pi / 2 / omega, 201)
+    middle = simulate_elastic(system, EA, times, immovable=True, deflected=shape).deflection([which.length / 2])[:, 0]
+    k = int(np.argmax(middle < 0))
+    crossing = np.interp(0.0, [middle[k], middle[k - 1]], [times[k], times[k - 1]])
+    assert np.pi / 2 / crossing / omega == pytest.approx(woinowsky_krieger(amplitude), rel=2e-4)
+
+
+def test_a_moment_and_a_dashpot_do_what_they_do_to_rigid_links():
+    system = build_system(beam("clamped", "free"), 4, joint_dashpot=3e-3)
+    system = replace(
+        system, loads=(LinkLoad(link=4, at=0.02, moment=0.3), LinkLoad(link=2, at=0.03, force=(0.1, -0.2)))
+    )
+    times = np.linspace(0.0, 0.02, 5)
+    rigid = simulate(system, at_rest(system), times, tolerance=1e-9).deflection([0.43, 0.2])
+    stiff = simulate_elastic(system, 100 * EA, times).deflection([0.43, 0.2])
+    assert rms(stiff - rigid) < 1e-3 * rms(rigid)
+
+
+@pytest.mark.parametrize("n", [8, 30])
+def test_the_step_limit_is_safe_and_hardly_too_small(n):
+    system, times = driven(n, 1.0), np.linspace(0.0, 3e-3, 31)
+    limit = elastic_step_limit(system, EA)
+    assert simulate_elastic(system, EA, times, step=limit).stopped == "finished"
+    with pytest.raises(InputError, match=r"lies above the stability limit"):
+        simulate_elastic(system, EA, times, step=1.01 * limit)
+    rate = np.sqrt(12 * EA / system.masses[0] / system.lengths[0])
+    assert limit == pytest.approx(2 * np.sqrt(2) / rate)
+
+
+@pytest.mark.parametrize(
+    ("change", "request_", "message"),
+    [
+        ({"actuators": (Actuator(link=1, at=0.0),)}, {}, "for rigid links"),
+        ({"rotation": Rotation(rate=1.0)}, {}, "for rigid links"),
+        ({"axial_spring": 3.0}, {}, "immovable = True instead"),
+        ({}, {"times": [0.0, 1.0, 3.0]}, "evenly spaced"),
+        ({}, {"times": [1.0, 2.0]}, "from 0"),
+        ({}, {"axial_stiffness": -1.0}, "axial_stiffness = -1.0"),
+    ],
+)
+def test_bad_requests_are_refused(change, request_, message):
+    system = replace(driven(6, 1.0), **change)
+    with pytest.raises(InputError, match=message):
+        simulate_elastic(system, request_.get("axial_stiffness", EA), request_.get("times", [0.0, 1e-5]))

@@ -1,0 +1,128 @@
+"""The chain with links that stretch (EA / l): axial inertia as a beam has it, at the price of axial waves.
+
+Rigid links carry a spurious axial inertia (`ChainSystem.axial_inertia`). Here every link is a uniform bar that
+stretches evenly, its inertia that of `verify.chain` along both directions, half of m/4 |v_i + v_j|^2 + J/l^2
+|v_j - v_i|^2. Both ends may be immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from verify import elastic_kernels as kernels
+from verify.beam import check_number
+from verify.chain_system import ChainSystem, circular, link_at
+from verify.division import Array
+from verify.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticMotion:
+    """Joints of a stretching chain at the times kept."""
+
+    system: ChainSystem
+    times: Array
+    """(n,), s."""
+    displacements: Array
+    """(n, N + 1, 2), metres from the straight chain."""
+    velocities: Array
+    """(n, N + 1, 2), m/s."""
+    energies: Array
+    """(n,), kinetic, elastic and of gravity together, joule."""
+    stopped: str
+    """'finished', or why not."""
+
+    def deflection(self, x: Sequence[float]) -> Array:
+        """Y of material points on their links, (n, len(x)), metres."""
+        columns = []
+        for position in x:
+            link, at = link_at(self.system, position)
+            share = at / self.system.lengths[link - 1]
+            columns.append((1 - share) * self.displacements[:, link - 1, 1] + share * self.displacements[:, link, 1])
+        return np.stack(columns, axis=1)
+
+
+def elastic_step_limit(system: ChainSystem, axial_stiffness: float) -> float:
+    """A step that RK4 stands, seconds: 2 sqrt(2) over a bound on the highest circular frequency.
+
+    No frequency of the chain exceeds the highest of any link by itself (B. M. Irons and G. Treharne): sqrt(EA l / J)
+    in stretching, sqrt(2 (k_i + k_j) / J) in bending.
+    """
+    springs = system.stiffness + np.append(system.stiffness[1:], 0.0)
+    fastest = np.maximum(axial_stiffness * system.lengths, 2.0 * springs) / system.inertias
+    return float(2.0 * np.sqrt(2.0 / fastest.max()))
+
+
+def simulate_elastic(
+    system: ChainSystem, axial_stiffness: float, times: Sequence[float] | Array, *, step: float | None = None,
+    immovable: bool = False, deflected: Array | None = None,
+) -> ElasticMotion:  # fmt: skip
+    """The motion from rest, straight or from joint deflections `deflected` (N + 1,), kept at even `times` from 0.
+
+    `axial_stiffness` is EA in newton; `step` is at most `elastic_step_limit`, half of it unless given, shortened to
+    divide the spacing of the times; `immovable` holds the tip along x too. Raises InputError, also for what stretching
+    links do not know here: actuators, a turning base, an axial spring.
+    """
+    samples = _checked(system, axial_stiffness, times)
+    limit = elastic_step_limit(system, axial_stiffness)
+    step = 0.5 * limit if step is None else step
+    check_number("step", step, "seconds", above=0)
+    if step > limit:
+        raise InputError(f"step = {step!r} s lies above the stability limit {limit:.4g} s of the stretching chain")
+    spacing = float(samples[1] - samples[0])
+    flat, diagonal, coupling = _flattened(system, axial_stiffness, immovable)
+    u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
+    u[:, 1] = 0.0 if deflected is None else deflected
+    steps = int(np.ceil(spacing / step - 1e-9))
+    k, w = np.zeros((4, *u.shape)), np.zeros((2, *u.shape))
+    kept, stopped = [(u.copy(), v.copy())], "finished"
+    try:
+        for t in samples[:-1]:
+            if not kernels.march(flat, t, spacing / steps, steps, u, v, k, w):
+                stopped = f"diverged before t = {t + spacing:.6g} s"
+                break
+            kept.append((u.copy(), v.copy()))
+    except KeyboardInterrupt:
+        stopped = f"interrupted after t = {samples[len(kept) - 1]:.6g} s"
+    energies = np.array([kernels.energy(flat, diagonal, coupling, *state) for state in kept])
+    places, speeds = (np.array([state[part] for state in kept]) for part in range(2))
+    return ElasticMotion(system, samples[: len(kept)], places, speeds, energies, stopped)
+
+
+def _checked(system: ChainSystem, axial_stiffness: float, times: Any) -> Array:
+    """The times as an array. Raises InputError."""
+    check_number("axial_stiffness", axial_stiffness, "newton", above=0)
+    if system.actuators or system.rotation.rate or system.rotation.amplitude or system.rotation.offset:
+        raise InputError("chain: actuators and a turned base are for rigid links; give a chain without them")
+    if system.axial_spring:
+        raise InputError(
+            f"chain.axial_spring = {system.axial_spring!r}: stretching links take immovable = True instead"
+        )
+    samples = np.asarray(times, dtype=float)
+    if samples.ndim != 1 or len(samples) < 2 or samples[0] != 0.0 or np.ptp(np.diff(samples)) > 1e-9 * samples[1]:
+        raise InputError("times: give two or more, evenly spaced, from 0")
+    return samples
+
+
+def _flattened(system: ChainSystem, stiffness: float, immovable: bool) -> tuple[kernels.Elastic, Array, Array]:
+    """The chain as the kernels see it, and its mass matrix: diagonal (N + 1,) and coupling (N,)."""
+    lengths, spin = system.lengths, system.inertias / system.lengths**2
+    own, coupling = system.masses / 4.0 + spin, system.masses / 4.0 - spin
+    diagonal = np.append(own, 0.0) + np.append(0.0, own)
+    free = np.ones((system.n_links + 1, 2))
+    free[0] = 0.0
+    free[-1] = 0.0 if immovable else 1.0, 0.0 if system.tip == "roller" else 1.0
+    factors = np.zeros((system.n_links + 1, 2, 2))
+    kernels.factorise(diagonal, coupling, free, factors)
+    loads = [
+        (p.at / lengths[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
+        for p in system.loads
+    ]
+    links = np.stack([lengths, system.masses, stiffness / lengths, system.stiffness, system.dashpots], axis=1)
+    flat = kernels.Elastic(
+        links=links, loads=np.array(loads, dtype=float).reshape(len(loads), 7),
+        gravity=np.array(system.gravity, dtype=float), factors=factors,
+    )  # fmt: skip
+    return flat, diagonal, coupling

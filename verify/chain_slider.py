@@ -1,0 +1,107 @@
+"""A slider on the nonlinear chain: the contact code of the linear beams, fed with the chain's own surface.
+
+One way: the chain moves first, kept twice in every step of the slider. Its joints give the paper's C2 spline over the
+material coordinate, corrected by y + delta^2 y/12; its links shorten the chain, and the surface moves along with them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from verify.beam import Beam, check_number
+from verify.chain_motion import ChainMotion
+from verify.contact import law_entries
+from verify.division import Array
+from verify.errors import InputError
+from verify.slider import Slider
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChainRide:
+    """What a slider did on a chain."""
+
+    chain: ChainMotion
+    times: Array
+    """(n + 1,), s."""
+    travelled: Array
+    """(n + 1,), metres along +x from the start."""
+    speed: Array
+    """(n + 1,), m/s."""
+    friction: Array
+    """(n + 1,), newton on the slider."""
+    surface_speed: Array
+    """(n + 1,), m/s."""
+    stopped: str
+    """end, or left the piece of the chain it began on."""
+
+    @property
+    def displacement(self) -> float:
+        """From the start to the end, metres."""
+        return float(self.travelled[-1])
+
+    @property
+    def mean_speed(self) -> float:
+        """Displacement over duration, m/s."""
+        return self.displacement / float(self.times[-1] - self.times[0])
+
+
+def half_steps(duration: float, step: float) -> Array:
+    """The times at which the chain has to be kept for steps no longer than `step`, (2 n + 1,), s."""
+    check_number("duration", duration, "seconds", above=0)
+    check_number("step", step, "seconds", above=0)
+    n = int(np.ceil(duration / step * (1.0 - 1e-12)))
+    return np.linspace(0.0, duration, 2 * n + 1)
+
+
+def ride(chain: ChainMotion, beam: Beam, slider: Slider) -> ChainRide:
+    """A slider carried by a chain whose states stand at `half_steps`.
+
+    Raises InputError where the times are not evenly spaced and odd in number, and for two-way coupling, which the
+    chain's own integrators do not know.
+    """
+    from verify import contact_kernels as kernels
+
+    times = chain.times
+    if len(times) < 3 or len(times) % 2 == 0 or np.ptp(np.diff(times)) > 1e-9 * times[-1]:
+        raise InputError(f"times: {len(times)} states do not stand twice in every step, give them at half_steps(...)")
+    if slider.coupling == "two-way":
+        raise InputError("slider.coupling = 'two-way': a nonlinear chain carries a slider one way, give 'one-way'")
+    start = slider.start_on(beam)
+    local, along, edges = _surface(chain, start)
+    n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
+    kept = np.zeros((n_steps + 1, 4))
+    motion = np.array([0.0, slider.speed, 0.0])
+    done = kernels.slide_given(
+        n_steps, dt, local, along, edges - start, motion, law_entries(slider, beam), kept, np.zeros((3, 5)), np.zeros(5)
+    )
+    return ChainRide(
+        chain=chain, times=times[: 2 * done + 1 : 2], travelled=kept[: done + 1, 0], speed=kept[: done + 1, 1],
+        friction=slider.mass * kept[: done + 1, 2], surface_speed=kept[: done + 1, 3],
+        stopped="end" if done == n_steps else "left the piece of the chain it began on",
+    )  # fmt: skip
+
+
+def _surface(chain: ChainMotion, x: float) -> tuple[Array, Array, Array]:
+    """(polynomials of deflection and velocity on the piece at x, speed of its middle along x, its ends).
+
+    (n, 2, 4) in the local coordinate from 0 to 1, (n,) in m/s, (2,) metres.
+    """
+    nodes, theta = chain.system.nodes, chain.directions()
+    spins = np.cumsum(chain.rates, axis=1)
+    piece = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, chain.system.n_links - 1))
+    lengths = chain.system.lengths
+    heights, rises = lengths * np.sin(theta), lengths * np.cos(theta) * spins
+    local = np.stack([_piece(nodes, steps, piece) for steps in (heights, rises)], axis=1)
+    back = np.cumsum(-lengths * np.sin(theta) * spins, axis=1)
+    along = back[:, piece] - 0.5 * (-lengths[piece] * np.sin(theta[:, piece]) * spins[:, piece])
+    return np.ascontiguousarray(local), np.ascontiguousarray(along), nodes[piece : piece + 2]
+
+
+def _piece(nodes: Array, steps: Array, piece: int) -> Array:
+    """The spline through corrected joints on one piece, (n, 4) in xi; `steps` are (n, N), from joint to joint."""
+    joints = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
+    corrected = joints.copy()
+    corrected[:, 1:-1] += np.diff(joints, 2, axis=1) / 12.0
+    coefficients = CubicSpline(nodes, corrected, axis=1, bc_type="natural").c[::-1, piece]
+    return np.asarray((coefficients * (nodes[piece + 1] - nodes[piece]) ** np.arange(4)[:, None]).T)

@@ -1,0 +1,145 @@
+"""Compiled kernels of the chain whose links stretch. They call nothing outside this file (numba's cache).
+
+With a stretch of its own, uniform along the link, a link's motion is linear in the positions of its two joints: its
+mass matrix is constant and tridiagonal, the same along x and y, and no joint force is unknown. Displacements from the
+straight chain are the state, so that small stretches keep their digits.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Elastic(NamedTuple):
+    """A chain of stretching links as the kernels see it. SI."""
+
+    links: Array
+    """(N, 5): length, mass, EA / l, joint spring, dashpot."""
+    loads: Array
+    """(n_loads, 7): share of the link's length, F_x, F_y, moment, circular frequency, phase, link from 0."""
+    gravity: Array
+    """(2,)."""
+    factors: Array
+    """(N + 1, 2, 2): of the mass matrix over joints, for x and y: coupling to the joint before, reciprocal pivot."""
+
+
+@njit(cache=True, fastmath={"contract"})
+def factorise(diagonal: Array, coupling: Array, free: Array, factors: Array) -> None:
+    """L D L^T of the mass matrix with held joints left out; `free` is (N + 1, 2), 1 or 0."""
+    for axis in range(2):
+        for j in range(diagonal.size):
+            joined = j > 0 and free[j, axis] > 0.0 and free[j - 1, axis] > 0.0
+            ratio = coupling[j - 1] * factors[j - 1, axis, 1] if joined else 0.0
+            pivot = diagonal[j] - (ratio * coupling[j - 1] if joined else 0.0)
+            factors[j, axis, 0], factors[j, axis, 1] = ratio, free[j, axis] / pivot
+
+
+@njit(cache=True, fastmath={"contract"})
+def _solve(e: Elastic, force: Array) -> None:
+    """Accelerations in the place of forces, (N + 1, 2); zero at held joints."""
+    last = force.shape[0] - 1
+    for axis in range(2):
+        for j in range(1, last + 1):
+            force[j, axis] -= e.factors[j, axis, 0] * force[j - 1, axis]
+        for j in range(last + 1):
+            force[j, axis] *= e.factors[j, axis, 1]
+        for j in range(last - 1, -1, -1):
+            force[j, axis] -= e.factors[j + 1, axis, 0] * force[j + 1, axis]
+
+
+@njit(cache=True, fastmath={"contract"})
+def _strain(e: Elastic, i: int, u: Array) -> Any:
+    """Length, cosine and sine of a link, and its stretch."""
+    length = e.links[i, 0]
+    dx, dy = u[i + 1, 0] - u[i, 0], u[i + 1, 1] - u[i, 1]
+    now = np.sqrt((length + dx) ** 2 + dy * dy)
+    return now, (length + dx) / now, dy / now, (dx * (2.0 * length + dx) + dy * dy) / (now + length)
+
+
+@njit(cache=True, fastmath={"contract"})
+def _turn(force: Array, i: int, now: float, c: float, s: float, moment: float) -> None:
+    """A moment on a link as forces across it at both ends."""
+    pair = moment / now
+    force[i, 0], force[i, 1] = force[i, 0] + pair * s, force[i, 1] - pair * c
+    force[i + 1, 0], force[i + 1, 1] = force[i + 1, 0] - pair * s, force[i + 1, 1] + pair * c
+
+
+@njit(cache=True, fastmath={"contract"})
+def _load(e: Elastic, t: float, u: Array, force: Array) -> None:
+    """Dead loads shared between the joints of their links."""
+    for k in range(e.loads.shape[0]):
+        share, fx, fy, moment, omega, phase, link = e.loads[k]
+        i, now = int(link), np.cos(omega * t + phase)
+        for end in range(2):
+            part = now * (share if end else 1.0 - share)
+            force[i + end, 0], force[i + end, 1] = force[i + end, 0] + part * fx, force[i + end, 1] + part * fy
+        if moment != 0.0:
+            length, c, s, _ = _strain(e, i, u)
+            _turn(force, i, length, c, s, now * moment)
+
+
+@njit(cache=True, fastmath={"contract"})
+def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
+    """Accelerations of all joints, (N + 1, 2), from displacements and velocities."""
+    n = e.links.shape[0]
+    out[:] = 0.0
+    before_length, before_c, before_s, before_rate = 1.0, 1.0, 0.0, 0.0
+    for i in range(n):
+        now, c, s, stretch = _strain(e, i, u)
+        pull, weight = e.links[i, 2] * stretch, 0.5 * e.links[i, 1]
+        rate = (c * (v[i + 1, 1] - v[i, 1]) - s * (v[i + 1, 0] - v[i, 0])) / now
+        bend = np.arctan2(before_c * s - before_s * c, before_c * c + before_s * s)
+        moment = e.links[i, 3] * bend + e.links[i, 4] * (rate - before_rate)
+        for axis in range(2):
+            along = pull * (c if axis == 0 else s)
+            out[i, axis] += along + weight * e.gravity[axis]
+            out[i + 1, axis] += weight * e.gravity[axis] - along
+        _turn(out, i, now, c, s, -moment)
+        if i > 0:
+            _turn(out, i - 1, before_length, before_c, before_s, moment)
+        before_length, before_c, before_s, before_rate = now, c, s, rate
+    _load(e, t, u, out)
+    _solve(e, out)
+
+
+@njit(cache=True, fastmath={"contract"})
+def energy(e: Elastic, diagonal: Array, coupling: Array, u: Array, v: Array) -> float:
+    """Kinetic and elastic energy, and that of gravity, joule."""
+    total, before_c, before_s = 0.0, 1.0, 0.0
+    for axis in range(2):
+        for j in range(diagonal.size):
+            total += 0.5 * diagonal[j] * v[j, axis] ** 2
+            if j > 0:
+                total += coupling[j - 1] * v[j, axis] * v[j - 1, axis]
+    for i in range(e.links.shape[0]):
+        _, c, s, stretch = _strain(e, i, u)
+        bend = np.arctan2(before_c * s - before_s * c, before_c * c + before_s * s)
+        total += 0.5 * (e.links[i, 2] * stretch**2 + e.links[i, 3] * bend**2)
+        for axis in range(2):
+            total -= 0.5 * e.links[i, 1] * e.gravity[axis] * (u[i, axis] + u[i + 1, axis])
+        before_c, before_s = c, s
+    return total
+
+
+@njit(cache=True, fastmath={"contract"})
+def march(e: Elastic, t: float, h: float, steps: int, u: Array, v: Array, k: Array, w: Array) -> bool:
+    """RK4 steps; `k` is (4, N + 1, 2), `w` (2, N + 1, 2). Whether the state is still finite."""
+    for step in range(steps):
+        now = t + step * h
+        accelerate(e, now, u, v, k[0])
+        w[0], w[1] = u + 0.5 * h * v, v + 0.5 * h * k[0]
+        accelerate(e, now + 0.5 * h, w[0], w[1], k[1])
+        w[0], w[1] = u + 0.5 * h * v + 0.25 * h * h * k[0], v + 0.5 * h * k[1]
+        accelerate(e, now + 0.5 * h, w[0], w[1], k[2])
+        w[0], w[1] = u + h * v + 0.5 * h * h * k[1], v + h * k[2]
+        accelerate(e, now + h, w[0], w[1], k[3])
+        for j in range(u.shape[0]):
+            for axis in range(2):
+                u[j, axis] += h * v[j, axis] + h * h / 6.0 * (k[0, j, axis] + k[1, j, axis] + k[2, j, axis])
+                v[j, axis] += h / 6.0 * (k[0, j, axis] + 2.0 * (k[1, j, axis] + k[2, j, axis]) + k[3, j, axis])
+    return bool(np.isfinite(u[-1, 0]) and np.isfinite(v[-1, 0]))
