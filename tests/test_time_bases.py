@@ -52,7 +52,7 @@ def test_modes_of_equal_links_in_closed_form_are_those_of_the_dense_solve(n, par
 
 
 @settings(max_examples=25, deadline=None)
-@given(n=st.integers(2, 40), part=st.floats(0.0, 1.0), derivative=st.integers(0, 1))
+@given(n=st.integers(2, 40), part=st.floats(0.001, 0.999), derivative=st.integers(0, 1))
 def test_modes_of_equal_elements_in_closed_form_are_those_of_the_dense_solve(n, part, derivative):
     """Two branches may share a frequency; what they add up to in a response does not depend on the choice."""
     basis = fem_motion.time_basis(STRIP, n)
