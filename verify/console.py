@@ -259,6 +259,8 @@ def print_plan(plan: "Plan") -> None:
         console.print(f"closed forms, for {_who(plan.closed_forms)}")
     if plan.harmonic:
         console.print(f"harmonic fields, for {_who(plan.harmonic)}")
+    if plan.compiled:
+        console.print(f"equilibria and modes of the nonlinear chain, for {_who(plan.compiled)}")
     if plan.stepped:
         console.print(f"motion in time, for {_who(plan.stepped)}")
     for chosen in plan.chosen:
@@ -271,7 +273,8 @@ def print_plan(plan: "Plan") -> None:
 
 
 def _who(names: tuple[str, ...]) -> str:
-    short = [name.removeprefix("gate ") for name in names]
+    studies_first = sorted(names, key=lambda name: name.startswith("gate "))
+    short = [name.removeprefix("gate ") for name in studies_first]
     return ", ".join(short[:2]) + (f" and {len(short) - 2} more" if len(short) > 2 else "")
 
 

@@ -3,16 +3,17 @@
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from verify.gates import GateResult, judge
-from verify.plan import asks_of
+from verify.plan import STUDIES, asks_of
 from verify.scene import Scene, load_scene
 from verify.workbench import Solve, Workbench
 
 if TYPE_CHECKING:
+    from verify.axial_study import AxialStudy
     from verify.motion_study import MotionStudy
     from verify.studies import Row, SensitivityStudy, SpectrumStudy
     from verify.wave_study import WaveStudy
@@ -28,6 +29,7 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     sensitivity: "SensitivityStudy | None"
     wave: "WaveStudy | None"
     motion: "MotionStudy | None"
+    axial_inertia: "AxialStudy | None"
     solves: tuple[Solve, ...]
     n_fields: int
     """How many driven fields were solved, those of superposed maps not counted."""
@@ -56,31 +58,36 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
     for gate in found.gate:
         progress(f"gate {gate.id}")
         gates.append(judge(gate, found, bench))
-    spectrum = convergence = sensitivity = None
-    if found.spectrum or found.convergence or found.sensitivity:
+    return RunResult(scene=found, gates=tuple(gates), **_studies(found, bench, progress), solves=tuple(bench.solves),
+                     n_fields=bench.n_fields, seconds=perf_counter() - start)  # fmt: skip
+
+
+def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) -> dict[str, Any]:
+    """Every study of `RunResult` by name, None where the scene does not ask for it."""
+    done: dict[str, Any] = dict.fromkeys(STUDIES)
+    if scene.spectrum or scene.convergence or scene.sensitivity:
         from verify import studies
 
-        if found.spectrum:
+        if scene.spectrum:
             progress("error spectrum")
-            spectrum = studies.spectrum(bench, found.spectrum)
-        if found.convergence:
-            convergence = studies.convergence(bench, found.convergence, progress)
-        if found.sensitivity:
-            sensitivity = studies.sensitivity(found.beam, found.sensitivity)
-    wave = None
-    if found.wave:
+            done["spectrum"] = studies.spectrum(bench, scene.spectrum)
+        if scene.convergence:
+            done["convergence"] = studies.convergence(bench, scene.convergence, progress)
+        if scene.sensitivity:
+            done["sensitivity"] = studies.sensitivity(scene.beam, scene.sensitivity)
+    if scene.wave:
         from verify.wave_study import wave_study
 
-        wave = wave_study(found, bench, found.wave, progress)
-    motion = None
-    if found.motion and found.slider:
+        done["wave"] = wave_study(scene, bench, scene.wave, progress)
+    if scene.motion and scene.slider:
         from verify.motion_study import motion_study
 
-        motion = motion_study(found, progress)
-    return RunResult(
-        scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity, wave=wave,
-        motion=motion, solves=tuple(bench.solves), n_fields=bench.n_fields, seconds=perf_counter() - start,
-    )  # fmt: skip
+        done["motion"] = motion_study(scene, progress)
+    if scene.axial_inertia:
+        from verify.axial_study import axial_study
+
+        done["axial_inertia"] = axial_study(scene, progress)
+    return done
 
 
 def n_steps(scene: Scene) -> int:
@@ -88,4 +95,5 @@ def n_steps(scene: Scene) -> int:
     sizes = len(scene.convergence.counts) if scene.convergence else 0
     waves = 2 * len(scene.wave.counts) + 1 if scene.wave else 0
     motion = 12 if scene.motion and scene.slider else 0
-    return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion
+    axial = len(scene.axial_inertia.forces) + 1 if scene.axial_inertia else 0
+    return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion + axial
