@@ -16,7 +16,7 @@ from time import perf_counter
 import numpy as np
 from scipy.linalg import eigh
 
-from benchmarks.peers.case import Array, Case, Run
+from benchmarks.peers.case import Array, Case, Run, matrices
 from verify.beam import Beam, PointForce
 from verify.chain_dynamics import at_rest, flatten, workspace
 from verify.chain_kernels import accelerate
@@ -52,12 +52,7 @@ def system_of(case: Case) -> ChainSystem:
 def exact_linear(case: Case, times: Array) -> Array:
     """Mid-span of the linear chain: dense matrices of joint positions, a sum over all modes, from rest."""
     n, link = case.n, case.link
-    mass, stiffness, bend = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1)), np.array([1.0, -2.0, 1.0]) / link
-    own, shared = case.mass / 4 + case.inertia / link**2, case.mass / 4 - case.inertia / link**2
-    for i in range(n):
-        mass[i : i + 2, i : i + 2] += np.array([[own, shared], [shared, own]])
-    for i in range(1, n):
-        stiffness[i - 1 : i + 2, i - 1 : i + 2] += case.spring * np.outer(bend, bend)
+    mass, stiffness = matrices(case)
     values, shapes = eigh(stiffness[1:-1, 1:-1], mass[1:-1, 1:-1])
     omega, drive = np.sqrt(values), 2 * np.pi * case.frequency_hz
 

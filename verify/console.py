@@ -12,14 +12,16 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
+    from verify.axial_study import AxialStudy
     from verify.design_map import DesignMap
     from verify.gates import GateResult
+    from verify.motion_study import MotionStudy
     from verify.plan import Plan
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Cell, Row
     from verify.wave_study import MotorRow, Operation
-    from verify.work_precision import WorkRow
+    from verify.work_precision import Comparison, WorkRow
 
 
 class Terminal(Console):
@@ -75,12 +77,44 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     verdict = f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]" if n_failed else (
         f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates"
     )  # fmt: skip
-    console.print(
-        f"{verdict} in {seconds_in_words(result.seconds)}, "
-        f"{len(result.solves)} modal solves, {result.n_fields} driven fields"
-    )
+    if result.motion:
+        _print_slider(console, result.motion)
+    if result.axial_inertia:
+        _print_axial(console, result.axial_inertia)
+    console.print(f"{verdict} in {seconds_in_words(result.seconds)}: {work_in_words(result)}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True)
+
+
+def work_in_words(result: "RunResult") -> str:
+    """What a run solved, by kind; kinds of which there is nothing are left out."""
+    kinds = {"modal solves": len(result.solves), "driven fields": result.n_fields, "motions in time": result.n_motions}
+    return ", ".join(f"{n} {name}" for name, n in kinds.items() if n) or "closed forms only"
+
+
+def _print_slider(console: Console, study: "MotionStudy") -> None:
+    """What the slider was found to do, how far that can be believed, and what it costs."""
+    for fact in study.facts:
+        console.print(Text(f"{'holds ' if fact.holds else 'not so'}  {fact.what}: {fact.found}"), soft_wrap=False)
+    margins = study.runs["segment"].margins
+    console.print(Text(f"margins of the run: acceleration over what presses the slider on {margins.lift_off:.3g}, "
+                       f"(kL)^2 <theta^2> {margins.nonlinearity:.1e}"))  # fmt: skip
+    if study.answer:
+        console.print(answer_in_words(study.answer))
+
+
+def _print_axial(console: Console, study: "AxialStudy") -> None:
+    """How linear the chain of rigid links was found to be."""
+    for row in study.rows:
+        verdict = "linear" if row.linear else "nonlinear"
+        console.print(Text(f"{row.force:g} N: {verdict}, (kL)^2 <theta^2> {row.size:.1e}; rigid links lie "
+                           f"{row.full.at_end:.1e} off after {1e3 * study.duration:g} ms"))  # fmt: skip
+
+
+def answer_in_words(answer: "Comparison") -> str:
+    """Both models at one error."""
+    return (f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take {answer.ratio:.2f} "
+            "times as long as segments")  # fmt: skip
 
 
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
@@ -182,8 +216,7 @@ def print_work(rows: "tuple[WorkRow, ...]") -> None:
     console.print("[dim]errors against the exact beam at the same step; run time of the loop for a simulated "
                   "millisecond, medians of interleaved rounds[/]")  # fmt: skip
     if (answer := at_equal_error(rows)) is not None:
-        console.print(f"at an error of {100 * answer.error:.3g} % Hermite elements take {answer.ratio:.2f} times as "
-                      "long as segments")  # fmt: skip
+        console.print(answer_in_words(answer))
 
 
 def print_map(found: "DesignMap") -> None:

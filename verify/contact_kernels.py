@@ -34,8 +34,8 @@ STICKS, SLIPS, TURNS = 1.0, 2.0, 3.0
 
 # rows of `modes`, (9, n): the state z' = (-sigma + i omega) z, its turns over half a step and a whole one, levers
 Z_RE, Z_IM, SIGMA, OMEGA, HALF_RE, HALF_IM, FULL_RE, FULL_IM, LEVER = range(9)
-# rows of `factors`, (2, rows), and of `local`, (2, degree + 1): deflection and velocity
-STILL, MOVING = range(2)
+# rows of `factors`, (2, rows), and of `local`, (3, degree + 1): deflection, velocity, deflection a step before
+STILL, MOVING, BEFORE = range(3)
 # entries of `drive`; from GROWTH on, the forces' amplitude as a polynomial in t/RAMP; RAMP is the rows' unit of time
 FREQUENCY, ORIGIN, RAMP, GROWTH = range(4)
 # entries of `slip`: what friction adds to the speed, sticking at the end, time of the last event, what else adds
@@ -399,11 +399,11 @@ def _given_way(modes: Any) -> float:
 
 @_compiled(cache=True, error_model="numpy")
 def _carried(local: Any, edges: Any, piece: int, at: float, slope: float, half: float) -> float:
-    """How far the whole motion has moved the surface at `at` along a tangent of this slope, metres."""
+    """How far the whole motion moves the surface in a step, at `at` along a tangent of this slope, metres."""
     value, first = 0.0, 0.0
     for d in range(local.shape[1] - 1, -1, -1):
         first = first * at + value
-        value = value * at + local[STILL, d]
+        value = value * at + local[STILL, d] - local[BEFORE, d]
     return float((slope * value - half * first / (edges[piece + 1] - edges[piece])) / np.sqrt(1.0 + slope * slope))
 
 
@@ -490,6 +490,35 @@ def _see(
 
 
 @_compiled(cache=True)
+def _push_back(
+    v: float, stuck: bool, dt: float, at: float, slope: float, piece: int, modes: Any, edges: Any, local: Any, law: Any,
+    seen: Any, slip: Any,
+) -> float:  # fmt: skip
+    """Let slider and beam agree on the contact force of a step and give it to the modes; its work on the beam, joules.
+
+    The levers are those of mid-step, so that the force is off by the square of the step.
+    """
+    half, full = _mobility(modes, HALF_IM), _mobility(modes, FULL_IM)
+    force = _balance(v, stuck, half, full, law, dt, seen, slip)
+    way = _carried(local, edges, piece, at, slope, law[HALF]) - _given_way(modes)
+    _press(-force, modes)
+    seen[2, SURFACE] -= force * full
+    return float(-force * (way + _given_way(modes)))
+
+
+@_compiled(cache=True)
+def _correct_pull(
+    dt: float, x: float, speed: float, piece: int, edges: Any, local: Any, law: Any, seen: Any, slip: Any
+) -> None:
+    """Inertia and drift along the surface at the end of a step with what the contact has added, half at mid-step."""
+    surface, pull, drift = seen[2, SURFACE], seen[2, PULL], seen[2, DRIFT]
+    _touch(local, edges, piece, x, speed, law, seen, 2)
+    seen[2, SURFACE] = surface
+    seen[1, DRIFT] += 0.5 * (seen[2, DRIFT] - drift)
+    slip[GIVEN_END] += 0.5 * dt * (seen[2, PULL] - pull)
+
+
+@_compiled(cache=True)
 def _correct_powers(
     time: float, modes: Any, drive: Any, loads: Any, forces: Any, answers: Any, factors: Any, seen: Any
 ) -> None:
@@ -551,26 +580,27 @@ def _step(
          seen, fresh)  # fmt: skip
     rate = seen[0, PULL] + (0.0 if stuck else _friction(v - seen[0, SURFACE], law))
     along = v + seen[0, DRIFT]
-    half, full, at, slope, pressed = 0.0, 0.0, 0.0, 0.0, 0.0
+    at, slope, pressed, x1, v1 = 0.0, 0.0, 0.0, x, v
     if two_way:
-        at, slope = _set_levers(table, piece, edges, local, x, law[HALF], modes)
-        half, full = _mobility(modes, HALF_IM), _mobility(modes, FULL_IM)
-        pressed = _carried(local, edges, piece, at, slope, law[HALF])
+        for d in range(local.shape[1]):
+            local[BEFORE, d] = local[STILL, d]
     for row in range(1, 3):
         _rotate_half(modes)
         t = 0.5 * row * dt
-        _see(row, (number + 0.5 * row) * dt, x + t * along + 0.5 * t * t * rate, v + t * rate, piece, modes, drive,
-             table, edges, law, loads, forces, answers, accounts, factors, local, seen, True)  # fmt: skip
+        x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
+        _see(row, (number + 0.5 * row) * dt, x1, v1, piece, modes, drive, table, edges, law, loads, forces, answers,
+             accounts, factors, local, seen, True)  # fmt: skip
+        if two_way and row == 1:
+            at, slope = _set_levers(table, piece, edges, local, x1, law[HALF], modes)
     _give(dt, seen, slip)
     if two_way:
-        force = _balance(v, stuck, half, full, law, dt, seen, slip)
-        pressed = _carried(local, edges, piece, at, slope, law[HALF]) - pressed - _given_way(modes)
-        _press(-force, modes)
-        pressed = -force * (pressed + _given_way(modes))
-        seen[2, SURFACE] -= force * full
+        pressed = _push_back(v, stuck, dt, at, slope, piece, modes, edges, local, law, seen, slip)
         _set_factors((number + 1) * dt, modes, drive, factors)
         if accounts:
             _correct_powers((number + 1) * dt, modes, drive, loads, forces, answers, factors, seen)
+        if law[FOLLOWING] > 0.0:
+            _set_local(table, piece, factors, local)
+            _correct_pull(dt, x1, v1, piece, edges, local, law, seen, slip)
     else:
         _slip(v, stuck, 0.0, 0.0, 0.0, law, dt, seen, slip)
     moved = _advance(dt, rate, motion, law, seen, slip)

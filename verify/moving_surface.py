@@ -29,6 +29,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n, len(x)); n = 0 where no mode is free."""
     drive_shapes: Shapes
     """(2 (degree + 1), len(x)): real and imaginary part of every power of t."""
+    from_modes: Callable[[Array, Array, int], Array] | None
+    """The same from the modes' shapes at x, where the drive's rows are made of them."""
     load_rows: Callable[[float], Array]
     """Position of a force -> (rows,), its reading of all rows: what its power is made of, reciprocal to its load."""
     edges: Array
@@ -45,7 +47,9 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def rows(self, x: Array, derivative: int = 0) -> Array:
         """All shapes at x, (rows, len(x))."""
-        return np.concatenate([self.free_shapes(x, derivative), self.drive_shapes(x, derivative)])
+        free = self.free_shapes(x, derivative)
+        return np.concatenate([free, self.drive_shapes(x, derivative) if self.from_modes is None else
+                               self.from_modes(free, x, derivative)])  # fmt: skip
 
     def table(self, first: int, last: int) -> Array:
         """Polynomials of pieces first..last-1, (pieces, degree + 1, rows)."""
@@ -63,8 +67,7 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """The forced part of every mode over the drive's time factors, (n, drive rows); zero in a steady field."""
         if self.forced is None:
             return np.zeros((len(self.modal.squares), 2))
-        amplitudes = self.forced.amplitudes
-        return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), -1)
+        return interleaved(self.forced.amplitudes)
 
     def deflection(self, z: Array, t: Array, x: Array) -> Array:
         """Closed form, (len(t), len(x)): free modes from z at t = 0 and the drive."""
@@ -91,6 +94,11 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         forced_q, forced_rates = self.forced.state(t) if self.forced else (0.0, 0.0)
         q, rates = state_of(self.modal, z)
         return q + forced_q, rates + forced_rates
+
+
+def interleaved(amplitudes: ComplexArray) -> Array:
+    """Real and imaginary parts in turns, (n, k) complex -> (n, 2 k)."""
+    return np.stack([amplitudes.real, amplitudes.imag], axis=2).reshape(len(amplitudes), 2 * amplitudes.shape[1])
 
 
 def free_at(stage: Stage, z: Array, t: float) -> Array:
@@ -175,12 +183,14 @@ def _stage(
     basis: TimeBasis, forced: Answer, modes: Modal, piece: Growth, tail: Callable[[Array, int], ComplexArray] | None
 ) -> Stage:
     growth, steps = piece.coefficients, piece.steps
+    answers = interleaved(forced.amplitudes)
+
+    def from_modes(free: Array, x: Array, derivative: int) -> Array:
+        parts = answers.T @ free
+        return np.asarray(parts + interleaved(np.outer(tail(x, derivative), growth)).T) if tail else parts
 
     def drive(x: Array, derivative: int) -> Array:
-        parts = forced.amplitudes.T @ basis.shapes(x, derivative)
-        if tail:
-            parts = parts + np.outer(growth, tail(x, derivative))
-        return np.stack([parts.real, parts.imag], axis=1).reshape(2 * len(parts), len(x))
+        return from_modes(basis.shapes(x, derivative), x, derivative)
 
     def load_rows(position: float) -> Array:
         loads = basis.loads(position)
@@ -190,9 +200,9 @@ def _stage(
         return np.concatenate([loads, np.stack([parts.real, parts.imag], axis=1).ravel()])
 
     return Stage(
-        modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, load_rows=load_rows,
-        edges=to_the_end(basis.edges, basis.beam), degree=basis.degree, omega=forced.omega, origin=forced.origin,
-        unit_s=forced.unit_s, growth=growth, n_steps=steps.n, dt=steps.dt, every=steps.every,
+        modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, from_modes=from_modes,
+        load_rows=load_rows, edges=to_the_end(basis.edges, basis.beam), degree=basis.degree, omega=forced.omega,
+        origin=forced.origin, unit_s=forced.unit_s, growth=growth, n_steps=steps.n, dt=steps.dt, every=steps.every,
     )  # fmt: skip
 
 
@@ -224,8 +234,8 @@ def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: Tim
 
     modes = modal(basis, (), damping) if basis else NO_MODES
     return Stage(modal=modes, forced=None, free_shapes=basis.shapes if basis else nothing, drive_shapes=drive,
-                 load_rows=load_rows, edges=to_the_end(edges, field.beam), degree=degree, omega=field.omega,
-                 origin=origin, unit_s=1.0, growth=CONSTANT, n_steps=steps.n, dt=steps.dt,
+                 from_modes=None, load_rows=load_rows, edges=to_the_end(edges, field.beam), degree=degree,
+                 omega=field.omega, origin=origin, unit_s=1.0, growth=CONSTANT, n_steps=steps.n, dt=steps.dt,
                  every=steps.every)  # fmt: skip
 
 

@@ -26,6 +26,7 @@ def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 
 
     return Stage(
         modal=NO_MODES, forced=None, free_shapes=lambda x, derivative: np.empty((0, len(x))), drive_shapes=drive,
+        from_modes=None,
         load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
         edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2), degree=ANALYTIC_DEGREE, omega=omega,
         origin=0.0, unit_s=1.0, growth=CONSTANT, n_steps=STEPS, every=STEPS,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.gates import GateResult, judge
-from verify.plan import STUDIES, asks_of
+from verify.plan import CHAIN_IN_TIME, STUDIES, asks_of
 from verify.scene import Scene, load_scene
 from verify.workbench import Solve, Workbench
 
@@ -33,6 +33,8 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     solves: tuple[Solve, ...]
     n_fields: int
     """How many driven fields were solved, those of superposed maps not counted."""
+    n_motions: int
+    """How many simulations gates asked for, three models' of a slider study, and those of a study of axial inertia."""
     seconds: float
 
     @property
@@ -58,8 +60,11 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
     for gate in found.gate:
         progress(f"gate {gate.id}")
         gates.append(judge(gate, found, bench))
-    return RunResult(scene=found, gates=tuple(gates), **_studies(found, bench, progress), solves=tuple(bench.solves),
-                     n_fields=bench.n_fields, seconds=perf_counter() - start)  # fmt: skip
+    studied = _studies(found, bench, progress)
+    return RunResult(
+        scene=found, gates=tuple(gates), **studied, solves=tuple(bench.solves), n_fields=bench.n_fields,
+        n_motions=_n_motions(found, bench, **studied), seconds=perf_counter() - start,
+    )  # fmt: skip
 
 
 def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) -> dict[str, Any]:
@@ -88,6 +93,13 @@ def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) ->
 
         done["axial_inertia"] = axial_study(scene, progress)
     return done
+
+
+def _n_motions(scene: Scene, bench: Workbench, motion: Any, axial_inertia: Any, **others: Any) -> int:
+    """Simulations of a beam or a chain behind gates and studies."""
+    chains = sum(gate.quantity in CHAIN_IN_TIME for gate in scene.gate)
+    axial = 3 * len(axial_inertia.rows) + len(axial_inertia.lines) if axial_inertia else 0
+    return len(bench.motions) + chains + axial + (len(motion.runs) if motion else 0)
 
 
 def n_steps(scene: Scene) -> int:

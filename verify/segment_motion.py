@@ -1,6 +1,7 @@
 """The free modes of the chain of rigid links for motion in time, closed-form where they have one."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from math import pi
 from typing import Any, Literal, get_args
 
@@ -111,15 +112,24 @@ def _sine_spline(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
     reading = 1.0 - square / 3.0
     bend = -4.0 * square / (1.0 - 2.0 * square / 3.0)  # times y, per link length squared
 
-    def shapes(x: Array, derivative: int) -> Array:
-        number = np.clip(np.searchsorted(chain.nodes, x, side="right") - 1, 0, n - 1)
-        xi = (x - chain.nodes[number]) / link
+    nodes = chain.nodes
+
+    @lru_cache(maxsize=4)
+    def pieces(places: bytes) -> tuple[Array, tuple[Array, ...]]:
+        """(xi, the spline's coefficients) at places, of which every derivative is asked."""
+        x = np.frombuffer(places)
+        number = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, n - 1)
         left, right = np.asarray(reading * joints(number)), np.asarray(reading * joints(number + 1))
         m0, m1 = bend * left, bend * right
-        c = [left, right - left - (2.0 * m0 + m1) / 6.0, 0.5 * m0, (m1 - m0) / 6.0]
+        bends = left, right - left - (2.0 * m0 + m1) / 6.0, 0.5 * m0, (m1 - m0) / 6.0
+        return (x - nodes[number]) / link, bends
+
+    def shapes(x: Array, derivative: int) -> Array:
+        xi, found = pieces(np.asarray(x, dtype=float).tobytes())
+        c = list(found)
         for _ in range(derivative):
-            c = [(d + 1) * c[d + 1] for d in range(len(c) - 1)] or [np.zeros_like(left)]
-        value = np.zeros_like(left)
+            c = [(d + 1) * c[d + 1] for d in range(len(c) - 1)] or [np.zeros_like(found[0])]
+        value = np.zeros_like(found[0])
         for part in reversed(c):
             value = value * xi + part
         return np.asarray(value / link**derivative)

@@ -335,7 +335,7 @@ def _put_on(request: Request, slider: Slider) -> tuple[float, float, float]:
         return slider.start_on(request.beam), slider.speed, 0.0
     if not 0.0 <= before.position <= request.beam.length:
         raise InputError(
-            f"continue_from ended with the slider at {before.position!r} m, off the beam: give a run that stays on it"
+            f"continue_from ended with the slider at {before.position!r} m, off the beam: continue one that stays on"
         )
     return before.position, before.speed, float(before.stuck and slider.law == "coulomb")
 

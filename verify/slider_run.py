@@ -15,7 +15,7 @@ from verify.time_basis import Array
 
 CHUNK = 20_000
 """Steps between two looks at the keyboard."""
-REACH = 4
+REACH = 1
 """Pieces of the beam kept ready on each side of the slider."""
 EVENTS = 20_000
 
@@ -126,7 +126,7 @@ def window(stage: Stage, start: float, travelled: float) -> Window | None:
 def room(fed: Feed) -> tuple[Array, Array, Array, Array]:
     """Working space of the compiled loop: time factors, local polynomials, what is seen, how it slips."""
     rows = fed.points.shape[1]
-    return np.empty((2, rows)), np.empty((2, fed.stage.degree + 1)), np.zeros((3, 5)), np.zeros(5)
+    return np.empty((2, rows)), np.zeros((3, fed.stage.degree + 1)), np.zeros((3, 5)), np.zeros(5)
 
 
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:

@@ -22,7 +22,8 @@ def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float
 
 def nearest_mode(beam: Beam, drive_hz: float) -> int:
     """The exact mode whose frequency lies nearest a drive's."""
-    mode = 1
+    turns = (2.0 * pi * drive_hz / beam.wave_constant) ** 0.5 * beam.length / pi
+    mode = max(int(turns) - 1, 1)
     while frequency_hz(beam, mode) < drive_hz:
         mode += 1
     below = frequency_hz(beam, mode - 1) if mode > 1 else 0.0

@@ -53,3 +53,15 @@ def count(step: float, end: float) -> tuple[int, float]:
     """The number of steps up to the end, and the step that fits."""
     steps = max(round(end / step), 1)
     return steps, end / steps
+
+
+def matrices(case: Case) -> tuple[Array, Array]:
+    """Mass and stiffness of the linear chain over its joints' positions, (n + 1, n + 1) each."""
+    n, link = case.n, case.link
+    mass, stiffness, bend = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1)), np.array([1.0, -2.0, 1.0]) / link
+    own, shared = case.mass / 4 + case.inertia / link**2, case.mass / 4 - case.inertia / link**2
+    for i in range(n):
+        mass[i : i + 2, i : i + 2] += np.array([[own, shared], [shared, own]])
+    for i in range(1, n):
+        stiffness[i - 1 : i + 2, i - 1 : i + 2] += case.spring * np.outer(bend, bend)
+    return mass, stiffness

@@ -11,7 +11,7 @@ from math import tanh
 import numpy as np
 from scipy.linalg import eigh
 
-from benchmarks.peers.case import Array, Case
+from benchmarks.peers.case import Array, Case, matrices
 
 Run = Callable[[float, float], tuple[float, float, float]]
 """(step, end) -> (distance travelled, speed) of the slider, and the seconds that the steps took."""
@@ -73,12 +73,7 @@ def reference(case: Case, sled: Sled, end: float, steps: int = 20_000) -> tuple[
 def _modes(case: Case) -> tuple[Array, Array, Array, Array]:
     """(omega, spins of the links in every mode, amplitudes of the forced sine and cosine)."""
     n, link = case.n, case.link
-    mass, stiffness, bend = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1)), np.array([1.0, -2.0, 1.0]) / link
-    own, shared = case.mass / 4 + case.inertia / link**2, case.mass / 4 - case.inertia / link**2
-    for i in range(n):
-        mass[i : i + 2, i : i + 2] += np.array([[own, shared], [shared, own]])
-    for i in range(1, n):
-        stiffness[i - 1 : i + 2, i - 1 : i + 2] += case.spring * np.outer(bend, bend)
+    mass, stiffness = matrices(case)
     values, shapes = eigh(stiffness[1:-1, 1:-1], mass[1:-1, 1:-1])
     everywhere = np.zeros((n + 1, n - 1))
     everywhere[1:-1] = shapes

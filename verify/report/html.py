@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verify.console import figure, percent, seconds_in_words
+from verify.console import figure, percent, seconds_in_words, work_in_words
 from verify.errors import InputError
 from verify.files import write_whole
 from verify.plain import finite
@@ -42,6 +42,7 @@ def page(result: "RunResult", command: str) -> str:
     charts += axial_charts(result.axial_inertia) if result.axial_inertia else []
     return templates.get_template("page.html.j2").render(
         result=result,
+        work=work_in_words(result),
         failed=[gate for gate in result.gates if not gate.passed],
         charts=charts,
         model_names=NAMES,

@@ -1,0 +1,67 @@
+"""Motion in time by other means: assembled matrices and scipy's DOP853, nothing of the suite's stepping."""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from verify.beam import Beam, PointForce
+
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
+FREQUENCY = 1310.0
+FORCES = (PointForce(position=0.037, amplitude=1.3, phase_deg=17.0),
+          PointForce(position=0.402, amplitude=0.8, phase_deg=101.0))  # fmt: skip
+
+
+def grown(t, soft_s):
+    """3 p^2 - 2 p^3 of a start over `soft_s` seconds, then 1."""
+    p = min(t / soft_s, 1.0) if soft_s else 1.0
+    return p * p * (3.0 - 2.0 * p)
+
+
+def linear_motion(mass, stiffness, damping, loads, times, soft_s=0.0, y0=None):
+    """M q'' + C q' + K q = sum of load F cos(omega t + phase), (len(times), n) by DOP853; loads is (n_forces, n)."""
+    n, omega = len(mass), 2 * np.pi * FREQUENCY
+    inverse = np.linalg.inv(mass)
+
+    def rates(t, y):
+        push = sum(
+            f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in zip(FORCES, loads, strict=True)
+        )
+        return np.concatenate([y[n:], inverse @ (grown(t, soft_s) * push - damping @ y[n:] - stiffness @ y[:n])])
+
+    start = np.zeros(2 * n) if y0 is None else y0
+    found = solve_ivp(rates, (0, times[-1]), start, method="DOP853", rtol=1e-11, atol=1e-16, t_eval=times)
+    return found.y[:n].T
+
+
+def coupled_motion(basis, slider, duration, damping, soft_s=0.0, two_way=True):
+    """(distance, speed) of a tanh slider and its impulse on it, beam and slider as one system of equations.
+
+    Surface of the links or elements: u = w, -(h/2) w'; the contact acts with its lever h/2.
+    """
+    n, omega, half = len(basis.omegas), 2 * np.pi * FREQUENCY, 0.5 * basis.beam.thickness
+    loads = [(f, basis.loads(f.position)) for f in FORCES]
+    start = slider.start_on(basis.beam)
+
+    def shape(x, derivative):
+        return basis.shapes(np.array([x]), derivative)[:, 0]
+
+    def rates(t, y):
+        q, qd, (travelled, v, _) = y[:n], y[n : 2 * n], y[2 * n :]
+        x = start + travelled
+        x = x + half * float(q @ shape(x, 1))
+        rise, turn, slope, bend = qd @ shape(x, 0), qd @ shape(x, 1), q @ shape(x, 1), q @ shape(x, 2)
+        along = (slope * shape(x, 0) - half * shape(x, 1)) / np.hypot(1.0, slope)
+        friction = -slider.mu * slider.normal_force * np.tanh(slider.slope * (v - qd @ along))
+        push = sum(f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in loads)
+        bent = grown(t, soft_s) * push - 2 * damping * basis.omegas * qd - basis.omegas**2 * q
+        pull, drift = 0.0, 0.0
+        if slider.kinematics == "following":
+            pull, drift = rise * (turn + bend * v) - slider.gravity * slope, -slope * rise
+        return np.concatenate([
+            qd, bent - two_way * friction * along, [v + drift, pull + friction / slider.mass, friction]
+        ])  # fmt: skip
+
+    y0 = np.zeros(2 * n + 3)
+    y0[2 * n + 1] = slider.speed
+    found = solve_ivp(rates, (0, duration), y0, method="DOP853", rtol=1e-11, atol=1e-18, max_step=0.02 / FREQUENCY)
+    return found.y[2 * n :, -1]

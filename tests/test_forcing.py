@@ -1,0 +1,222 @@
+"""Motion of a driven beam without a slider: the forced part, the free part, starts, continuation, refusals."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from motion_reference import FORCES, FREQUENCY, STRIP, linear_motion
+
+from verify.chain import build_chain
+from verify.errors import InputError, ResonanceError
+from verify.forcing import Modal, advanced, answer, free_part, state_of, turns
+from verify.moving_surface import basis_of, cut
+from verify.point_loads import joint_weights
+from verify.simulate import simulate
+
+frequencies = st.floats(30.0, 9e4)
+ratios = st.floats(0.0, 0.4)
+
+
+def one_mode(omega, zeta, load=1.7 - 0.6j):
+    return Modal(sigmas=np.array([zeta * omega]), omegas=np.array([omega * np.sqrt(1 - zeta**2)]),
+                 squares=np.array([omega**2]), loads=np.array([load]))  # fmt: skip
+
+
+@settings(max_examples=80, deadline=None)
+@given(own=frequencies, zeta=ratios, drive=st.one_of(st.just(0.0), frequencies), part=st.floats(-0.3, 1.7),
+       unit=st.floats(1e-5, 3.0), origin=st.floats(0.0, 2.0),
+       growth=st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=5))  # fmt: skip
+def test_the_forced_part_satisfies_its_equation_for_any_polynomial_times_a_harmonic(
+    own, zeta, drive, part, unit, origin, growth
+):
+    """Q'' + 2 zeta w q' + w^2 q = Re(F p(t/T) e^{i omega (t + origin)}), derivatives by hand from Q."""
+    if abs(drive / own - 1) < 1e-3 and zeta < 1e-3:
+        return
+    modes, growth = one_mode(own, zeta), np.array(growth)
+    found = answer(modes, drive, growth, unit, origin)
+    poly = np.polynomial.Polynomial(found.amplitudes[0])
+    p, first, second = (poly.deriv(d)(part) / unit**d if d else poly(part) for d in range(3))
+    turn = np.exp(1j * drive * (part * unit + origin))
+    q, rate = p * turn, (first + 1j * drive * p) * turn
+    bend = (second + 2j * drive * first - drive**2 * p) * turn
+    left = (bend + 2 * zeta * own * rate + own**2 * q).real
+    right = (modes.loads[0] * np.polynomial.Polynomial(growth)(part) * turn).real
+    scale = abs(bend) + abs(own**2 * q) + 2 * zeta * own * abs(rate) + abs(right)
+    powers = abs(found.amplitudes[0]) @ abs(part) ** np.arange(len(growth))
+    assert left == pytest.approx(right, abs=1e-10 * (scale + own**2 * powers + drive**2 * powers) + 1e-12)
+    state = found.state(part * unit)
+    assert state[0][0] == pytest.approx(q.real, abs=1e-9 * powers + 1e-300)
+    assert state[1][0] == pytest.approx(rate.real, abs=1e-9 * (abs(rate) + (drive + 1 / unit) * powers) + 1e-300)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    own=frequencies,
+    zeta=ratios,
+    t1=st.floats(0, 0.02),
+    t2=st.floats(0, 0.02),
+    q=st.floats(-1, 1),
+    rate=st.floats(-1, 1),
+)
+def test_a_free_mode_moves_as_a_group(own, zeta, t1, t2, q, rate):
+    """First t1, then t2, is t1 + t2; the start is given back; its own equation is its motion."""
+    modes = one_mode(own, zeta)
+    z = free_part(modes, np.array([q]), np.array([rate * own]))
+    assert state_of(modes, z)[0][0] == q
+    assert state_of(modes, z)[1][0] == pytest.approx(rate * own, abs=1e-12 * own)
+
+    def after(z, t):
+        turn = turns(modes, t)
+        both = (z[0] + 1j * z[1]) * (turn[0] + 1j * turn[1])
+        return np.array([both.real, both.imag])
+
+    once, twice = after(z, t1 + t2), after(after(z, t1), t2)
+    assert twice == pytest.approx(once, abs=1e-11 * abs(z).max() + 1e-300)
+    assert advanced(modes, z, t1 + t2)[0, 0] == pytest.approx(once[0, 0], abs=1e-13 * abs(z).max() + 1e-300)
+    # closed form of a damped oscillator
+    damped, t = own * np.sqrt(1 - zeta**2), t1 + t2
+    exact = np.exp(-zeta * own * t) * (
+        q * np.cos(damped * t) + (rate * own + zeta * own * q) / damped * np.sin(damped * t)
+    )
+    assert once[0, 0] == pytest.approx(exact, abs=1e-11 * abs(z).max() + 1e-300)
+
+
+@pytest.mark.parametrize(("soft", "zeta"), [(0.0, 0.0), (1.7, 0.0), (0.0, 0.03), (2.3, 0.011)])
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_motion_from_rest_is_that_of_the_assembled_matrices_by_dop853(model, soft, zeta):
+    """Step load or soft start, damped or not; ratio zeta of every mode is C = 2 zeta M sqrt(M^-1 K)."""
+    n = 6
+    mass, stiffness, loads, reading = matrices(model, n)
+    values, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    root = (vectors * np.sqrt(values)) @ np.linalg.inv(vectors)
+    nodes = np.arange(1, n) * STRIP.length / n
+    found = simulate(STRIP, FORCES, FREQUENCY, 2.9e-3, model=model, count=n, soft_start_periods=soft,
+                     modal_damping=zeta, at=nodes, samples=41)  # fmt: skip
+    free = linear_motion(mass, stiffness, 2 * zeta * mass @ root, loads, found.times, soft / FREQUENCY)
+    expected = free @ reading.T
+    assert found.deflection == pytest.approx(expected, abs=1e-8 * abs(expected).max())
+    assert found.statistics.steps == 0
+
+
+def matrices(model, n):
+    """(M, K, loads, reading at the inner nodes) in SI, from element matrices written here, pinned ends."""
+    length, ei, line = STRIP.length / n, STRIP.bending_stiffness, STRIP.mass_per_length
+    if model == "fem":
+        h = length
+        k = ei / h**3 * np.array([[12, 6*h, -12, 6*h], [6*h, 4*h*h, -6*h, 2*h*h], [-12, -6*h, 12, -6*h], [6*h, 2*h*h, -6*h, 4*h*h]])  # fmt: skip
+        m = line * h / 420 * np.array([[156, 22*h, 54, -13*h], [22*h, 4*h*h, 13*h, -3*h*h], [54, 13*h, 156, -22*h], [-13*h, -3*h*h, -22*h, 4*h*h]])  # fmt: skip
+        size = 2 * n + 2
+        mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
+        for e in range(n):
+            mass[2*e:2*e+4, 2*e:2*e+4] += m  # fmt: skip
+            stiffness[2*e:2*e+4, 2*e:2*e+4] += k  # fmt: skip
+        free = [i for i in range(size) if i not in (0, size - 2)]
+        loads = []
+        for f in FORCES:
+            e = int(f.position / h)
+            s, row = f.position / h - e, np.zeros(size)
+            row[2*e:2*e+4] = [1-3*s**2+2*s**3, h*(s-2*s**2+s**3), 3*s**2-2*s**3, h*(s**3-s**2)]  # fmt: skip
+            loads.append(row[free])
+        reading = np.eye(size)[2:-2:2][:, free]
+        return mass[np.ix_(free, free)], stiffness[np.ix_(free, free)], np.array(loads), reading
+    mass, stiffness = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
+    for j in range(n):  # a rigid link: mass m, inertia m l^2/12
+        mass[j:j+2, j:j+2] += line * length * np.array([[2, 1], [1, 2]]) / 6  # fmt: skip
+    for j in range(1, n):
+        turn = np.zeros(n + 1)
+        turn[j - 1 : j + 2] = np.array([1, -2, 1]) / length
+        stiffness += ei / length * np.outer(turn, turn)
+    inner = slice(1, n)
+    loads = [joint_weights(build_chain(STRIP, n), f.position, "reciprocal")[inner] for f in FORCES]
+    bend = np.diag(np.full(n - 1, 10 / 12)) + np.diag(np.full(n - 2, 1 / 12), 1) + np.diag(np.full(n - 2, 1 / 12), -1)
+    return mass[inner, inner], stiffness[inner, inner], np.array(loads), bend
+
+
+@settings(max_examples=15, deadline=None)
+@given(first=st.floats(1e-4, 4e-3), second=st.floats(1e-4, 4e-3), zeta=st.sampled_from([0.0, 0.02]))
+def test_a_run_that_continues_another_is_one_long_run(first, second, zeta):
+    asked = {"model": "segment", "count": 17, "modal_damping": zeta, "at": [0.1, 0.33]}
+    begun = simulate(STRIP, FORCES, FREQUENCY, first, **asked)
+    ended = simulate(STRIP, FORCES, FREQUENCY, second, continue_from=begun, **asked)
+    whole = simulate(STRIP, FORCES, FREQUENCY, first + second, **asked)
+    scale = abs(whole.deflection).max()
+    assert ended.times[0] == begun.times[-1]
+    assert ended.deflection[0] == pytest.approx(begun.deflection[-1], abs=1e-12 * scale)
+    assert ended.deflection[-1] == pytest.approx(whole.deflection[-1], abs=1e-9 * scale)
+    assert ended.end.time == pytest.approx(first + second)
+
+
+@pytest.mark.parametrize("model", ["analytic", "segment"])
+def test_damped_motion_from_rest_ends_in_the_steady_state(model):
+    """After forty time constants of the first mode; the exact beam's far modes follow at once."""
+    count = None if model == "analytic" else 24
+    asked = {"model": model, "count": count, "modal_damping": 0.05, "modes": 60, "at": [0.171], "ledger": False}
+    begun = simulate(STRIP, FORCES, FREQUENCY, 8.0, samples=2, **asked)
+    late = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, continue_from=begun, samples=50, **asked)
+    exact = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, start="steady", samples=50, **asked)
+    phases = 2 * np.pi * FREQUENCY * np.array([late.times, exact.times])
+    fits = [np.linalg.lstsq(np.array([np.cos(p), np.sin(p)]).T, m.deflection[:, 0], rcond=None)[0]
+            for p, m in zip(phases, (late, exact), strict=True)]  # fmt: skip
+    band = 1e-9 if model == "segment" else 1e-2  # structural for viscous off resonance in the exact field
+    assert fits[0] == pytest.approx(fits[1], abs=band * abs(np.array(fits)).max())
+
+
+def test_damping_acts_in_every_steady_field():
+    """A ratio of every mode lowers the steady answer of all three models alike, and the notes say what stands for it."""
+
+    def amplitude(model, zeta):
+        count = None if model == "analytic" else 60
+        found = simulate(STRIP, FORCES, FREQUENCY, 1 / FREQUENCY, model=model, count=count, start="steady", at=[0.171],
+                         modal_damping=zeta, samples=400)  # fmt: skip
+        return abs(found.deflection).max(), found.notes
+
+    bare = {model: amplitude(model, 0.0) for model in ("analytic", "segment", "fem")}
+    lossy = {model: amplitude(model, 0.08) for model in bare}
+    shares = [lossy[model][0] / bare[model][0] for model in bare]
+    assert shares == pytest.approx([shares[0]] * 3, rel=0.05)
+    assert max(shares) < 0.9
+    assert not any("damping" in note for note in bare["segment"][1])
+    assert any("ratio 0.08" in note for note in lossy["segment"][1])
+    assert any("loss factor 0.16" in note and "in place of a ratio 0.08" in note for note in lossy["analytic"][1])
+
+
+def test_a_resonance_without_damping_is_refused_and_with_damping_is_not():
+    own = float(basis_of(STRIP, "fem", 12, 0).omegas[4] / (2 * np.pi))
+    for start in ("rest", "steady"):
+        with pytest.raises(ResonanceError, match="mode 5"):
+            simulate(STRIP, FORCES, own, 1e-3, model="fem", count=12, start=start)
+        simulate(STRIP, FORCES, own, 1e-3, model="fem", count=12, start=start, modal_damping=0.01)
+
+
+def test_motion_without_a_slider_does_not_depend_on_the_step():
+    runs = [simulate(STRIP, FORCES, FREQUENCY, 2e-3, count=9, at=[0.2], step=step).deflection for step in (1e-3, 3e-6)]
+    assert np.array_equal(*runs)
+
+
+@pytest.mark.parametrize(("zeta", "soft"), [(0.0, 0.0), (0.02, 1.5)])
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_the_books_of_a_driven_beam_close(model, zeta, soft):
+    """Work of the forces by quadrature of their power, against what is in the beam and what was lost."""
+    books = simulate(
+        STRIP, FORCES, FREQUENCY, 2.7e-3, model=model, count=11, modal_damping=zeta, soft_start_periods=soft
+    ).ledger
+    assert books.work_in > 0
+    assert abs(books.residual) < 1e-7 * books.work_in
+    assert (books.damped > 1e-3 * books.work_in) == (zeta > 0)
+    assert books.work_in == pytest.approx(books.kinetic + books.elastic + books.damped, rel=1e-6)
+
+
+@settings(max_examples=60, deadline=None)
+@given(duration=st.floats(1e-6, 10.0), steps=st.floats(0.3, 5e4), samples=st.integers(1, 300))
+def test_steps_fill_their_stretch_and_are_no_longer_than_asked(duration, steps, samples):
+    found = cut(duration, duration / steps, samples)
+    assert found.n * found.dt == pytest.approx(duration, rel=1e-12)
+    assert found.n == found.every * samples
+    assert found.dt <= duration / steps * (1 + 1e-9)
+    assert found.dt > 0.49 * min(duration / steps, duration / samples)
+
+
+def test_a_basis_and_a_run_before_it_have_the_same_modes():
+    begun = simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=9)
+    with pytest.raises(InputError, match="continue_from has 8 modes and this run 11"):
+        simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=12, continue_from=begun)

@@ -1,0 +1,191 @@
+"""The free modes that models bring to time, held against dense solves and against each model's harmonic field."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from motion_reference import FORCES, FREQUENCY, STRIP
+
+from verify import analytic_modes, fem_beam, fem_motion, segment_model, segment_motion
+from verify.analytic_motion import MOST
+from verify.beam import Beam, Section
+from verify.chain import build_chain
+from verify.division import divide
+from verify.errors import InputError
+from verify.fields import phasor
+from verify.moving_surface import Steps, basis_of, stages_from_rest, steady_stage
+from verify.time_basis import taylor_table
+
+HELD = [("pinned", "pinned"), ("clamped", "free"), ("clamped", "clamped"), ("guided", "pinned"), ("pinned", "clamped")]
+
+
+def held(supports):
+    return Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0, supports=supports)
+
+
+def dense_segments(n, line="spline"):
+    """The dense basis where the closed form would be taken."""
+    chain = build_chain(STRIP, n)
+    omegas, joints, _ = segment_motion._dense(STRIP, chain)
+    shapes = (
+        segment_motion._straight(chain, joints)
+        if line == "raw"
+        else segment_motion._splined(STRIP, chain, joints, False)
+    )
+    return omegas, shapes, joints
+
+
+@settings(max_examples=25, deadline=None)
+@given(n=st.integers(2, 60), part=st.floats(0.0, 1.0), derivative=st.integers(0, 3))
+def test_modes_of_equal_links_in_closed_form_are_those_of_the_dense_solve(n, part, derivative):
+    basis = segment_motion.time_basis(STRIP, n)
+    omegas, shapes, _ = dense_segments(n)
+    assert basis.omegas == pytest.approx(omegas, rel=1e-12)
+    x = np.array([part * STRIP.length * (1 - 1e-9)])
+    closed, dense = basis.shapes(x, derivative), shapes(x, derivative)
+    signs = np.sign(np.sum(basis.shapes(basis.edges, 0) * shapes(basis.edges, 0), axis=1))[:, None]
+    scale = abs(shapes(np.linspace(0, STRIP.length, 400), derivative)).max()
+    off_nodes = derivative < 3 or abs(x / STRIP.length * n - np.round(x / STRIP.length * n)) > 1e-6  # third: steps
+    if off_nodes:
+        assert closed == pytest.approx(signs * dense, abs=2e-9 * scale)
+
+
+@settings(max_examples=25, deadline=None)
+@given(n=st.integers(2, 40), part=st.floats(0.0, 1.0), derivative=st.integers(0, 1))
+def test_modes_of_equal_elements_in_closed_form_are_those_of_the_dense_solve(n, part, derivative):
+    """Two branches may share a frequency; what they add up to in a response does not depend on the choice."""
+    basis = fem_motion.time_basis(STRIP, n)
+    omegas, nodal, _ = fem_motion._dense(STRIP, n)
+    assert basis.omegas == pytest.approx(omegas, rel=1e-11)
+    x, place = np.array([part * STRIP.length * (1 - 1e-9)]), 0.31 * STRIP.length
+    dense_loads = fem_beam.nodal_weights(divide(STRIP, n), place / (STRIP.length / n)).reshape(-1, 2)
+    w, slope = nodal(np.arange(n + 1))
+    modal = dense_loads[:, 0] @ w.T + dense_loads[:, 1] @ slope.T
+    element = min(int(x[0] / STRIP.length * n), n - 1)
+    h = STRIP.length / n
+    weights = fem_beam.hermite(np.array([x[0] / h - element]), derivative)[:, 0] / h**derivative
+    shape = (
+        weights[0] * w[:, element]
+        + weights[1] * slope[:, element]
+        + weights[2] * w[:, element + 1]
+        + weights[3] * slope[:, element + 1]
+    )
+    kernel = 1.0 / (omegas**2 + omegas[0] ** 2)
+    expected = (modal * shape) @ kernel
+    found = (basis.loads(place) * basis.shapes(x, derivative)[:, 0]) @ (1.0 / (basis.omegas**2 + basis.omegas[0] ** 2))
+    assert found == pytest.approx(expected, abs=1e-9 * abs(modal * kernel * abs(shape).max()).sum() + 1e-30)
+
+
+@pytest.mark.parametrize("supports", HELD)
+@pytest.mark.parametrize(("model", "count"), [("segment", 33), ("fem", 21)])
+def test_the_sum_over_all_modes_is_the_models_own_harmonic_field(model, count, supports):
+    """Undamped: modes, their loads and their reading along the beam together."""
+    beam = held(supports)
+    basis = basis_of(beam, model, count, 0)
+    module = {"segment": segment_model, "fem": fem_beam}[model]
+    field = module.solve_harmonic(beam, FORCES, FREQUENCY, count)
+    share = sum(phasor(f) * basis.loads(f.position) for f in FORCES) / (basis.omegas**2 - (2 * np.pi * FREQUENCY) ** 2)
+    x = np.array([0.013, 0.1417, 0.25, 0.3999])
+    for derivative in (0, 1, 2):
+        assert share @ basis.shapes(x, derivative) == pytest.approx(
+            field.shapes(x, derivative), abs=1e-9 * abs(field.shapes(np.linspace(0, beam.length, 99), derivative)).max()
+        )
+
+
+def test_a_stepped_beam_has_its_modes_too():
+    steps = (Section(length=0.2), Section(length=0.23, thickness=0.002))
+    beam = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0, section=steps)
+    for model in ("segment", "fem"):
+        basis = basis_of(beam, model, 40, 0)
+        module = {"segment": segment_model, "fem": fem_beam}[model]
+        assert basis.omegas[:5] / (2 * np.pi) == pytest.approx(
+            module.solve_modes(beam, 5, 40).frequencies_hz, rel=1e-10
+        )
+    with pytest.raises(InputError, match="section"):
+        basis_of(beam, "analytic", None, 30)
+
+
+@pytest.mark.parametrize(("model", "count", "order"), [("segment", 12, 3), ("fem", 12, 2)])
+def test_the_surface_is_smooth_across_the_nodes_as_far_as_its_model_says(model, count, order):
+    """C2 spline through the joints (Section II.B); C1 Hermite elements; the next derivative jumps."""
+    basis = basis_of(STRIP, model, count, 0)
+    nodes, tiny = basis.edges[1:-1], 1e-9
+    for derivative in range(order + 1):
+        left, right = basis.shapes(nodes - tiny, derivative)[:8], basis.shapes(nodes + tiny, derivative)[:8]
+        jump = abs(right - left).max() / abs(right).max()
+        assert (jump < 1e-5) == (derivative < order), derivative
+
+
+def test_raw_links_are_straight_and_turn_at_the_joints():
+    raw, smooth = segment_motion.time_basis(STRIP, 12, line="raw"), segment_motion.time_basis(STRIP, 12)
+    joint, link = raw.edges[5], STRIP.length / 12
+    inside = joint + link * np.array([0.1, 0.5, 0.9])
+    assert np.ptp(raw.shapes(inside, 1), axis=1) == pytest.approx(0.0, abs=1e-9)
+    assert raw.shapes(inside, 2) == pytest.approx(0.0)
+    turn = raw.shapes(np.array([joint]), 1)[:, 0] - raw.shapes(np.array([joint - 1e-9]), 1)[:, 0]
+    mu = np.pi * np.arange(1, 12) / 12
+    expected = -4 * np.sin(mu / 2) ** 2 * raw.shapes(np.array([joint]), 0)[:, 0] / link
+    assert turn == pytest.approx(expected, abs=1e-6 * abs(expected).max())  # a joint turns by its second difference
+    # corrected joints: (1 - s^2/3) times the raw ones
+    at = np.array([joint])
+    assert smooth.shapes(at, 0)[:, 0] == pytest.approx((1 - np.sin(mu / 2) ** 2 / 3) * raw.shapes(at, 0)[:, 0])
+
+
+@pytest.mark.parametrize("supports", [("free", "free"), ("pinned", "free"), ("guided", "guided")])
+@pytest.mark.parametrize(("model", "count"), [("segment", 20), ("fem", 20), ("analytic", None)])
+def test_a_beam_that_can_drift_away_is_refused(model, count, supports):
+    with pytest.raises(InputError, match="rigid motion"):
+        basis_of(held(supports), model, count, 20)
+
+
+def test_what_does_not_fit_a_model_is_refused_in_a_sentence():
+    with pytest.raises(InputError, match="count = 9 is for fem and segment"):
+        basis_of(STRIP, "analytic", 9, 20)
+    with pytest.raises(InputError, match="count is missing"):
+        basis_of(STRIP, "fem", None, 20)
+    with pytest.raises(InputError, match="did you mean 'raw'"):
+        segment_motion.time_basis(STRIP, 9, line="row")
+    for modes in (0, 2.5, MOST + 1):
+        with pytest.raises(InputError, match="modes = "):
+            basis_of(STRIP, "analytic", None, modes)
+
+
+def test_exact_modes_with_their_tail_are_the_exact_field():
+    """The first modes in their steady state and the rest following at once: nothing is cut off at the drive's frequency."""
+    basis = basis_of(STRIP, "analytic", None, 25)
+    x = np.array([0.0163, 0.0371, 0.211, 0.4])
+    share = sum(phasor(f) * basis.loads(f.position) for f in FORCES) / (basis.omegas**2 - (2 * np.pi * FREQUENCY) ** 2)
+    exact = analytic_modes.solve_harmonic(STRIP, FORCES, FREQUENCY)
+    rest = basis.tail(FORCES, FREQUENCY, 0.0)
+    for derivative in (0, 1):
+        kept = share @ basis.shapes(x, derivative)
+        assert kept + rest(x, derivative) == pytest.approx(exact.shapes(x, derivative), rel=1e-9)
+        assert abs(rest(x, derivative)).max() < 1e-2 * abs(kept).max()
+
+
+def read(table, edges, x):
+    """A table of pieces at x, (rows,)."""
+    piece = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2))
+    return np.polynomial.polynomial.polyval((x - edges[piece]) / (edges[piece + 1] - edges[piece]), table[piece])
+
+
+@pytest.mark.parametrize(("model", "count"), [("segment", 49), ("fem", 49), ("fem", 98), ("analytic", None)])
+@pytest.mark.parametrize("start", ["rest", "steady"])
+def test_the_pieces_a_slider_sees_are_the_shapes(model, count, start):
+    """49 and 98 parts of 0.5 m: nodes whose rounding lies on the wrong side of themselves."""
+    beam = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+    basis = basis_of(beam, model, count, 40)
+    if start == "rest":
+        stage = stages_from_rest(basis, FORCES, 2 * np.pi * FREQUENCY, 0.01, Steps(1, 1e-4, 1), None, 0.0)[0]
+    else:
+        from verify.waves import solve_by_model
+
+        stage = steady_stage(
+            solve_by_model(model, beam, FORCES, FREQUENCY, count, {}), Steps(1, 1e-4, 1), 0.0, basis, 0.0
+        )
+    assert stage.edges[-1] == beam.length
+    table = taylor_table(stage.rows, stage.edges, 0, len(stage.edges) - 1, stage.degree)
+    places = np.random.default_rng(7).uniform(0.0, 0.5, 60)
+    found = np.array([read(table, stage.edges, x) for x in places]).T
+    true = stage.rows(places)
+    assert np.all(abs(found - true).max(axis=1) <= 1e-10 * abs(true).max(axis=1) + 1e-30)
