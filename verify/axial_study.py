@@ -39,6 +39,9 @@ TOLERANCE = 1e-10
 STILL = 1e-9
 """A place moves less than this share of the free beam's answer as a whole, 1 / (m omega^2), by rounding alone."""
 
+TURNED = 0.3
+"""Radians in the rms: links that turn further are no driven beam."""
+
 
 class Departure(msgspec.Struct, frozen=True, kw_only=True):
     """How far a chain's deflection lies from the linear chain's at one place, over the linear one's rms there."""
@@ -142,8 +145,12 @@ def linear_chain(driven: Driven) -> Array:
 
 def rigid_chain(driven: Driven, force: float, *, axial_inertia: bool = True) -> ChainMotion:
     """The nonlinear chain of rigid links, converged in time. Raises InputError."""
-    return transient(driven.beam, driven.under(force), driven.frequency_hz, driven.times.tolist(), driven.count,
-                     axial_inertia=axial_inertia, tolerance=TOLERANCE)  # fmt: skip
+    motion = transient(driven.beam, driven.under(force), driven.frequency_hz, driven.times.tolist(), driven.count,
+                       axial_inertia=axial_inertia, tolerance=TOLERANCE)  # fmt: skip
+    turned = rms(motion.directions())
+    if turned > TURNED:
+        raise InputError(f"under {force!r} N the links turn by {turned:.2g} rad in the rms: give a smaller force")
+    return motion
 
 
 def elastic_chain(driven: Driven, force: float) -> Array:
