@@ -13,6 +13,7 @@ Run: OMP_NUM_THREADS=1 python -m benchmarks.chain_work [links ...]
 
 import sys
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -233,7 +234,7 @@ def ladders(case: Case) -> dict[str, tuple[Run, list[float]]]:
     part = {f"1 kick, {MODES} modes": (kicks(case, 1, MODES), strang)} if case.n - 1 > MODES else {}
     return part | {
         "RK4": (fixed_steps(case), [limit, limit / 2, limit / 4]),
-        "adaptive, tolerance": (adaptive(case), [1e-3, 1e-4, 1e-5, 1e-6, 1e-7]),
+        "adaptive, tolerance": (adaptive(case), [1e-3, 1e-4, 1e-5, 1e-6]),
         "1 kick, all modes": (kicks(case, 1, case.n), strang),
         "2 kicks, all modes": (kicks(case, 2, case.n), strang[:4]),
         "midpoint": (implicit(case, np.ones(1)), rounds),
@@ -266,17 +267,29 @@ def compare(n: int) -> None:
     taken = timed(entries)
     print(f"  {'integrator and step, s':<34}{'rms error':>12}{'ms per simulated ms':>22}")
     for name, found in errors.items():
-        print(f"  {name:<34}{found:>12.1e}{1e3 * taken[name] / (1e3 * END):>22.3f}")
+        print(f"  {name:<34}{found:>12.1e}{taken[name] / END:>22.3f}")
+    _fastest(errors, taken)
+    _trap(case, scale, [found for name, found in errors.items() if name.startswith("midpoint, order 4")])
+
+
+def _fastest(errors: dict[str, float], taken: dict[str, float]) -> None:
+    """The fastest step of every integrator to an accuracy, the fastest integrator first."""
     for wanted in (1e-2, 1e-3, 1e-4):
-        able = {name: taken[name] for name, found in errors.items() if found <= wanted}
         kinds: dict[str, str] = {}
-        for name in sorted(able, key=able.__getitem__):
-            kinds.setdefault(name.rsplit(" ", 1)[0], f"{name} in {1e3 * able[name] / (1e3 * END):.3g} ms")
-        print(f"  to {wanted:g}: " + ("; ".join(kinds.values()) if kinds else "none of these"))
+        for name in sorted(taken, key=taken.__getitem__):
+            if errors[name] <= wanted:
+                kinds.setdefault(name.rsplit(" ", 1)[0], f"{name} in {taken[name] / END:.3g} ms per ms")
+        print(f"  to {wanted:g}: " + ("; ".join(kinds.values()) or "none of these"))
+
+
+def _trap(case: Case, scale: float, errors: list[float]) -> None:
+    """What the step load leaves ringing, and what that does to an implicit method of order 4."""
     basis = modal_basis(system_of(case))
     held = {khz: ringing(basis, case.length / 2, 1e3 * khz) / scale for khz in (6, 10, 20, 40, 80)}
-    shares = ", ".join(f"{share:.1e} above {khz} kHz" for khz, share in held.items())
-    print(f"  what the step load leaves ringing, over the mid-span rms: {shares}")
+    print("  the step load leaves ringing, over the mid-span rms: "
+          + ", ".join(f"{share:.1e} above {khz} kHz" for khz, share in held.items() if share))  # fmt: skip
+    falls = ", ".join(f"{a / b:.3g}" for a, b in pairwise(errors))
+    print(f"  over halved steps the implicit error falls by {falls}, where order 4 says 16")
 
 
 def main() -> None:
