@@ -14,8 +14,9 @@ from verify.beam import PointForce
 from verify.chain_dynamics import at_rest, energies, linearise, positions, project
 from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, simulate_modal
 from verify.chain_motion import simulate, step_limit
-from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, axial_inertia_size, build_system
+from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
+from verify.validity import axial_inertia_size
 
 
 def free_chain(n=6, **more):

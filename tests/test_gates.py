@@ -9,6 +9,7 @@ from msgspec import structs
 
 from verify import (
     analytic_harmonic,
+    axial_study,
     chain,
     chain_dynamics,
     chain_kernels,
@@ -554,6 +555,33 @@ def friction_of_half_the_slope(patch):
     patch.setattr(rigid_surface, "_law", lambda coulomb, b, static, slope: true(coulomb, b, static, 0.5 * slope))
 
 
+def linear_chain_under_a_tenth_of_a_per_cent_more(patch):
+    true = axial_study.linear_deflection
+    patch.setattr(axial_study, "linear_deflection", lambda *given: 1.001 * true(*given))
+
+
+def departures_of_the_whole_run_for_those_at_its_end(patch):
+    true = axial_study.departure_of
+
+    def exchanged(*given):
+        found = true(*given)
+        return structs.replace(found, at_end=found.rms, rms=found.at_end)
+
+    patch.setattr(axial_study, "departure_of", exchanged)
+
+
+def links_that_stretch_a_tenth_less(patch):
+    true = axial_study.simulate_elastic
+    patch.setattr(
+        axial_study, "simulate_elastic", lambda system, stiffness, times: true(system, 1.1 * stiffness, times)
+    )
+
+
+def links_that_do_not_shorten_where_they_turn(patch):
+    true = axial_study.simulate_elastic
+    patch.setattr(axial_study, "simulate_elastic", lambda *given: true(*given, immovable=True))
+
+
 FAULTS_ELSEWHERE = {
     "paper-slider": {
         surface_lever_forgotten: {
@@ -590,8 +618,21 @@ FAULTS_ELSEWHERE = {
         recursion_with_another_inertia_than_the_energy: {"energy-is-kept", "small-force", "ten-newton"},
         forces_that_lag_instead_of_lead: {"small-force", "ten-newton", "ten-newton-by-kicks", "ten-newton-without-axial-inertia"},
         kicks_of_no_strength: {"ten-newton-by-kicks"},
-        axial_inertia_forgotten: {"ten-newton", "ten-newton-by-kicks"},
-        axial_inertia_kept_where_it_was_to_go: {"ten-newton-without-axial-inertia"},
+        axial_inertia_forgotten: {
+            "ten-newton", "ten-newton-by-kicks", "departure-at-a-tenth-of-a-newton", "departure-at-one-newton",
+            "departure-at-ten-newton", "departure-at-ten-newton-in-the-rms",
+        },
+        axial_inertia_kept_where_it_was_to_go: {"ten-newton-without-axial-inertia", "departure-without-axial-inertia"},
+        linear_chain_under_a_tenth_of_a_per_cent_more: {
+            "departure-at-a-tenth-of-a-newton", "departure-at-one-newton", "departure-at-ten-newton",
+            "departure-without-axial-inertia", "departure-of-links-that-stretch",
+        },
+        departures_of_the_whole_run_for_those_at_its_end: {
+            "departure-at-one-newton", "departure-at-ten-newton", "departure-at-ten-newton-in-the-rms",
+            "departure-without-axial-inertia", "departure-of-links-that-stretch",
+        },
+        links_that_stretch_a_tenth_less: {"departure-of-links-that-stretch"},
+        links_that_do_not_shorten_where_they_turn: {"departure-of-links-that-stretch"},
     },
     "paper-wave": {
         phase_of_the_wrong_sign: {"reversal-turns-the-wave", "surface-ellipse", "flux", "mid-span"},

@@ -164,12 +164,33 @@ def test_what_is_missing_in_a_wave_report_is_said(wave_result):
     assert "at the edge of the search" in page(replace(wave_result, gates=(), wave=study), "verify run x")
 
 
+@pytest.fixture(scope="module")
+def chain_result():
+    return run_scene("chain")
+
+
+def test_the_report_of_a_chain_shows_all_models_side_by_side_and_departures_over_the_force(chain_result):
+    text = page(chain_result, "verify run chain")
+    figures = json.loads(re.search(r'id="figures">(.*?)</script>', text, re.DOTALL)[1])
+    assert set(figures) == {"axial-models", "axial-departures"}
+    lines = {trace["name"]: trace for trace in figures["axial-models"]["data"]}
+    assert {"exact field", "Hermite elements", "linear chain", "chain of rigid links"} < set(lines)
+    assert lines["chain of rigid links"]["y"][-1] == pytest.approx(-8.692475933, abs=1e-6)
+    assert lines["linear chain"]["y"][-1] == pytest.approx(-8.2345302521, abs=1e-6)
+    rigid, *_, scale = figures["axial-departures"]["data"]
+    assert rigid["x"] == scale["x"] == [0.1, 1.0, 10.0, 30.0]
+    assert rigid["y"][2] == pytest.approx(3.896397e-2, rel=1e-4)
+    for words in ("How linear the chain of rigid links is", "3.90e-02", "3.93e-06", "7.86e-03", "side by side",
+                  "links that stretch by EA/l", "<td>linear</td>", "<td>nonlinear</td>"):  # fmt: skip
+        assert words in text, words
+
+
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine: the report was not opened in a browser")
-@pytest.mark.parametrize(("name", "charts", "traces"), [("paper", 6, 6), ("paper-wave", 4, 3)])
+@pytest.mark.parametrize(("name", "charts", "traces"), [("paper", 6, 6), ("paper-wave", 4, 3), ("chain", 2, 2)])
 def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, traces):
     """Every chart, and a scatter layer in those that are not maps alone."""
     path = tmp_path / "report.html"
-    result = request.getfixturevalue("result" if name == "paper" else "wave_result")
+    result = request.getfixturevalue({"paper": "result", "paper-wave": "wave_result", "chain": "chain_result"}[name])
     write_report(result, path, f"verify run {name}")
     profile = f"--user-data-dir={tmp_path / 'profile'}"
     done = subprocess.run(
@@ -179,4 +200,4 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
     assert f'data-drawn="{charts}"' in done.stdout
     assert done.stdout.count('class="main-svg"') >= charts
     assert done.stdout.count("scatterlayer") >= traces
-    assert ("heatmaplayer" in done.stdout) or name == "paper"
+    assert ("heatmaplayer" in done.stdout) or name != "paper-wave"

@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from msgspec import Meta
 
-from verify.errors import InputError
 from verify.quantity_types import Arguments, Mode, Quantity, Wall
 from verify.workbench import Workbench
 
@@ -74,6 +73,19 @@ class FreeMotion(Chained, frozen=True, kw_only=True):
     tolerance: Tolerance = 1e-8
 
 
+class Departing(Chained, frozen=True, kw_only=True):
+    """A nonlinear chain beside the linear one, driven from rest."""
+
+    force: Annotated[float, Meta(gt=0, description="N, of every force of the scene's drive")]
+    time: Annotated[float, Meta(gt=0, lt=0.1, description="s after the forces set in")] = 1e-3
+    inertia: Annotated[
+        Literal["full", "transverse", "elastic"],
+        Meta(description="transverse: rigid links without inertia along x; elastic: links that stretch by EA / l"),
+    ] = "full"
+    of: Annotated[Literal["end", "rms"], Meta(description="the departure at that time, or its rms until then")] = "end"
+    x: Annotated[float, Meta(gt=0, description="m from the left end; default mid-span")] | None = None
+
+
 class FromRest(Chained, frozen=True, kw_only=True):
     """The driven chain at one time and place."""
 
@@ -122,20 +134,26 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
     from msgspec.structs import replace
 
     from verify import chain_studies
+    from verify.axial_study import point_forces
 
-    if scene.drive is None or scene.drive.kind != "force" or not scene.drive.force:
-        raise InputError(
-            "chain.transient_deflection: the scene has no drive by forces; give it a [drive] of kind force"
-        )
-    forces = [force.on(scene.beam) for force in scene.drive.force]
+    forces = point_forces(scene, "chain.transient_deflection")
+    assert scene.drive is not None
     if a.force is not None:
-        forces = [replace(force, amplitude=a.force) for force in forces]
+        forces = tuple(replace(force, amplitude=a.force) for force in forces)
     method = a.method or ("rk4" if a.step is not None else "adaptive")
     motion = chain_studies.transient(
         scene.beam, forces, scene.drive.frequency_hz, [a.time], a.links, step=a.step, method=method,
         axial_inertia=a.inertia == "full", tolerance=a.tolerance,
     )  # fmt: skip
     return float(motion.deflection([a.x])[0, 0])
+
+
+def _axial_departure(a: Departing, scene: "Scene", bench: Workbench) -> float:
+    from verify.axial_study import departure, driven_chain
+
+    driven = driven_chain(scene, "chain.axial_departure", a.links, a.time, a.x)
+    found = departure(driven, a.force, a.inertia)
+    return found.at_end if a.of == "end" else found.rms
 
 
 def _nothing(a: Any, scene: "Scene") -> tuple[()]:
@@ -156,4 +174,6 @@ CHAIN_QUANTITIES = (
              FreeMotion, _nothing, _energy_drift),
     Quantity("chain.transient_deflection", "m", "Deflection of the chain from rest under the scene's forces.",
              FromRest, _nothing, _transient_deflection),
+    Quantity("chain.axial_departure", "1", "Nonlinear chain less the linear one, from rest, over the linear one's rms.",
+             Departing, _nothing, _axial_departure),
 )  # fmt: skip

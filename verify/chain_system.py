@@ -266,16 +266,6 @@ def held_points(system: ChainSystem) -> list[tuple[int, float]]:
     return roller + [(a.link, a.at) for a in system.actuators]
 
 
-def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float) -> float:
-    """How nonlinear a roller-ended chain of rigid links is: (k L)^2 <theta^2>, relative, through its axial inertia.
-
-    A scale, not a bound: at 4276 Hz on the paper's beam the first millisecond from rest departs from the linear chain
-    by 0.6 of it in the rms, and by 3 at its end (`benchmarks/axial_inertia.py`).
-    """
-    wavenumber = (circular(frequency_hz) / beam.wave_constant) ** 0.5
-    return float((wavenumber * beam.length) ** 2 * mean_square_slope)
-
-
 def circular(frequency_hz: float) -> float:
     """2 pi f, rad/s."""
     return 2.0 * pi * frequency_hz

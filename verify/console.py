@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
+    from verify.axial_study import AxialStudy
     from verify.design_map import DesignMap
     from verify.gates import GateResult
     from verify.motion_study import MotionStudy
@@ -78,6 +79,8 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     )  # fmt: skip
     if result.motion:
         _print_slider(console, result.motion)
+    if result.axial_inertia:
+        _print_axial(console, result.axial_inertia)
     console.print(f"{verdict} in {seconds_in_words(result.seconds)}: {work_in_words(result)}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True)
@@ -98,6 +101,14 @@ def _print_slider(console: Console, study: "MotionStudy") -> None:
                        f"(kL)^2 <theta^2> {margins.nonlinearity:.1e}"))  # fmt: skip
     if study.answer:
         console.print(answer_in_words(study.answer))
+
+
+def _print_axial(console: Console, study: "AxialStudy") -> None:
+    """How linear the chain of rigid links was found to be."""
+    for row in study.rows:
+        verdict = "linear" if row.linear else "nonlinear"
+        console.print(Text(f"{row.force:g} N: {verdict}, (kL)^2 <theta^2> {row.size:.1e}; rigid links lie "
+                           f"{row.full.at_end:.1e} off after {1e3 * study.duration:g} ms"))  # fmt: skip
 
 
 def answer_in_words(answer: "Comparison") -> str:
@@ -281,6 +292,8 @@ def print_plan(plan: "Plan") -> None:
         console.print(f"closed forms, for {_who(plan.closed_forms)}")
     if plan.harmonic:
         console.print(f"harmonic fields, for {_who(plan.harmonic)}")
+    if plan.compiled:
+        console.print(f"equilibria and modes of the nonlinear chain, for {_who(plan.compiled)}")
     if plan.stepped:
         console.print(f"motion in time, for {_who(plan.stepped)}")
     for chosen in plan.chosen:
@@ -293,7 +306,8 @@ def print_plan(plan: "Plan") -> None:
 
 
 def _who(names: tuple[str, ...]) -> str:
-    short = [name.removeprefix("gate ") for name in names]
+    studies_first = sorted(names, key=lambda name: name.startswith("gate "))
+    short = [name.removeprefix("gate ") for name in studies_first]
     return ", ".join(short[:2]) + (f" and {len(short) - 2} more" if len(short) > 2 else "")
 
 

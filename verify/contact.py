@@ -12,8 +12,6 @@ from verify.time_basis import Array
 if TYPE_CHECKING:
     from verify.fields import HarmonicField
 
-NONLINEAR = 1e-3
-"""From this (kL)^2 <theta^2> on, the linear chain is not the paper's chain."""
 FELT = 1e-3
 """From this relative change of the surface's speed on, a slider is coupled back to the beam."""
 
@@ -53,12 +51,6 @@ class Margins(msgspec.Struct, frozen=True, kw_only=True):
 def surface_speed(field: "HarmonicField", x: float) -> float:
     """First-order speed amplitude of the surface at x, (h/2) omega |w'|, m/s."""
     return 0.5 * field.beam.thickness * field.omega * float(abs(field.slope([x]))[0])
-
-
-def nonlinearity(field: "HarmonicField") -> float:
-    """(kL)^2 <theta^2>, averaged over the beam and a period."""
-    x = np.linspace(0.0, field.beam.length, 400)
-    return float(abs(field.wavenumber * field.beam.length) ** 2 * 0.5 * (abs(field.slope(x)) ** 2).mean())
 
 
 def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: float) -> Coupling:

@@ -1,6 +1,6 @@
 """The slider for a report: the paper's Figures 3 and 4 on three models, what Eq. (3) bounds, which readings fit."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -130,6 +130,6 @@ def _mean(scene: "Scene") -> float:
     return run_once(scene, "segment", scene.motion.count).mean_speed
 
 
-def thinned(values: "np.ndarray", most: int = 1000) -> list[float]:
+def thinned(values: "np.ndarray | Sequence[float]", most: int = 1000) -> list[float]:
     """Every so manyth value, for a chart."""
     return [float(v) for v in values[:: max(len(values) // most, 1)]]

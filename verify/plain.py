@@ -10,6 +10,7 @@ from verify.errors import InputError
 from verify.scene import literal
 
 if TYPE_CHECKING:
+    from verify.axial_study import AxialStudy
     from verify.motion import Motion
     from verify.motion_study import MotionStudy
     from verify.run import RunResult
@@ -30,6 +31,7 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
         "sensitivity": msgspec.to_builtins(result.sensitivity),
         "wave": wave_as_plain(result.wave) if result.wave else None,
         "motion": motion_as_plain(result.motion) if result.motion else None,
+        "axial_inertia": axial_as_plain(result.axial_inertia) if result.axial_inertia else None,
         "solves": msgspec.to_builtins(result.solves),
         "seconds": result.seconds,
         "report": str(report) if report else None,
@@ -54,6 +56,12 @@ def motion_as_plain(study: "MotionStudy") -> dict[str, Any]:
     answer = msgspec.to_builtins(study.answer) | {"ratio": study.answer.ratio} if study.answer else None
     return {"runs": runs, "facts": msgspec.to_builtins(study.facts), "readings": msgspec.to_builtins(study.readings),
             "work": msgspec.to_builtins(study.work), "answer": answer}  # fmt: skip
+
+
+def axial_as_plain(study: "AxialStudy") -> dict[str, Any]:
+    """A study of a chain's axial inertia: departures over the force, models side by side at one of them."""
+    return {"count": study.count, "duration": study.duration, "x": study.x, "rows": msgspec.to_builtins(study.rows),
+            "shown": study.shown, "beside": msgspec.to_builtins(study.beside)}  # fmt: skip
 
 
 def largest(run: "Motion") -> float:

@@ -8,7 +8,15 @@ from verify.errors import InputError
 from verify.workbench import Key, Need, Settings, merged, model_module
 
 if TYPE_CHECKING:
-    from verify.scene import Scene, Wave
+    from verify.fields import HarmonicField
+    from verify.scene import AxialInertia, Scene, Wave
+    from verify.slider import Slider
+
+CHAIN_IN_TIME = ("chain.energy_drift", "chain.large_amplitude_frequency", "chain.transient_deflection",
+                 "chain.axial_departure")  # fmt: skip
+"""Quantities of the nonlinear chain that are stepped; its others are equilibria and modes."""
+STUDIES = ("spectrum", "convergence", "sensitivity", "wave", "motion", "axial_inertia")
+"""What a scene can ask for besides gates, by the name of its table."""
 
 
 class Ask(msgspec.Struct, frozen=True):
@@ -60,6 +68,8 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True):
     """Simpler models taken where the neglected part is small, with its size."""
     skipped: tuple[Skipped, ...]
     problems: tuple[Problem, ...]
+    compiled: tuple[str, ...] = ()
+    """Who asks for equilibria or modes of the nonlinear chain."""
 
 
 def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
@@ -90,6 +100,8 @@ def _study_asks(scene: "Scene") -> list[Ask]:
         asks.append(Ask(_wave_study(scene.wave), ()))
     if scene.motion and scene.slider:
         asks.append(Ask(_motion_study(scene), ()))
+    if scene.axial_inertia:
+        asks.append(Ask(_axial_study(scene.axial_inertia), ()))
     return asks
 
 
@@ -103,11 +115,12 @@ def plan_scene(scene: "Scene") -> Plan:
             solves.append(_planned(scene, key, n_wanted, who))
         except InputError as error:
             problems += [(one, str(error)) for one in who]
-    driven, timed = _driven(scene), _timed(scene)
-    closed = tuple(a.who for a in asks if not a.needs and not a.problem and a.who not in driven | timed)
+    driven, timed, compiled = _driven(scene), _timed(scene), _compiled(scene)
+    closed = tuple(a.who for a in asks if not a.needs and not a.problem and a.who not in driven | timed | compiled)
     return Plan(scene=scene.name, solves=tuple(solves), closed_forms=closed, skipped=_skipped(scene, asks),
                 harmonic=tuple(ask.who for ask in asks if ask.who in driven and not ask.problem),
                 stepped=tuple(ask.who for ask in asks if ask.who in timed and not ask.problem), chosen=_chosen(scene),
+                compiled=tuple(ask.who for ask in asks if ask.who in compiled and not ask.problem),
                 problems=tuple(Problem(*pair) for pair in problems))  # fmt: skip
 
 
@@ -125,8 +138,14 @@ def _wave_study(wave: "Wave") -> str:
 def _timed(scene: "Scene") -> set[str]:
     """Who asks for motion in time."""
     prefixes = ("friction.", "slider.", "motion.")
-    gates = {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith(prefixes)}
-    return gates | ({_motion_study(scene)} if scene.motion and scene.slider else set())
+    gates = {f"gate {g.id}" for g in scene.gate if g.quantity.startswith(prefixes) or g.quantity in CHAIN_IN_TIME}
+    gates |= {_motion_study(scene)} if scene.motion and scene.slider else set()
+    return gates | ({_axial_study(scene.axial_inertia)} if scene.axial_inertia else set())
+
+
+def _compiled(scene: "Scene") -> set[str]:
+    """Who asks for the nonlinear chain at rest: its equilibria and modes, by compiled kernels without stepping."""
+    return {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith("chain.")} - _timed(scene)
 
 
 def _motion_study(scene: "Scene") -> str:
@@ -135,35 +154,82 @@ def _motion_study(scene: "Scene") -> str:
     return f"motion (slider on segments, elements and the exact beam, work against error at N = {sizes})"
 
 
+def _axial_study(asked: "AxialInertia") -> str:
+    forces = ", ".join(f"{force:g}" for force in asked.forces)
+    runs = 3 * len(asked.forces) + 3
+    steps = max(round(1.5e6 * asked.duration * (asked.count / 49) ** 2), 1)
+    return (f"axial_inertia (rigid, massless along x and stretching links at {forces} N, all models at "
+            f"{asked.shown:g} N: {runs} runs of N = {asked.count}, about {steps} steps each)")  # fmt: skip
+
+
 def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
     """How a slider is coupled and whether the chain may be linear, by size."""
-    if scene.slider is None or not scene.forces or scene.beam.stepped:
+    if not (scene.slider or scene.axial_inertia) or not scene.forces or scene.beam.stepped:
         return ()
     from verify.analytic_modes import solve_harmonic
-    from verify.contact import FELT, NONLINEAR, coupling_of, nonlinearity, surface_speed
 
     assert scene.drive is not None
     try:
         field = solve_harmonic(scene.beam, scene.forces, scene.drive.frequency_hz)
     except InputError:
         return ()
-    speed = surface_speed(field, scene.slider.start_on(scene.beam))
-    found, size = coupling_of(scene.slider, scene.beam, field.frequency_hz, speed), nonlinearity(field)
+    chosen = () if scene.slider is None else (_coupling(scene.slider, field), _linear(field))
+    return chosen if scene.axial_inertia is None else (*chosen, _over_the_force(scene, scene.axial_inertia))
+
+
+def _coupling(slider: "Slider", field: "HarmonicField") -> Skipped:
+    """One-way or two-way."""
+    from verify.contact import FELT, coupling_of, surface_speed
+
+    speed = surface_speed(field, slider.start_on(field.beam))
+    found = coupling_of(slider, field.beam, field.frequency_hz, speed)
     kind = "two-way" if found.two_way else "one-way"
+    return Skipped(f"{kind} coupling", f"full friction moves the surface by {found.relative_size:.1e} of its own speed"
+                   f"{', as slider.coupling says' if found.forced else f' (felt from {FELT:g} on)'}")  # fmt: skip
+
+
+def _linear(field: "HarmonicField") -> Skipped:
+    """A slider's run is on the linear chain whatever the size, which is said."""
+    from verify.validity import NONLINEAR
+
+    size = _size(field)
     linear = "linear chain with an exact step" if size <= NONLINEAR else "linear chain, although"
-    return (
-        Skipped(f"{kind} coupling", f"full friction moves the surface by {found.relative_size:.1e} of its own speed"
-                f"{', as slider.coupling says' if found.forced else f' (felt from {FELT:g} on)'}"),
-        Skipped(linear, f"axial inertia of a roller-ended chain, (kL)^2 <theta^2> = {size:.1e} of the motion "
-                f"(felt from {NONLINEAR:g} on)"),
-    )  # fmt: skip
+    return Skipped(linear, f"axial inertia of a roller-ended chain, (kL)^2 <theta^2> = {size:.1e} of the motion "
+                   f"(felt from {NONLINEAR:g} on)")  # fmt: skip
+
+
+def _over_the_force(scene: "Scene", asked: "AxialInertia") -> Skipped:
+    """Up to which force the linear chain will do: linear or nonlinear is decided by that number."""
+    from msgspec.structs import replace
+
+    from verify.analytic_modes import solve_harmonic
+    from verify.validity import NONLINEAR
+
+    assert scene.drive is not None
+    forces = [replace(force, amplitude=1.0) for force in scene.forces]
+    size = _size(solve_harmonic(scene.beam, forces, scene.drive.frequency_hz))
+    sizes = ", ".join(f"{size * force**2:.1e} at {force:g} N" for force in asked.forces)
+    limit = (NONLINEAR / size) ** 0.5 if size else float("inf")
+    return Skipped(f"linear chain up to {limit:.2g} N, nonlinear above",
+                   f"decided by the axial inertia, (kL)^2 <theta^2> of the steady field: {sizes} (felt from "
+                   f"{NONLINEAR:g} on)")  # fmt: skip
+
+
+def _size(field: "HarmonicField") -> float:
+    """(kL)^2 <theta^2>, averaged over the beam and a period."""
+    import numpy as np
+
+    from verify.validity import axial_inertia_size
+
+    slopes = abs(field.slope(np.linspace(0.0, field.beam.length, 400)))
+    return axial_inertia_size(field.beam, field.frequency_hz, 0.5 * float((slopes**2).mean()))
 
 
 def _driven_elements(scene: "Scene") -> bool:
     """Whether a driven field of the finite elements is asked for."""
     prefixes = ("wave.", "slider.", "motion.")
     gates = any(g.quantity.startswith(prefixes) and g.arguments.get("model") == "fem" for g in scene.gate)
-    return scene.wave is not None or scene.motion is not None or gates
+    return any(study is not None for study in (scene.wave, scene.motion, scene.axial_inertia)) or gates
 
 
 def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
@@ -179,8 +245,8 @@ def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> P
 def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
     """What this scene leaves out, with the reason."""
     left = []
-    driven = _driven(scene)
-    if not driven and not _timed(scene) and not any(ask.needs for ask in asks):
+    driven, compiled = _driven(scene), _compiled(scene)
+    if not driven and not compiled and not _timed(scene) and not any(ask.needs for ask in asks):
         left.append(Skipped("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
     elif not _driven_elements(scene) and not any(need.model == "fem" for ask in asks for need in ask.needs):
         left.append(Skipped("scikit-fem", "nothing asked needs the finite-element model"))
@@ -191,9 +257,9 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
     timed = _timed(scene)
     if not timed:
         left.append(Skipped("time stepping", "modes and harmonic fields only: linear, nothing depends on the past"))
-        left.append(Skipped("numba", "nothing asked is stepped"))
+        left += [] if compiled else [Skipped("numba", "nothing asked is stepped")]
     if scene.slider is None:
         left.append(Skipped("contact search", "the scene has no slider"))
-    studies = {name: getattr(scene, name) for name in ("spectrum", "convergence", "sensitivity", "wave", "motion")}
+    studies = {name: getattr(scene, name) for name in STUDIES}
     left += [Skipped(f"{name} study", f"the scene has no [{name}]") for name, asked in studies.items() if not asked]
     return tuple(left)

@@ -3,16 +3,17 @@
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from verify.gates import GateResult, judge
-from verify.plan import asks_of
+from verify.plan import CHAIN_IN_TIME, STUDIES, asks_of
 from verify.scene import Scene, load_scene
 from verify.workbench import Solve, Workbench
 
 if TYPE_CHECKING:
+    from verify.axial_study import AxialStudy
     from verify.motion_study import MotionStudy
     from verify.studies import Row, SensitivityStudy, SpectrumStudy
     from verify.wave_study import WaveStudy
@@ -28,11 +29,12 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     sensitivity: "SensitivityStudy | None"
     wave: "WaveStudy | None"
     motion: "MotionStudy | None"
+    axial_inertia: "AxialStudy | None"
     solves: tuple[Solve, ...]
     n_fields: int
     """How many driven fields were solved, those of superposed maps not counted."""
     n_motions: int
-    """How many simulations gates asked for, and three models' of a slider study."""
+    """How many simulations gates asked for, three models' of a slider study, and those of a study of axial inertia."""
     seconds: float
 
     @property
@@ -58,32 +60,46 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
     for gate in found.gate:
         progress(f"gate {gate.id}")
         gates.append(judge(gate, found, bench))
-    spectrum = convergence = sensitivity = None
-    if found.spectrum or found.convergence or found.sensitivity:
+    studied = _studies(found, bench, progress)
+    return RunResult(
+        scene=found, gates=tuple(gates), **studied, solves=tuple(bench.solves), n_fields=bench.n_fields,
+        n_motions=_n_motions(found, bench, **studied), seconds=perf_counter() - start,
+    )  # fmt: skip
+
+
+def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) -> dict[str, Any]:
+    """Every study of `RunResult` by name, None where the scene does not ask for it."""
+    done: dict[str, Any] = dict.fromkeys(STUDIES)
+    if scene.spectrum or scene.convergence or scene.sensitivity:
         from verify import studies
 
-        if found.spectrum:
+        if scene.spectrum:
             progress("error spectrum")
-            spectrum = studies.spectrum(bench, found.spectrum)
-        if found.convergence:
-            convergence = studies.convergence(bench, found.convergence, progress)
-        if found.sensitivity:
-            sensitivity = studies.sensitivity(found.beam, found.sensitivity)
-    wave = None
-    if found.wave:
+            done["spectrum"] = studies.spectrum(bench, scene.spectrum)
+        if scene.convergence:
+            done["convergence"] = studies.convergence(bench, scene.convergence, progress)
+        if scene.sensitivity:
+            done["sensitivity"] = studies.sensitivity(scene.beam, scene.sensitivity)
+    if scene.wave:
         from verify.wave_study import wave_study
 
-        wave = wave_study(found, bench, found.wave, progress)
-    motion = None
-    if found.motion and found.slider:
+        done["wave"] = wave_study(scene, bench, scene.wave, progress)
+    if scene.motion and scene.slider:
         from verify.motion_study import motion_study
 
-        motion = motion_study(found, progress)
-    return RunResult(
-        scene=found, gates=tuple(gates), spectrum=spectrum, convergence=convergence, sensitivity=sensitivity, wave=wave,
-        motion=motion, solves=tuple(bench.solves), n_fields=bench.n_fields,
-        n_motions=len(bench.motions) + (len(motion.runs) if motion else 0), seconds=perf_counter() - start,
-    )  # fmt: skip
+        done["motion"] = motion_study(scene, progress)
+    if scene.axial_inertia:
+        from verify.axial_study import axial_study
+
+        done["axial_inertia"] = axial_study(scene, progress)
+    return done
+
+
+def _n_motions(scene: Scene, bench: Workbench, motion: Any, axial_inertia: Any, **others: Any) -> int:
+    """Simulations of a beam or a chain behind gates and studies."""
+    chains = sum(gate.quantity in CHAIN_IN_TIME for gate in scene.gate)
+    axial = 3 * len(axial_inertia.rows) + len(axial_inertia.lines) if axial_inertia else 0
+    return len(bench.motions) + chains + axial + (len(motion.runs) if motion else 0)
 
 
 def n_steps(scene: Scene) -> int:
@@ -91,4 +107,5 @@ def n_steps(scene: Scene) -> int:
     sizes = len(scene.convergence.counts) if scene.convergence else 0
     waves = 2 * len(scene.wave.counts) + 1 if scene.wave else 0
     motion = 12 if scene.motion and scene.slider else 0
-    return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion
+    axial = len(scene.axial_inertia.forces) + 1 if scene.axial_inertia else 0
+    return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion + axial

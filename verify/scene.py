@@ -134,6 +134,41 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
             )
 
 
+class AxialInertia(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask how far a chain of rigid links departs from the linear one through its axial inertia, over the force."""
+
+    forces: Annotated[tuple[float, ...], Meta(min_length=1)] = (0.1, 1.0, 10.0, 30.0)
+    """Newton: amplitudes that all forces of the drive take in turn."""
+    shown: float = 10.0
+    """Newton: the amplitude at which all models stand side by side."""
+    count: Annotated[int, Meta(ge=2, le=250)] = 49
+    """Links, and elements beside them; an adaptive step costs O(N^3) over a given time."""
+    duration: float = 1e-3
+    """Seconds from rest."""
+    x: float | None = None
+    """Metres from the left end where the deflection is read; mid-span unless given."""
+
+    def __post_init__(self) -> None:
+        for i, force in enumerate(self.forces):
+            check_number(f"axial_inertia.forces[{i}]", force, "newton", above=0)
+        check_number("axial_inertia.shown", self.shown, "newton", above=0)
+        check_number("axial_inertia.duration", self.duration, "seconds", above=0, below=0.1)
+        if self.x is not None:
+            check_number("axial_inertia.x", self.x, "metres", above=0)
+
+    def check_on(self, beam: Beam, drive: Drive | None) -> None:
+        """Raise InputError unless the beam is a chain with a tip that slides, driven by forces, with an exact field."""
+        if drive is None or drive.kind != "force" or not drive.force:
+            raise InputError("axial_inertia: the chain is driven by forces, give the scene a [drive] of kind force")
+        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or beam.stepped:
+            raise InputError(
+                f"axial_inertia with beam.supports = {list(beam.supports)!r}: give a uniform beam that is pinned or "
+                "clamped on the left and pinned, or free behind a clamp, on the right"
+            )
+        if self.x is not None and self.x > beam.length:
+            raise InputError(f"axial_inertia.x = {self.x!r} lies off the beam: give up to {beam.length!r} m")
+
+
 class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A complex expectation, { re, im }."""
 
@@ -192,6 +227,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     wave: Wave | None = None
     slider: Slider | None = None
     motion: MotionAsk | None = None
+    axial_inertia: AxialInertia | None = None
     gate: tuple[Gate, ...] = ()
 
     def __post_init__(self) -> None:
@@ -207,6 +243,8 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             self.slider.start_on(self.beam)
         if self.motion is not None and not forces:
             raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
+        if self.axial_inertia is not None:
+            self.axial_inertia.check_on(self.beam, self.drive)
 
     @property
     def forces(self) -> tuple[PointForce, ...]:

@@ -206,16 +206,16 @@ def _coupling(request: Request, stage: Stage) -> Coupling | None:
 
 def margins_of(request: Request, stage: Stage) -> Margins:
     """How far the run can be believed, from the steady part of its motion."""
-    from verify.validity import discretisation, model_form
+    from verify.validity import axial_inertia_size, discretisation, model_form
 
     x = np.linspace(0.0, request.beam.length, 400)
     steady, slopes = stage.drive_shapes(x, 0)[:2], stage.drive_shapes(x, 1)[:2]
     amplitude = float(np.hypot(*steady).max())
     pressing = request.slider.normal_force / request.slider.mass if request.slider else 9.81
-    k = np.sqrt(request.omega / request.beam.wave_constant)
+    square = 0.5 * float((slopes**2).sum(axis=0).mean())
     return Margins(
         lift_off=request.omega**2 * amplitude / pressing,
-        nonlinearity=float((k * request.beam.length) ** 2 * 0.5 * (slopes**2).sum(axis=0).mean()),
+        nonlinearity=axial_inertia_size(request.beam, request.frequency_hz, square),
         model_form=model_form(request.beam, request.frequency_hz),
         discretisation=discretisation(request.beam, request.model, request.count, request.frequency_hz),
     )

@@ -1,0 +1,237 @@
+"""How linear a chain of rigid links is: its axial inertia over the force, beside linear models and the beam.
+
+Rigid links cannot stretch, so that bending draws the tip in and takes the mass of the chain along: an inertia of
+relative size (kL)^2 <theta^2>, which grows with the square of the force, whatever the amplitude is in thicknesses.
+Links that stretch as the beam does (EA / l) keep a part of it. Everything here starts from rest and is undamped; all
+forces have one amplitude.
+"""
+
+from collections.abc import Callable
+from math import ceil
+from typing import TYPE_CHECKING, Literal
+
+import msgspec
+import numpy as np
+from msgspec.structs import replace
+
+from verify.beam import Beam, PointForce
+from verify.chain_dynamics import at_rest
+from verify.chain_elastic import simulate_elastic
+from verify.chain_modal import linear_deflection, modal_basis
+from verify.chain_motion import ChainMotion
+from verify.chain_studies import transient
+from verify.chain_system import build_system
+from verify.division import Array
+from verify.errors import InputError
+from verify.simulate import simulate
+from verify.validity import NONLINEAR, axial_inertia_size
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+Links = Literal["full", "transverse", "elastic"]
+"""Rigid links; rigid links without inertia along x; links of the beam's own EA / l."""
+SAMPLES, SAMPLES_PER_PERIOD = 1001, 40
+"""Kept at least, and in a period of the drive."""
+TOLERANCE = 1e-10
+"""Of the adaptive step: the smallest departure asked for lies far above what it leaves."""
+
+STILL = 1e-9
+"""A place moves less than this share of the free beam's answer as a whole, 1 / (m omega^2), by rounding alone."""
+
+TURNED = 0.3
+"""Radians in the rms: links that turn further are no driven beam."""
+
+
+class Departure(msgspec.Struct, frozen=True, kw_only=True):
+    """How far a chain's deflection lies from the linear chain's at one place, over the linear one's rms there."""
+
+    at_end: float
+    """At the end of the run."""
+    rms: float
+    """Over the run."""
+
+
+class ForceRow(msgspec.Struct, frozen=True, kw_only=True):
+    """One amplitude of the forces."""
+
+    force: float
+    """Newton."""
+    deflection_rms: float
+    """Of the chain of rigid links at the place read, metres."""
+    size: float
+    """(kL)^2 <theta^2>, the mean over the links and the run."""
+    linear: bool
+    """Whether that number lets the linear chain stand for it."""
+    full: Departure
+    transverse: Departure
+    elastic: Departure
+
+
+class Beside(msgspec.Struct, frozen=True, kw_only=True):
+    """One model at the force of the comparison."""
+
+    model: str
+    error: float
+    """Rms of the difference to the exact field over the exact field's rms."""
+    at_end: float
+    """Deflection at the end of the run, metres."""
+
+
+class AxialStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Everything the report shows of a chain's axial inertia."""
+
+    rows: tuple[ForceRow, ...]
+    beside: tuple[Beside, ...]
+    """Exact field, Hermite elements, linear chain, nonlinear chains."""
+    times: tuple[float, ...]
+    lines: dict[str, tuple[float, ...]]
+    """Deflection by model as in `beside`, metres."""
+    shown: float
+    """Newton: the force of the comparison."""
+    count: int
+    duration: float
+    x: float
+    """Metres from the left end: the place read."""
+
+
+class Driven(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A chain from rest under harmonic forces, read at one place."""
+
+    beam: Beam
+    forces: tuple[PointForce, ...]
+    """Their amplitudes are those of each run."""
+    frequency_hz: float
+    count: int
+    x: float
+    """Metres from the left end."""
+    times: Array
+    """(n,), evenly from 0, seconds."""
+
+    def under(self, force: float) -> tuple[PointForce, ...]:
+        """The forces with an amplitude in newton."""
+        return tuple(replace(one, amplitude=force) for one in self.forces)
+
+
+def point_forces(scene: "Scene", who: str) -> tuple[PointForce, ...]:
+    """The scene's driving forces. Raises InputError where it drives nothing, or by displacements."""
+    if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
+        raise InputError(f"{who}: the scene has no drive by forces; give it a [drive] of kind force")
+    return scene.forces
+
+
+def driven_chain(scene: "Scene", who: str, count: int, duration: float, x: float | None) -> Driven:
+    """The scene's beam as a chain for `duration` seconds, read at mid-span unless `x` is given. Raises InputError."""
+    forces = point_forces(scene, who)
+    assert scene.drive is not None
+    frequency = scene.drive.frequency_hz
+    n = max(SAMPLES, ceil(SAMPLES_PER_PERIOD * frequency * duration) + 1)
+    place = 0.5 * scene.beam.length if x is None else x
+    if place > scene.beam.length:
+        raise InputError(f"x = {x!r} lies off the beam: give a place between 0 and {scene.beam.length!r} m")
+    return Driven(beam=scene.beam, forces=forces, frequency_hz=frequency, count=count, x=place,
+                  times=np.linspace(0.0, duration, n))  # fmt: skip
+
+
+def linear_chain(driven: Driven) -> Array:
+    """Deflection of the linear chain for 1 N, exact in time, (n,), metres. Raises InputError where it is none."""
+    system = build_system(driven.beam, driven.count, driven.under(1.0), driven.frequency_hz)
+    found = linear_deflection(modal_basis(system), at_rest(system), driven.times, driven.x)
+    free = 1.0 / (driven.beam.mass_per_length * driven.beam.length * (2.0 * np.pi * driven.frequency_hz) ** 2)
+    if rms(found) < STILL * free:
+        raise InputError(f"x = {driven.x!r}: the beam does not move there under these forces; give another place")
+    return found
+
+
+def rigid_chain(driven: Driven, force: float, *, axial_inertia: bool = True) -> ChainMotion:
+    """The nonlinear chain of rigid links, converged in time. Raises InputError."""
+    motion = transient(driven.beam, driven.under(force), driven.frequency_hz, driven.times.tolist(), driven.count,
+                       axial_inertia=axial_inertia, tolerance=TOLERANCE)  # fmt: skip
+    turned = rms(motion.directions())
+    if turned > TURNED:
+        raise InputError(f"under {force!r} N the links turn by {turned:.2g} rad in the rms: give a smaller force")
+    return motion
+
+
+def elastic_chain(driven: Driven, force: float) -> Array:
+    """Deflection of the chain whose links stretch as the beam does, (n,), metres. Raises InputError."""
+    system = build_system(driven.beam, driven.count, driven.under(force), driven.frequency_hz)
+    motion = simulate_elastic(system, driven.beam.youngs_modulus * driven.beam.area, driven.times)
+    if motion.stopped != "finished":
+        raise InputError(f"the stretching chain under {force!r} N {motion.stopped}: give a smaller force")
+    return np.asarray(motion.deflection([driven.x])[:, 0])
+
+
+def chain_deflection(driven: Driven, force: float, links: Links) -> Array:
+    """Deflection of one nonlinear chain, (n,), metres. Raises InputError."""
+    if links == "elastic":
+        return elastic_chain(driven, force)
+    return np.asarray(rigid_chain(driven, force, axial_inertia=links == "full").deflection([driven.x])[:, 0])
+
+
+def departure(driven: Driven, force: float, links: Links) -> Departure:
+    """How far one nonlinear chain lies from the linear one. Raises InputError."""
+    return departure_of(chain_deflection(driven, force, links), force * linear_chain(driven))
+
+
+def departure_of(deflection: Array, linear: Array) -> Departure:
+    """The difference of two deflections (n,) at the end and in the rms, over the second's rms."""
+    gap, scale = deflection - linear, rms(linear)
+    return Departure(at_end=float(abs(gap[-1])) / scale, rms=rms(gap) / scale)
+
+
+def force_row(driven: Driven, force: float, unit: Array) -> ForceRow:
+    """Every chain under one force; `unit` is the linear chain's deflection for 1 N, (n,). Raises InputError."""
+    motion, linear = rigid_chain(driven, force), force * unit
+    size = axial_inertia_size(driven.beam, driven.frequency_hz, rms(motion.directions()) ** 2)
+    rigid = np.asarray(motion.deflection([driven.x])[:, 0])
+    return ForceRow(
+        force=force, deflection_rms=rms(rigid), size=size, linear=size <= NONLINEAR, full=departure_of(rigid, linear),
+        transverse=departure_of(chain_deflection(driven, force, "transverse"), linear),
+        elastic=departure_of(elastic_chain(driven, force), linear),
+    )  # fmt: skip
+
+
+def side_by_side(driven: Driven, force: float, unit: Array) -> dict[str, Array]:
+    """Deflections (n,) of every model, the exact field first, metres. Raises InputError."""
+    lines = {name: _linear_beam(driven, force, model) for name, model in (("exact", "analytic"), ("fem", "fem"))}
+    lines["linear"] = force * unit
+    chains: tuple[Links, ...] = ("full", "transverse", "elastic")
+    return lines | {links: chain_deflection(driven, force, links) for links in chains}
+
+
+def _linear_beam(driven: Driven, force: float, model: str) -> Array:
+    """Of the exact beam or of as many Hermite elements as links, undamped, exact in time."""
+    motion = simulate(
+        driven.beam, driven.under(force), driven.frequency_hz, float(driven.times[-1]), model=model,  # type: ignore[arg-type]
+        count=driven.count if model == "fem" else None, modal_damping=0.0, at=[driven.x], samples=len(driven.times),
+        ledger=False,
+    )  # fmt: skip
+    return np.asarray(motion.deflection[:, 0])
+
+
+def axial_study(scene: "Scene", progress: Callable[[str], None] = lambda step: None) -> AxialStudy:
+    """Everything an [axial_inertia] of a scene asks for. Raises InputError."""
+    asked = scene.axial_inertia
+    assert asked is not None
+    driven = driven_chain(scene, "axial_inertia", asked.count, asked.duration, asked.x)
+    unit, rows = linear_chain(driven), []
+    for force in asked.forces:
+        progress(f"axial inertia, {force:g} N")
+        rows.append(force_row(driven, force, unit))
+    progress("axial inertia, models side by side")
+    lines = side_by_side(driven, asked.shown, unit)
+    exact = lines["exact"]
+    beside = tuple(
+        Beside(model=model, error=rms(line - exact) / rms(exact), at_end=float(line[-1]))
+        for model, line in lines.items()
+    )
+    return AxialStudy(
+        rows=tuple(rows), beside=beside, times=tuple(driven.times.tolist()), shown=asked.shown, count=asked.count,
+        lines={model: tuple(line.tolist()) for model, line in lines.items()}, duration=asked.duration, x=driven.x,
+    )  # fmt: skip
+
+
+def rms(values: Array) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2)))
