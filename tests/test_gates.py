@@ -19,10 +19,17 @@ from verify import (
     chain_walls,
     closed_forms,
     compare,
+    contact_kernels,
     division,
     eigen,
     fem_beam,
+    fem_motion,
+    forcing,
+    pure_wave,
+    rigid_surface,
     segment_model,
+    segment_motion,
+    simulate,
     travelling_wave,
     waves,
     workbench,
@@ -40,9 +47,10 @@ from verify.scene import Gate, load_scene, packaged_scenes
 PAPER = load_scene("paper")
 
 
-def failed_gates(scene=PAPER):
+def failed_gates(scene=PAPER, among=None):
     bench = workbench_for(scene, gates_only=True)
-    return {gate.id for gate in scene.gate if not judge(gate, scene, bench).passed}
+    asked = [gate for gate in scene.gate if among is None or gate.id in among]
+    return {gate.id for gate in asked if not judge(gate, scene, bench).passed}
 
 
 def link_inertia_left_out(patch):
@@ -416,7 +424,191 @@ def links_that_do_not_shorten_where_they_turn(patch):
     patch.setattr(axial_study, "simulate_elastic", lambda *given: true(*given, immovable=True))
 
 
+def surface_lever_forgotten(patch):
+    """The slider feels the mid-line, whose first-order speed is across."""
+    for module in (simulate, pure_wave):
+        true = module.law_entries
+        patch.setattr(module, "law_entries", lambda *given, true=true: entries_with(true(*given), HALF=1e-9))
+
+
+def entries_with(law, **factors):
+    """Entries of a law times factors."""
+    for name, factor in factors.items():
+        law[getattr(contact_kernels, name)] *= factor
+    return law
+
+
+def surface_lever_doubled(patch):
+    true = pure_wave.law_entries
+    patch.setattr(pure_wave, "law_entries", lambda *given: entries_with(true(*given), HALF=2.0))
+
+
+def friction_that_pushes(patch):
+    """What friction adds to the speed in every step, with its sign turned round."""
+    true, true_belt = contact_kernels.slide, contact_kernels.slide_on_belt
+
+    def slide(n_steps, *given):
+        motion = given[5]
+        for _ in range(n_steps):
+            before = motion[contact_kernels.V]
+            why = true(1, *given)
+            if why != contact_kernels.DONE:
+                return why
+            motion[contact_kernels.V] = 2 * before - motion[contact_kernels.V]
+        return contact_kernels.DONE
+
+    def slide_on_belt(n_steps, dt, law, belt, stiffness, pull, state, events):
+        for _ in range(n_steps):
+            before = state[1]
+            true_belt(1, dt, law, belt, stiffness, pull, state, events)
+            state[1] = 2 * (before + pull * dt) - state[1]
+        return 0
+
+    patch.setattr(contact_kernels, "slide", slide)
+    patch.setattr(contact_kernels, "slide_on_belt", slide_on_belt)
+
+
+def one_way_for_two_way(patch):
+    true = simulate.coupling_of
+    patch.setattr(simulate, "coupling_of", lambda *given: structs.replace(true(*given), two_way=False))
+
+
+def raw_line_for_the_spline(patch):
+    true = simulate.basis_of
+    patch.setattr(
+        simulate,
+        "basis_of",
+        lambda beam, model, *given: true(beam, model, *given[:2], "raw" if model == "segment" else "spline"),
+    )
+
+
+def step_load_for_the_soft_start(patch):
+    true = simulate._laid_out
+    patch.setattr(simulate, "_laid_out", lambda duration, grown, *given: true(duration, (), *given))
+
+
+def load_in_time_on_the_next_joint(patch):
+    true = segment_motion.joint_weights
+    patch.setattr(segment_motion, "joint_weights", lambda *given: np.roll(true(*given), 1))
+
+
+def load_in_time_on_the_next_node(patch):
+    true = fem_motion.nodal_weights
+    patch.setattr(fem_motion, "nodal_weights", lambda parts, x: np.roll(true(parts, x), 2))
+
+
+def lumped_element_mass_in_time(patch):
+    true = fem_motion.assemble
+
+    def lumped(lengths, *given):
+        stiffness, _ = true(lengths, *given)
+        with pytest.MonkeyPatch.context() as inner:
+            lumped_element_mass(inner)
+            return stiffness, fem_beam.assemble_mass(lengths, given[-1])
+
+    patch.setattr(fem_motion, "assemble", lumped)
+
+
+def link_inertia_left_out_in_time(patch):
+    link_inertia_left_out(patch)
+    patch.setattr(segment_motion, "_mass_share", np.ones_like)
+
+
+def drift_of_second_order_dropped(patch):
+    """What rises and falls carries a point that follows it: 218 of 219 parts of the drift are gone."""
+    true = pure_wave.law_entries
+
+    def followed(*given):
+        law = true(*given)
+        law[contact_kernels.FOLLOWING] = 1.0
+        return law
+
+    patch.setattr(pure_wave, "law_entries", followed)
+
+
+def following_taken_for_tangential(patch):
+    true = pure_wave.law_entries
+    patch.setattr(pure_wave, "law_entries", lambda *given: entries_with(true(*given), FOLLOWING=0.0))
+
+
+def standing_wave_for_a_travelling_one(patch):
+    true = pure_wave.wave_stage
+
+    def standing(*given):
+        stage = true(*given)
+        shapes = stage.drive_shapes
+        return structs.replace(stage, drive_shapes=lambda x, d: shapes(x, d) * np.array([[1.0], [0.0]]))
+
+    patch.setattr(pure_wave, "wave_stage", standing)
+
+
+def phases_in_time_of_the_wrong_sign(patch):
+    for module in (analytic_harmonic, segment_model, forcing):
+        true = module.phasor
+        patch.setattr(module, "phasor", lambda force, true=true: true(force).conjugate())
+
+
+def surface_seen_half_a_step_late(patch):
+    """Of first order in the step."""
+    true = contact_kernels.slide
+
+    def slide(n_steps, dt, modes, drive, *given):
+        late = drive.copy()
+        late[contact_kernels.ORIGIN] -= 0.5 * dt
+        return true(n_steps, dt, modes, late, *given)
+
+    patch.setattr(contact_kernels, "slide", slide)
+
+
+def friction_under_another_gravity(patch):
+    """9.80665 m/s^2."""
+    true = rigid_surface._law
+    patch.setattr(
+        rigid_surface, "_law", lambda coulomb, kinetic, *given: true(coulomb, kinetic * 9.80665 / 9.81, *given)
+    )
+
+
+def static_friction_for_kinetic(patch):
+    true = rigid_surface._law
+    patch.setattr(
+        rigid_surface,
+        "_law",
+        lambda coulomb, kinetic, static, slope: true(coulomb, 0.9 * kinetic + 0.1 * static, static, slope),
+    )
+
+
+def friction_of_half_the_slope(patch):
+    true = rigid_surface._law
+    patch.setattr(rigid_surface, "_law", lambda coulomb, b, static, slope: true(coulomb, b, static, 0.5 * slope))
+
+
 FAULTS_ELSEWHERE = {
+    "paper-slider": {
+        surface_lever_forgotten: {
+            "terminal-speed-steep", "slider-elements", "slider-segments", "slider-against-the-wave", "slider-reversed",
+            "slider-steady", "slider-felt",
+        },
+        surface_lever_doubled: {"terminal-speed-flat", "terminal-speed-quarter", "terminal-speed-following"},
+        friction_that_pushes: {
+            "free-decay", "creep", "belt-stick-time", "belt-slip-time", "coulomb-decrement", "slider-segments",
+            "slider-elements", "slider-steady",
+        },
+        friction_under_another_gravity: {"free-decay", "creep", "coulomb-decrement", "belt-stick-time", "belt-slip-time"},
+        static_friction_for_kinetic: {"belt-stick-time", "belt-slip-time"},
+        friction_of_half_the_slope: {"free-decay", "creep"},
+        one_way_for_two_way: {"slider-felt"},
+        raw_line_for_the_spline: {"slider-segments", "slider-order-segment", "slider-felt", "beam-segments"},
+        step_load_for_the_soft_start: {"slider-segments", "slider-elements", "slider-order-segment", "slider-order-fem", "beam-segments", "beam-elements", "slider-felt"},
+        load_in_time_on_the_next_joint: {"slider-segments", "slider-order-segment", "slider-felt", "beam-segments"},
+        load_in_time_on_the_next_node: {"slider-elements", "slider-order-fem", "beam-elements"},
+        lumped_element_mass_in_time: {"slider-elements", "slider-order-fem", "beam-elements"},
+        link_inertia_left_out_in_time: {"slider-segments", "slider-order-segment", "slider-steady", "beam-segments", "slider-felt"},
+        drift_of_second_order_dropped: {"terminal-speed-flat", "terminal-speed-quarter"},
+        following_taken_for_tangential: {"terminal-speed-following"},
+        standing_wave_for_a_travelling_one: {"terminal-speed-flat", "terminal-speed-quarter", "terminal-speed-steep", "terminal-speed-following"},
+        phases_in_time_of_the_wrong_sign: {"slider-against-the-wave", "slider-reversed", "slider-steady", "slider-segments", "beam-segments"},
+        surface_seen_half_a_step_late: {"slider-order-step", "slider-step-steep"},
+    },
     "chain": {
         wall_joint_as_stiff_as_any_other: {"elastica-deflection", "elastica-shortening", "rollup-gap-of-gregory"},
         joint_stiffness_doubled: {"elastica-deflection", "elastica-shortening", "rollup-closes", "rollup-gap-of-gregory", "small-force"},
@@ -543,7 +735,8 @@ ELSEWHERE = [(scene, fault) for scene, faults in FAULTS_ELSEWHERE.items() for fa
 @pytest.mark.parametrize(("scene", "fault"), ELSEWHERE, ids=lambda part: getattr(part, "__name__", part))
 def test_a_planted_fault_turns_gates_of_other_scenes_red(scene, fault, monkeypatch):
     fault(monkeypatch)
-    assert failed_gates(load_scene(scene)) >= FAULTS_ELSEWHERE[scene][fault]
+    expected = FAULTS_ELSEWHERE[scene][fault]
+    assert failed_gates(load_scene(scene), among=expected) == expected
 
 
 @pytest.mark.parametrize("scene", sorted(set(packaged_scenes()) - {"paper"}))

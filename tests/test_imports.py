@@ -72,6 +72,29 @@ def test_what_a_model_is_made_of_knows_no_other_model_either():
         assert imports_of(PACKAGE / f"{part}.py", typing_too=True) <= shared | own, part
 
 
+@pytest.mark.parametrize(
+    ("motion", "own"),
+    [
+        ("segment_motion", {"segment_model", "chain", "chain_walls", "point_loads", "harmonic_solvers", "eigen"}),
+        ("fem_motion", {"fem_beam", "division", "harmonic_solvers", "eigen"}),
+        ("analytic_motion", {"analytic_modes", "closed_forms", "fields"}),
+    ],
+)
+def test_a_models_motion_imports_no_other_model(motion, own):
+    """Their agreement in time is evidence between independent modes, loads and readings."""
+    assert imports_of(PACKAGE / f"{motion}.py", typing_too=True) <= {"beam", "errors", "time_basis"} | own
+
+
+def test_numba_is_imported_in_the_kernels_alone_and_they_only_where_something_steps():
+    kernels = {path.stem for path in PACKAGE.rglob("*.py") if "import njit" in path.read_text("utf-8")}
+    assert "contact_kernels" in kernels
+    assert all(name.endswith("_kernels") for name in kernels)
+    for name in ("slider_run", "rigid_surface"):
+        tree = ast.parse((PACKAGE / f"{name}.py").read_text("utf-8"))
+        at_the_top = {alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+        assert not at_the_top & {"contact_kernels", "slide", "slide_on_belt"}
+
+
 def test_closed_forms_know_no_model():
     assert imports_of(PACKAGE / "closed_forms.py", typing_too=True) == {"beam", "errors"}
 
@@ -141,6 +164,19 @@ HEAVY = {
             {"msgspec", "tomllib", "numpy", "scipy", "skfem"},
         ),
         (("measure", "wave.standing_wave_ratio"), {"msgspec", "tomllib", "numpy"}),
+        (
+            ("measure", "motion.deflection", "--scene", "paper-slider", "model=segment", "count=49", "x=0.2137"),
+            {"msgspec", "tomllib", "numpy", "scipy"},
+        ),
+        (
+            ("measure", "slider.displacement", "--scene", "paper-slider", "model=segment", "count=49"),
+            {"msgspec", "tomllib", "numpy", "scipy", "numba"},
+        ),
+        (
+            ("measure", "friction.free_decay", "mu=0.2", "slope=100", "speed=0.1", "time=0.1"),
+            {"msgspec", "tomllib", "numpy", "numba", "scipy"},  # numba looks for scipy itself
+        ),
+        (("plan", "paper-slider", "--json"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),
         (("plan", "paper", "--json"), {"msgspec", "tomllib", "numpy"}),
         (("table", "paper", "--counts", "30,40", "--csv"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),
         (("run", "paper", "--no-report", "--json"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),

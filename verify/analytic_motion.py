@@ -14,6 +14,8 @@ from verify.time_basis import Array, ComplexArray, TimeBasis, check_held
 
 DEGREE = 8
 """Of the Taylor pieces: the fastest mode is followed to 1e-9, the others far closer."""
+KNOWN = 16
+"""Evaluations kept: the four derivatives that are not multiples of others, at a few sets of places."""
 MOST = 5000
 """Modes kept: their shapes are evaluated one by one."""
 
@@ -29,10 +31,16 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
     omegas = 2.0 * np.pi * modes.frequencies_hz
     fourth = omegas**2 / beam.wave_constant**2  # beta^4
 
+    known: dict[tuple[bytes, int], Array] = {}  # a table asks for the same places many times
+
     def shapes(x: Array, derivative: int) -> Array:
         turns, rest = divmod(derivative, 4)
-        values = np.array([mode_shape(beam, n, x, rest) for n in range(1, n_modes + 1)])
-        return values * fourth[:, None] ** turns
+        key = x.tobytes(), rest
+        if key not in known:
+            if len(known) >= KNOWN:
+                known.clear()
+            known[key] = np.array([mode_shape(beam, n, x, rest) for n in range(1, n_modes + 1)])
+        return np.asarray(known[key] * fourth[:, None] ** turns)
 
     cells = int(np.ceil(beam.length * float(fourth[-1]) ** 0.25 / 0.4)) + 1
     return TimeBasis(model="analytic", count=None, beam=beam, omegas=omegas, shapes=shapes,

@@ -192,6 +192,21 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
 
 
 @_compiled(cache=True)
+def _tanh_on_belt(
+    x: float, v: float, dt: float, kinetic: float, slope: float, belt: float, stiffness: float, pull: float
+) -> Any:
+    """(x, v) after a step of a spring-held slider under Eq. (3): the spring's mean force, friction solved exactly."""
+    start = pull - stiffness * x
+    rate = start - kinetic * np.tanh(slope * (v - belt))
+    middle = pull - stiffness * (x + 0.5 * dt * v + 0.125 * dt * dt * rate)
+    end = pull - stiffness * (x + dt * v + 0.5 * dt * dt * rate)
+    given = dt * (start + 4.0 * middle + end) / 6.0
+    v1 = v + given + tanh_speed_change(v - belt, -given / dt, kinetic, slope, dt)
+    rate1 = end - kinetic * np.tanh(slope * (v1 - belt))
+    return x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
+
+
+@_compiled(cache=True)
 def slide_on_belt(
     n_steps: int, dt: float, law: Any, belt: float, stiffness: float, pull: float, state: Any, events: Any
 ) -> int:
@@ -202,22 +217,14 @@ def slide_on_belt(
     """
     x, v, stuck = state[0], state[1], state[2] > 0.0
     kind, kinetic, static, slope = law[KIND], law[KINETIC], law[STATIC], law[SLOPE]
-    n_events, time = 0, 0.0
+    n_events = 0
     for step in range(n_steps):
-        time = step * dt
         left = dt
         while left > 0.0:
             force0 = pull - stiffness * x
             if kind == TANH:
-                rate = force0 - kinetic * np.tanh(slope * (v - belt))
-                middle = pull - stiffness * (x + 0.5 * left * v + 0.125 * left * left * rate)
-                end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
-                given = left * (force0 + 4.0 * middle + end) / 6.0
-                v1 = v + given + tanh_speed_change(v - belt, -given / left, kinetic, slope, left)
-                rate1 = end - kinetic * np.tanh(slope * (v1 - belt))
-                x += 0.5 * left * (v + v1) + left * left * (rate - rate1) / 12.0
-                v, left = v1, 0.0
-                continue
+                x, v = _tanh_on_belt(x, v, dt, kinetic, slope, belt, stiffness, pull)
+                break
             rate = 0.0 if stuck else force0 - kinetic * np.sign(v - belt)
             end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
             used, r1, stuck1, event = coulomb_span(v - belt, -force0, -end, kinetic, static, left, stuck)
@@ -225,7 +232,7 @@ def slide_on_belt(
             x += 0.5 * used * (v + belt + r1) + used * used * (rate - rate1) / 12.0
             v, stuck, left = belt + r1, stuck1, left - used
             if event != 0.0 and n_events < len(events):
-                events[n_events, 0], events[n_events, 1], events[n_events, 2] = time + dt - left, event, x
+                events[n_events, 0], events[n_events, 1], events[n_events, 2] = (step + 1) * dt - left, event, x
                 n_events += 1
             if used <= 0.0 and event == 0.0:
                 left = 0.0
@@ -435,7 +442,8 @@ def _slip(
         return float(slip[CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
     r, used = 0.0 if stuck else v - s0, 0.0
-    stuck = stuck or (r == 0.0 and abs(a0) <= law[STATIC])
+    if abs(r) <= 1e-9 * law[KINETIC] * dt and abs(a0) <= law[STATIC]:
+        r, stuck = 0.0, True  # put on a surface at rest, to rounding
     for _ in range(20):
         span, r, stuck, event = coulomb_span(
             r, a0 + (a1 - a0) * used / dt, a1, law[KINETIC], law[STATIC], dt - used, stuck

@@ -5,6 +5,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from verify.beam import PointForce
 from verify.fields import RESONANCE, ComplexArray, phasor, refuse_resonance
@@ -13,6 +14,10 @@ from verify.time_basis import Array, TimeBasis
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
 """3 p^2 - 2 p^3: from 0 to 1 with a flat start and end."""
+SLOW = 0.5
+"""Radians of beat or nepers of decay, within the growth, below which a mode's forced part is summed as a series."""
+SERIES = 12
+"""Powers beyond the growth's own: SLOW^12 / 12! is rounding."""
 
 
 class Modal(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -57,18 +62,42 @@ def modal(basis: TimeBasis, forces: Sequence[PointForce], damping: float) -> Mod
 
 
 def answer(modes: Modal, omega: float, growth: Array, unit_s: float, origin: float = 0.0) -> Answer:
-    """The forced part under Re(F sum_d growth_d (t/T)^d e^{i omega (t + origin)}), exact for any polynomial.
+    """The forced part under Re(F sum_d growth_d (t/T)^d e^{i omega (t + origin)}), 0 <= t <= T where it grows.
 
-    (omega_n^2 - omega^2 + 2 i sigma omega) Q_d + 2 (sigma + i omega) (d+1)/T Q_{d+1} + (d+2)(d+1)/T^2 Q_{d+2} =
-    F growth_d, from the highest power down. omega = 0 is a force that is a polynomial in time.
+    Exact for any polynomial, from the highest power down: (omega_n^2 - omega^2 + 2 i sigma omega) Q_d +
+    2 (sigma + i omega) (d+1)/T Q_{d+1} + (d+2)(d+1)/T^2 Q_{d+2} = F growth_d. omega = 0 is a force that is a
+    polynomial in time. The powers of a mode that beats slower than it grows would cancel its free part, to no digit
+    at all near a resonance: it gets a series.
     """
-    stiff = modes.squares - omega**2 + 2j * modes.sigmas * omega
+    slow = abs(-modes.sigmas + 1j * (modes.omegas - omega)) * unit_s < SLOW * (len(growth) > 1)
+    stiff = np.where(slow, 1.0, modes.squares - omega**2 + 2j * modes.sigmas * omega)
     first = 2.0 * (modes.sigmas + 1j * omega) / unit_s
     amplitudes = np.zeros((len(modes.squares), len(growth) + 2), dtype=complex)
     for d in range(len(growth) - 1, -1, -1):
         carried = first * (d + 1) * amplitudes[:, d + 1] + (d + 2) * (d + 1) / unit_s**2 * amplitudes[:, d + 2]
         amplitudes[:, d] = (modes.loads * growth[d] - carried) / stiff
-    return Answer(amplitudes=amplitudes[:, : len(growth)], omega=omega, origin=origin, unit_s=unit_s)
+    amplitudes = amplitudes[:, : len(growth)]
+    if slow.any():
+        amplitudes = np.pad(amplitudes, ((0, 0), (0, SERIES)))
+        amplitudes[slow] = _beating(modes, slow, omega, growth, unit_s)
+    return Answer(amplitudes=amplitudes, omega=omega, origin=origin, unit_s=unit_s)
+
+
+def _beating(modes: Modal, slow: NDArray[np.bool_], omega: float, growth: Array, unit_s: float) -> ComplexArray:
+    """Powers of the envelope a of q = Re(a e^{i omega t}) that starts at zero, (slow modes, len(growth) + SERIES).
+
+    (D - r)(D - s) a = F growth with r = -sigma + i (omega_d - omega), slow, and s = -sigma - i (omega_d + omega):
+    b of (D - s) b = F growth ends with the highest power of the growth, and a' = b + r a is summed from a = 0 upwards.
+    """
+    sigma, damped = modes.sigmas[slow], modes.omegas[slow]
+    r, s = -sigma + 1j * (damped - omega), -sigma - 1j * (damped + omega)
+    a = np.zeros((len(r), len(growth) + SERIES), dtype=complex)
+    b = np.zeros_like(a)
+    for d in range(len(growth) - 1, -1, -1):
+        b[:, d] = ((d + 1) / unit_s * b[:, d + 1] - modes.loads[slow] * growth[d]) / s
+    for d in range(a.shape[1] - 1):
+        a[:, d + 1] = unit_s * (b[:, d] + r * a[:, d]) / (d + 1)
+    return a
 
 
 def free_part(modes: Modal, q: Array, qd: Array) -> Array:

@@ -182,8 +182,9 @@ def stages_from_rest(
 def _stage(
     basis: TimeBasis, forced: Answer, modes: Modal, piece: Growth, tail: Callable[[Array, int], ComplexArray] | None
 ) -> Stage:
-    growth, steps = piece.coefficients, piece.steps
-    answers = interleaved(forced.amplitudes)
+    steps, answers = piece.steps, interleaved(forced.amplitudes)
+    growth = np.zeros(forced.amplitudes.shape[1])  # of the tail, which follows at once
+    growth[: len(piece.coefficients)] = piece.coefficients
 
     def from_modes(free: Array, x: Array, derivative: int) -> Array:
         parts = answers.T @ free

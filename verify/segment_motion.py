@@ -56,7 +56,7 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Joints, str]:
     """Equal links between pinned ends: y_j = a sin(n pi j / N), omega = 4 s^2 / sqrt(1 - 2 s^2/3) in link units."""
     mu = pi * np.arange(1, n) / n
     square = np.sin(0.5 * mu) ** 2
-    inertia = 1.0 - 2.0 * square / 3.0
+    inertia = _mass_share(square)
     link = beam.length / n
     omegas = beam.wave_constant / link**2 * 4.0 * square / np.sqrt(inertia)
     scale = 1.0 / np.sqrt(beam.mass_per_length * link * inertia * 0.5 * n)
@@ -66,6 +66,11 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Joints, str]:
         return np.asarray(scale[:, None] * sines[np.outer(np.arange(1, n), np.asarray(numbers, dtype=int)) % (2 * n)])
 
     return omegas, joints, "closed-form dispersion"
+
+
+def _mass_share(square: Array) -> Array:
+    """Kinetic energy of links in a wave over that of their joints' mass alone, 1 - 2 s^2/3: m l^2/12 included."""
+    return np.asarray(1.0 - 2.0 * square / 3.0)
 
 
 def _dense(beam: Beam, chain: Chain) -> tuple[Array, Joints, str]:

@@ -151,8 +151,10 @@ def _laid_out(
 ) -> tuple[Growth, ...]:
     """Steps of every piece of the envelope and of the constant forces after it, samples shared by length."""
     lengths = [seconds for seconds, _ in grown]
-    if any(not 0.0 < seconds < np.inf for seconds in lengths) or any(not len(c) for _, c in grown):
-        raise InputError("envelope: give pieces (seconds, coefficients), each longer than 0 s and with a coefficient")
+    if any(not 0.0 < s < np.inf for s in lengths) or any(not len(c) or not np.all(np.isfinite(c)) for _, c in grown):
+        raise InputError(
+            "envelope: give pieces (seconds, coefficients), each longer than 0 s and of finite coefficients"
+        )
     rest = duration - sum(lengths)
     if grown and rest < -1e-12 * duration:
         raise InputError(

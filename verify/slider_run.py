@@ -108,7 +108,7 @@ Window = tuple[Array, Array]
 
 
 def on_beam(stage: Stage, start: float, travelled: float) -> bool:
-    """Whether a slider is on the beam."""
+    """Whether start + travelled lies on the beam, judged as the loop does, in distances from the start."""
     return bool(stage.edges[0] - start <= travelled <= stage.edges[-1] - start)
 
 
@@ -180,5 +180,7 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
         if why == kernels.NOT_FINITE:
             return "diverged"
         if why == kernels.OFF_PIECES:
+            began = perf_counter()
             around = window(stage, s.start, float(s.motion[0]))
+            s.set_up_s += perf_counter() - began
     return "end" if around and on_beam(stage, s.start, float(s.motion[0])) else "left the beam"
