@@ -397,6 +397,33 @@ def axial_inertia_kept_where_it_was_to_go(patch):
     )
 
 
+def linear_chain_under_a_tenth_of_a_per_cent_more(patch):
+    true = axial_study.linear_deflection
+    patch.setattr(axial_study, "linear_deflection", lambda *given: 1.001 * true(*given))
+
+
+def departures_of_the_whole_run_for_those_at_its_end(patch):
+    true = axial_study.departure_of
+
+    def exchanged(*given):
+        found = true(*given)
+        return structs.replace(found, at_end=found.rms, rms=found.at_end)
+
+    patch.setattr(axial_study, "departure_of", exchanged)
+
+
+def links_that_stretch_a_tenth_less(patch):
+    true = axial_study.simulate_elastic
+    patch.setattr(
+        axial_study, "simulate_elastic", lambda system, stiffness, times: true(system, 1.1 * stiffness, times)
+    )
+
+
+def links_that_do_not_shorten_where_they_turn(patch):
+    true = axial_study.simulate_elastic
+    patch.setattr(axial_study, "simulate_elastic", lambda *given: true(*given, immovable=True))
+
+
 def surface_lever_forgotten(patch):
     """The slider feels the mid-line, whose first-order speed is across."""
     for module in (simulate, pure_wave):
@@ -553,33 +580,6 @@ def static_friction_for_kinetic(patch):
 def friction_of_half_the_slope(patch):
     true = rigid_surface._law
     patch.setattr(rigid_surface, "_law", lambda coulomb, b, static, slope: true(coulomb, b, static, 0.5 * slope))
-
-
-def linear_chain_under_a_tenth_of_a_per_cent_more(patch):
-    true = axial_study.linear_deflection
-    patch.setattr(axial_study, "linear_deflection", lambda *given: 1.001 * true(*given))
-
-
-def departures_of_the_whole_run_for_those_at_its_end(patch):
-    true = axial_study.departure_of
-
-    def exchanged(*given):
-        found = true(*given)
-        return structs.replace(found, at_end=found.rms, rms=found.at_end)
-
-    patch.setattr(axial_study, "departure_of", exchanged)
-
-
-def links_that_stretch_a_tenth_less(patch):
-    true = axial_study.simulate_elastic
-    patch.setattr(
-        axial_study, "simulate_elastic", lambda system, stiffness, times: true(system, 1.1 * stiffness, times)
-    )
-
-
-def links_that_do_not_shorten_where_they_turn(patch):
-    true = axial_study.simulate_elastic
-    patch.setattr(axial_study, "simulate_elastic", lambda *given: true(*given, immovable=True))
 
 
 FAULTS_ELSEWHERE = {
