@@ -65,7 +65,8 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
     if abs(alpha - 1.0) < 1e-7:
         alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)  # 1e-7 of b in this step; the formulas part there
     change = _held_change(rho, alpha, tau) if alpha < 1.0 else _swept_change(rho, alpha, tau)
-    return float(side * (change + alpha * tau) / slope)
+    added = min(max(change + alpha * tau, -tau), tau)  # rounding gives no more than friction has
+    return float(side * added / slope)
 
 
 @_compiled(cache=True)

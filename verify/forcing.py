@@ -87,17 +87,24 @@ def _beating(modes: Modal, slow: NDArray[np.bool_], omega: float, growth: Array,
     """Powers of the envelope a of q = Re(a e^{i omega t}) that starts at zero, (slow modes, len(growth) + SERIES).
 
     (D - r)(D - s) a = F growth with r = -sigma + i (omega_d - omega), slow, and s = -sigma - i (omega_d + omega):
-    b of (D - s) b = F growth ends with the highest power of the growth, and a' = b + r a is summed from a = 0 upwards.
+    (D - s) b = F growth, which ends with the highest power of the growth where s is fast, then (D - r) a = b.
     """
     sigma, damped = modes.sigmas[slow], modes.omegas[slow]
     r, s = -sigma + 1j * (damped - omega), -sigma - 1j * (damped + omega)
-    a = np.zeros((len(r), len(growth) + SERIES), dtype=complex)
-    b = np.zeros_like(a)
+    push = np.pad(modes.loads[slow, None] * growth, ((0, 0), (0, SERIES)))
+    ended = np.zeros_like(push)
     for d in range(len(growth) - 1, -1, -1):
-        b[:, d] = ((d + 1) / unit_s * b[:, d + 1] - modes.loads[slow] * growth[d]) / s
-    for d in range(a.shape[1] - 1):
-        a[:, d + 1] = unit_s * (b[:, d] + r * a[:, d]) / (d + 1)
-    return a
+        ended[:, d] = ((d + 1) / unit_s * ended[:, d + 1] - push[:, d]) / s
+    b = np.where((abs(s) * unit_s < SLOW)[:, None], _risen(s, push, unit_s), ended)
+    return _risen(r, b, unit_s)
+
+
+def _risen(rate: ComplexArray, push: ComplexArray, unit_s: float) -> ComplexArray:
+    """Powers of t / unit_s of y' = rate y + push, y(0) = 0, as many as of `push`, (n, powers)."""
+    y = np.zeros_like(push)
+    for d in range(push.shape[1] - 1):
+        y[:, d + 1] = unit_s * (push[:, d] + rate * y[:, d]) / (d + 1)
+    return y
 
 
 def free_part(modes: Modal, q: Array, qd: Array) -> Array:
