@@ -3,12 +3,14 @@
 0.1 N sin and cos at 11.6 mm from both ends, from rest, one millisecond, K = 1e4 s/m, mu = 0.2, m = 1 g. Every engine
 takes its own longest step at which the slider's distance and speed at the end are within 1e-3 of its own converged
 answer. Wall time for a simulated millisecond without set-up and compilation, medians of rounds in which all take
-turns. Run: OMP_NUM_THREADS=1 python -m benchmarks.slider_race [links ...]      (others need the `peers` extra)
+turns of at least 20 ms.
+Run: OMP_NUM_THREADS=1 python -m benchmarks.slider_race [links ...]      (others need the `peers` extra)
 """
 
 import sys
 from importlib import import_module, metadata
 from statistics import median
+from time import perf_counter
 
 from benchmarks.chain_races import BEAM, FREQUENCY, case_of
 from benchmarks.peers.slider import Run, Sled, reference
@@ -16,7 +18,7 @@ from verify.beam import PointForce
 from verify.simulate import simulate
 from verify.slider import Slider
 
-END, WANTED, ROUNDS = 1e-3, 1e-3, 9
+END, WANTED, ROUNDS, TURN_S = 1e-3, 1e-3, 9, 0.02
 PEERS = {"MuJoCo": ("mujoco_slider", "mujoco"), "Exudyn": ("exudyn_slider", "exudyn")}
 STEPS = (20e-6, 15e-6, 12.5e-6, 10e-6, 7e-6, 5e-6, 3.5e-6, 2.5e-6, 1.7e-6, 1.2e-6, 0.8e-6, 0.55e-6, 0.4e-6)
 
@@ -34,6 +36,14 @@ def own_run(n: int, model: str = "segment") -> Run:
         return found.displacement, float(found.speed[-1]), found.statistics.wall_s
 
     return run
+
+
+def set_up(n: int) -> float:
+    """Seconds of modes and tables before the first step, the compiled loop loaded."""
+    forces = [PointForce(position=0.0116, amplitude=0.1)]
+    slider = Slider(mass=1e-3, mu=0.2, coupling="one-way")
+    found = [simulate(BEAM, forces, FREQUENCY, END, count=n, slider=slider, samples=2, ledger=False) for _ in range(5)]
+    return median(one.statistics.set_up_s for one in found)
 
 
 def errors(found: tuple[float, float], true: tuple[float, float]) -> float:
@@ -58,7 +68,8 @@ def engines(n: int) -> dict[str, tuple[Run, float, str]]:
     run = own_run(n)
     found = longest_step(run, run(END / 51200, END)[:2])
     assert found is not None
-    ready["verify, segments"] = run, found[0], f"step {1e6 * found[0]:.3g} us, error {found[1]:.1e}"
+    apart = f"set-up {1e3 * set_up(n):.2g} ms apart"
+    ready["verify, segments"] = run, found[0], f"step {1e6 * found[0]:.3g} us, error {found[1]:.1e}, {apart}"
     true = reference(case, sled, END)
     for name, (module, package) in PEERS.items():
         try:
@@ -67,16 +78,27 @@ def engines(n: int) -> dict[str, tuple[Run, float, str]]:
         except (ImportError, metadata.PackageNotFoundError):
             print(f"  {name}: not installed")
             continue
+        begun = perf_counter()
         peer = prepare(case, sled)
+        peer(20e-6, 20e-6)
+        apart = f"set-up with one step {1e3 * (perf_counter() - begun):.2g} ms apart"
         found = longest_step(peer, true)
         if found is None:
             print(f"  {name} {version}: no step down to {1e6 * min(STEPS):.2g} us reaches {WANTED:g}")
             continue
-        ready[name] = peer, found[0], f"{version}, step {1e6 * found[0]:.3g} us, error {found[1]:.1e}"
+        ready[name] = peer, found[0], f"{version}, step {1e6 * found[0]:.3g} us, error {found[1]:.1e}, {apart}"
         if name == "MuJoCo":
             bare = import_module(f"benchmarks.peers.{module}").prepare_bare(case, sled)
             ready["MuJoCo, bare"] = bare, found[0], "the same steps without the Python callback: no forces"
     return ready
+
+
+def turn(run: Run, step: float) -> float:
+    """Mean seconds of the runs of one turn, which lasts for at least TURN_S."""
+    found = [run(step, END)[2]]
+    while sum(found) < TURN_S:
+        found.append(run(step, END)[2])
+    return sum(found) / len(found)
 
 
 def race(n: int) -> None:
@@ -86,7 +108,7 @@ def race(n: int) -> None:
     rounds: dict[str, list[float]] = {name: [] for name in ready}
     for _ in range(ROUNDS):
         for name, (run, step, _) in ready.items():
-            rounds[name].append(run(step, END)[2])
+            rounds[name].append(turn(run, step))
     own = median(rounds["verify, segments"])
     for name, seconds in rounds.items():
         print(f"  {name:17} {1e3 * median(seconds):9.4f} ms per ms   {median(seconds) / own:7.1f} x   {ready[name][2]}")
