@@ -25,7 +25,7 @@ def test_a_soft_start_keeps_its_digits_next_to_a_resonance_and_however_short(off
     """Duhamel's integral by Gauss; powers of the growth alone would cancel like (1/(T |omega_n - omega|))^4."""
     drive, growth = 2 * np.pi * FREQUENCY, periods / FREQUENCY
     own = drive * (1 + off)
-    modes = one_mode(own, zeta, load=1.0)
+    modes = one_mode(own, zeta, load=1.0 + 0j)
     forced = answer(modes, drive, SMOOTH_STEP, growth, 0.3)
     q0, rate0 = forced.state(0.0)
     z, t = free_part(modes, -q0, -rate0), 0.83 * growth
