@@ -7,14 +7,16 @@ if TYPE_CHECKING:
     from verify.errors import InputError
     from verify.run import run_scene
     from verify.scene import load_scene
+    from verify.slider import Slider
 
-__all__ = ["Beam", "InputError", "PointForce", "__version__", "load_scene", "run_scene"]
+__all__ = ["Beam", "InputError", "PointForce", "Slider", "__version__", "load_scene", "run_scene"]
 __version__ = "0.1.0"
 
 _HOME = {
     "Beam": "verify.beam",
     "InputError": "verify.errors",
     "PointForce": "verify.beam",
+    "Slider": "verify.slider",
     "load_scene": "verify.scene",
     "run_scene": "verify.run",
 }
