@@ -160,6 +160,8 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
     with _progress(PERCENT, quiet=as_json) as step:
         bench.tell = _in_percent(step)
         value = quantities.evaluate(found, checked, asked, bench)
+    if isinstance(value, float) and isnan(value):
+        raise InputError(f"{quantity} is not a number for these arguments: they lie beyond what floating point carries")
     plain = quantities.as_plain(value)
     if as_json:
         shown = quantities.arguments_as_plain(checked, given)

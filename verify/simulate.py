@@ -20,6 +20,8 @@ from verify.slider_run import Sliding, run_stages
 from verify.time_basis import Array, TimeBasis
 
 STEPS_PER_PERIOD = 64
+COARSEST = 0.25
+"""Of a period: longer steps of a slider are refused."""
 Envelope = Sequence[tuple[float, Sequence[float]]]
 """Pieces (seconds, coefficients of powers of t / seconds) of the forces' amplitude."""
 CLOSED_FORM_ROWS = 2000
@@ -134,6 +136,11 @@ def _request(
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     longest = 1.0 / (STEPS_PER_PERIOD * frequency_hz) if step is None else step
     check_number("step", longest, "seconds", above=0)
+    if slider is not None and longest * frequency_hz > COARSEST:
+        raise InputError(
+            f"step = {longest!r} s is {longest * frequency_hz:.3g} periods of the drive, which a slider would not see: "
+            f"give at most {COARSEST / frequency_hz:.3g} s"
+        )
     if duration / longest > 2e9:
         raise InputError(f"step = {longest!r} takes more than 2e9 steps: lengthen the step or shorten the duration")
     check_line(model, start, slider.line if slider else "spline")
