@@ -15,7 +15,7 @@ from verify.fields import check_drive
 from verify.forcing import CONSTANT, SMOOTH_STEP, check_no_resonance
 from verify.motion import EndState, Ledger, Motion, Statistics
 from verify.moving_surface import Growth, Stage, basis_of, check_line, cut, free_at, stages_from_rest, steady_stage
-from verify.slider import Slider
+from verify.slider import GRAVITY, Slider
 from verify.slider_run import Sliding, run_stages
 from verify.time_basis import Array, TimeBasis
 
@@ -218,7 +218,7 @@ def margins_of(request: Request, stage: Stage) -> Margins:
     x = np.linspace(0.0, request.beam.length, 400)
     steady, slopes = stage.drive_shapes(x, 0)[:2], stage.drive_shapes(x, 1)[:2]
     amplitude = float(np.hypot(*steady).max())
-    pressing = request.slider.normal_force / request.slider.mass if request.slider else 9.81
+    pressing = request.slider.normal_force / request.slider.mass if request.slider else GRAVITY
     square = 0.5 * float((slopes**2).sum(axis=0).mean())
     return Margins(
         lift_off=request.omega**2 * amplitude / pressing,
@@ -293,7 +293,7 @@ def _times(request: Request, stages: list[Stage]) -> Array:
 
 
 def _closed_ledger(request: Request, stages: list[Stage], basis: TimeBasis | None, z: Array) -> Ledger | None:
-    """Without a slider the energy is asked for by stepping a ledger's quadrature; a steady beam has none to gain."""
+    """The books of a beam alone from rest; a steady beam has no energy to gain, a continued run is not booked."""
     if basis is None or not request.accounts or request.before is not None:
         return None
     from verify.energy import driven_ledger
