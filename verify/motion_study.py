@@ -95,7 +95,8 @@ def _facts(scene: "Scene", runs: dict[str, Motion], drifts: list[float]) -> tupl
              f"{1e9 * runs['analytic'].displacement:+.4g} nm on the exact beam, by the way it starts",
              holds=bool(chain.displacement < 0)),
         Fact(what=f"mean speed over {1e3 * time:.3g} ms", paper=f"{-100 * PAPER_SPEED:g} cm/s",
-             found=f"{100 * chain.mean_speed:+.3g} cm/s on {chain.count} segments; Eq. (3) allows at most {100 * bound:.3g} cm/s from rest",
+             found=f"{100 * chain.mean_speed:+.3g} cm/s on {chain.count} segments; "
+             f"Eq. (3) allows at most {100 * bound:.3g} cm/s from rest",
              holds=abs(chain.mean_speed) >= PAPER_SPEED),
         Fact(what="|dv| <= mu N t / m at every time", paper="follows from Eq. (3)",
              found=f"largest |dv| {100 * fastest:.3g} cm/s of {200 * bound:.3g} cm/s", holds=fastest <= 2.0 * bound),
