@@ -15,6 +15,7 @@ from verify.contact import law_entries
 from verify.division import Array
 from verify.errors import InputError
 from verify.slider import Slider
+from verify.slider_run import contact_space, fresh_motion
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,9 +72,9 @@ def ride(chain: ChainMotion, beam: Beam, slider: Slider) -> ChainRide:
     local, along, edges = _surface(chain, start)
     n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
     kept = np.zeros((n_steps + 1, 4))
-    motion = np.array([0.0, slider.speed, 0.0])
+    motion = fresh_motion(slider.speed)
     done = kernels.slide_given(
-        n_steps, dt, local, along, edges - start, motion, law_entries(slider, beam), kept, np.zeros((3, 5)), np.zeros(5)
+        n_steps, dt, local, along, edges - start, motion, law_entries(slider, beam), kept, *contact_space()
     )
     return ChainRide(
         chain=chain, times=times[: 2 * done + 1 : 2], travelled=kept[: done + 1, 0], speed=kept[: done + 1, 1],

@@ -6,23 +6,24 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.slider import Slider
+from verify.slider import NormalChoice, Slider
 from verify.time_basis import Array
 
 if TYPE_CHECKING:
     from verify.fields import HarmonicField
 
 FELT = 1e-3
-"""From this relative change of the surface's speed on, a slider is coupled back to the beam."""
+"""From this relative change of the surface's motion on, a slider is coupled back to the beam."""
 
 
 def law_entries(slider: Slider, beam: Beam) -> Array:
-    """The numbers the compiled loop sees (`contact_kernels.KIND` and so on), (8,)."""
+    """The numbers the compiled loop sees (`contact_kernels.KIND` and so on), (10,)."""
     pressing = slider.normal_force / slider.mass
     static = slider.mu if slider.mu_static is None else slider.mu_static
     return np.array([
         float(slider.law == "coulomb"), slider.mu * pressing, static * pressing, slider.slope, slider.mass,
-        0.5 * beam.thickness, slider.gravity, float(slider.kinematics == "following"),
+        0.5 * beam.thickness, slider.gravity, float(slider.kinematics == "following"), float(slider.normal == "held"),
+        slider.normal_force,
     ])  # fmt: skip
 
 
@@ -30,16 +31,63 @@ class Coupling(msgspec.Struct, frozen=True, kw_only=True):
     """Whether the beam feels the slider, and by how much."""
 
     two_way: bool
-    relative_size: float
-    """Speed that full friction gives to the surface, over the speed the drive gives to it."""
+    friction_size: float | None
+    """Speed that full friction gives to the surface, over the speed the drive gives to it; None where that is 0."""
+    normal_size: float
+    """m omega^2 |G|: motion that the inertia of a slider held on the surface gives to it, over its own motion."""
+    normal: NormalChoice
+    """massless: the normal reaction is left out, whatever its size."""
     forced: bool
+    """Whether the slider says which; otherwise the larger of the sizes that act decides."""
+
+    @property
+    def relative_size(self) -> float | None:
+        """The larger of the sizes that act; None where the drive does not move the surface under the slider."""
+        return larger(self.friction_size, self.normal_size if self.normal == "held" else 0.0)
+
+    @property
+    def pushes_back(self) -> bool:
+        """Whether the beam carries the slider's weight and inertia."""
+        return self.two_way and self.normal == "held"
+
+    @property
+    def note(self) -> str:
+        """In words, for the notes of a run."""
+        carried = "; the beam carries its weight and inertia" if self.pushes_back else ""
+        return f"coupling: {'two' if self.two_way else 'one'}-way{carried}; {self.told}" + (
+            f"; {self.simplified}" if self.simplified else ""
+        )
+
+    @property
+    def told(self) -> str:
+        """In words: both sizes, and what is left out."""
+        friction = (
+            "the drive does not move the surface under the slider"
+            if self.friction_size is None
+            else f"full friction moves the surface by {self.friction_size:.1e} of its own speed"
+        )
+        if self.normal == "massless":
+            return friction
+        return f"{friction}, the inertia of a slider held on it by {self.normal_size:.1e} of its motion"
+
+    @property
+    def simplified(self) -> str:
+        """What a slider without normal inertia leaves out, in words; empty for one that is held."""
+        if self.normal == "held":
+            return ""
+        return (
+            "slider.normal = 'massless', a simplification: held on the surface, its inertia would move the beam under "
+            f"it by {self.normal_size:.2g} of its motion, and its weight would bend the beam"
+        )
 
 
 class Margins(msgspec.Struct, frozen=True, kw_only=True):
     """How far a run can be believed; each is small where its assumption holds."""
 
     lift_off: float
-    """omega^2 A / g_eff: above 1 the surface falls faster than the slider can follow."""
+    """Largest downward acceleration of the surface over g_eff: above 1 a slider that nothing holds would lift off.
+
+    In a run with a slider under the slider during the run; of a beam alone the largest along it, steady."""
     nonlinearity: float
     """(kL)^2 <theta^2>: the axial inertia of a roller-ended chain that linear theory leaves out."""
     model_form: float | None
@@ -48,22 +96,30 @@ class Margins(msgspec.Struct, frozen=True, kw_only=True):
     """Leading error of the discrete frequency at that mode; None for the exact beam."""
 
 
+def larger(friction_size: float | None, normal_size: float) -> float | None:
+    """The size that decides; None stays, because nothing bounds it."""
+    return None if friction_size is None else max(friction_size, normal_size)
+
+
 def surface_speed(field: "HarmonicField", x: float) -> float:
     """First-order speed amplitude of the surface at x, (h/2) omega |w'|, m/s."""
     return 0.5 * field.beam.thickness * field.omega * float(abs(field.slope([x]))[0])
 
 
-def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: float) -> Coupling:
-    """One-way or two-way by size, unless the slider says which.
+def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: float, receptance: complex) -> Coupling:
+    """One-way or two-way by size, unless the slider says which. `receptance` is G(x, x) under it at the drive, m/N.
 
     Full friction is a moment (h/2) mu N on an infinite beam, whose slope answers with the speed
-    omega sqrt(2) / (4 EI k); its surface speed is held against the drive's.
+    omega sqrt(2) / (4 EI k); its surface speed is held against the drive's. A mass held on the surface pushes with
+    m omega^2 w, which moves the surface by m omega^2 G w.
     """
     omega = 2.0 * np.pi * frequency_hz
     k = float(np.sqrt(omega / beam.wave_constant))
     lever = 0.5 * beam.thickness
     answer = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
-    size = float(answer / surface_speed) if surface_speed > 0.0 else float("inf")
-    forced = slider.coupling != "auto"
-    two_way = slider.coupling == "two-way" if forced else size > FELT
-    return Coupling(two_way=two_way, relative_size=size, forced=forced)
+    friction_size = float(answer / surface_speed) if surface_speed > 0.0 else None
+    normal_size = float(slider.mass * omega**2 * abs(receptance))
+    forced, size = slider.coupling != "auto", larger(friction_size, normal_size * (slider.normal == "held"))
+    two_way = slider.coupling == "two-way" if forced else size is None or size > FELT
+    return Coupling(two_way=two_way, friction_size=friction_size, normal_size=normal_size, normal=slider.normal,
+                    forced=forced)  # fmt: skip

@@ -15,15 +15,16 @@ from numba import njit
 # nothing here allocates: without numba's memory runtime no loop counts references, which doubles the speed
 _compiled = partial(njit, _nrt=False)
 _FAST = {"reassoc", "contract", "nsz"}
-# entries of `motion`: what the slider carries from step to step
-X, V, STUCK = range(3)
+# entries of `motion`: what the slider carries from step to step; height and climb are those of a slider held on the
+# surface, its normal reaction is the mean over the step, and the fall is the largest downward acceleration so far
+X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL = range(7)
 # columns of `seen`, one row each for the start, the middle and the end of a step
-SURFACE, PULL, DRIFT, POWER, LOSS = range(5)
-# entries of `law`
-KIND, KINETIC, STATIC, SLOPE, MASS, HALF, GRAVITY, FOLLOWING = range(8)
+SURFACE, PULL, DRIFT, POWER, LOSS, LEVEL = range(6)
+# entries of `law`; LOAD is the weight and what else presses the slider on, newton
+KIND, KINETIC, STATIC, SLOPE, MASS, HALF, GRAVITY, FOLLOWING, HELD, LOAD = range(10)
 TANH, COULOMB = 0.0, 1.0
-# entries of `ledger`
-ON_BEAM, ON_SLIDER, DRIVEN, DAMPED, RUBBED = range(5)
+# entries of `ledger`; LIFTED is the work of the normal reaction on the beam
+ON_BEAM, ON_SLIDER, DRIVEN, DAMPED, RUBBED, LIFTED = range(6)
 # entries of `tally`: steps of this stage, samples and events of the whole run
 STEP, SAMPLES, EVENTS = range(3)
 # why a loop came back
@@ -32,16 +33,19 @@ DONE, OFF_PIECES, NOT_FINITE = range(3)
 STICKS, SLIPS, TURNS = 1.0, 2.0, 3.0
 
 
-# rows of `modes`, (9, n): the state z' = (-sigma + i omega) z, its turns over half a step and a whole one, levers
-Z_RE, Z_IM, SIGMA, OMEGA, HALF_RE, HALF_IM, FULL_RE, FULL_IM, LEVER = range(9)
+# rows of `modes`, (11, n): the state z' = (-sigma + i omega) z, its turns over half a step and a whole one, levers of a
+# tangential force and of a normal one in mid-step, deflection under the slider at the end
+Z_RE, Z_IM, SIGMA, OMEGA, HALF_RE, HALF_IM, FULL_RE, FULL_IM, LEVER, LIFT, READ = range(11)
 # rows of `factors`, (2, rows), and of `local`, (3, degree + 1): deflection, velocity, deflection a step before
 STILL, MOVING, BEFORE = range(3)
 # entries of `drive`; from GROWTH on, the forces' amplitude as a polynomial in t/RAMP; RAMP is the rows' unit of time
 FREQUENCY, ORIGIN, RAMP, GROWTH = range(4)
-# entries of `slip`: what friction adds to the speed, sticking at the end, time of the last event, what else adds
-CHANGE, STICKING, EVENT, GIVEN_MIDDLE, GIVEN_END = range(5)
+# entries of `slip`: what friction adds to the speed, sticking at the end, what else adds, how many events, and from
+# FIRST_EVENT on their times within the step and their kinds in turns
+CHANGE, STICKING, GIVEN_MIDDLE, GIVEN_END, N_EVENTS, FIRST_EVENT = range(6)
+SPANS = 20  # of a step, between which friction changes its mind
 # columns of `kept`
-KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE = range(4)
+KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE, KEPT_NORMAL = range(5)
 
 
 @_compiled(cache=True)
@@ -322,7 +326,7 @@ def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any,
         rise = rise * at + local[MOVING, d]
     slope, turn = slope / length, turn / length
     seen[row, SURFACE] = (rise * slope - law[HALF] * turn) / np.sqrt(1.0 + slope * slope)
-    seen[row, PULL], seen[row, DRIFT] = 0.0, 0.0
+    seen[row, PULL], seen[row, DRIFT], seen[row, LEVEL] = 0.0, 0.0, deflection
     if law[FOLLOWING] > 0.0:
         seen[row, PULL] = rise * (turn + 2.0 * bend / (length * length) * speed) - law[GRAVITY] * slope
         seen[row, DRIFT] = -slope * rise
@@ -330,13 +334,17 @@ def _touch(local: Any, edges: Any, piece: int, x: float, speed: float, law: Any,
 
 @_compiled(cache=True, fastmath=_FAST, error_model="numpy")
 def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: float, modes: Any) -> Any:
-    """How a unit tangential force on the surface at x loads every mode: -(h/2) on its slope, w' on its rise.
+    """How unit forces on the surface at x load every mode: a tangential one -(h/2) on its slope, w' on its rise.
 
-    Returns the local coordinate of the material there and w'.
+    A normal one acts on its rise. Returns the local coordinate of the material there and w'.
     """
     length = edges[piece + 1] - edges[piece]
     at = _material(local, edges, piece, x, half)
-    slope = (at - (x - edges[piece]) / length) * length / half
+    slope, deflection = 0.0, 0.0
+    for d in range(table.shape[1] - 1, -1, -1):
+        slope = slope * at + deflection
+        deflection = deflection * at + local[STILL, d]
+    slope /= length
     stretch = np.sqrt(1.0 + slope * slope)
     for j in range(modes.shape[1]):
         value, first = 0.0, 0.0
@@ -344,24 +352,50 @@ def _set_levers(table: Any, piece: int, edges: Any, local: Any, x: float, half: 
             first = first * at + value
             value = value * at + table[piece, d, j]
         modes[LEVER, j] = (slope * value - half * first / length) / stretch
+        modes[LIFT, j] = value
     return at, slope
 
 
 @_compiled(cache=True, fastmath=_FAST, error_model="numpy")
-def _mobility(modes: Any, turn: int) -> float:
-    """Speed of the surface after a constant unit force has acted for half a step or a whole one, m/s per newton."""
+def _set_reads(table: Any, piece: int, edges: Any, local: Any, x: float, half: float, modes: Any) -> None:
+    """The deflection of every mode under the slider at x."""
+    at = _material(local, edges, piece, x, half)
+    for j in range(modes.shape[1]):
+        value = 0.0
+        for d in range(table.shape[1] - 1, -1, -1):
+            value = value * at + table[piece, d, j]
+        modes[READ, j] = value
+
+
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
+def _mobility(modes: Any, acts: int, turn: int) -> float:
+    """Tangential speed of the surface after a constant unit force has acted for half a step or a whole one, m/s per N.
+
+    `acts` is the row of the force's levers.
+    """
     total = 0.0
     for j in range(modes.shape[1]):
-        total += modes[LEVER, j] * modes[LEVER, j] * modes[turn, j] / modes[OMEGA, j]
+        total += modes[LEVER, j] * modes[acts, j] * modes[turn, j] / modes[OMEGA, j]
     return total
 
 
 @_compiled(cache=True, fastmath=_FAST, error_model="numpy")
-def _press(force: float, modes: Any) -> None:
+def _compliance(modes: Any, acts: int) -> float:
+    """How far a constant unit force lifts the surface under the slider in a step, m/N."""
+    total = 0.0
+    for j in range(modes.shape[1]):
+        decay, omega = modes[SIGMA, j], modes[OMEGA, j]
+        gain = 1.0 - modes[FULL_RE, j] - modes[FULL_IM, j] * decay / omega
+        total += modes[READ, j] * modes[acts, j] * gain / (omega * omega + decay * decay)
+    return total
+
+
+@_compiled(cache=True, fastmath=_FAST, error_model="numpy")
+def _press(force: float, acts: int, modes: Any) -> None:
     """Add what a constant force over the whole step adds to the modes: (1 - turn) about the shifted rest position."""
     for j in range(modes.shape[1]):
         decay, omega = modes[SIGMA, j], modes[OMEGA, j]
-        real = force * modes[LEVER, j] / (omega * omega + decay * decay)
+        real = force * modes[acts, j] / (omega * omega + decay * decay)
         imaginary = -real * decay / omega
         modes[Z_RE, j] += real - (modes[FULL_RE, j] * real - modes[FULL_IM, j] * imaginary)
         modes[Z_IM, j] += imaginary - (modes[FULL_RE, j] * imaginary + modes[FULL_IM, j] * real)
@@ -397,11 +431,11 @@ def _loss(modes: Any, answers: Any, factors: Any) -> float:
 
 
 @_compiled(cache=True, fastmath=_FAST)
-def _given_way(modes: Any) -> float:
-    """How far the free modes have moved the surface along the levers, metres."""
+def _given_way(modes: Any, acts: int) -> float:
+    """How far the free modes have moved the surface along a force's levers, metres."""
     total = 0.0
     for j in range(modes.shape[1]):
-        total += modes[LEVER, j] * modes[Z_RE, j]
+        total += modes[acts, j] * modes[Z_RE, j]
     return total
 
 
@@ -413,6 +447,15 @@ def _carried(local: Any, edges: Any, piece: int, at: float, slope: float, half: 
         first = first * at + value
         value = value * at + local[STILL, d] - local[BEFORE, d]
     return float((slope * value - half * first / (edges[piece + 1] - edges[piece])) / np.sqrt(1.0 + slope * slope))
+
+
+@_compiled(cache=True)
+def _climbed(local: Any, at: float) -> float:
+    """How far the whole motion lifts the surface in a step, at `at`, metres."""
+    value = 0.0
+    for d in range(local.shape[1] - 1, -1, -1):
+        value = value * at + local[STILL, d] - local[BEFORE, d]
+    return float(value)
 
 
 @_compiled(cache=True, inline="always")
@@ -436,7 +479,7 @@ def _slip(
     s0 = seen[0, SURFACE]
     sm = seen[1, SURFACE] - slip[GIVEN_MIDDLE] + push * half
     s1 = seen[2, SURFACE] - slip[GIVEN_END] + push * full
-    slip[STICKING], slip[EVENT] = 0.0, -1.0
+    slip[STICKING], slip[N_EVENTS] = 0.0, 0.0
     if law[KIND] == TANH:
         mean, rise = (s0 + 4.0 * sm + s1) / 6.0, s1 - s0
         slip[CHANGE] = tanh_speed_change(v - mean + 0.5 * rise, rise / dt, law[KINETIC], law[SLOPE], dt)
@@ -445,13 +488,15 @@ def _slip(
     r, used = 0.0 if stuck else v - s0, 0.0
     if abs(r) <= 1e-9 * law[KINETIC] * dt and abs(a0) <= law[STATIC]:
         r, stuck = 0.0, True  # put on a surface at rest, to rounding
-    for _ in range(20):
+    for _ in range(SPANS):
         span, r, stuck, event = coulomb_span(
             r, a0 + (a1 - a0) * used / dt, a1, law[KINETIC], law[STATIC], dt - used, stuck
         )
         used += span
         if event in (STICKS, SLIPS):
-            slip[EVENT] = used
+            here = FIRST_EVENT + 2 * int(slip[N_EVENTS])
+            slip[here], slip[here + 1] = used, event
+            slip[N_EVENTS] += 1.0
         if used >= dt or (span <= 0.0 and event == 0.0):
             break
     slip[CHANGE], slip[STICKING] = r + s1 - v, 1.0 if stuck else 0.0
@@ -499,20 +544,60 @@ def _see(
 
 
 @_compiled(cache=True)
-def _push_back(
-    v: float, stuck: bool, dt: float, at: float, slope: float, piece: int, modes: Any, edges: Any, local: Any, law: Any,
-    seen: Any, slip: Any,
-) -> float:  # fmt: skip
-    """Let slider and beam agree on the contact force of a step and give it to the modes; its work on the beam, joules.
+def _held(dt: float, modes: Any, motion: Any, law: Any, seen: Any) -> Any:
+    """The normal reaction, mean over a step, that keeps a slider with inertia on the surface.
 
-    The levers are those of mid-step, so that the force is off by the square of the step.
+    (N without a tangential force on the beam, what each newton of that adds.)
+    Beam and slider move exactly under one constant force and meet at the end of the step. With fixed levers their
+    energy is conserved, so that no step is unstable. Height and climb are the slider's own: what the point under it
+    does along x (w' dx/dt and all convective terms) is in the height of the surface where it ends up.
     """
-    half, full = _mobility(modes, HALF_IM), _mobility(modes, FULL_IM)
+    stiff = 2.0 * law[MASS] / (dt * dt)
+    own = 1.0 + stiff * _compliance(modes, LIFT)
+    free = law[LOAD] + stiff * (seen[2, LEVEL] - motion[HEIGHT] - dt * motion[CLIMB])
+    return free / own, stiff * _compliance(modes, LEVER) / own
+
+
+@_compiled(cache=True)
+def _push_back(
+    v: float, stuck: bool, dt: float, at: float, slope: float, piece: int, modes: Any, edges: Any, local: Any,
+    motion: Any, law: Any, seen: Any, slip: Any,
+) -> Any:  # fmt: skip
+    """Let slider and beam agree on the contact forces of a step and give them to the modes; their work on the beam.
+
+    (Of friction, of the normal reaction), joules. The levers are those of mid-step, so that the forces are off by the
+    square of the step.
+    """
+    half, full = _mobility(modes, LEVER, HALF_IM), _mobility(modes, LEVER, FULL_IM)
+    normal, per_push = 0.0, 0.0
+    if law[HELD] > 0.0:
+        normal, per_push = _held(dt, modes, motion, law, seen)
+        across_half, across = _mobility(modes, LIFT, HALF_IM), _mobility(modes, LIFT, FULL_IM)
+        seen[1, SURFACE] -= normal * across_half
+        seen[2, SURFACE] -= normal * across
+        half, full = half - per_push * across_half, full - per_push * across
     force = _balance(v, stuck, half, full, law, dt, seen, slip)
-    way = _carried(local, edges, piece, at, slope, law[HALF]) - _given_way(modes)
-    _press(-force, modes)
+    way, climb = _carried(local, edges, piece, at, slope, law[HALF]) - _given_way(modes, LEVER), 0.0
+    if law[HELD] > 0.0:
+        normal -= per_push * force
+        climb = _climbed(local, at) - _given_way(modes, LIFT)
+        _press(-normal, LIFT, modes)
+        gained = dt * (normal - law[LOAD]) / law[MASS]
+        motion[HEIGHT] += dt * (motion[CLIMB] + 0.5 * gained)
+        motion[CLIMB] += gained
+        motion[NORMAL] = normal
+    _press(-force, LEVER, modes)
     seen[2, SURFACE] -= force * full
-    return float(-force * (way + _given_way(modes)))
+    lifted = -normal * (climb + _given_way(modes, LIFT)) if law[HELD] > 0.0 else 0.0
+    return -force * (way + _given_way(modes, LEVER)), lifted
+
+
+@_compiled(cache=True, inline="always")
+def _feel(dt: float, motion: Any, law: Any, seen: Any) -> None:
+    """The slider's normal reaction and how fast the surface falls away under it, where it does not push back."""
+    lift = 4.0 * (seen[0, LEVEL] - 2.0 * seen[1, LEVEL] + seen[2, LEVEL]) / (dt * dt)
+    motion[NORMAL] = law[LOAD] + (law[MASS] * lift if law[HELD] > 0.0 else 0.0)
+    motion[FALL] = max(motion[FALL], -lift)
 
 
 @_compiled(cache=True)
@@ -542,7 +627,7 @@ def _correct_powers(
 def _account(
     v: float, v1: float, moved: float, pressed: float, two_way: bool, dt: float, law: Any, seen: Any, ledger: Any
 ) -> None:
-    """Add one step to the ledger. `pressed` is the work of the contact on the beam (two-way)."""
+    """Add one step to the ledger. `pressed` is the work of friction on the beam (two-way)."""
     ledger[DRIVEN] += dt * (seen[0, POWER] + 4.0 * seen[1, POWER] + seen[2, POWER]) / 6.0
     ledger[DAMPED] += dt * (seen[0, LOSS] + 4.0 * seen[1, LOSS] + seen[2, LOSS]) / 6.0
     on_slider = 0.5 * law[MASS] * (v1 * v1 - v * v)
@@ -589,7 +674,8 @@ def _step(
          seen, fresh)  # fmt: skip
     rate = seen[0, PULL] + (0.0 if stuck else _friction(v - seen[0, SURFACE], law))
     along = v + seen[0, DRIFT]
-    at, slope, pressed, x1, v1 = 0.0, 0.0, 0.0, x, v
+    at, slope, pressed, lifted, x1, v1 = 0.0, 0.0, 0.0, 0.0, x, v
+    held = two_way and law[HELD] > 0.0
     if two_way:
         for d in range(local.shape[1]):
             local[BEFORE, d] = local[STILL, d]
@@ -602,8 +688,14 @@ def _step(
         if two_way and row == 1:
             at, slope = _set_levers(table, piece, edges, local, x1, law[HALF], modes)
     _give(dt, seen, slip)
+    if not held:
+        _feel(dt, motion, law, seen)
     if two_way:
-        pressed = _push_back(v, stuck, dt, at, slope, piece, modes, edges, local, law, seen, slip)
+        if held:
+            _set_reads(table, piece, edges, local, x1, law[HALF], modes)
+        pressed, lifted = _push_back(v, stuck, dt, at, slope, piece, modes, edges, local, motion, law, seen, slip)
+        if held:
+            motion[FALL] = max(motion[FALL], (law[LOAD] - motion[NORMAL]) / law[MASS])
         _set_factors((number + 1) * dt, modes, drive, factors)
         if accounts:
             _correct_powers((number + 1) * dt, modes, drive, loads, forces, answers, factors, seen)
@@ -615,6 +707,7 @@ def _step(
     moved = _advance(dt, rate, motion, law, seen, slip)
     if accounts:
         _account(v, motion[V], moved, pressed, two_way, dt, law, seen, ledger)
+        ledger[LIFTED] += lifted
 
 
 @_compiled(cache=True)
@@ -626,8 +719,8 @@ def slide(
     """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
     Time is the step's number times dt. `modes`, `motion`, `ledger` and `tally` are advanced in place, together, so
-    that they agree whenever the caller is interrupted. `kept` is (capacity, 4), filled every `every` steps together
-    with the deflections at `points` (n_points, rows); `events` is (capacity, 3): time, kind, x.
+    that they agree whenever the caller is interrupted. `kept` is (capacity, 5), filled every `every` steps together
+    with the deflections at `points` (n_points, rows); `events` is (capacity, 3): time, kind, x at the end of the step.
     """
     piece, fresh = 0, True
     for _ in range(n_steps):
@@ -642,15 +735,22 @@ def slide(
         tally[STEP] += 1
         if not np.isfinite(motion[V] + factors[STILL, 0]):
             return NOT_FINITE
-        if slip[EVENT] >= 0.0 and tally[EVENTS] < len(events):
-            row = tally[EVENTS]
-            events[row, 0], events[row, 2] = drive[ORIGIN] + number * dt + slip[EVENT], motion[X]
-            events[row, 1] = STICKS if motion[STUCK] > 0.0 else SLIPS
-            tally[EVENTS] += 1
+        if slip[N_EVENTS] > 0.0:
+            _note_events(drive[ORIGIN] + number * dt, motion[X], slip, events, tally)
         if tally[STEP] % every == 0:
             _keep(motion, law, slip[CHANGE] / dt, seen, factors, points, kept, deflections, tally[SAMPLES])
             tally[SAMPLES] += 1
     return DONE
+
+
+@_compiled(cache=True)
+def _note_events(time: float, x: float, slip: Any, events: Any, tally: Any) -> None:
+    """Write down all events of a step, as long as there is room; all of them are counted."""
+    for i in range(int(slip[N_EVENTS])):
+        row, here = tally[EVENTS], FIRST_EVENT + 2 * i
+        if row < len(events):
+            events[row, 0], events[row, 1], events[row, 2] = time + slip[here], slip[here + 1], x
+        tally[EVENTS] += 1
 
 
 @_compiled(cache=True)
@@ -661,6 +761,7 @@ def _keep(
     """Write one sample."""
     surface = seen[2, SURFACE]
     kept[row, KEPT_X], kept[row, KEPT_V], kept[row, KEPT_SURFACE] = motion[X], motion[V], surface
+    kept[row, KEPT_NORMAL] = motion[NORMAL]
     kept[row, KEPT_FRICTION] = mean_friction if motion[STUCK] > 0.0 else _friction(motion[V] - surface, law)
     for p in range(points.shape[0]):
         total = 0.0
@@ -703,10 +804,28 @@ def slide_given(
 def look(
     modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any, factors: Any, local: Any, seen: Any
 ) -> Any:
-    """(speed of the surface under the slider, friction per mass) at time 0."""
+    """(speed of the surface under the slider, friction per mass) at time 0; sets the slider's height and climb."""
     piece = max(find_piece(edges, motion[X], 0), 0)
     _set_factors(0.0, modes, drive, factors)
     _set_local(table, piece, factors, local)
     _touch(local, edges, piece, motion[X], motion[V], law, seen, 0)
     speed = seen[0, SURFACE]
+    motion[HEIGHT], motion[NORMAL] = seen[0, LEVEL], law[LOAD]
+    motion[CLIMB] = _climb(local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law[HALF])
     return speed, 0.0 if motion[STUCK] > 0.0 else _friction(motion[V] - speed, law)
+
+
+@_compiled(cache=True, error_model="numpy")
+def _climb(local: Any, edges: Any, piece: int, x: float, along: float, half: float) -> float:
+    """Speed across the beam of a point on the surface over x that moves along x: dw/dt + w' dX/dt at its material."""
+    length = edges[piece + 1] - edges[piece]
+    at = _material(local, edges, piece, x, half)
+    value, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[1] - 1, -1, -1):
+        bend = bend * at + slope
+        slope = slope * at + value
+        value = value * at + local[STILL, d]
+        turn = turn * at + rise
+        rise = rise * at + local[MOVING, d]
+    bend = 2.0 * bend / (length * length)
+    return float(rise + slope / length * (along + half * (turn / length + bend * along)))

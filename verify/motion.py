@@ -40,7 +40,9 @@ class Ledger(msgspec.Struct, frozen=True, kw_only=True):
     rubbed: float
     """Lost in friction."""
     contact_on_beam: float
-    """Work of the slider on the beam; under one-way coupling the beam is not charged with it."""
+    """Work of friction on the beam; under one-way coupling the beam is not charged with it."""
+    normal_on_beam: float
+    """Work of the normal reaction on the beam; 0 under one-way coupling and of a slider without normal inertia."""
     residual: float
     """What the books miss: quadrature of the power over a step (order 4)."""
 
@@ -57,6 +59,10 @@ class EndState(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Of the slider, metres; None where there was none."""
     speed: float = 0.0
     stuck: bool = False
+    height: float | None = None
+    """Of a slider held on the surface, metres; None where it did not push back."""
+    climb: float = 0.0
+    """Its speed across the beam, m/s."""
 
 
 class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -79,10 +85,13 @@ class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n,), m/s."""
     friction: Array
     """(n,), tangential force on the slider, newton."""
+    normal_force: Array
+    """(n,), normal reaction on the slider, mean over the step that ends there, newton: m g + preload, and m times the
+    acceleration of the surface for a slider held on it. Below 0 the surface holds it back."""
     surface_speed: Array
     """(n,), tangential velocity of the material under the slider, m/s."""
     events: Array
-    """(k, 3): time, kind (1 sticks, 2 slips) and position, for Coulomb friction."""
+    """(k, 3): time, kind (1 sticks, 2 slips) and distance travelled by the end of that step, for Coulomb friction."""
     coupling: Coupling | None
     margins: Margins
     ledger: Ledger | None

@@ -97,7 +97,7 @@ class DeflectionAt(InTime, frozen=True, kw_only=True):
 class SliderInTime(InTime, frozen=True, kw_only=True):
     """The scene's slider, with what is given instead of its own."""
 
-    step: Annotated[float, Meta(gt=0, description="seconds; default: a part of a period")] | None = None
+    step: Annotated[float, Meta(gt=0, description="seconds; default: as the start asks for")] | None = None
     mu: Friction | None = None
     slope: Slope | None = None
     mass: Annotated[float, Meta(gt=0, description="kg")] | None = None
@@ -108,6 +108,10 @@ class SliderInTime(InTime, frozen=True, kw_only=True):
     line: Annotated[Literal["spline", "raw"], Meta(description="contact line of a chain")] | None = None
     kinematics: (
         Annotated[Literal["tangential", "following"], Meta(description="how it keeps to the surface")] | None
+    ) = None
+    normal: (
+        Annotated[Literal["held", "massless"], Meta(description="whether its weight and inertia act on the beam")]
+        | None
     ) = None
     slider_position: Annotated[float, Meta(description="where it starts, metres")] | None = None
     slider_speed: Annotated[float, Meta(description="at the start, m/s")] | None = None

@@ -6,6 +6,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.motion import Motion
+from verify.request import STEPS_PER_PERIOD
 from verify.simulate import simulate
 from verify.slider import Slider
 from verify.waves import drive_forces, drive_frequency
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from verify.workbench import Workbench
 
 _OWN = {"mu": "mu", "slope": "slope", "mass": "mass", "law": "law", "coupling": "coupling", "line": "line",
-        "kinematics": "kinematics", "slider_position": "position", "slider_speed": "speed"}  # fmt: skip
+        "kinematics": "kinematics", "normal": "normal", "slider_position": "position", "slider_speed": "speed"}  # fmt: skip
 
 
 def slider_of(a: Any, scene: "Scene") -> Slider:
@@ -48,13 +49,18 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
 def with_slider(a: Any, scene: "Scene", bench: "Workbench", samples: int = 2, ledger: bool = False) -> Motion:
     """The slider's run, solved once. Raises InputError where it does not reach its end."""
     asked, slider = described(a, scene), slider_of(a, scene)
-    step = a.step
-    if step is None and scene.motion is not None:
-        step = 1.0 / (scene.motion.steps_per_period * asked["frequency_hz"])
-    key = ("slider", scene.beam, slider, step, samples, ledger, *asked.values())
+    steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
+    key = ("slider", scene.beam, slider, a.step, steps, samples, ledger, *asked.values())
     if key not in bench.motions:
         bench.motions[key] = simulate(
-            scene.beam, slider=slider, step=step, samples=samples, ledger=ledger, progress=bench.tell, **asked
+            scene.beam,
+            slider=slider,
+            step=a.step,
+            steps_per_period=steps,
+            samples=samples,
+            ledger=ledger,
+            progress=bench.tell,
+            **asked,
         )
     found: Motion = bench.motions[key]
     if found.statistics.stopped == "interrupted":

@@ -173,19 +173,22 @@ def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
         field = solve_harmonic(scene.beam, scene.forces, scene.drive.frequency_hz)
     except InputError:
         return ()
-    chosen = () if scene.slider is None else (_coupling(scene.slider, field), _linear(field))
+    chosen = () if scene.slider is None else (*_coupling(scene.slider, field), _linear(field))
     return chosen if scene.axial_inertia is None else (*chosen, _over_the_force(scene, scene.axial_inertia))
 
 
-def _coupling(slider: "Slider", field: "HarmonicField") -> Skipped:
-    """One-way or two-way."""
+def _coupling(slider: "Slider", field: "HarmonicField") -> tuple[Skipped, ...]:
+    """One-way or two-way, and that a slider without normal inertia is a simplification."""
+    from verify.analytic_modes import solve_harmonic
+    from verify.beam import PointForce
     from verify.contact import FELT, coupling_of, surface_speed
 
-    speed = surface_speed(field, slider.start_on(field.beam))
-    found = coupling_of(slider, field.beam, field.frequency_hz, speed)
-    kind = "two-way" if found.two_way else "one-way"
-    return Skipped(f"{kind} coupling", f"full friction moves the surface by {found.relative_size:.1e} of its own speed"
-                   f"{', as slider.coupling says' if found.forced else f' (felt from {FELT:g} on)'}")  # fmt: skip
+    x = slider.start_on(field.beam)
+    felt = solve_harmonic(field.beam, (PointForce(position=x),), field.frequency_hz).deflection([x])[0]
+    found = coupling_of(slider, field.beam, field.frequency_hz, surface_speed(field, x), felt)
+    chosen = Skipped(f"{'two' if found.two_way else 'one'}-way coupling", found.told
+                     + (", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"))  # fmt: skip
+    return (chosen, Skipped("massless slider across the beam", found.simplified)) if found.simplified else (chosen,)
 
 
 def _linear(field: "HarmonicField") -> Skipped:

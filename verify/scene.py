@@ -120,6 +120,7 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     counts: Counts = (49, 98, 196)
     """Of the work against error."""
     steps_per_period: Count = 128
+    """At least; more where the start excites faster modes."""
     samples: Annotated[int, Meta(ge=2, le=100_000)] = 1001
 
     def __post_init__(self) -> None:

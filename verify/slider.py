@@ -12,7 +12,8 @@ Law = Literal["tanh", "coulomb"]
 CouplingChoice = Literal["auto", "one-way", "two-way"]
 Line = Literal["spline", "raw"]
 Kinematics = Literal["tangential", "following"]
-_WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics}
+NormalChoice = Literal["held", "massless"]
+_WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
 
 
 class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -46,6 +47,10 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     kinematics: Kinematics = "tangential"
     """tangential: m dv/dt = F and dx/dt = v, as in the paper. following: the path of a point that follows the
     surface exactly, with dx/dt = v - w' dw/dt and the inertia of the turning tangent."""
+    normal: NormalChoice = "held"
+    """What a slider coupled two-way presses the beam with. held: m g + preload and its inertia across the beam, m times
+    the acceleration of the surface under it, convective terms included: a moving mass. massless: nothing, the paper's
+    simplification. Friction has N = m g + preload either way."""
 
     def __post_init__(self) -> None:
         for name, kind in _WORDS.items():

@@ -26,12 +26,12 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     start: float
     """Where the slider was put, metres; the loop counts from here, so that nanometres keep their digits."""
     motion: Array
-    """(3,): distance travelled, v, whether it sticks."""
+    """(7,): distance travelled, v, whether it sticks and so on, `contact_kernels.X` to `FALL`."""
     law: Array
     two_way: bool
     points: Array
     kept: Array
-    """(samples, 4): distance travelled, v, friction per mass, speed of the surface."""
+    """(samples, 5): distance travelled, v, friction per mass, speed of the surface, normal reaction on the slider."""
     deflections: Array
     events: Array
     accounts: bool
@@ -40,6 +40,8 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     first_deflection: Array
     tally: NDArray[np.int64]
     """(3,): steps of the present stage, samples and events so far; advanced by the loop together with the motion."""
+    on_its_way: tuple[float, float] | None = None
+    """Height and climb of a slider that was held on the surface before; one that is put on takes the surface's."""
     steps_before: int = 0
     """Of the stages that are over."""
     set_up_s: float = 0.0
@@ -48,9 +50,9 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     @classmethod
     def fresh(cls, start: float, samples: int, points: Array, law: Array, two_way: bool, accounts: bool) -> "Sliding":
         """Room for a run."""
-        return cls(start=start, motion=np.zeros(3), law=law, two_way=two_way, points=points,
-                   kept=np.zeros((samples, 4)), deflections=np.zeros((samples, len(points))),
-                   events=np.zeros((EVENTS, 3)), accounts=accounts, ledger=np.zeros(5), first=np.zeros(4),
+        return cls(start=start, motion=fresh_motion(), law=law, two_way=two_way, points=points,
+                   kept=np.zeros((samples, 5)), deflections=np.zeros((samples, len(points))),
+                   events=np.zeros((EVENTS, 3)), accounts=accounts, ledger=np.zeros(6), first=np.zeros(5),
                    first_deflection=np.zeros(len(points)), tally=np.zeros(3, dtype=np.int64))  # fmt: skip
 
     @property
@@ -59,14 +61,39 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
         return self.steps_before + int(self.tally[0])
 
     @property
+    def held(self) -> tuple[float, float]:
+        """Height and climb of a slider that is held on the surface, metres and m/s."""
+        return float(self.motion[3]), float(self.motion[4])
+
+    @property
+    def fall(self) -> float:
+        """The largest downward acceleration of the surface under the slider so far, m/s^2."""
+        return float(self.motion[6])
+
+    @property
     def n_kept(self) -> int:
         """Samples so far."""
         return int(self.tally[1])
 
     @property
     def n_events(self) -> int:
-        """Events so far."""
-        return int(self.tally[2])
+        """Events written down so far."""
+        return min(int(self.tally[2]), len(self.events))
+
+    @property
+    def n_lost(self) -> int:
+        """Events for which there was no room."""
+        return max(int(self.tally[2]) - len(self.events), 0)
+
+
+def fresh_motion(speed: float = 0.0, stuck: bool = False) -> Array:
+    """What a slider carries from step to step at the start, (7,)."""
+    return np.array([0.0, speed, float(stuck), 0.0, 0.0, 0.0, 0.0])
+
+
+def contact_space() -> tuple[Array, Array]:
+    """Working space of the compiled contact: what is seen at three times of a step, and how the slider slips."""
+    return np.zeros((3, 6)), np.zeros(45)
 
 
 class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -74,7 +101,7 @@ class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     stage: Stage
     modes: Array
-    """(9, n), see `contact_kernels.Z_RE`; advanced in place."""
+    """(11, n), see `contact_kernels.Z_RE`; advanced in place."""
     drive: Array
     loads: Array
     forces: Array
@@ -90,7 +117,7 @@ class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) -> Feed:
     """Arrays for one stage with free modes z."""
-    modes = np.zeros((9, z.shape[1]))
+    modes = np.zeros((11, z.shape[1]))
     modes[0:2], modes[2], modes[3] = z, stage.modal.sigmas, stage.modal.omegas
     modes[4:6], modes[6:8] = turns(stage.modal, 0.5 * stage.dt), turns(stage.modal, stage.dt)
     amplitudes = np.array([phasor(f) for f in forces], dtype=complex)
@@ -126,15 +153,17 @@ def window(stage: Stage, start: float, travelled: float) -> Window | None:
 def room(fed: Feed) -> tuple[Array, Array, Array, Array]:
     """Working space of the compiled loop: time factors, local polynomials, what is seen, how it slips."""
     rows = fed.points.shape[1]
-    return np.empty((2, rows)), np.zeros((3, fed.stage.degree + 1)), np.zeros((3, 5)), np.zeros(5)
+    return np.empty((2, rows)), np.zeros((3, fed.stage.degree + 1)), *contact_space()
 
 
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:
-    """The first sample: the slider as it is put on, before any step."""
+    """The first sample: the slider as it is put on, before any step; a slider on its way keeps its height and climb."""
     from verify import contact_kernels as kernels
 
     speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law, *room(fed)[:3])
-    sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed
+    sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed, sliding.motion[5]
+    if sliding.on_its_way is not None:
+        sliding.motion[kernels.HEIGHT], sliding.motion[kernels.CLIMB] = sliding.on_its_way
     if len(sliding.points):
         sliding.first_deflection[:] = fed.stage.deflection(fed.z, np.zeros(1), sliding.points)[0]
 

@@ -67,7 +67,7 @@ def run_once(scene: "Scene", model: str, count: int | None, ledger: bool = False
     asked = described(a, scene)
     per_period = scene.motion.steps_per_period if scene.motion else 64
     slider = replace(slider_of(a, scene), coupling="one-way") if not ledger else slider_of(a, scene)
-    return simulate(scene.beam, slider=slider, step=1.0 / (per_period * asked["frequency_hz"]), samples=samples,
+    return simulate(scene.beam, slider=slider, steps_per_period=per_period, samples=samples,
                     ledger=ledger, **asked)  # fmt: skip
 
 

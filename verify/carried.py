@@ -1,0 +1,183 @@
+"""A slider's run on a beam in time: how it is coupled, put on, stepped and told."""
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from verify.beam import PointForce
+from verify.contact import Coupling, coupling_of, law_entries
+from verify.errors import InputError
+from verify.excited import longest_step, missed, speeds, stepped
+from verify.margins import margins_of
+from verify.motion import EndState, Ledger, Motion, Statistics
+from verify.moving_mass import carried_along, receptance, weighed_down
+from verify.moving_surface import Stage
+from verify.request import MOST_STEPS, Request
+from verify.slider import Slider
+from verify.slider_run import Sliding, run_stages
+from verify.time_basis import Array, TimeBasis
+
+
+def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:
+    """How the slider is coupled where it is put on. Raises InputError."""
+    x, omega = put_on(request, slider)[0], request.omega
+    slope = abs(stage.drive_shapes(np.array([x]), 1))[:2]
+    speed = 0.5 * request.beam.thickness * omega * float(np.hypot(*slope[:, 0]))
+    felt = receptance(basis, x, omega, request.damping) if basis else complex(
+        steady_field(request, (PointForce(position=x),)).deflection([x])[0]
+    )  # fmt: skip
+    return coupling_of(slider, request.beam, request.frequency_hz, speed, felt)
+
+
+def steady_field(request: Request, forces: tuple[PointForce, ...]) -> Any:
+    """The steady field of the request's model and damping under these forces, `HarmonicField`. Raises InputError."""
+    from msgspec.structs import replace
+
+    from verify.waves import solve_by_model
+
+    if request.model != "analytic" and request.count is None:
+        raise InputError(f"count is missing: give the number of segments or elements for model = {request.model}")
+    beam, settings = request.beam, {}
+    if request.damping_replaced:
+        beam = replace(beam, loss_factor=2.0 * request.damping if request.model == "analytic" else 0.0)
+        settings = {} if request.model == "analytic" else {"modal_damping": request.damping}
+    return solve_by_model(request.model, beam, forces, request.frequency_hz, request.count, settings)
+
+
+def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Coupling | None) -> Array:
+    """The free modes at the start, (2, n), as the run before left them. Raises InputError.
+
+    Otherwise at rest or steady, and under what a slider that pushes back puts on the beam.
+    """
+    n = len(stage.modal.squares)
+    if request.before is not None:
+        if len(request.before.q) != n:
+            raise InputError(
+                f"continue_from has {len(request.before.q)} modes and this run {n}: give both the same model"
+            )
+        return stage.start(request.before.q, request.before.rates)
+    q, rates = np.zeros(n), np.zeros(n)
+    if basis and request.slider and coupling and coupling.pushes_back:
+        x = put_on(request, request.slider)[0]
+        q = q + weighed_down(basis, x, request.slider.normal_force)
+        if stage.forced is None:
+            added = carried_along(basis, stage, x, request.slider, request.damping)
+            q, rates = q + added[0], rates + added[1]
+    return stage.start(q, rates)
+
+
+def put_on(request: Request, slider: Slider) -> tuple[float, float, bool]:
+    """(position, speed, whether it sticks) at the start: where the run before left it, else as the slider says."""
+    before = request.before
+    if before is None or before.position is None:
+        return slider.start_on(request.beam), slider.speed, False
+    if not 0.0 <= before.position <= request.beam.length:
+        raise InputError(
+            f"continue_from ended with the slider at {before.position!r} m, off the beam: continue one that stays on"
+        )
+    return before.position, before.speed, before.stuck and slider.law == "coulomb"
+
+
+def slide(
+    request: Request, slider: Slider, stages: list[Stage], basis: TimeBasis | None, coupling: Coupling, began: float,
+    notes: tuple[str, ...], progress: Callable[[float], None],
+) -> Motion:  # fmt: skip
+    """Step the slider through all stages. Raises InputError where that takes too many steps."""
+    z = begin(request, stages[0], basis, coupling)
+    stages, step_note = _in_steps(request, stages, z)
+    start, sliding = _fresh(request, slider, stages, coupling)
+    energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
+    n_steps, ready = sum(stage.n_steps for stage in stages), perf_counter()
+    stopped, q, rates = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / n_steps))
+    wall = perf_counter() - ready - sliding.set_up_s
+    statistics = Statistics(steps=sliding.steps, evaluations=2 * sliding.steps + 1, step_s=stages[-1].dt,
+                            set_up_s=ready - began + sliding.set_up_s, wall_s=wall, stopped=stopped)  # fmt: skip
+    n = sliding.n_kept
+    columns = np.concatenate([sliding.first[None], sliding.kept[:n]])
+    lost = (f"events: the first {sliding.n_events} of {sliding.n_events + sliding.n_lost}",) if sliding.n_lost else ()
+    return Motion(
+        model=request.model, count=request.count, times=times_of(request, stages)[: n + 1], points=request.points,
+        deflection=np.concatenate([sliding.first_deflection[None], sliding.deflections[:n]]), slider=slider,
+        start=start, travelled=columns[:, 0], speed=columns[:, 1], friction=slider.mass * columns[:, 2],
+        surface_speed=columns[:, 3], normal_force=columns[:, 4], events=sliding.events[: sliding.n_events],
+        coupling=coupling, margins=margins_of(request, stages[-1], sliding.fall),
+        ledger=_ledger(basis, sliding, energy, q, rates) if sliding.accounts else None,
+        notes=(*notes, coupling.note, *step_note, *lost), statistics=statistics,
+        end=_end(request, stages, sliding, q, rates, coupling),
+    )  # fmt: skip
+
+
+def times_of(request: Request, stages: list[Stage]) -> Array:
+    """When the start and the samples of all stages stand, (n,), seconds."""
+    return np.concatenate([[request.origin], *(stage.origin + stage.sample_times for stage in stages)])
+
+
+def _in_steps(request: Request, stages: list[Stage], z: Array) -> tuple[list[Stage], tuple[str, ...]]:
+    """The stages in steps that follow what the start excites; of given steps, a note by how much they are too long."""
+    duration, dt = sum(stage.duration for stage in stages), max(stage.dt for stage in stages)
+    enough = longest_step(stages, z, request.beam.length, dt)
+    if request.step is None:
+        if duration / enough > MOST_STEPS:
+            raise InputError(
+                f"duration = {duration!r} s: what the start excites takes steps of {enough:.2g} s, more than "
+                f"{MOST_STEPS:.0e} of them: shorten the duration, lengthen soft_start_periods, or give a step"
+            )
+        return stepped(stages, enough), ()
+    if enough >= dt:
+        return stages, ()
+    share = missed(*speeds(stages, z, request.beam.length), dt)
+    return stages, (
+        f"step: {dt:.3g} s is {dt / enough:.3g} times too long for what the start excites and misses "
+        f"{100 * share:.2g} % of the surface's speed; give at most {enough:.2g} s",
+    )
+
+
+def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> tuple[float, Sliding]:
+    """Where the slider starts, and room for its run."""
+    start, speed, stuck = put_on(request, slider)
+    sliding = Sliding.fresh(start, sum(stage.n_steps // stage.every for stage in stages), request.points,
+                            law_entries(slider, request.beam), coupling.two_way,
+                            request.accounts and request.start == "rest")  # fmt: skip
+    sliding.motion[1:3] = speed, stuck
+    if request.before is not None and request.before.height is not None:
+        sliding.on_its_way = request.before.height, request.before.climb
+    return start, sliding
+
+
+def _end(
+    request: Request, stages: list[Stage], sliding: Sliding, q: Array, rates: Array, coupling: Coupling
+) -> EndState:
+    height, climb = sliding.held if coupling.pushes_back else (None, 0.0)
+    return EndState(time=_reached(stages, sliding.steps), q=q, rates=rates,
+                    position=sliding.start + float(sliding.motion[0]), speed=float(sliding.motion[1]),
+                    stuck=bool(sliding.motion[2] > 0.0), height=height, climb=climb)  # fmt: skip
+
+
+def _reached(stages: list[Stage], steps: int) -> float:
+    """The time after so many steps, seconds."""
+    for stage in stages:
+        if steps <= stage.n_steps:
+            break
+        steps -= stage.n_steps
+    return stage.origin + steps * stage.dt
+
+
+def _beam_energy(basis: TimeBasis, q: Array, rates: Array) -> tuple[float, float]:
+    """(kinetic, elastic), joules."""
+    return 0.5 * float(rates @ rates), 0.5 * float((basis.omegas**2 * q) @ q)
+
+
+def _ledger(
+    basis: TimeBasis | None, sliding: Sliding, before: tuple[float, float], q: Array, rates: Array
+) -> Ledger | None:
+    if basis is None:
+        return None
+    on_beam, on_slider, driven, damped, rubbed, lifted = (float(v) for v in sliding.ledger)
+    kinetic, elastic = _beam_energy(basis, q, rates)
+    gained = kinetic + elastic - sum(before)
+    charged = on_beam + lifted if sliding.two_way else 0.0
+    return Ledger(kinetic=kinetic, elastic=elastic, slider=on_slider, work_in=driven, damped=damped, rubbed=rubbed,
+                  contact_on_beam=on_beam, normal_on_beam=lifted,
+                  residual=driven + charged - damped - gained)  # fmt: skip

@@ -1,0 +1,70 @@
+"""The step of a slider's run: as long as it can be for what the start excites, and no longer."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from msgspec.structs import replace
+
+from verify.moving_surface import Stage, cut, free_at
+from verify.time_basis import Array
+
+UNSEEN = 1e-3
+"""Of the surface's speed, rms: what the steps of a run may miss of it."""
+PLACES = 257
+"""Along the beam, for the speed of the driven part."""
+
+
+def speeds(stages: Sequence[Stage], z: Array, length: float) -> tuple[Array, Array, float]:
+    """(omega, w' amplitude times omega of the free modes, the same of the driven motion), (n,), (n,), rad/s.
+
+    Means over the beam, the largest of all stages. The slope of the nth mode is taken as n pi / L of its deflection,
+    whose mean square over a beam of uniform mass is 1/mass; only ratios matter.
+    """
+    modal = stages[0].modal
+    free = np.max([np.hypot(*start) for start in _starts(stages, z)], axis=0)
+    x = np.linspace(0.0, length, PLACES)
+    rms = np.sqrt((stages[0].free_shapes(x, 0)[:1] ** 2).mean())
+    wavenumbers = np.pi / length * np.arange(1, len(free) + 1)
+    driven = stages[-1].omega * np.sqrt((stages[-1].drive_shapes(x, 1)[:2] ** 2).sum(axis=0).mean())
+    return modal.omegas, modal.omegas * free * wavenumbers * rms, float(driven)
+
+
+def _starts(stages: Sequence[Stage], z: Array) -> Iterator[Array]:
+    """The free modes at the start of every stage, (2, n) each."""
+    yield z
+    for before, stage in pairwise(stages):
+        z = stage.start(*before.state(free_at(before, z, before.duration), before.duration))
+        yield z
+
+
+def missed(omegas: Array, free: Array, driven: float, dt: float) -> float:
+    """Share of the surface's speed, rms, that steps of dt do not follow.
+
+    A step sees its start, middle and end: the parabola through them misses (omega dt / 2)^4 / 180 of the mean of a
+    cosine, and all of one that turns faster than that.
+    """
+    errors = np.minimum((0.5 * omegas * dt) ** 4 / 180.0, 1.0)
+    total = np.hypot(driven, np.sqrt((free**2).sum()))
+    return float(np.sqrt(((free * errors) ** 2).sum()) / total) if total else 0.0
+
+
+def longest_step(stages: Sequence[Stage], z: Array, length: float, longest: float) -> float:
+    """The longest of `longest`, its half, its quarter, ... that misses less than UNSEEN, seconds."""
+    if not len(stages[0].modal.omegas):
+        return longest
+    found = speeds(stages, z, length)
+    step = longest
+    while missed(*found, step) > UNSEEN:
+        step *= 0.5
+    return step
+
+
+def stepped(stages: Sequence[Stage], step: float) -> list[Stage]:
+    """The same stages in steps no longer than `step`, with the same samples."""
+    return [_cut(stage, step) for stage in stages]
+
+
+def _cut(stage: Stage, step: float) -> Stage:
+    steps = cut(stage.duration, step, stage.n_steps // stage.every)
+    return replace(stage, n_steps=steps.n, dt=steps.dt, every=steps.every)

@@ -1,0 +1,56 @@
+"""A mass held on a vibrating beam: how much the beam feels it, and how beam and mass stand at the start of a run."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from verify.errors import InputError
+from verify.fields import RESONANCE
+from verify.time_basis import Array, ComplexArray, TimeBasis
+
+if TYPE_CHECKING:
+    from verify.moving_surface import Stage
+    from verify.slider import Slider
+
+PASSES = 4
+"""Each shortens what is left of the way by (h/2) w'' and more."""
+
+
+def modal_receptance(basis: TimeBasis, x: float, omega: float, damping: float) -> ComplexArray:
+    """Deflection of every mode under a unit force e^{i omega t} at x, (n,): phi / (omega_n^2 - omega^2 + ...)."""
+    stiff = basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega
+    return np.asarray(basis.shapes(np.array([x]), 0)[:, 0] / stiff)
+
+
+def receptance(basis: TimeBasis, x: float, omega: float, damping: float) -> complex:
+    """G(x, x) of the modes, m/N."""
+    return complex(basis.shapes(np.array([x]), 0)[:, 0] @ modal_receptance(basis, x, omega, damping))
+
+
+def weighed_down(basis: TimeBasis, x: float, load: float) -> Array:
+    """Modes of a beam at rest under a weight on its surface at x, (n,): it acts at the material x + (h/2) w' there."""
+    at, half = x, 0.5 * basis.beam.thickness
+    still = np.zeros(len(basis.omegas))
+    for _ in range(PASSES):
+        still = -load * basis.shapes(np.array([at]), 0)[:, 0] / basis.omegas**2
+        at = min(max(x + half * float(still @ basis.shapes(np.array([x]), 1)[:, 0]), 0.0), basis.beam.length)
+    return np.asarray(still)
+
+
+def carried_along(basis: TimeBasis, stage: "Stage", x: float, slider: "Slider", damping: float) -> tuple[Array, Array]:
+    """What the slider's mass at rest at x adds to a steady beam at the stage's time 0: (q, dq/dt), (n,) each.
+
+    W = W_0 / (1 - m omega^2 G): the mass pushes with m omega^2 W. Raises InputError where that is a resonance.
+    """
+    omega = stage.omega
+    answer = modal_receptance(basis, x, omega, damping)
+    given = stage.drive_shapes(np.array([x]), 0)[:, 0]
+    loop = 1.0 - slider.mass * omega**2 * receptance(basis, x, omega, damping)
+    if abs(loop) < RESONANCE:
+        raise InputError(
+            f"slider.mass = {slider.mass!r} kg held at {x!r} m is in resonance with the drive: give the beam a "
+            "loss_factor or choose another mass"
+        )
+    push = slider.mass * omega**2 * (given[0] + 1j * given[1]) / loop * np.exp(1j * omega * stage.origin)
+    phasors = push * answer
+    return phasors.real, (1j * omega * phasors).real

@@ -1,0 +1,142 @@
+"""A simulation as it was asked for: checked, its envelope cut into pieces."""
+
+from collections.abc import Sequence
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam, PointForce, check_number, check_whole
+from verify.errors import InputError
+from verify.fields import check_drive
+from verify.forcing import CONSTANT, SMOOTH_STEP
+from verify.motion import EndState, Motion
+from verify.moving_surface import Growth, check_line, cut
+from verify.slider import Slider
+from verify.time_basis import Array
+
+STEPS_PER_PERIOD = 64
+"""At least: more where the start excites faster modes (`excited`)."""
+COARSEST = 0.25
+"""Of a period: longer steps of a slider are refused."""
+MOST_STEPS = 2e9
+Envelope = Sequence[tuple[float, Sequence[float]]]
+"""Pieces (seconds, coefficients of powers of t / seconds) of the forces' amplitude."""
+
+
+class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A simulation, checked and with its steps laid out."""
+
+    beam: Beam
+    forces: tuple[PointForce, ...]
+    frequency_hz: float
+    model: str
+    count: int | None
+    modes: int
+    start: str
+    damping: float
+    slider: Slider | None
+    points: Array
+    pieces: tuple[Growth, ...]
+    """Cut into steps of the longest length allowed; a slider's run may take shorter ones."""
+    step: float | None
+    """Seconds, as given; None where the step follows what the start excites."""
+    accounts: bool
+    before: EndState | None
+
+    @property
+    def omega(self) -> float:
+        """2 pi f, rad/s."""
+        return 2.0 * np.pi * self.frequency_hz
+
+    @property
+    def origin(self) -> float:
+        """Seconds that have passed when this run begins."""
+        return self.before.time if self.before else 0.0
+
+    @property
+    def damping_replaced(self) -> bool:
+        """Whether the ratio of every mode is another than half the beam's loss factor."""
+        return self.damping != 0.5 * self.beam.loss_factor
+
+    @property
+    def line(self) -> str:
+        """The contact line."""
+        return self.slider.line if self.slider else "spline"
+
+
+def requested(
+    beam: Beam, forces: tuple[PointForce, ...], frequency_hz: float, duration: float, model: str, count: int | None,
+    modes: int, start: str, soft: float, envelope: Envelope, damping: float | None, slider: Slider | None,
+    at: Sequence[float], samples: int, step: float | None, steps_per_period: int, ledger: bool, before: Motion | None,
+) -> Request:  # fmt: skip
+    """A checked request. Raises InputError."""
+    check_drive(beam, forces, frequency_hz)
+    check_number("duration", duration, "seconds", above=0)
+    _check_start(model, start, soft, envelope, before)
+    check_whole("samples", samples, 2)
+    if samples > 10_000_000:
+        raise InputError(f"samples = {samples!r}: keep between 2 and 10000000 of them")
+    zeta = 0.5 * beam.loss_factor if damping is None else damping
+    check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
+    points = np.atleast_1d(np.asarray(at, dtype=float)) if len(at) else np.empty(0)
+    if not np.all((points >= 0.0) & (points <= beam.length)):
+        raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
+    longest = _longest(frequency_hz, duration, step, steps_per_period, slider)
+    check_line(model, start, slider.line if slider else "spline")
+    grown = (
+        ((soft / frequency_hz, SMOOTH_STEP),) if soft else tuple((s, np.asarray(c, dtype=float)) for s, c in envelope)
+    )
+    return Request(beam=beam, forces=forces, frequency_hz=frequency_hz, model=model, count=count, modes=modes,
+                   start=start, damping=zeta, slider=slider, points=points, accounts=ledger, step=step,
+                   before=before.end if before else None,
+                   pieces=laid_out(duration, grown, longest, samples - 1))  # fmt: skip
+
+
+def _check_start(model: str, start: str, soft: float, envelope: Envelope, before: Motion | None) -> None:
+    check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
+    if model not in ("analytic", "fem", "segment"):
+        raise InputError(f"model = {model!r} is not known: known are analytic, fem, segment")
+    if start not in ("rest", "steady"):
+        raise InputError(f"start = {start!r} is not known: known are rest, steady")
+    if (soft or envelope) and (start == "steady" or before):
+        raise InputError(f"soft_start_periods = {soft!r}: a beam that moves already has no start, leave it out")
+    if soft and envelope:
+        raise InputError(f"soft_start_periods = {soft!r} and an envelope: give one of the two")
+
+
+def _longest(
+    frequency_hz: float, duration: float, step: float | None, steps_per_period: int, slider: Slider | None
+) -> float:
+    """The longest step of a slider, seconds. Raises InputError."""
+    check_whole("steps_per_period", steps_per_period, 1)
+    longest = 1.0 / (steps_per_period * frequency_hz) if step is None else step
+    check_number("step", longest, "seconds", above=0)
+    if slider is not None and longest * frequency_hz > COARSEST:
+        raise InputError(
+            f"step = {longest!r} s is {longest * frequency_hz:.3g} periods of the drive, which a slider would not see: "
+            f"give at most {COARSEST / frequency_hz:.3g} s"
+        )
+    if duration / longest > MOST_STEPS:
+        raise InputError(
+            f"step = {longest!r} takes more than {MOST_STEPS:.0e} steps: lengthen the step or shorten the duration"
+        )
+    return longest
+
+
+def laid_out(duration: float, grown: Sequence[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
+    """Steps of every piece of the envelope and of the constant forces after it, samples shared by length."""
+    lengths = [seconds for seconds, _ in grown]
+    if any(not 0.0 < s < np.inf for s in lengths) or any(not len(c) or not np.all(np.isfinite(c)) for _, c in grown):
+        raise InputError(
+            "envelope: give pieces (seconds, coefficients), each longer than 0 s and of finite coefficients"
+        )
+    rest = duration - sum(lengths)
+    if grown and rest < -1e-12 * duration:
+        raise InputError(
+            f"the forces grow over {sum(lengths)!r} s of duration = {duration!r} s: shorten soft_start_periods or "
+            "envelope, or lengthen the duration"
+        )
+    pieces = list(grown) + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
+    shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]
+    shares[-1] = max(samples - sum(shares[:-1]), 1)
+    return tuple(Growth(cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))
