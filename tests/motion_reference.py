@@ -2,6 +2,7 @@
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from verify.beam import Beam, PointForce
 
@@ -65,3 +66,68 @@ def coupled_motion(basis, slider, duration, damping, soft_s=0.0, two_way=True):
     y0[2 * n + 1] = slider.speed
     found = solve_ivp(rates, (0, duration), y0, method="DOP853", rtol=1e-11, atol=1e-18, max_step=0.02 / FREQUENCY)
     return found.y[2 * n :, -1]
+
+
+def held_motion(basis, slider, duration, damping, soft_s=0.0):
+    """(q, distance, speed along the beam) of a tanh slider held on the surface of a beam that carries it, DOP853.
+
+    The slider is at (x, w(X)), X = x + (h/2) w'(x). Its acceleration across is the derivative of w(X) along the motion,
+    taken by central differences of its speed across; it is linear in the reaction, which follows from two values.
+    """
+    n, omega, half = len(basis.omegas), 2 * np.pi * FREQUENCY, 0.5 * basis.beam.thickness
+    loads = [(f, basis.loads(f.position)) for f in FORCES]
+    start, follows = slider.start_on(basis.beam), slider.kinematics == "following"
+    tick = 1e-4 / basis.omegas.max()
+
+    def shape(x, derivative):
+        return basis.shapes(np.array([x]), derivative)[:, 0]
+
+    def split(y):
+        q, qd, x = y[:n], y[n : 2 * n], start + y[2 * n]
+        return q, qd, x, x + half * (q @ shape(x, 1)), y[2 * n + 1]
+
+    def along_x(y):
+        q, qd, _, material, v = split(y)
+        return v - (q @ shape(material, 1)) * (qd @ shape(material, 0)) * follows
+
+    def across(y):
+        q, qd, x, material, _ = split(y)
+        moved = along_x(y) * (1 + half * (q @ shape(x, 2))) + half * (qd @ shape(x, 1))
+        return qd @ shape(material, 0) + (q @ shape(material, 1)) * moved
+
+    def rates(t, y, reaction):
+        q, qd, _, material, v = split(y)
+        rise, slope = qd @ shape(material, 0), q @ shape(material, 1)
+        along = (slope * shape(material, 0) - half * shape(material, 1)) / np.hypot(1.0, slope)
+        friction = -slider.mu * slider.normal_force * np.tanh(slider.slope * (v - qd @ along))
+        push = sum(f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in loads)
+        bent = grown(t, soft_s) * push - 2 * damping * basis.omegas * qd - basis.omegas**2 * q
+        pull = rise * (qd @ shape(material, 1) + q @ shape(material, 2) * v) - slider.gravity * slope
+        return np.concatenate([
+            qd, bent - friction * along - reaction * shape(material, 0), [along_x(y), pull * follows + friction / slider.mass]
+        ])  # fmt: skip
+
+    def held(t, y):
+        lifts = []
+        for reaction in (0.0, 1.0):
+            way = tick * rates(t, y, reaction)
+            lifts.append((across(y + way) - across(y - way)) / (2 * tick))
+        found = (slider.normal_force + slider.mass * lifts[0]) / (1 - slider.mass * (lifts[1] - lifts[0]))
+        return rates(t, y, found)
+
+    y0 = np.zeros(2 * n + 2)
+    y0[:n], y0[2 * n + 1] = _lying(basis, slider, start, half), slider.speed
+    found = solve_ivp(held, (0, duration), y0, method="DOP853", rtol=1e-10, atol=1e-17, max_step=0.02 / FREQUENCY)
+    return found.y[:n, -1], found.y[2 * n, -1], found.y[2 * n + 1, -1]
+
+
+def _lying(basis, slider, x, half):
+    """Modes of the beam at rest under the slider: the material under it by bisection."""
+
+    def still(at):
+        return -slider.normal_force * basis.shapes(np.array([at]), 0)[:, 0] / basis.omegas**2
+
+    def beside(at):
+        return at - x - half * float(still(at) @ basis.shapes(np.array([x]), 1)[:, 0])
+
+    return still(brentq(beside, x - 10 * half, x + 10 * half, xtol=1e-15, rtol=1e-14))

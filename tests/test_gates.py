@@ -10,6 +10,7 @@ from msgspec import structs
 from verify import (
     analytic_harmonic,
     axial_study,
+    carried,
     chain,
     chain_dynamics,
     chain_kernels,
@@ -19,13 +20,16 @@ from verify import (
     chain_walls,
     closed_forms,
     compare,
+    contact,
     contact_kernels,
     division,
     eigen,
     fem_beam,
     fem_motion,
     forcing,
+    motions,
     pure_wave,
+    request,
     rigid_surface,
     segment_model,
     segment_motion,
@@ -426,7 +430,7 @@ def links_that_do_not_shorten_where_they_turn(patch):
 
 def surface_lever_forgotten(patch):
     """The slider feels the mid-line, whose first-order speed is across."""
-    for module in (simulate, pure_wave):
+    for module in (carried, pure_wave):
         true = module.law_entries
         patch.setattr(module, "law_entries", lambda *given, true=true: entries_with(true(*given), HALF=1e-9))
 
@@ -469,8 +473,62 @@ def friction_that_pushes(patch):
 
 
 def one_way_for_two_way(patch):
-    true = simulate.coupling_of
-    patch.setattr(simulate, "coupling_of", lambda *given: structs.replace(true(*given), two_way=False))
+    true = carried.coupling_of
+    patch.setattr(carried, "coupling_of", lambda *given: structs.replace(true(*given), two_way=False))
+
+
+def held_slider_without_inertia(patch):
+    """Nor weight: only friction is given back to the beam."""
+    true = carried.law_entries
+
+    def light(*given):
+        law = true(*given)
+        law[contact_kernels.HELD] = 0.0
+        return law
+
+    patch.setattr(carried, "law_entries", light)
+
+
+def weight_of_another_load(patch):
+    true = carried.law_entries
+    patch.setattr(carried, "law_entries", lambda *given: entries_with(true(*given), LOAD=1.001))
+
+
+def steady_start_without_the_mass(patch):
+    patch.setattr(carried, "carried_along", lambda basis, *given: (np.zeros(len(basis.omegas)),) * 2)
+
+
+def start_without_the_sag(patch):
+    patch.setattr(carried, "weighed_down", lambda basis, *given: np.zeros(len(basis.omegas)))
+
+
+def mass_that_pulls_the_beam_along(patch):
+    """Its inertia with the sign of a spring."""
+    true = motions.slider_of
+    patch.setattr(motions, "slider_of", lambda *given: _with_mass(true(*given), -1.0))
+
+
+def _with_mass(slider, factor):
+    """A slider that its own checks would refuse."""
+    other = structs.replace(slider)
+    structs.force_setattr(other, "mass", factor * slider.mass)
+    return other
+
+
+def friction_at_the_mid_line(patch):
+    """The moment arm of friction is a whole thickness."""
+    true = contact.coupling_of
+    patch.setattr(
+        contact,
+        "coupling_of",
+        lambda slider, beam, *given: true(slider, structs.replace(beam, thickness=2 * beam.thickness), *given),
+    )
+
+
+def driving_point_read_a_node_off(patch):
+    """The response to a unit force is that of one a twentieth of a millimetre away."""
+    true = motions.PointForce
+    patch.setattr(motions, "PointForce", lambda position: true(position=position + 5e-5))
 
 
 def raw_line_for_the_spline(patch):
@@ -483,8 +541,8 @@ def raw_line_for_the_spline(patch):
 
 
 def step_load_for_the_soft_start(patch):
-    true = simulate._laid_out
-    patch.setattr(simulate, "_laid_out", lambda duration, grown, *given: true(duration, (), *given))
+    true = request.laid_out
+    patch.setattr(request, "laid_out", lambda duration, grown, *given: true(duration, (), *given))
 
 
 def load_in_time_on_the_next_joint(patch):
@@ -596,7 +654,13 @@ FAULTS_ELSEWHERE = {
         friction_under_another_gravity: {"free-decay", "creep", "coulomb-decrement", "belt-stick-time", "belt-slip-time"},
         static_friction_for_kinetic: {"belt-stick-time", "belt-slip-time"},
         friction_of_half_the_slope: {"free-decay", "creep"},
-        one_way_for_two_way: {"slider-felt"},
+        one_way_for_two_way: {"slider-felt", "held-from-rest"},
+        held_slider_without_inertia: {"held-steady-segments", "held-steady-elements", "held-from-rest"},
+        steady_start_without_the_mass: {"held-steady-segments", "held-steady-elements"},
+        start_without_the_sag: {"held-steady-segments", "held-steady-elements"},
+        mass_that_pulls_the_beam_along: {"loaded-exact", "loaded-segments", "loaded-elements"},
+        friction_at_the_mid_line: {"friction-size"},
+        driving_point_read_a_node_off: {"normal-size", "loaded-exact"},
         raw_line_for_the_spline: {"slider-segments", "slider-order-segment", "slider-felt", "beam-segments"},
         step_load_for_the_soft_start: {"slider-segments", "slider-elements", "slider-order-segment", "slider-order-fem", "beam-segments", "beam-elements", "slider-felt"},
         load_in_time_on_the_next_joint: {"slider-segments", "slider-order-segment", "slider-felt", "beam-segments"},
@@ -608,6 +672,12 @@ FAULTS_ELSEWHERE = {
         standing_wave_for_a_travelling_one: {"terminal-speed-flat", "terminal-speed-quarter", "terminal-speed-steep", "terminal-speed-following"},
         phases_in_time_of_the_wrong_sign: {"slider-against-the-wave", "slider-reversed", "slider-steady", "slider-segments", "beam-segments"},
         surface_seen_half_a_step_late: {"slider-order-step", "slider-step-steep"},
+    },
+    "moving-load": {
+        held_slider_without_inertia: {
+            "largest-deflection", "largest-deflection-segments", "largest-deflection-elements", "on-the-way",
+        },
+        weight_of_another_load: {"largest-deflection", "on-the-way"},
     },
     "chain": {
         wall_joint_as_stiff_as_any_other: {"elastica-deflection", "elastica-shortening", "rollup-gap-of-gregory"},

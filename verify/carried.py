@@ -86,7 +86,7 @@ def slide(
 ) -> Motion:  # fmt: skip
     """Step the slider through all stages. Raises InputError where that takes too many steps."""
     z = begin(request, stages[0], basis, coupling)
-    stages, step_note = _in_steps(request, stages, z)
+    stages, step_note = _in_steps(request, stages, z, coupling)
     start, sliding = _fresh(request, slider, stages, coupling)
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
     n_steps, ready = sum(stage.n_steps for stage in stages), perf_counter()
@@ -114,15 +114,18 @@ def times_of(request: Request, stages: list[Stage]) -> Array:
     return np.concatenate([[request.origin], *(stage.origin + stage.sample_times for stage in stages)])
 
 
-def _in_steps(request: Request, stages: list[Stage], z: Array) -> tuple[list[Stage], tuple[str, ...]]:
+def _in_steps(
+    request: Request, stages: list[Stage], z: Array, coupling: Coupling
+) -> tuple[list[Stage], tuple[str, ...]]:
     """The stages in steps that follow what the start excites; of given steps, a note by how much they are too long."""
     duration, dt = sum(stage.duration for stage in stages), max(stage.dt for stage in stages)
-    enough = longest_step(stages, z, request.beam.length, dt)
+    coarsest = 0.5 * dt if coupling.pushes_back and request.step is None else dt  # its waves run within a step
+    enough = longest_step(stages, z, request.beam.length, coarsest)
     if request.step is None:
         if duration / enough > MOST_STEPS:
             raise InputError(
                 f"duration = {duration!r} s: what the start excites takes steps of {enough:.2g} s, more than "
-                f"{MOST_STEPS:.0e} of them: shorten the duration, lengthen soft_start_periods, or give a step"
+                f"{MOST_STEPS:g} of them: shorten the duration, lengthen soft_start_periods, or give a step"
             )
         return stepped(stages, enough), ()
     if enough >= dt:

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify.moving_surface import Stage, cut, free_at
 from verify.time_basis import Array
 
-UNSEEN = 1e-3
+UNSEEN = 1e-4
 """Of the surface's speed, rms: what the steps of a run may miss of it."""
 PLACES = 257
 """Along the beam, for the speed of the driven part."""

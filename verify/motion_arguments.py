@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.quantity_types import Arguments, Size, Sizes
+from verify.quantity_types import Arguments, Size, Sizes, check_count
 from verify.slider import GRAVITY
 
 Positive = Annotated[float, Meta(gt=0)]
@@ -113,8 +113,44 @@ class SliderInTime(InTime, frozen=True, kw_only=True):
         Annotated[Literal["held", "massless"], Meta(description="whether its weight and inertia act on the beam")]
         | None
     ) = None
+    preload: Annotated[float, Meta(ge=0, description="newton pressing it on beside its weight")] | None = None
     slider_position: Annotated[float, Meta(description="where it starts, metres")] | None = None
     slider_speed: Annotated[float, Meta(description="at the start, m/s")] | None = None
+
+
+class SliderDeflection(SliderInTime, frozen=True, kw_only=True):
+    """A place on the beam while the slider is on it."""
+
+    x: Annotated[float, Meta(description="metres from the left end")]
+
+
+class Steady(Arguments, frozen=True, kw_only=True):
+    """The driven beam in its steady state with the slider on it: what is not given is the scene's."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    count: Size | None = None
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
+    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
+    mass: Annotated[float, Meta(gt=0, description="kg")] | None = None
+    slider_position: Annotated[float, Meta(description="where it stands, metres")] | None = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+
+
+class LoadedDeflection(Steady, frozen=True, kw_only=True):
+    """A place on the beam that carries the slider's mass at rest."""
+
+    x: Annotated[float, Meta(description="metres from the left end")]
+
+
+class CouplingSize(Steady, frozen=True, kw_only=True):
+    """What of the slider the beam may feel."""
+
+    of: Annotated[Literal["friction", "normal"], Meta(description="full friction, or m omega^2 |G| of its inertia")]
+    mu: Friction | None = None
+    preload: Annotated[float, Meta(ge=0, description="newton pressing it on beside its weight")] | None = None
 
 
 class SliderOrder(SliderInTime, frozen=True, kw_only=True):

@@ -3,12 +3,15 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.motion_arguments import (
+    CouplingSize,
     Creep,
     DeflectionAt,
     FreeDecay,
+    LoadedDeflection,
     OnBelt,
     OnWave,
     Oscillator,
+    SliderDeflection,
     SliderInTime,
     SliderOrder,
 )
@@ -68,6 +71,24 @@ def _slider(name: str) -> Any:
     return evaluate
 
 
+def _deflection_under(a: SliderDeflection, scene: "Scene", bench: Workbench) -> float:
+    from verify.motions import with_slider
+
+    return float(with_slider(a, scene, bench, at=(a.x,)).deflection[-1, 0])
+
+
+def _loaded(a: LoadedDeflection, scene: "Scene", bench: Workbench) -> complex:
+    from verify.motions import loaded_deflection
+
+    return loaded_deflection(a, scene)
+
+
+def _coupling_size(a: CouplingSize, scene: "Scene", bench: Workbench) -> float:
+    from verify.motions import coupling_size
+
+    return coupling_size(a, scene)
+
+
 def _order(a: SliderOrder, scene: "Scene", bench: Workbench) -> float:
     from verify.motions import slider_order
 
@@ -102,5 +123,11 @@ MOTION_QUANTITIES = (
     Quantity("slider.mean_speed", "m/s", "Displacement over time.", SliderInTime, _nothing, _slider("mean_speed")),
     Quantity("slider.order", "1", "Observed order of the slider's displacement in the size or in the step.",
              SliderOrder, _nothing, _order),
+    Quantity("slider.deflection", "m", "Of the beam at a place and time while the slider is on it.",
+             SliderDeflection, _nothing, _deflection_under),
+    Quantity("slider.coupling_size", "1", "What of the slider the beam may feel: full friction, or its inertia.",
+             CouplingSize, _nothing, _coupling_size),
+    Quantity("slider.loaded_deflection", "m", "Complex, of the steady beam that carries the slider's mass at rest.",
+             LoadedDeflection, _nothing, _loaded),
     Quantity("motion.deflection", "m", "Of the driven beam at a place and time.", DeflectionAt, _nothing, _deflection),
 )  # fmt: skip

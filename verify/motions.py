@@ -4,26 +4,28 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
+from verify.beam import PointForce
 from verify.errors import InputError
 from verify.motion import Motion
 from verify.request import STEPS_PER_PERIOD
 from verify.simulate import simulate
 from verify.slider import Slider
-from verify.waves import drive_forces, drive_frequency
+from verify.waves import drive_forces, drive_frequency, solve_by_model
 
 if TYPE_CHECKING:
     from verify.scene import Scene
     from verify.workbench import Workbench
 
 _OWN = {"mu": "mu", "slope": "slope", "mass": "mass", "law": "law", "coupling": "coupling", "line": "line",
-        "kinematics": "kinematics", "normal": "normal", "slider_position": "position", "slider_speed": "speed"}  # fmt: skip
+        "kinematics": "kinematics", "normal": "normal", "preload": "preload", "slider_position": "position",
+        "slider_speed": "speed"}  # fmt: skip
 
 
 def slider_of(a: Any, scene: "Scene") -> Slider:
     """The scene's slider with what is given instead. Raises InputError where there is none."""
     if scene.slider is None:
         raise InputError("the scene has no slider: add [slider] with mass and mu")
-    given = {own: getattr(a, name) for name, own in _OWN.items() if getattr(a, name) is not None}
+    given = {own: getattr(a, name) for name, own in _OWN.items() if getattr(a, name, None) is not None}
     return replace(scene.slider, **given)
 
 
@@ -46,11 +48,13 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
     }  # fmt: skip
 
 
-def with_slider(a: Any, scene: "Scene", bench: "Workbench", samples: int = 2, ledger: bool = False) -> Motion:
+def with_slider(
+    a: Any, scene: "Scene", bench: "Workbench", samples: int = 2, ledger: bool = False, at: tuple[float, ...] = ()
+) -> Motion:
     """The slider's run, solved once. Raises InputError where it does not reach its end."""
     asked, slider = described(a, scene), slider_of(a, scene)
     steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
-    key = ("slider", scene.beam, slider, a.step, steps, samples, ledger, *asked.values())
+    key = ("slider", scene.beam, slider, a.step, steps, samples, ledger, at, *asked.values())
     if key not in bench.motions:
         bench.motions[key] = simulate(
             scene.beam,
@@ -59,6 +63,7 @@ def with_slider(a: Any, scene: "Scene", bench: "Workbench", samples: int = 2, le
             steps_per_period=steps,
             samples=samples,
             ledger=ledger,
+            at=at,
             progress=bench.tell,
             **asked,
         )
@@ -81,6 +86,36 @@ def without_slider(a: Any, scene: "Scene", bench: "Workbench") -> Motion:
         bench.motions[key] = simulate(scene.beam, at=[a.x], samples=2, ledger=False, **asked)
     found: Motion = bench.motions[key]
     return found
+
+
+def coupling_size(a: Any, scene: "Scene") -> float:
+    """The size of a slider's friction or of its inertia at its place, by one model. Raises InputError."""
+    from verify.contact import coupling_of, surface_speed
+
+    slider, frequency = slider_of(a, scene), drive_frequency(a, scene)
+    x = slider.start_on(scene.beam)
+    drive = solve_by_model(a.model, scene.beam, drive_forces(a, scene), frequency, a.count, {})
+    unit = solve_by_model(a.model, scene.beam, (PointForce(position=x),), frequency, a.count, {})
+    found = coupling_of(slider, scene.beam, frequency, surface_speed(drive, x), unit.deflection([x])[0])
+    if a.of == "normal":
+        return found.normal_size
+    if found.friction_size is None:
+        raise InputError(f"slider.position = {x!r} m: the drive does not move the surface there, choose another")
+    return found.friction_size
+
+
+def loaded_deflection(a: Any, scene: "Scene") -> complex:
+    """At x, of the steady beam that carries the slider's mass at rest, by one model. Raises InputError.
+
+    W = W_0 + m omega^2 W(x_s) G(x, x_s), and W(x_s) = W_0(x_s) / (1 - m omega^2 G(x_s, x_s)).
+    """
+    slider, frequency = slider_of(a, scene), drive_frequency(a, scene)
+    place = slider.start_on(scene.beam)
+    drive = solve_by_model(a.model, scene.beam, drive_forces(a, scene), frequency, a.count, {})
+    unit = solve_by_model(a.model, scene.beam, (PointForce(position=place),), frequency, a.count, {})
+    inertia = slider.mass * drive.omega**2
+    under = drive.deflection([place])[0] / (1.0 - inertia * unit.deflection([place])[0])
+    return complex(drive.deflection([a.x])[0] + inertia * under * unit.deflection([a.x])[0])
 
 
 def slider_order(a: Any, scene: "Scene", bench: "Workbench") -> float:

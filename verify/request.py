@@ -118,7 +118,7 @@ def _longest(
         )
     if duration / longest > MOST_STEPS:
         raise InputError(
-            f"step = {longest!r} takes more than {MOST_STEPS:.0e} steps: lengthen the step or shorten the duration"
+            f"step = {longest!r} takes more than {MOST_STEPS:g} steps: lengthen the step or shorten the duration"
         )
     return longest
 
