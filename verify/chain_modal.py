@@ -58,7 +58,7 @@ def modal_basis(system: ChainSystem, rest: ChainState | None = None, n_modes: in
 
     All of them by dense matrices, O(N^3); or the lowest `n_modes` of an unloaded straight chain by Lanczos, which goes
     to 10^4 links and leaves the others out of the linear motion too. Raises InputError for actuators and moving
-    hubs, which the linear flow does not know.
+    hubs, which the linear flow does not know, and for an equilibrium that is unstable.
     """
     if system.actuators or system.rotation.rate or system.rotation.amplitude:
         raise InputError("chain: actuators and a turning base have no modal flow; give method = 'adaptive' or 'rk4'")
@@ -79,6 +79,8 @@ def _all_modes(system: ChainSystem, rest: ChainState) -> tuple[Array, Array, Arr
     basis = linear.independent()
     values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
     modes, tilt = (basis @ vectors).T, 0.0
+    if values[:1] < 0.0:
+        linear.frequencies()  # says what is unstable; below 0 by rounding alone is a motion without a spring
     omega = np.sqrt(np.maximum(values, 0.0))
     if len(linear.constraint):
         normal = np.linalg.solve(linear.mass, linear.constraint[0])
@@ -121,8 +123,8 @@ def simulate_modal(
 ) -> ChainMotion:
     """The motion from `start`, kept at `times`, by exact linear flow and nonlinear kicks.
 
-    `kicks` to a step, 1 to 3; `n_modes` (all unless given) take part in the nonlinear motion. The chain has no
-    ledger of work here. Raises InputError.
+    `kicks` to a step, 1 to 3; `n_modes` (all unless given) take part in the nonlinear motion, which dashpots allow
+    all of them alone. The chain has no ledger of work here. Raises InputError.
     """
     check_number("step", step, "seconds", above=0)
     if kicks not in SCHEMES:
@@ -130,6 +132,8 @@ def simulate_modal(
     n, held = len(basis.omega), int(basis.tilt != 0.0)
     if n_modes is not None and not 1 <= n_modes <= n - held:
         raise InputError(f"n_modes = {n_modes!r}: there are modes 1 to {n - held}")
+    if n_modes is not None and n_modes < n - held:
+        _refuse_dashpots(basis.system)
     samples = checked_times(start, times)
     begin, moved = project(basis.system, start)
     run = _Modal(basis, begin, samples, step, kicks, n - held if n_modes is None else n_modes)
@@ -139,7 +143,11 @@ def simulate_modal(
 
 
 def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float] | Array) -> ChainMotion:
-    """The linearised chain's motion, exact at any time, in the relative angles of the nonlinear one."""
+    """The linearised chain's motion, exact at any time, in the relative angles of the nonlinear one.
+
+    Raises InputError for a chain with dashpots, which couple the modes.
+    """
+    _refuse_dashpots(basis.system)
     clock = perf_counter()
     samples = checked_times(start, times)
     every = np.arange(len(basis.omega))
@@ -158,8 +166,9 @@ def linear_deflection(basis: ModalBasis, start: ChainState, times: Array, x: flo
     """Y of one material point of the linearised chain at evenly spaced times, (n,), metres; about straight.
 
     A sum of exponentials at times t_i + s_j is a product of two small matrices: 2 sqrt(n) exponentials for each
-    mode instead of n. Raises InputError where the times are not evenly spaced.
+    mode instead of n. Raises InputError where the times are not evenly spaced, and for dashpots.
     """
+    _refuse_dashpots(basis.system)
     gaps = np.diff(times)
     if len(times) < 2 or np.ptp(gaps) > 1e-9 * abs(gaps[0]):
         raise InputError("times: give two or more, evenly spaced")
@@ -177,6 +186,15 @@ def linear_deflection(basis: ModalBasis, start: ChainState, times: Array, x: flo
     drift = weights[still] @ (free[still, :1] + free[still, 1:] * (times - start.time))
     steady = np.cos(np.outer(times, basis.drives[:, 0]) + basis.drives[:, 1]) @ (basis.shares @ weights)
     return np.asarray(swing + drift + steady)
+
+
+def _refuse_dashpots(system: ChainSystem) -> None:
+    """Raise InputError where the linear flow, which is undamped, is not the chain's."""
+    if system.dashpots.any():
+        raise InputError(
+            f"chain.dashpots up to {float(system.dashpots.max())!r} N m s: the linear flow is undamped; leave them out, "
+            "or give method = 'adaptive', 'rk4' or 'modal' with all modes"
+        )
 
 
 def _free(basis: ModalBasis, start: ChainState) -> Array:

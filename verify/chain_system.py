@@ -6,7 +6,7 @@ across it. Sections 2 and 7 of the paper's formalism: relative joint coordinates
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite, pi
+from math import isfinite, pi, radians, sin
 from typing import Literal
 
 import numpy as np
@@ -36,6 +36,11 @@ class Rotation:
     def __post_init__(self) -> None:
         for field in ("offset", "rate", "amplitude", "frequency_hz", "phase_deg"):
             check_number(f"rotation.{field}", getattr(self, field), "SI, degrees for the phase")
+
+    @property
+    def constant(self) -> float:
+        """The part of the angle that stands still, radians: the offset, and an amplitude without a frequency."""
+        return self.offset + (0.0 if self.frequency_hz else self.amplitude * sin(radians(self.phase_deg)))
 
 
 @dataclass(frozen=True, kw_only=True)
