@@ -415,13 +415,15 @@ def departures_of_the_whole_run_for_those_at_its_end(patch):
 def links_that_stretch_a_tenth_less(patch):
     true = axial_study.simulate_elastic
     patch.setattr(
-        axial_study, "simulate_elastic", lambda system, stiffness, times: true(system, 1.1 * stiffness, times)
+        axial_study,
+        "simulate_elastic",
+        lambda system, stiffness, times, **more: true(system, 1.1 * stiffness, times, **more),
     )
 
 
 def links_that_do_not_shorten_where_they_turn(patch):
     true = axial_study.simulate_elastic
-    patch.setattr(axial_study, "simulate_elastic", lambda *given: true(*given, immovable=True))
+    patch.setattr(axial_study, "simulate_elastic", lambda *given, **more: true(*given, immovable=True, **more))
 
 
 def surface_lever_forgotten(patch):

@@ -11,6 +11,7 @@ are explicit: where the nonlinearity is not small in a step the motion diverges,
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from time import perf_counter
 from typing import Any
 
@@ -22,6 +23,7 @@ from verify.chain_dynamics import at_rest, flatten, linearise, project, workspac
 from verify.chain_modes import lowest_modes
 from verify.chain_motion import ChainMotion, Statistics, checked_times, how_started
 from verify.chain_system import ChainState, ChainSystem, circular, link_at
+from verify.chain_work import modal_work, refuse_work
 from verify.division import Array
 from verify.errors import InputError
 
@@ -120,11 +122,13 @@ def simulate_modal(
     step: float,
     kicks: int = 2,
     n_modes: int | None = None,
+    most: float = inf,
 ) -> ChainMotion:
     """The motion from `start`, kept at `times`, by exact linear flow and nonlinear kicks.
 
     `kicks` to a step, 1 to 3; `n_modes` (all unless given) take part in the nonlinear motion, which dashpots allow
-    all of them alone. The chain has no ledger of work here. Raises InputError.
+    all of them alone. The chain has no ledger of work here. Raises InputError, also for more work than `most`
+    accelerations of links (`chain_work`).
     """
     check_number("step", step, "seconds", above=0)
     if kicks not in SCHEMES:
@@ -135,8 +139,10 @@ def simulate_modal(
     if n_modes is not None and n_modes < n - held:
         _refuse_dashpots(basis.system)
     samples = checked_times(start, times)
+    seconds, taking = float(samples[-1] - start.time), n - held if n_modes is None else n_modes
+    refuse_work(modal_work(seconds, step, kicks, basis.system.n_links, taking), most, seconds)
     begin, moved = project(basis.system, start)
-    run = _Modal(basis, begin, samples, step, kicks, n - held if n_modes is None else n_modes)
+    run = _Modal(basis, begin, samples, step, kicks, taking)
     clock = perf_counter()
     stopped = run.march()
     return run.motion(kicks, perf_counter() - clock, stopped, how_started(moved, start))
@@ -192,7 +198,7 @@ def _refuse_dashpots(system: ChainSystem) -> None:
     """Raise InputError where the linear flow, which is undamped, is not the chain's."""
     if system.dashpots.any():
         raise InputError(
-            f"chain.dashpots up to {float(system.dashpots.max())!r} N m s: the linear flow is undamped; leave them out, "
+            f"chain.dashpots up to {float(system.dashpots.max())!r} N m s: the linear flow is undamped, leave them out "
             "or give method = 'adaptive', 'rk4' or 'modal' with all modes"
         )
 

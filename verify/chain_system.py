@@ -14,7 +14,7 @@ import numpy as np
 from verify.beam import Beam, PointForce, check_number
 from verify.chain import Chain, Joints, build_chain
 from verify.chain_walls import Wall
-from verify.division import Array
+from verify.division import Array, divide
 from verify.errors import InputError
 from verify.point_loads import Load, joint_weights
 
@@ -202,7 +202,8 @@ def build_system(
 
     Pinned or clamped on the left; free, or pinned as a roller, on the right. `load` puts a force on its link
     ("lever") or on the four joints around it ("reciprocal", `point_loads`). `immovable` holds the roller by an axial
-    spring EA/L. Raises InputError for other supports and for forces off the beam.
+    spring EA/L, that of all links in series on a stepped beam. Raises InputError for other supports, a loss factor,
+    and forces off the beam.
     """
     _check_buildable(beam, wall)
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
@@ -213,9 +214,14 @@ def build_system(
         lengths=chain.lengths * unit, masses=chain.masses * mass * unit, inertias=chain.inertias * mass * unit**3,
         stiffness=stiffness, dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0), axial_inertia=axial_inertia,
         tip="roller" if beam.supports[1] == "pinned" else "free",
-        axial_spring=beam.youngs_modulus * beam.area / beam.length if immovable else 0.0,
+        axial_spring=1.0 / sum(p.length / p.axial_stiffness for p in beam.pieces) if immovable else 0.0,
     )  # fmt: skip
     return replace(system, loads=transverse_loads(chain, system, forces, frequency_hz, load))
+
+
+def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
+    """EA of every link, each of its own section, (N,), newton. Raises InputError as `divide` does."""
+    return divide(beam, n_segments, grading).axial_stiffnesses * (beam.youngs_modulus * beam.area)
 
 
 def _check_buildable(beam: Beam, wall: str) -> None:
@@ -227,6 +233,11 @@ def _check_buildable(beam: Beam, wall: str) -> None:
         )
     if wall == "welded":
         raise InputError("wall = 'welded' is for the linear chain: choose another wall")
+    if beam.loss_factor:
+        raise InputError(
+            f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain moves in time and has no complex modulus, "
+            "give 0 (in Python a joint_dashpot damps the joints)"
+        )
 
 
 def transverse_loads(
