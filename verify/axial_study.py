@@ -40,6 +40,9 @@ TOLERANCE = 1e-10
 STILL = 1e-9
 """A place moves less than this share of the free beam's answer as a whole, 1 / (m omega^2), by rounding alone."""
 
+TENTHS = 10
+"""Parts of the beam, between which the departure is read too."""
+
 TURNED = 0.3
 """Radians in the rms: links that turn further are no driven beam."""
 
@@ -67,6 +70,8 @@ class ForceRow(msgspec.Struct, frozen=True, kw_only=True):
     full: Departure
     transverse: Departure
     elastic: Departure
+    along: tuple[float, float]
+    """Least and largest `full.at_end` at the tenths of the beam and the place read, over the linear chain's rms there."""
 
 
 class Beside(msgspec.Struct, frozen=True, kw_only=True):
@@ -150,10 +155,15 @@ def linear_chain(driven: Driven) -> Array:
     """Deflection of the linear chain for 1 N, exact in time, (n,), metres. Raises InputError where it is none."""
     system = build_system(driven.beam, driven.count, driven.under(1.0), driven.frequency_hz)
     found = linear_deflection(modal_basis(system), at_rest(system), driven.times, driven.x)
-    mass = sum(piece.mass_per_length * piece.length for piece in driven.beam.pieces)
-    if rms(found) < STILL / (mass * (2.0 * np.pi * driven.frequency_hz) ** 2):
+    if not _moves(driven, found):
         raise InputError(f"x = {driven.x!r}: the beam does not move there under these forces; give another place")
     return found
+
+
+def _moves(driven: Driven, unit: Array) -> bool:
+    """Whether a deflection for 1 N is more than rounding."""
+    mass = sum(piece.mass_per_length * piece.length for piece in driven.beam.pieces)
+    return rms(unit) >= STILL / (mass * (2.0 * np.pi * driven.frequency_hz) ** 2)
 
 
 def rigid_chain(
@@ -190,6 +200,20 @@ def departure(driven: Driven, force: float, links: Links, progress: Progress = u
     return departure_of(chain_deflection(driven, force, links, progress), force * linear_chain(driven))
 
 
+def along_the_beam(driven: Driven, motion: ChainMotion, force: float) -> tuple[float, float]:
+    """Least and largest departure at the end of a motion, at the tenths of the beam that move. Raises InputError."""
+    places = [driven.x, *(np.arange(1, TENTHS) * driven.beam.length / TENTHS).tolist()]
+    system = build_system(driven.beam, driven.count, driven.under(1.0), driven.frequency_hz)
+    basis, start = modal_basis(system), at_rest(system)
+    units = [linear_deflection(basis, start, driven.times, x) for x in places]
+    found = [
+        departure_of(line, force * unit).at_end
+        for line, unit in zip(motion.deflection(places).T, units, strict=True)
+        if _moves(driven, unit)
+    ]
+    return min(found), max(found)
+
+
 def departure_of(deflection: Array, linear: Array) -> Departure:
     """The difference of two deflections (n,) at the end and in the rms, over the second's rms."""
     gap, scale = deflection - linear, rms(linear)
@@ -204,7 +228,7 @@ def force_row(driven: Driven, force: float, unit: Array) -> ForceRow:
     return ForceRow(
         force=force, deflection_rms=rms(rigid), size=size, linear=size <= NONLINEAR, full=departure_of(rigid, linear),
         transverse=departure_of(chain_deflection(driven, force, "transverse"), linear),
-        elastic=departure_of(elastic_chain(driven, force), linear),
+        elastic=departure_of(elastic_chain(driven, force), linear), along=along_the_beam(driven, motion, force),
     )  # fmt: skip
 
 

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify import chain_kernels as kernels
-from verify.chain_linear import Linearisation as Linearisation
-from verify.chain_linear import choose_pivots as choose_pivots
+from verify.chain_linear import Linearisation, choose_pivots
 from verify.chain_statics import forces_at, gyroscopic, mass_matrix
 from verify.chain_system import ChainState, ChainSystem, circular, held_points
 from verify.division import Array
