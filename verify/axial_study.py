@@ -71,7 +71,7 @@ class ForceRow(msgspec.Struct, frozen=True, kw_only=True):
     transverse: Departure
     elastic: Departure
     along: tuple[float, float]
-    """Least and largest `full.at_end` at the tenths of the beam and the place read, over the linear chain's rms there."""
+    """Least and largest `full.at_end` at the tenths of the beam and at the place read."""
 
 
 class Beside(msgspec.Struct, frozen=True, kw_only=True):

@@ -187,6 +187,14 @@ def _nothing(a: Any, scene: "Scene") -> tuple[()]:
     return ()
 
 
+def _no_modes(a: Any, scene: "Scene") -> tuple[()]:
+    """The same, for a figure of the scene's own beam. Raises InputError for a beam that is no nonlinear chain."""
+    from verify.chain_system import check_buildable
+
+    check_buildable(scene.beam)
+    return ()
+
+
 CHAIN_QUANTITIES = (
     Quantity("chain.cantilever_tip", "1", "Tip of a cantilever under a dead transverse force: w/L or 1 - x/L.",
              TipUnderLoad, _nothing, _cantilever_tip),
@@ -197,11 +205,11 @@ CHAIN_QUANTITIES = (
     Quantity("chain.turning_frequency", "1", "Omega sqrt(rho A L^4/EI), lead-lag, of a cantilever whose clamp turns.",
              Turning, _nothing, _turning_frequency),
     Quantity("chain.large_amplitude_frequency", "1", "First frequency between immovable hinges over the linear one.",
-             LargeAmplitude, _nothing, _large_amplitude_frequency),
+             LargeAmplitude, _no_modes, _large_amplitude_frequency),
     Quantity("chain.energy_drift", "1", "Largest change of energy of an undamped chain over its energy.",
-             FreeMotion, _nothing, _energy_drift),
+             FreeMotion, _no_modes, _energy_drift),
     Quantity("chain.transient_deflection", "m", "Deflection of the chain from rest under the scene's forces.",
-             FromRest, _nothing, _transient_deflection),
+             FromRest, _no_modes, _transient_deflection),
     Quantity("chain.axial_departure", "1", "Nonlinear chain less the linear one, from rest, over the linear one's rms.",
-             Departing, _nothing, _axial_departure),
+             Departing, _no_modes, _axial_departure),
 )  # fmt: skip

@@ -205,7 +205,7 @@ def build_system(
     spring EA/L, that of all links in series on a stepped beam. Raises InputError for other supports, a loss factor,
     and forces off the beam.
     """
-    _check_buildable(beam, wall)
+    check_buildable(beam, wall)
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
     unit, mass = chain.unit, beam.mass_per_length
@@ -224,7 +224,8 @@ def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
     return divide(beam, n_segments, grading).axial_stiffnesses * (beam.youngs_modulus * beam.area)
 
 
-def _check_buildable(beam: Beam, wall: str) -> None:
+def check_buildable(beam: Beam, wall: str = "gregory") -> None:
+    """Raise InputError for supports, a wall or a loss that the nonlinear chain does not have."""
     left, right = beam.supports
     if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
         raise InputError(
