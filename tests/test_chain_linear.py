@@ -16,7 +16,10 @@ from verify.chain_studies import UNIT_CANTILEVER, turning_frequency
 from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
 
-FLAPPING = {3.0: (4.797278532363, 23.3202636743, 62.98496748068), 12.0: (13.17015048751, 37.60311233119, 79.61447848946)}
+FLAPPING = {
+    3.0: (4.797278532363, 23.3202636743, 62.98496748068),
+    12.0: (13.17015048751, 37.60311233119, 79.61447848946),
+}
 """Omega sqrt(rho A L^4 / EI) of a cantilever that turns, across its plane: power series of 40 digits."""
 
 
@@ -52,7 +55,7 @@ def test_lead_lag_of_a_turning_cantilever_comes_from_flapping_with_order_two(spe
 
 
 def test_a_clamp_that_stands_still_has_the_linear_chains_order_four():
-    errors = [turning_frequency(2, n, 0.0, "five-joint") - 4.694091132974 ** 2 for n in (20, 40)]
+    errors = [turning_frequency(2, n, 0.0, "five-joint") - 4.694091132974**2 for n in (20, 40)]
     assert abs(errors[1]) < 1e-4
     assert np.log2(abs(errors[0] / errors[1])) > 3.7
 
@@ -139,7 +142,9 @@ def test_a_chain_that_grows_in_time_grows_as_its_square_says():
 
 
 def test_motions_without_a_spring_are_zero_and_not_unstable():
-    which = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0, supports=("pinned", "free"))
+    which = Beam(
+        length=0.43, width=0.017, thickness=0.0013, youngs_modulus=68e9, density=2650.0, supports=("pinned", "free")
+    )
     for n in (2, 40, 300):
         linear = linearise(build_system(which, n), at_rest(build_system(which, n)))
         assert linear.squares()[0] == linear.frequencies()[0] == 0.0
