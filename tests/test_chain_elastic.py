@@ -104,7 +104,7 @@ def test_every_link_takes_its_own_sections_ea_and_an_immovable_end_that_of_all_i
     which = beam(section=SECTIONS)
     areas = [0.05 * 0.0013, 0.017 * 0.0013, 0.017 * 5e-4]
     own = np.array(areas) * [68e9, 9e9, 68e9]
-    assert set(axial_stiffness(which, 43)) == {pytest.approx(value, rel=1e-14) for value in own}
+    assert np.unique(axial_stiffness(which, 43)) == pytest.approx(np.sort(own), rel=1e-14)
     assert axial_stiffness(which, 43)[[0, 20, 42]] == pytest.approx(own, rel=1e-14)
     assert axial_stiffness(beam(), 5) == pytest.approx(np.full(5, EA), rel=1e-15)
     compliance = 0.11 / own[0] + 0.2 / own[1] + 0.12 / own[2]
@@ -120,13 +120,11 @@ def test_a_stepped_chain_under_its_weight_along_x_swings_about_its_static_stretc
     below = np.cumsum(system.masses[::-1])[::-1] - 0.5 * system.masses
     stretch = float(np.sum(2.0 * below * system.lengths / stiffness))
     times = np.linspace(0.0, 4e-3, 1201)
-    tip = simulate_elastic(system, stiffness, times).displacements[:, -1, 0]
-    assert tip.mean() == pytest.approx(stretch, rel=0.03)
-    assert stretch == pytest.approx(simulate_elastic(system, EA, times).displacements[:, -1, 0].mean() * 3.0, rel=0.5)
-    assert (
-        abs(tip.mean() / simulate_elastic(system, stiffness[::-1].copy(), times).displacements[:, -1, 0].mean() - 1)
-        > 0.1
+    tip, other = (
+        simulate_elastic(system, ea, times).displacements[:, -1, 0].mean() for ea in (stiffness, stiffness[::-1].copy())
     )
+    assert tip == pytest.approx(stretch, rel=0.03)
+    assert abs(tip / other - 1.0) > 0.1
 
 
 @pytest.mark.parametrize(

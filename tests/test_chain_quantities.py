@@ -207,10 +207,10 @@ def test_a_setting_that_a_method_does_not_take_is_refused(name, more, message):
         figure(name, segments=9, **{**IN_TIME[name], **more})
 
 
-@pytest.mark.parametrize("name", ["large_amplitude_frequency", "energy_drift"])
-def test_one_link_between_hinges_is_refused_in_words_and_in_a_gates_verdict(name):
+@pytest.mark.parametrize("name", ["large_amplitude_frequency", "energy_drift", "axial_departure"])
+def test_one_link_between_held_ends_is_refused_in_words_and_in_a_gates_verdict(name):
     arguments = {"segments": 1, **IN_TIME[name]}
-    with pytest.raises(InputError, match=r"segments = 1: a single link between two hinges cannot move"):
+    with pytest.raises(InputError, match=r"segments = 1: a single link between two held ends cannot move"):
         figure(name, **arguments)
     gate = Gate(id="it", quantity=f"chain.{name}", arguments=arguments, at_most=1.0, why="x")
     assert judge(gate, CHAIN, workbench_for(CHAIN)).reason.startswith("cannot be evaluated: segments = 1: a single")

@@ -95,10 +95,10 @@ def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
 
     from verify.beam import Section
 
-    with pytest.raises(InputError, match="slider.line = 'raw': a nonlinear chain is touched along its spline"):
+    with pytest.raises(InputError, match=r"slider.line = 'raw': a nonlinear chain is touched along its spline"):
         ridden(paper_beam, 1.0, slider=replace(SLIDER, line="raw"), duration=2e-5)
     stepped = replace(paper_beam, section=(Section(length=0.2), Section(length=0.3, thickness=2e-3)))
-    with pytest.raises(InputError, match="beam.section has a thickness of its own"):
+    with pytest.raises(InputError, match=r"beam.section has a thickness of its own"):
         ridden(stepped, 1.0, duration=2e-5)
 
 

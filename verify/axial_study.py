@@ -143,7 +143,7 @@ def driven_chain(scene: "Scene", who: str, count: int, duration: float, x: float
     frequency = scene.drive.frequency_hz
     n = max(SAMPLES, ceil(SAMPLES_PER_PERIOD * frequency * duration) + 1)
     check_kept(n, count, f"time = {duration!r} s at drive.frequency_hz = {frequency!r}")
-    check_modes_of(count)
+    check_modes_of(count, 2 if scene.beam.supports[1] == "pinned" else 1)
     place = 0.5 * scene.beam.length if x is None else x
     if place > scene.beam.length:
         raise InputError(f"x = {x!r} lies off the beam: give a place between 0 and {scene.beam.length!r} m")

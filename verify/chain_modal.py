@@ -81,7 +81,7 @@ def _all_modes(system: ChainSystem, rest: ChainState) -> tuple[Array, Array, Arr
     basis = linear.independent()
     values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
     modes, tilt = (basis @ vectors).T, 0.0
-    if values[:1] < 0.0:
+    if len(values) and values[0] < 0.0:
         linear.frequencies()  # says what is unstable; below 0 by rounding alone is a motion without a spring
     omega = np.sqrt(np.maximum(values, 0.0))
     if len(linear.constraint):

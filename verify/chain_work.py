@@ -10,8 +10,8 @@ from verify.errors import InputError
 
 MOST = 4e8
 """Accelerations of links in one motion."""
-DENSE_LINKS = 1500
-"""Links of a chain whose modes are found by dense matrices: some seconds and 0.2 GiB."""
+DENSE_LINKS = 1000
+"""Links of a chain whose modes are found by dense matrices: a second or two and 0.1 GiB."""
 STATIC_LINKS = 20_000
 """Links of a chain in equilibrium: some seconds where the load has to be raised in parts."""
 KEPT = 20_000_000
@@ -31,7 +31,7 @@ def check_links(segments: int, least: int, most: int, why: str) -> None:
 def check_modes_of(segments: int, least: int = 1) -> None:
     """Raise InputError for more links than dense matrices are for, or fewer than can move."""
     check_links(segments, least, DENSE_LINKS, "the modes of such a chain are found by dense matrices" if segments > 1
-                else "a single link between two hinges cannot move")  # fmt: skip
+                else "a single link between two held ends cannot move")  # fmt: skip
 
 
 def check_kept(samples: float, links: int, field: str) -> None:
