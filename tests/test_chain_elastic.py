@@ -8,11 +8,12 @@ from chain_reference import woinowsky_krieger
 from test_chain_dynamics import beam, odd_chain
 from test_chain_motion import driven, rms
 
+from verify.beam import Section
 from verify.chain_dynamics import at_rest
 from verify.chain_elastic import elastic_step_limit, simulate_elastic
 from verify.chain_modal import modal_basis, simulate_linear
 from verify.chain_motion import simulate
-from verify.chain_system import Actuator, LinkLoad, Rotation, build_system
+from verify.chain_system import Actuator, LinkLoad, Rotation, axial_stiffness, build_system
 from verify.errors import InputError
 
 EA = beam().youngs_modulus * beam().area
@@ -91,6 +92,41 @@ def test_the_step_limit_is_safe_and_hardly_too_small(n):
     assert limit == pytest.approx(2 * np.sqrt(2) / rate)
 
 
+SECTIONS = (
+    Section(length=0.11, width=0.05),
+    Section(length=0.2, youngs_modulus=9e9),
+    Section(length=0.12, thickness=5e-4),
+)
+"""Of 0.43 m: EA is about three, a seventh and two fifths of the beam's own."""
+
+
+def test_every_link_takes_its_own_sections_ea_and_an_immovable_end_that_of_all_in_series():
+    which = beam(section=SECTIONS)
+    areas = [0.05 * 0.0013, 0.017 * 0.0013, 0.017 * 5e-4]
+    own = np.array(areas) * [68e9, 9e9, 68e9]
+    assert np.unique(axial_stiffness(which, 43)) == pytest.approx(np.sort(own), rel=1e-14)
+    assert axial_stiffness(which, 43)[[0, 20, 42]] == pytest.approx(own, rel=1e-14)
+    assert axial_stiffness(beam(), 5) == pytest.approx(np.full(5, EA), rel=1e-15)
+    compliance = 0.11 / own[0] + 0.2 / own[1] + 0.12 / own[2]
+    assert build_system(which, 43, immovable=True).axial_spring == pytest.approx(1 / compliance, rel=1e-13)
+    assert build_system(beam(), 7, immovable=True).axial_spring == pytest.approx(EA / 0.43, rel=1e-13)
+
+
+def test_a_stepped_chain_under_its_weight_along_x_swings_about_its_static_stretch():
+    """Section by section by hand: the force at s is what hangs below it."""
+    which = beam("pinned", "free", section=SECTIONS)
+    system = replace(build_system(which, 43), gravity=(2.0, 0.0))
+    stiffness = axial_stiffness(which, 43)
+    below = np.cumsum(system.masses[::-1])[::-1] - 0.5 * system.masses
+    stretch = float(np.sum(2.0 * below * system.lengths / stiffness))
+    times = np.linspace(0.0, 4e-3, 1201)
+    tip, other = (
+        simulate_elastic(system, ea, times).displacements[:, -1, 0].mean() for ea in (stiffness, stiffness[::-1].copy())
+    )
+    assert tip == pytest.approx(stretch, rel=0.03)
+    assert abs(tip / other - 1.0) > 0.1
+
+
 @pytest.mark.parametrize(
     ("change", "request_", "message"),
     [
@@ -100,6 +136,9 @@ def test_the_step_limit_is_safe_and_hardly_too_small(n):
         ({}, {"times": [0.0, 1.0, 3.0]}, "evenly spaced"),
         ({}, {"times": [1.0, 2.0]}, "from 0"),
         ({}, {"axial_stiffness": -1.0}, "axial_stiffness = -1.0"),
+        ({}, {"axial_stiffness": np.array([EA, EA, np.nan, EA, EA, EA])}, "axial_stiffness = nan"),
+        ({}, {"axial_stiffness": np.full(5, EA)}, r"has the shape \(5,\): give one value or one for each of 6 links"),
+        ({"axial_inertia": False}, {}, "chain.axial_inertia = False: links that stretch have inertia along x"),
     ],
 )
 def test_bad_requests_are_refused(change, request_, message):

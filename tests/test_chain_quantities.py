@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 from chain_reference import elastica_tip, woinowsky_krieger
+from msgspec.structs import replace
 
+from verify.beam import Section
 from verify.errors import InputError
+from verify.gates import judge
+from verify.plan import plan_scene
 from verify.quantities import arguments_of, evaluate, quantity
 from verify.run import workbench_for
-from verify.scene import load_scene
+from verify.scene import Gate, MotionAsk, load_scene
 
 CHAIN = load_scene("chain")
 
@@ -18,6 +22,7 @@ def figure(name, scene=CHAIN, **arguments):
 
 
 ASKED = {
+    "turning_frequency": {"mode": 2, "speed": 7.0},
     "cantilever_tip": {"load": 1.7},
     "rollup_gap": {"wall": "gregory"},
     "hanging_frequency": {"mode": 2},
@@ -94,3 +99,154 @@ def test_bad_questions_are_refused(name, arguments, message):
 def test_a_scene_without_forces_has_no_transient():
     with pytest.raises(InputError, match="has no drive by forces"):
         figure("transient_deflection", load_scene("steel-cantilever"), time=1e-3, x=0.1, segments=9)
+
+
+def test_the_turning_cantilevers_frequency_is_that_of_the_linearised_chain():
+    assert figure("turning_frequency", mode=1, speed=3.0, segments=40) == pytest.approx(3.743511896211, rel=1.1e-4)
+    assert figure("turning_frequency", mode=1, speed=0.0, segments=40) == pytest.approx(1.8751040687**2, rel=1e-7)
+    half = figure("turning_frequency", mode=1, speed=3.0, segments=40, wall="half")
+    assert half < 3.743511896211 * (1 - 3e-4)
+
+
+def sectioned(*sections, **more):
+    """The scene's beam in pieces, each with its share of the length and what it has for itself."""
+    beam = replace(CHAIN.beam, section=tuple(Section(length=share * 0.5, **own) for share, own in sections), **more)
+    return replace(CHAIN, beam=beam, axial_inertia=None)
+
+
+@pytest.mark.parametrize(
+    ("own", "base"),
+    [
+        ({"youngs_modulus": 70e9, "thickness": 1e-3}, {"youngs_modulus": 7e9}),
+        ({"width": 0.02, "thickness": 1e-3, "density": 2700.0}, {"thickness": 3e-4, "width": 0.07, "density": 900.0}),
+    ],
+)
+def test_a_section_that_is_the_whole_beam_is_the_beam(own, base):
+    """1.3178 at two radii of gyration, not the 1.037 of a tenth of E, whatever the beam says where no section does."""
+    scene = sectioned((1.0, own), **base)
+    found = figure("large_amplitude_frequency", scene, amplitude=2.0, segments=10)
+    assert found == pytest.approx(figure("large_amplitude_frequency", amplitude=2.0, segments=10), rel=1e-9)
+    assert found == pytest.approx(woinowsky_krieger(2.0), rel=1e-5)
+    asked = {"segments": 12, "force": 6.0, "inertia": "elastic", "time": 3e-4, "x": 0.13}
+    assert figure("axial_departure", scene, **asked) == pytest.approx(figure("axial_departure", **asked), rel=1e-6)
+
+
+def test_unlike_sections_have_no_sine_for_a_first_mode():
+    scene = sectioned((0.4, {}), (0.6, {"width": 0.03}))
+    with pytest.raises(InputError, match=r"beam.section: the first mode of unlike sections is no sine"):
+        figure("large_amplitude_frequency", scene, amplitude=2.0, segments=10)
+
+
+def test_links_that_stretch_feel_where_the_soft_section_lies():
+    asked = {"segments": 20, "force": 6.0, "inertia": "elastic", "time": 4e-4, "of": "rms", "x": 0.13}
+    thin, wide = (0.5, {"width": 0.012}), (0.5, {"width": 0.031})
+    one, other = (figure("axial_departure", sectioned(*parts), **asked) for parts in ((thin, wide), (wide, thin)))
+    assert abs(one / other - 1.0) > 0.05
+
+
+IN_TIME = {
+    "large_amplitude_frequency": {"amplitude": 1.3}, "energy_drift": {"step": 2e-4},
+    "transient_deflection": {"time": 2e-4, "x": 0.1}, "axial_departure": {"force": 2.0, "time": 2e-4},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", IN_TIME)
+def test_a_loss_factor_is_refused_by_every_figure_in_time_and_the_plan_says_so(name):
+    scene = replace(CHAIN, beam=replace(CHAIN.beam, loss_factor=0.01), axial_inertia=None)
+    with pytest.raises(InputError, match=r"beam.loss_factor = 0.01: the nonlinear chain moves in time"):
+        figure(name, scene, segments=9, **IN_TIME[name])
+    gate = Gate(id="it", quantity=f"chain.{name}", arguments={"segments": 9, **IN_TIME[name]}, at_most=1.0, why="x")
+    (problem,) = plan_scene(replace(scene, gate=(gate,))).problems
+    assert "beam.loss_factor = 0.01" in problem.why
+
+
+def test_figures_of_chains_of_their_own_do_not_care_for_the_scenes_beam():
+    other = replace(CHAIN, beam=replace(CHAIN.beam, loss_factor=0.01, length=0.7, density=900.0), axial_inertia=None)
+    for name in ("cantilever_tip", "rollup_gap", "hanging_frequency", "turning_frequency"):
+        assert figure(name, other, segments=9, **ASKED[name]) == figure(name, segments=9, **ASKED[name])
+
+
+@pytest.mark.parametrize("supports", [("clamped", "free"), ("clamped", "pinned")])
+@pytest.mark.parametrize("name", ["large_amplitude_frequency", "energy_drift"])
+def test_a_figure_between_hinges_refuses_other_ends(name, supports):
+    scene = replace(CHAIN, beam=replace(CHAIN.beam, supports=supports), axial_inertia=None)
+    with pytest.raises(
+        InputError, match=r"beam.supports = \['clamped', .*: this figure is of a beam between two hinges"
+    ):
+        figure(name, scene, segments=9, **IN_TIME[name])
+
+
+@pytest.mark.parametrize(
+    ("motion", "field"),
+    [
+        ({"modal_damping": 0.02}, "motion.modal_damping = 0.02"),
+        ({"soft_start_periods": 3.0}, "motion.soft_start_periods = 3.0"),
+        ({"start": "steady"}, "motion.start = 'steady'"),
+    ],
+)
+@pytest.mark.parametrize("name", ["transient_deflection", "axial_departure"])
+def test_a_scenes_motion_that_a_chain_does_not_make_is_refused(name, motion, field):
+    with pytest.raises(InputError, match=rf"{field}: chain.{name} is from rest, undamped"):
+        figure(name, replace(CHAIN, motion=MotionAsk(**motion)), segments=9, **IN_TIME[name])
+    still = replace(CHAIN, motion=MotionAsk(modal_damping=0.0, duration=3e-3))
+    assert figure(name, still, segments=9, **IN_TIME[name]) == figure(name, segments=9, **IN_TIME[name])
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "message"),
+    [
+        ("transient_deflection", {"method": "linear", "step": 1e-6}, "step = 1e-06 is for method = 'rk4' or 'modal'"),
+        ("transient_deflection", {"method": "adaptive", "step": 1e-6}, "step = 1e-06 is for method = 'rk4' or 'modal'"),
+        ("transient_deflection", {"step": 1e-6, "tolerance": 1e-6}, "tolerance = 1e-06 is for method = 'adaptive'"),
+        ("transient_deflection", {"method": "linear", "tolerance": 1e-6}, "tolerance = 1e-06 is for method"),
+        ("energy_drift", {"tolerance": 1e-6}, "tolerance = 1e-06 with step = 0.0002: give one of the two"),
+    ],
+)
+def test_a_setting_that_a_method_does_not_take_is_refused(name, more, message):
+    with pytest.raises(InputError, match=message):
+        figure(name, segments=9, **{**IN_TIME[name], **more})
+
+
+@pytest.mark.parametrize("name", ["large_amplitude_frequency", "energy_drift", "axial_departure"])
+def test_one_link_between_held_ends_is_refused_in_words_and_in_a_gates_verdict(name):
+    arguments = {"segments": 1, **IN_TIME[name]}
+    with pytest.raises(InputError, match=r"segments = 1: a single link between two held ends cannot move"):
+        figure(name, **arguments)
+    gate = Gate(id="it", quantity=f"chain.{name}", arguments=arguments, at_most=1.0, why="x")
+    assert judge(gate, CHAIN, workbench_for(CHAIN)).reason.startswith("cannot be evaluated: segments = 1: a single")
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "scene", "message"),
+    [
+        ("hanging_frequency", {"mode": 1, "segments": 10**9}, (), "segments = 1000000000: the modes"),
+        ("turning_frequency", {"mode": 1, "speed": 1.0, "segments": 10**6}, (), "segments = 1000000: the modes"),
+        ("cantilever_tip", {"load": 1.0, "segments": 10**12}, (), "segments = 1000000000000: an equilibrium"),
+        ("rollup_gap", {"segments": 10**12}, (), "segments = 1000000000000: an equilibrium"),
+        ("energy_drift", {"segments": 10**5}, (), "segments = 100000: the modes"),
+        ("large_amplitude_frequency", {"segments": 10**5, "amplitude": 1.0}, (), "segments = 100000: the modes"),
+        ("transient_deflection", {"segments": 10**12, "time": 1e-3, "x": 0.1}, (), "segments = 1000000000000: a motion"),
+        ("transient_deflection", {"segments": 49, "time": 1e3, "x": 0.1}, (), r"time = 1000 s takes about .* accelerations of links and 4e\+08 are the most"),
+        ("transient_deflection", {"segments": 49, "time": 1e3, "x": 0.1, "step": 1e-6}, (), r"time = 1000 s takes about 2e\+11"),
+        ("transient_deflection", {"segments": 49, "time": 1e3, "x": 0.1, "step": 1e-9, "method": "modal"}, (), "time = 1000 s takes about"),
+        ("energy_drift", {"segments": 60, "periods": 1000.0}, (), "takes about .* accelerations of links"),
+        ("energy_drift", {"segments": 9, "step": 1e-300}, (), "takes about .* accelerations of links"),
+        ("axial_departure", {"segments": 49, "force": 1.0}, ("drive.frequency_hz=1e15",), r"time = 0.001 s at drive.frequency_hz = 1000000000000000.0 would keep 4e\+13 states"),
+        ("axial_departure", {"segments": 49, "force": 1.0, "time": 0.09}, ("beam.youngs_modulus=70e15",), "takes about .* accelerations"),
+        ("axial_departure", {"segments": 49, "force": 1.0, "inertia": "elastic"}, ("beam.youngs_modulus=70e18",), "takes about .* accelerations"),
+    ],
+)  # fmt: skip
+def test_work_and_memory_are_counted_before_they_are_spent(name, arguments, scene, message):
+    with pytest.raises(InputError, match=message) as refused:
+        figure(name, load_scene("chain", ("axial_inertia={}", *scene)), **arguments)
+    assert len(str(refused.value)) < 250
+
+
+def test_a_long_figure_tells_how_far_it_is():
+    heard, bench = [], workbench_for(CHAIN)
+    bench.tell = heard.append
+    found = quantity("chain.transient_deflection")
+    evaluate(found, arguments_of(found, {"time": 2e-2, "x": 0.1, "segments": 49}), CHAIN, bench)
+    assert len(heard) > 2
+    assert heard == sorted(heard)
+    assert 0.0 < heard[0] < heard[-1] <= 1.0

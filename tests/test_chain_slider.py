@@ -7,7 +7,7 @@ from verify.beam import PointForce
 from verify.chain_dynamics import at_rest
 from verify.chain_modal import modal_basis, simulate_linear
 from verify.chain_motion import simulate as simulate_chain
-from verify.chain_slider import half_steps, ride
+from verify.chain_slider import _piece, half_steps, ride
 from verify.chain_system import build_system
 from verify.errors import InputError
 from verify.simulate import simulate
@@ -88,3 +88,29 @@ def test_what_a_chain_cannot_carry_is_refused(paper_beam, times, changed, words)
     chain = simulate_linear(modal_basis(system), at_rest(system), times)
     with pytest.raises(InputError, match=words):
         ride(chain, paper_beam, replace(SLIDER, **changed))
+
+
+def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
+    from msgspec.structs import replace
+
+    from verify.beam import Section
+
+    with pytest.raises(InputError, match=r"slider.line = 'raw': a nonlinear chain is touched along its spline"):
+        ridden(paper_beam, 1.0, slider=replace(SLIDER, line="raw"), duration=2e-5)
+    stepped = replace(paper_beam, section=(Section(length=0.2), Section(length=0.3, thickness=2e-3)))
+    with pytest.raises(InputError, match=r"beam.section has a thickness of its own"):
+        ridden(stepped, 1.0, duration=2e-5)
+
+
+def test_the_contact_line_of_unequal_links_goes_through_the_corrected_joints(paper_beam):
+    from verify.chain import build_chain, corrected_reading
+
+    system = build_system(paper_beam, 12, forces(1.0), 4276.0, grading=2.7)
+    chain = build_chain(paper_beam, 12, grading=2.7)
+    heights = np.random.default_rng(5).normal(0, 1e-6, (3, 13))
+    heights[:, [0, -1]] = 0.0
+    expected = corrected_reading(chain, heights)
+    for piece in range(12):
+        line = _piece(system.nodes, np.diff(heights, axis=1), piece)
+        assert line[:, 0] == pytest.approx(expected[:, piece], rel=1e-12, abs=1e-20)
+        assert line.sum(axis=1) == pytest.approx(expected[:, piece + 1], rel=1e-9, abs=1e-18)

@@ -15,6 +15,7 @@ from verify import (
     chain_dynamics,
     chain_kernels,
     chain_modal,
+    chain_statics,
     chain_studies,
     chain_system,
     chain_walls,
@@ -192,6 +193,11 @@ def welded_half_forgotten(patch):
     patch.setattr(chain, "welded_halves", lambda supports: (0, 0))
 
 
+def welded_halves_at_each_others_ends(patch):
+    true = chain.welded_halves
+    patch.setattr(chain, "welded_halves", lambda supports: true(supports)[::-1])
+
+
 def mirrored(beam):
     return structs.replace(beam, supports=beam.supports[::-1])
 
@@ -359,6 +365,29 @@ def hanging_links_with_inertia_about_their_ends(patch):
     patch.setattr(chain_studies, "link_inertia", lambda mass, length: mass * length**2 / 3)
 
 
+def clamp_that_turns_without_a_centrifugal_pull(patch):
+    patch.setattr(
+        chain_statics, "centrifugal", lambda system, theta: (0.0 * theta, 0.0 * chain_statics.mass_products(system))
+    )
+
+
+def links_pulled_straight_as_if_they_flapped(patch):
+    true = chain_statics.centrifugal
+
+    def flapping(system, theta):
+        gradient, stiffness = true(system, theta)
+        return gradient, np.diag(np.diag(stiffness))
+
+    patch.setattr(chain_statics, "centrifugal", flapping)
+
+
+def departures_at_mid_span_wherever_they_are_asked_for(patch):
+    true = axial_study.driven_chain
+    patch.setattr(
+        axial_study, "driven_chain", lambda scene, who, count, duration, x: true(scene, who, count, duration, None)
+    )
+
+
 def axial_spring_of_half_the_section(patch):
     true = chain_studies.build_system
 
@@ -419,13 +448,15 @@ def departures_of_the_whole_run_for_those_at_its_end(patch):
 def links_that_stretch_a_tenth_less(patch):
     true = axial_study.simulate_elastic
     patch.setattr(
-        axial_study, "simulate_elastic", lambda system, stiffness, times: true(system, 1.1 * stiffness, times)
+        axial_study,
+        "simulate_elastic",
+        lambda system, stiffness, times, **more: true(system, 1.1 * stiffness, times, **more),
     )
 
 
 def links_that_do_not_shorten_where_they_turn(patch):
     true = axial_study.simulate_elastic
-    patch.setattr(axial_study, "simulate_elastic", lambda *given: true(*given, immovable=True))
+    patch.setattr(axial_study, "simulate_elastic", lambda *given, **more: true(*given, immovable=True, **more))
 
 
 def surface_lever_forgotten(patch):
@@ -685,6 +716,9 @@ FAULTS_ELSEWHERE = {
         links_that_feel_no_inertia_of_the_links_beyond: {"hanging-two-links", "hanging-limit"},
         hanging_links_with_inertia_about_their_ends: {"hanging-one-link", "hanging-two-links"},
         axial_spring_of_half_the_section: {"large-amplitude"},
+        clamp_that_turns_without_a_centrifugal_pull: {"turning-slow", "turning-fast", "turning-third-mode"},
+        links_pulled_straight_as_if_they_flapped: {"turning-slow", "turning-fast", "turning-third-mode"},
+        departures_at_mid_span_wherever_they_are_asked_for: {"departure-at-two-fifths", "departure-at-seven-tenths"},
         recursion_with_another_inertia_than_the_energy: {"energy-is-kept", "small-force", "ten-newton"},
         forces_that_lag_instead_of_lead: {"small-force", "ten-newton", "ten-newton-by-kicks", "ten-newton-without-axial-inertia"},
         kicks_of_no_strength: {"ten-newton-by-kicks"},
@@ -733,6 +767,7 @@ FAULTS_ELSEWHERE = {
         gregorys_weights_turned_round: {"gregory-mode-1", "gregory-mode-5", "gregory-law"},
         orders_of_the_other_walls_exchanged: {"third-order-wall-order", "five-joint-error"},
         welded_half_forgotten: {"welded-wall-order"},
+        welded_halves_at_each_others_ends: {"welded-wall-shape"},
         clamped_end_on_the_wrong_side: {"gregory-mode-1", "shape-beside-the-wall"},
         joint_stiffness_doubled: {"gregory-mode-1", "half-wall-bracket"},
         lumped_element_mass: {"fem-order", "fem-law"},

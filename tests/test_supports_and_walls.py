@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes, closed_forms, error_laws, fem_beam, segment_model
+from verify import analytic_modes, closed_forms, compare, error_laws, fem_beam, segment_model
 from verify.beam import SUPPORTS
 from verify.chain_walls import WALLS, wall_factors
 from verify.errors import InputError, NoBracketError
@@ -221,3 +221,30 @@ def test_settings_that_do_not_exist_are_refused(titanium_strip):
         fem_beam.solve_modes(titanium_strip, 2, 9, grading=0.0)
     with pytest.raises(InputError, match="equal segments"):
         segment_model.solve_modes(titanium_strip, 2, 9, wall="welded", grading=2.0)
+
+
+@pytest.mark.parametrize(("supports", "halves"), [
+    (("clamped", "pinned"), (1, 0)), (("guided", "clamped"), (0, 1)), (("clamped", "clamped"), (1, 1)),
+    (("free", "pinned"), (0, 0)),
+])  # fmt: skip
+def test_a_welded_half_lies_at_its_clamped_wall(titanium_strip, supports, halves):
+    """Nine links and half a link at each clamped end fill the beam; a wall's first joint is half a link off it."""
+    from verify.chain import build_chain
+
+    beam = replace(titanium_strip, supports=supports)
+    nodes, link = build_chain(beam, 9, wall="welded").nodes, 0.73 / (9 + 0.5 * sum(halves))
+    assert (nodes[0], 0.73 - nodes[-1]) == pytest.approx((0.5 * halves[0] * link, 0.5 * halves[1] * link), abs=1e-15)
+    mirrored = build_chain(replace(beam, supports=supports[::-1]), 9, wall="welded").nodes
+    assert mirrored == pytest.approx(0.73 - nodes[::-1], abs=1e-15)
+
+
+def test_welded_shapes_of_both_mirror_images_are_of_order_two(titanium_strip):
+    for supports in (("clamped", "free"), ("free", "clamped")):
+        beam, errors = replace(titanium_strip, supports=supports), []
+        for n in (40, 80):
+            modes = segment_model.solve_modes(beam, 2, n, wall="welded")
+            exact = analytic_modes.mode_shape(beam, 2, modes.nodes)
+            errors.append(
+                compare.shape_error(exact, modes.readings["corrected"]()[1], compare.node_weights(modes.nodes))
+            )
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(2.03, abs=0.03)

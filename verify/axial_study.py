@@ -19,8 +19,9 @@ from verify.chain_dynamics import at_rest
 from verify.chain_elastic import simulate_elastic
 from verify.chain_modal import linear_deflection, modal_basis
 from verify.chain_motion import ChainMotion
-from verify.chain_studies import transient
-from verify.chain_system import build_system
+from verify.chain_studies import Progress, transient, unheard
+from verify.chain_system import axial_stiffness, build_system
+from verify.chain_work import MOST, check_kept, check_modes_of
 from verify.division import Array
 from verify.errors import InputError
 from verify.simulate import simulate
@@ -38,6 +39,9 @@ TOLERANCE = 1e-10
 
 STILL = 1e-9
 """A place moves less than this share of the free beam's answer as a whole, 1 / (m omega^2), by rounding alone."""
+
+TENTHS = 10
+"""Parts of the beam, between which the departure is read too."""
 
 TURNED = 0.3
 """Radians in the rms: links that turn further are no driven beam."""
@@ -66,6 +70,8 @@ class ForceRow(msgspec.Struct, frozen=True, kw_only=True):
     full: Departure
     transverse: Departure
     elastic: Departure
+    along: tuple[float, float]
+    """Least and largest `full.at_end` at the tenths of the beam and at the place read."""
 
 
 class Beside(msgspec.Struct, frozen=True, kw_only=True):
@@ -114,9 +120,19 @@ class Driven(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def point_forces(scene: "Scene", who: str) -> tuple[PointForce, ...]:
-    """The scene's driving forces. Raises InputError where it drives nothing, or by displacements."""
+    """The scene's driving forces.
+
+    Raises InputError where it drives nothing, or by displacements, and for a [motion] that a chain from rest, undamped
+    and under forces of full size does not make.
+    """
     if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
         raise InputError(f"{who}: the scene has no drive by forces; give it a [drive] of kind force")
+    if scene.motion is not None:
+        for name, rest in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
+            if (value := getattr(scene.motion, name)) not in (rest, None):
+                raise InputError(
+                    f"motion.{name} = {value!r}: {who} is from rest, undamped, under forces of full size; give {rest!r}"
+                )
     return scene.forces
 
 
@@ -126,6 +142,8 @@ def driven_chain(scene: "Scene", who: str, count: int, duration: float, x: float
     assert scene.drive is not None
     frequency = scene.drive.frequency_hz
     n = max(SAMPLES, ceil(SAMPLES_PER_PERIOD * frequency * duration) + 1)
+    check_kept(n, count, f"time = {duration!r} s at drive.frequency_hz = {frequency!r}")
+    check_modes_of(count, 2 if scene.beam.supports[1] == "pinned" else 1)
     place = 0.5 * scene.beam.length if x is None else x
     if place > scene.beam.length:
         raise InputError(f"x = {x!r} lies off the beam: give a place between 0 and {scene.beam.length!r} m")
@@ -137,16 +155,23 @@ def linear_chain(driven: Driven) -> Array:
     """Deflection of the linear chain for 1 N, exact in time, (n,), metres. Raises InputError where it is none."""
     system = build_system(driven.beam, driven.count, driven.under(1.0), driven.frequency_hz)
     found = linear_deflection(modal_basis(system), at_rest(system), driven.times, driven.x)
-    free = 1.0 / (driven.beam.mass_per_length * driven.beam.length * (2.0 * np.pi * driven.frequency_hz) ** 2)
-    if rms(found) < STILL * free:
+    if not _moves(driven, found):
         raise InputError(f"x = {driven.x!r}: the beam does not move there under these forces; give another place")
     return found
 
 
-def rigid_chain(driven: Driven, force: float, *, axial_inertia: bool = True) -> ChainMotion:
+def _moves(driven: Driven, unit: Array) -> bool:
+    """Whether a deflection for 1 N is more than rounding."""
+    mass = sum(piece.mass_per_length * piece.length for piece in driven.beam.pieces)
+    return rms(unit) >= STILL / (mass * (2.0 * np.pi * driven.frequency_hz) ** 2)
+
+
+def rigid_chain(
+    driven: Driven, force: float, *, axial_inertia: bool = True, progress: Progress = unheard
+) -> ChainMotion:
     """The nonlinear chain of rigid links, converged in time. Raises InputError."""
     motion = transient(driven.beam, driven.under(force), driven.frequency_hz, driven.times.tolist(), driven.count,
-                       axial_inertia=axial_inertia, tolerance=TOLERANCE)  # fmt: skip
+                       axial_inertia=axial_inertia, tolerance=TOLERANCE, progress=progress)  # fmt: skip
     turned = rms(motion.directions())
     if turned > TURNED:
         raise InputError(f"under {force!r} N the links turn by {turned:.2g} rad in the rms: give a smaller force")
@@ -156,22 +181,37 @@ def rigid_chain(driven: Driven, force: float, *, axial_inertia: bool = True) -> 
 def elastic_chain(driven: Driven, force: float) -> Array:
     """Deflection of the chain whose links stretch as the beam does, (n,), metres. Raises InputError."""
     system = build_system(driven.beam, driven.count, driven.under(force), driven.frequency_hz)
-    motion = simulate_elastic(system, driven.beam.youngs_modulus * driven.beam.area, driven.times)
+    motion = simulate_elastic(system, axial_stiffness(driven.beam, driven.count), driven.times, most=MOST)
     if motion.stopped != "finished":
         raise InputError(f"the stretching chain under {force!r} N {motion.stopped}: give a smaller force")
     return np.asarray(motion.deflection([driven.x])[:, 0])
 
 
-def chain_deflection(driven: Driven, force: float, links: Links) -> Array:
+def chain_deflection(driven: Driven, force: float, links: Links, progress: Progress = unheard) -> Array:
     """Deflection of one nonlinear chain, (n,), metres. Raises InputError."""
     if links == "elastic":
         return elastic_chain(driven, force)
-    return np.asarray(rigid_chain(driven, force, axial_inertia=links == "full").deflection([driven.x])[:, 0])
+    motion = rigid_chain(driven, force, axial_inertia=links == "full", progress=progress)
+    return np.asarray(motion.deflection([driven.x])[:, 0])
 
 
-def departure(driven: Driven, force: float, links: Links) -> Departure:
+def departure(driven: Driven, force: float, links: Links, progress: Progress = unheard) -> Departure:
     """How far one nonlinear chain lies from the linear one. Raises InputError."""
-    return departure_of(chain_deflection(driven, force, links), force * linear_chain(driven))
+    return departure_of(chain_deflection(driven, force, links, progress), force * linear_chain(driven))
+
+
+def along_the_beam(driven: Driven, motion: ChainMotion, force: float) -> tuple[float, float]:
+    """Least and largest departure at the end of a motion, at the tenths of the beam that move. Raises InputError."""
+    places = [driven.x, *(np.arange(1, TENTHS) * driven.beam.length / TENTHS).tolist()]
+    system = build_system(driven.beam, driven.count, driven.under(1.0), driven.frequency_hz)
+    basis, start = modal_basis(system), at_rest(system)
+    units = [linear_deflection(basis, start, driven.times, x) for x in places]
+    found = [
+        departure_of(line, force * unit).at_end
+        for line, unit in zip(motion.deflection(places).T, units, strict=True)
+        if _moves(driven, unit)
+    ]
+    return min(found), max(found)
 
 
 def departure_of(deflection: Array, linear: Array) -> Departure:
@@ -188,7 +228,7 @@ def force_row(driven: Driven, force: float, unit: Array) -> ForceRow:
     return ForceRow(
         force=force, deflection_rms=rms(rigid), size=size, linear=size <= NONLINEAR, full=departure_of(rigid, linear),
         transverse=departure_of(chain_deflection(driven, force, "transverse"), linear),
-        elastic=departure_of(elastic_chain(driven, force), linear),
+        elastic=departure_of(elastic_chain(driven, force), linear), along=along_the_beam(driven, motion, force),
     )  # fmt: skip
 
 

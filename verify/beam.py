@@ -62,6 +62,13 @@ class Piece(msgspec.Struct, frozen=True, kw_only=True):
     """I, metres to the fourth."""
     mass_per_length: float
     """Rho A, kg/m."""
+    area: float
+    """A, square metres."""
+
+    @property
+    def axial_stiffness(self) -> float:
+        """EA, newton."""
+        return self.youngs_modulus * self.area
 
     @property
     def bending_stiffness(self) -> float:
@@ -139,7 +146,7 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         modulus = self.youngs_modulus if section.youngs_modulus is None else section.youngs_modulus
         density = self.density if section.density is None else section.density
         return Piece(length=section.length, youngs_modulus=modulus, second_moment=width * thickness**3 / 12.0,
-                     mass_per_length=density * (width * thickness))  # fmt: skip
+                     mass_per_length=density * (width * thickness), area=width * thickness)  # fmt: skip
 
     @property
     def rigid_motions(self) -> int:

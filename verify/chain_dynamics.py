@@ -7,14 +7,14 @@ Forward dynamics is compiled (`chain_kernels`), motion in time is in `chain_moti
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from verify import chain_kernels as kernels
-from verify.chain_statics import forces_at, mass_matrix
+from verify.chain_linear import Linearisation, choose_pivots
+from verify.chain_statics import forces_at, gyroscopic, mass_matrix
 from verify.chain_system import ChainState, ChainSystem, circular, held_points
 from verify.division import Array
 from verify.errors import InputError
@@ -22,47 +22,6 @@ from verify.errors import InputError
 Indices = NDArray[np.int64]
 PIVOT_LOSS = 0.1
 """A dependent angle is kept until its lever arm falls below this share of the longest."""
-
-
-@dataclass(frozen=True, eq=False)
-class Linearisation:
-    """M q'' + C q' + K q = 0 about an equilibrium, on the q with `constraint` q = 0; relative angles."""
-
-    mass: Array
-    """(N, N), kg m^2."""
-    damping: Array
-    """(N, N), N m s."""
-    stiffness: Array
-    """(N, N), N m; with the geometric terms of loads and of the forces in the held points."""
-    constraint: Array
-    """(n_held, N), metres: derivatives of the held points' y."""
-
-    def independent(self) -> Array:
-        """Columns that span the motions left free, (N, N - n_held): coordinate partitioning by pivot."""
-        n = self.mass.shape[0]
-        rows = self.constraint
-        if not len(rows):
-            return np.eye(n)
-        pivots = choose_pivots(rows)
-        others = np.setdiff1d(np.arange(n), pivots)
-        basis = np.zeros((n, n - len(pivots)))
-        basis[others, np.arange(len(others))] = 1.0
-        basis[pivots] = -np.linalg.solve(rows[:, pivots], rows[:, others])
-        return basis
-
-    def frequencies(self) -> Array:
-        """Undamped circular frequencies, (N - n_held,), ascending, rad/s. Raises InputError at an unstable place."""
-        from scipy.linalg import LinAlgError, eigh
-
-        basis = self.independent()
-        mass, stiffness = basis.T @ self.mass @ basis, basis.T @ self.stiffness @ basis
-        try:  # the inverse problem keeps the low ones accurate
-            return np.asarray(1.0 / np.sqrt(eigh(mass, stiffness, eigvals_only=True))[::-1])
-        except LinAlgError:
-            values = eigh(stiffness, mass, eigvals_only=True)
-        if values[0] < -1e-9 * values[-1]:
-            raise InputError(f"the equilibrium is unstable: its lowest omega^2 is {values[0]:.3g} 1/s^2")
-        return np.asarray(np.sqrt(np.maximum(values, 0.0)), dtype=float)
 
 
 def flatten(system: ChainSystem, *, ledger: bool = True) -> kernels.Flat:
@@ -144,26 +103,6 @@ def _rows(system: ChainSystem, x: Array) -> Array:
     return rows
 
 
-def choose_pivots(rows: Array) -> Indices:
-    """Which angles depend on the others, (n_held,): complete pivoting on the constraint rows.
-
-    Raises InputError where the held points leave no angle to depend on: a chain that stands upright under its
-    roller, or two held points in one place.
-    """
-    left, pivots = rows.copy(), np.zeros(len(rows), dtype=np.int64)
-    free, largest = list(range(len(rows))), abs(rows).max() if rows.size else 0.0
-    for _ in range(len(rows)):
-        row = free[int(abs(left[free]).max(axis=1).argmax())]
-        column = int(abs(left[row]).argmax())
-        if abs(left[row, column]) <= 1e-9 * largest:
-            raise InputError("chain: its held points cannot be held at once in this position; move one or drop one")
-        pivots[row] = column
-        free.remove(row)
-        for other in free:
-            left[other] -= left[other, column] / left[row, column] * left[row]
-    return pivots
-
-
 def keep_pivots(rows: Array, pivots: Indices) -> Indices:
     """The same dependent angles while they are good enough, better ones else."""
     chosen = choose_pivots(rows)
@@ -200,18 +139,27 @@ def linearise(system: ChainSystem, state: ChainState) -> Linearisation:
     """Exact derivatives of the chain's equations at a state of equilibrium under its constant loads.
 
     In absolute angles the stiffness is tridiagonal, a diagonal of dead loads and held forces, and the axial spring's
-    outer product; relative angles follow by their sums. Equal at rest to the matrices of `segment_model`.
+    outer product; relative angles follow by their sums. Equal at rest to the matrices of `segment_model`. Where the
+    base turns steadily the equilibrium is one of the turning frame: centrifugal forces stiffen the chain, and where
+    it is bent gyroscopic ones couple it. Raises InputError for a state that moves, and for a turning base where
+    something does not turn with it.
     """
-    q, _ = _arrays(system, state)
-    theta = np.cumsum(q) + system.rotation.offset
+    q, v = _arrays(system, state)
+    if v.any():
+        raise InputError("state.rates: a chain is linearised about an equilibrium, give rates of zero")
+    theta = np.cumsum(q) + system.rotation.constant
     found = forces_at(system, q, 1.0)
     held = found.multipliers()
     stiffness = np.diag(found.geometric + held @ found.held_bends)
     stiffness += np.outer(found.reach_x, found.reach_x) * system.axial_spring
+    if len(found.turning):
+        stiffness += found.turning
     sums: Any = np.tril(np.ones((system.n_links, system.n_links)))
+    turning = bool(system.rotation.rate)
     return Linearisation(
         mass=sums.T @ mass_matrix(system, theta) @ sums,
         damping=np.diag(system.dashpots.astype(float)),
         stiffness=sums.T @ stiffness @ sums + np.diag(system.stiffness.astype(float)),
         constraint=found.held_rows @ sums,
+        gyroscopic=sums.T @ gyroscopic(system, theta) @ sums if turning else np.zeros((0, 0)),
     )

@@ -7,6 +7,7 @@ stretches evenly, its inertia that of `verify.chain` along both directions, half
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from verify import elastic_kernels as kernels
 from verify.beam import check_number
 from verify.chain_system import ChainSystem, circular, link_at
+from verify.chain_work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.division import Array
 from verify.errors import InputError
 
@@ -44,7 +46,7 @@ class ElasticMotion:
         return np.stack(columns, axis=1)
 
 
-def elastic_step_limit(system: ChainSystem, axial_stiffness: float) -> float:
+def elastic_step_limit(system: ChainSystem, axial_stiffness: float | Array) -> float:
     """A step that RK4 stands, seconds: 2 sqrt(2) over a bound on the highest circular frequency.
 
     No frequency of the chain exceeds the highest of any link by itself (B. M. Irons and G. Treharne): sqrt(EA l / J)
@@ -56,14 +58,15 @@ def elastic_step_limit(system: ChainSystem, axial_stiffness: float) -> float:
 
 
 def simulate_elastic(
-    system: ChainSystem, axial_stiffness: float, times: Sequence[float] | Array, *, step: float | None = None,
-    immovable: bool = False, deflected: Array | None = None,
+    system: ChainSystem, axial_stiffness: float | Array, times: Sequence[float] | Array, *, step: float | None = None,
+    immovable: bool = False, deflected: Array | None = None, most: float = inf,
 ) -> ElasticMotion:  # fmt: skip
     """The motion from rest, straight or from joint deflections `deflected` (N + 1,), kept at even `times` from 0.
 
-    `axial_stiffness` is EA in newton; `step` is at most `elastic_step_limit`, half of it unless given, shortened to
-    divide the spacing of the times; `immovable` holds the tip along x too. Raises InputError, also for what stretching
-    links do not know here: actuators, a turning base, an axial spring.
+    `axial_stiffness` is EA in newton, of all links or of each (N,); `step` is at most `elastic_step_limit`, half of
+    it unless given, shortened to divide the spacing of the times; `immovable` holds the tip along x too. Raises
+    InputError, also for more work than `most` accelerations of links (`chain_work`), and for what stretching links do
+    not know here: actuators, a turning base, an axial spring, links without inertia along x.
     """
     samples = _checked(system, axial_stiffness, times)
     limit = elastic_step_limit(system, axial_stiffness)
@@ -72,6 +75,8 @@ def simulate_elastic(
     if step > limit:
         raise InputError(f"step = {step!r} s lies above the stability limit {limit:.4g} s of the stretching chain")
     spacing = float(samples[1] - samples[0])
+    work = fixed_steps(spacing, step) * (len(samples) - 1.0) * system.n_links * PER_STRETCHING_STEP
+    refuse_work(work, most, float(samples[-1]))
     flat, diagonal, coupling = _flattened(system, axial_stiffness, immovable)
     u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
     u[:, 1] = 0.0 if deflected is None else deflected
@@ -91,9 +96,17 @@ def simulate_elastic(
     return ElasticMotion(system, samples[: len(kept)], places, speeds, energies, stopped)
 
 
-def _checked(system: ChainSystem, axial_stiffness: float, times: Any) -> Array:
+def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) -> Array:
     """The times as an array. Raises InputError."""
-    check_number("axial_stiffness", axial_stiffness, "newton", above=0)
+    stiffness = np.asarray(axial_stiffness)
+    if stiffness.shape not in ((), (system.n_links,)):
+        raise InputError(
+            f"axial_stiffness has the shape {stiffness.shape}: give one value or one for each of {system.n_links} links"
+        )
+    for value in np.atleast_1d(stiffness).tolist():
+        check_number("axial_stiffness", value, "newton", above=0)
+    if not system.axial_inertia:
+        raise InputError("chain.axial_inertia = False: links that stretch have inertia along x, leave it at True")
     if system.actuators or system.rotation.rate or system.rotation.amplitude or system.rotation.offset:
         raise InputError("chain: actuators and a turned base are for rigid links; give a chain without them")
     if system.axial_spring:
@@ -106,7 +119,7 @@ def _checked(system: ChainSystem, axial_stiffness: float, times: Any) -> Array:
     return samples
 
 
-def _flattened(system: ChainSystem, stiffness: float, immovable: bool) -> tuple[kernels.Elastic, Array, Array]:
+def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -> tuple[kernels.Elastic, Array, Array]:
     """The chain as the kernels see it, and its mass matrix: diagonal (N + 1,) and coupling (N,)."""
     lengths, spin = system.lengths, system.inertias / system.lengths**2
     own, coupling = system.masses / 4.0 + spin, system.masses / 4.0 - spin

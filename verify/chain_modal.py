@@ -11,6 +11,7 @@ are explicit: where the nonlinearity is not small in a step the motion diverges,
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from time import perf_counter
 from typing import Any
 
@@ -22,6 +23,7 @@ from verify.chain_dynamics import at_rest, flatten, linearise, project, workspac
 from verify.chain_modes import lowest_modes
 from verify.chain_motion import ChainMotion, Statistics, checked_times, how_started
 from verify.chain_system import ChainState, ChainSystem, circular, link_at
+from verify.chain_work import modal_work, refuse_work
 from verify.division import Array
 from verify.errors import InputError
 
@@ -58,7 +60,7 @@ def modal_basis(system: ChainSystem, rest: ChainState | None = None, n_modes: in
 
     All of them by dense matrices, O(N^3); or the lowest `n_modes` of an unloaded straight chain by Lanczos, which goes
     to 10^4 links and leaves the others out of the linear motion too. Raises InputError for actuators and moving
-    hubs, which the linear flow does not know.
+    hubs, which the linear flow does not know, and for an equilibrium that is unstable.
     """
     if system.actuators or system.rotation.rate or system.rotation.amplitude:
         raise InputError("chain: actuators and a turning base have no modal flow; give method = 'adaptive' or 'rk4'")
@@ -79,6 +81,8 @@ def _all_modes(system: ChainSystem, rest: ChainState) -> tuple[Array, Array, Arr
     basis = linear.independent()
     values, vectors = eigh(basis.T @ linear.stiffness @ basis, basis.T @ linear.mass @ basis)
     modes, tilt = (basis @ vectors).T, 0.0
+    if len(values) and values[0] < 0.0:
+        linear.frequencies()  # says what is unstable; below 0 by rounding alone is a motion without a spring
     omega = np.sqrt(np.maximum(values, 0.0))
     if len(linear.constraint):
         normal = np.linalg.solve(linear.mass, linear.constraint[0])
@@ -118,11 +122,13 @@ def simulate_modal(
     step: float,
     kicks: int = 2,
     n_modes: int | None = None,
+    most: float = inf,
 ) -> ChainMotion:
     """The motion from `start`, kept at `times`, by exact linear flow and nonlinear kicks.
 
-    `kicks` to a step, 1 to 3; `n_modes` (all unless given) take part in the nonlinear motion. The chain has no
-    ledger of work here. Raises InputError.
+    `kicks` to a step, 1 to 3; `n_modes` (all unless given) take part in the nonlinear motion, which dashpots allow
+    all of them alone. The chain has no ledger of work here. Raises InputError, also for more work than `most`
+    accelerations of links (`chain_work`).
     """
     check_number("step", step, "seconds", above=0)
     if kicks not in SCHEMES:
@@ -130,16 +136,24 @@ def simulate_modal(
     n, held = len(basis.omega), int(basis.tilt != 0.0)
     if n_modes is not None and not 1 <= n_modes <= n - held:
         raise InputError(f"n_modes = {n_modes!r}: there are modes 1 to {n - held}")
+    if n_modes is not None and n_modes < n - held:
+        _refuse_dashpots(basis.system)
     samples = checked_times(start, times)
+    seconds, taking = float(samples[-1] - start.time), n - held if n_modes is None else n_modes
+    refuse_work(modal_work(seconds, step, kicks, basis.system.n_links, taking), most, seconds)
     begin, moved = project(basis.system, start)
-    run = _Modal(basis, begin, samples, step, kicks, n - held if n_modes is None else n_modes)
+    run = _Modal(basis, begin, samples, step, kicks, taking)
     clock = perf_counter()
     stopped = run.march()
     return run.motion(kicks, perf_counter() - clock, stopped, how_started(moved, start))
 
 
 def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float] | Array) -> ChainMotion:
-    """The linearised chain's motion, exact at any time, in the relative angles of the nonlinear one."""
+    """The linearised chain's motion, exact at any time, in the relative angles of the nonlinear one.
+
+    Raises InputError for a chain with dashpots, which couple the modes.
+    """
+    _refuse_dashpots(basis.system)
     clock = perf_counter()
     samples = checked_times(start, times)
     every = np.arange(len(basis.omega))
@@ -158,8 +172,9 @@ def linear_deflection(basis: ModalBasis, start: ChainState, times: Array, x: flo
     """Y of one material point of the linearised chain at evenly spaced times, (n,), metres; about straight.
 
     A sum of exponentials at times t_i + s_j is a product of two small matrices: 2 sqrt(n) exponentials for each
-    mode instead of n. Raises InputError where the times are not evenly spaced.
+    mode instead of n. Raises InputError where the times are not evenly spaced, and for dashpots.
     """
+    _refuse_dashpots(basis.system)
     gaps = np.diff(times)
     if len(times) < 2 or np.ptp(gaps) > 1e-9 * abs(gaps[0]):
         raise InputError("times: give two or more, evenly spaced")
@@ -177,6 +192,15 @@ def linear_deflection(basis: ModalBasis, start: ChainState, times: Array, x: flo
     drift = weights[still] @ (free[still, :1] + free[still, 1:] * (times - start.time))
     steady = np.cos(np.outer(times, basis.drives[:, 0]) + basis.drives[:, 1]) @ (basis.shares @ weights)
     return np.asarray(swing + drift + steady)
+
+
+def _refuse_dashpots(system: ChainSystem) -> None:
+    """Raise InputError where the linear flow, which is undamped, is not the chain's."""
+    if system.dashpots.any():
+        raise InputError(
+            f"chain.dashpots up to {float(system.dashpots.max())!r} N m s: the linear flow is undamped, leave them out "
+            "or give method = 'adaptive', 'rk4' or 'modal' with all modes"
+        )
 
 
 def _free(basis: ModalBasis, start: ChainState) -> Array:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import inf
 from time import perf_counter
 from typing import Any, Literal, get_args
 
@@ -11,14 +12,15 @@ from verify import chain_kernels as kernels
 from verify.beam import check_number
 from verify.chain_dynamics import (
     PIVOT_LOSS,
-    choose_pivots,
     flatten,
     held_rows,
     keep_pivots,
     project,
     workspace,
 )
+from verify.chain_linear import choose_pivots
 from verify.chain_system import ChainState, ChainSystem, link_at
+from verify.chain_work import fixed_steps, refuse_work
 from verify.division import Array
 from verify.errors import InputError, near_name
 
@@ -162,6 +164,8 @@ def simulate(
     dependent: Sequence[int] | None = None,
     ledger: bool = True,
     limit: float | None = None,
+    most: float = inf,
+    progress: Callable[[float], None] = lambda part: None,
 ) -> ChainMotion:
     """The motion from `start`, kept at `times` (ascending, from start.time on).
 
@@ -169,16 +173,21 @@ def simulate(
     Prince's pair of orders 5 and 4, its error per step held to `tolerance` of the largest motion so far. Both are of
     order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
     `limit` is the stability limit where it is known already, which spares finding it.
-    `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. Raises InputError.
+    `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. `progress` hears
+    how much of the time is done; a run that will take more than `most` accelerations of links (`chain_work`) is
+    refused as soon as its pace is known. Raises InputError.
     """
     _check_method(method, step, tolerance)
     samples = checked_times(start, times)
     begin, moved = project(system, start, dependent)
     if method == "rk4" and step is not None:
         refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
+    if step is not None:
+        seconds = float(samples[-1] - start.time)
+        refuse_work(4.0 * fixed_steps(seconds, step) * system.n_links, most, seconds)
     run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
     clock = perf_counter()
-    stopped = run.march()
+    stopped = run.march(most, progress)
     return run.motion(method, perf_counter() - clock, stopped, how_started(moved, start))
 
 
@@ -235,14 +244,16 @@ class _Run:
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
 
-    def march(self) -> str:
-        """Step until every sample is kept; why it stopped."""
+    def march(self, most: float, progress: Callable[[float], None]) -> str:
+        """Step until every sample is kept; why it stopped. Raises InputError where that would be too much work."""
         budget = max(_BUDGET // self.system.n_links, 16)
+        pace = _Pace(self, most)
         try:
             while True:
                 status = kernels.march(self.flat, self.m, budget, self.work)
                 if status != kernels.RUNNING:
                     return self.ended(status)
+                progress(pace.part())
                 if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
                     self.keep_pivots()
         except KeyboardInterrupt:
@@ -274,6 +285,24 @@ class _Run:
             statistics=Statistics(method=method, steps=steps, rejected=rejected, evaluations=evaluations,
                                   seconds=seconds, stopped=stopped, started=started, pivot_changes=changes),
         )  # fmt: skip
+
+
+class _Pace:
+    """What a run will cost by what it has cost so far."""
+
+    def __init__(self, run: _Run, most: float) -> None:
+        self.run, self.most = run, most
+        self.begun, self.end = float(run.m.clock[0]), float(run.m.samples[-1])
+        self.before = self.begun, 0.0
+
+    def part(self) -> float:
+        """How much of the time is done. Raises InputError where the rest would be too much work."""
+        time, work = float(self.run.m.clock[0]), float(self.run.m.counts[2]) * self.run.system.n_links
+        (then, spent), self.before = self.before, (time, work)
+        gone, last = time - self.begun, time - then
+        rest = min(work / gone if gone > 0.0 else inf, (work - spent) / last if last > 0.0 else inf)
+        refuse_work(work + rest * (self.end - time), self.most, self.end - self.begun)
+        return gone / (self.end - self.begun)
 
 
 def _largest(apply: Callable[[Array], Array], n: int) -> float:

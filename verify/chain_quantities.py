@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from msgspec import Meta
 
+from verify.errors import InputError
 from verify.quantity_types import Arguments, Mode, Quantity, Wall
 from verify.workbench import Workbench
 
@@ -17,7 +18,6 @@ Component = Annotated[
 ]
 Radii = Annotated[float, Meta(gt=0, description="at mid-span, in radii of gyration h / sqrt(12)")]
 Step = Annotated[float, Meta(gt=0, description="fixed step of the motion, s; adaptive unless given")]
-Tolerance = Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step, relative")]
 Method = Annotated[
     Literal["adaptive", "rk4", "modal", "linear"],
     Meta(description="modal: exact linear flow and kicks; linear: that flow alone; default rk4 with a step"),
@@ -58,6 +58,14 @@ class Hanging(Chained, frozen=True, kw_only=True):
     mode: Mode
 
 
+class Turning(Chained, frozen=True, kw_only=True):
+    """One mode of a cantilever whose clamp turns."""
+
+    mode: Mode
+    speed: Annotated[float, Meta(ge=0, le=1e3, description="of the clamp, in sqrt(EI / (rho A L^4))")]
+    wall: Wall = "gregory"
+
+
 class LargeAmplitude(Chained, frozen=True, kw_only=True):
     """A hinged beam between immovable ends."""
 
@@ -70,7 +78,13 @@ class FreeMotion(Chained, frozen=True, kw_only=True):
     amplitude: Annotated[float, Meta(gt=0, le=0.1, description="at mid-span, over L")] = 0.05
     periods: Annotated[float, Meta(gt=0, le=1000, description="of the linear first mode")] = 1.0
     step: Step | None = None
-    tolerance: Tolerance = 1e-8
+    tolerance: Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step alone; default 1e-8")] | None = (
+        None
+    )
+
+    def __post_init__(self) -> None:
+        if self.step is not None and self.tolerance is not None:
+            raise InputError(f"tolerance = {self.tolerance!r} with step = {self.step!r}: give one of the two")
 
 
 class Departing(Chained, frozen=True, kw_only=True):
@@ -97,7 +111,9 @@ class FromRest(Chained, frozen=True, kw_only=True):
     )
     method: Method | None = None
     inertia: Inertia = "full"
-    tolerance: Tolerance = 1e-9
+    tolerance: Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step alone; default 1e-9")] | None = (
+        None
+    )
 
 
 def _cantilever_tip(a: TipUnderLoad, scene: "Scene", bench: Workbench) -> float:
@@ -118,16 +134,24 @@ def _hanging_frequency(a: Hanging, scene: "Scene", bench: Workbench) -> float:
     return chain_studies.hanging_frequency(a.mode, a.links)
 
 
+def _turning_frequency(a: Turning, scene: "Scene", bench: Workbench) -> float:
+    from verify import chain_studies
+
+    return chain_studies.turning_frequency(a.mode, a.links, a.speed, a.wall)
+
+
 def _large_amplitude_frequency(a: LargeAmplitude, scene: "Scene", bench: Workbench) -> float:
     from verify import chain_studies
 
-    return chain_studies.large_amplitude_frequency(scene.beam, a.amplitude, a.links)
+    return chain_studies.large_amplitude_frequency(scene.beam, a.amplitude, a.links, bench.tell)
 
 
 def _energy_drift(a: FreeMotion, scene: "Scene", bench: Workbench) -> float:
     from verify import chain_studies
 
-    return chain_studies.energy_drift(scene.beam, a.links, a.amplitude, a.periods, a.step, a.tolerance)
+    return chain_studies.energy_drift(
+        scene.beam, a.links, a.amplitude, a.periods, a.step, a.tolerance or 1e-8, bench.tell
+    )
 
 
 def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> float:
@@ -138,12 +162,14 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
 
     forces = point_forces(scene, "chain.transient_deflection")
     assert scene.drive is not None
+    if a.x > scene.beam.length:
+        raise InputError(f"x = {a.x!r} lies off the chain: give up to {scene.beam.length!r} m")
     if a.force is not None:
         forces = tuple(replace(force, amplitude=a.force) for force in forces)
     method = a.method or ("rk4" if a.step is not None else "adaptive")
     motion = chain_studies.transient(
         scene.beam, forces, scene.drive.frequency_hz, [a.time], a.links, step=a.step, method=method,
-        axial_inertia=a.inertia == "full", tolerance=a.tolerance,
+        axial_inertia=a.inertia == "full", tolerance=a.tolerance, progress=bench.tell,
     )  # fmt: skip
     return float(motion.deflection([a.x])[0, 0])
 
@@ -152,12 +178,20 @@ def _axial_departure(a: Departing, scene: "Scene", bench: Workbench) -> float:
     from verify.axial_study import departure, driven_chain
 
     driven = driven_chain(scene, "chain.axial_departure", a.links, a.time, a.x)
-    found = departure(driven, a.force, a.inertia)
+    found = departure(driven, a.force, a.inertia, bench.tell)
     return found.at_end if a.of == "end" else found.rms
 
 
 def _nothing(a: Any, scene: "Scene") -> tuple[()]:
     """The nonlinear chain takes no modes of others."""
+    return ()
+
+
+def _no_modes(a: Any, scene: "Scene") -> tuple[()]:
+    """The same, for a figure of the scene's own beam. Raises InputError for a beam that is no nonlinear chain."""
+    from verify.chain_system import check_buildable
+
+    check_buildable(scene.beam)
     return ()
 
 
@@ -168,12 +202,14 @@ CHAIN_QUANTITIES = (
              RolledUp, _nothing, _rollup_gap),
     Quantity("chain.hanging_frequency", "1", "Omega sqrt(L/g) of a hanging chain of uniform links.",
              Hanging, _nothing, _hanging_frequency),
+    Quantity("chain.turning_frequency", "1", "Omega sqrt(rho A L^4/EI), lead-lag, of a cantilever whose clamp turns.",
+             Turning, _nothing, _turning_frequency),
     Quantity("chain.large_amplitude_frequency", "1", "First frequency between immovable hinges over the linear one.",
-             LargeAmplitude, _nothing, _large_amplitude_frequency),
+             LargeAmplitude, _no_modes, _large_amplitude_frequency),
     Quantity("chain.energy_drift", "1", "Largest change of energy of an undamped chain over its energy.",
-             FreeMotion, _nothing, _energy_drift),
+             FreeMotion, _no_modes, _energy_drift),
     Quantity("chain.transient_deflection", "m", "Deflection of the chain from rest under the scene's forces.",
-             FromRest, _nothing, _transient_deflection),
+             FromRest, _no_modes, _transient_deflection),
     Quantity("chain.axial_departure", "1", "Nonlinear chain less the linear one, from rest, over the linear one's rms.",
-             Departing, _nothing, _axial_departure),
+             Departing, _no_modes, _axial_departure),
 )  # fmt: skip

@@ -1,7 +1,8 @@
 """A slider on the nonlinear chain: the contact code of the linear beams, fed with the chain's own surface.
 
 One way: the chain moves first, kept twice in every step of the slider. Its joints give the paper's C2 spline over the
-material coordinate, corrected by y + delta^2 y/12; its links shorten the chain, and the surface moves along with them.
+material coordinate, corrected by y + delta^2 y/12 (as in `chain.corrected_reading`); its links shorten the chain, and
+the surface moves along with them.
 """
 
 from dataclasses import dataclass
@@ -58,8 +59,8 @@ def half_steps(duration: float, step: float) -> Array:
 def ride(chain: ChainMotion, beam: Beam, slider: Slider) -> ChainRide:
     """A slider carried by a chain whose states stand at `half_steps`.
 
-    Raises InputError where the times are not evenly spaced and odd in number, and for two-way coupling, which the
-    chain's own integrators do not know.
+    Raises InputError where the times are not evenly spaced and odd in number, for two-way coupling, which the chain's
+    own integrators do not know, for the links' edges as a contact line, and for a beam of unlike thicknesses.
     """
     from verify import contact_kernels as kernels
 
@@ -68,6 +69,10 @@ def ride(chain: ChainMotion, beam: Beam, slider: Slider) -> ChainRide:
         raise InputError(f"times: {len(times)} states do not stand twice in every step, give them at half_steps(...)")
     if slider.coupling == "two-way":
         raise InputError("slider.coupling = 'two-way': a nonlinear chain carries a slider one way, give 'one-way'")
+    if slider.line != "spline":
+        raise InputError(f"slider.line = {slider.line!r}: a nonlinear chain is touched along its spline, give 'spline'")
+    if any(section.thickness not in (None, beam.thickness) for section in beam.section):
+        raise InputError("beam.section has a thickness of its own: a slider rides on a beam of one thickness, give one")
     start = slider.start_on(beam)
     local, along, edges = _surface(chain, start)
     n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
@@ -103,6 +108,8 @@ def _piece(nodes: Array, steps: Array, piece: int) -> Array:
     """The spline through corrected joints on one piece, (n, 4) in xi; `steps` are (n, N), from joint to joint."""
     joints = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
     corrected = joints.copy()
-    corrected[:, 1:-1] += np.diff(joints, 2, axis=1) / 12.0
+    lengths = np.diff(nodes)
+    squares = (lengths[1:] ** 2 + lengths[:-1] ** 2) / 12.0
+    corrected[:, 1:-1] += squares * np.diff(steps / lengths, axis=1) / (lengths[1:] + lengths[:-1])
     coefficients = CubicSpline(nodes, corrected, axis=1, bc_type="natural").c[::-1, piece]
     return np.asarray((coefficients * (nodes[piece + 1] - nodes[piece]) ** np.arange(4)[:, None]).T)

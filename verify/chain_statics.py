@@ -1,6 +1,7 @@
 """Static equilibrium of the nonlinear chain by Newton with continuation in the load; its forces in absolute angles."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,8 @@ class Forces:
     """(n_held, N), metres: minus their second derivatives, a diagonal each."""
     gaps: Array
     """(n_held,), metres: how far the held points are off."""
+    turning: Array
+    """(N, N), N m: stiffness by the centrifugal forces of a turning base; (0, 0) where it does not turn."""
 
     def multipliers(self) -> Array:
         """Forces on the held points, (n_held,), upwards, newton: least squares of the equilibrium of moments."""
@@ -42,26 +45,72 @@ class Forces:
         return np.asarray(np.linalg.lstsq(self.held_rows.T, self.moments + self.springs, rcond=None)[0], dtype=float)
 
 
-def mass_matrix(system: ChainSystem, theta: Array) -> Array:
-    """Mass matrix over the absolute angles, (N, N)."""
+def mass_products(system: ChainSystem) -> Array:
+    """What the cosines of differences of angles are multiplied with in the kinetic energy, (N, N), kg m^2."""
     lengths, masses = system.lengths, system.masses
-    half = lengths / 2.0
+    half, links = lengths / 2.0, np.arange(system.n_links)
     beyond = np.cumsum(masses[::-1])[::-1] - masses
     moment = half * masses + lengths * beyond
-    coupling = np.minimum.outer(np.arange(len(theta)), np.arange(len(theta)))
-    later = np.maximum.outer(np.arange(len(theta)), np.arange(len(theta)))
-    product = lengths[coupling] * moment[later]
+    product = lengths[np.minimum.outer(links, links)] * moment[np.maximum.outer(links, links)]
     np.fill_diagonal(product, half**2 * masses + lengths**2 * beyond)
+    return np.asarray(product)
+
+
+def mass_matrix(system: ChainSystem, theta: Array) -> Array:
+    """Mass matrix over the absolute angles, (N, N)."""
     c, s = np.cos(theta), np.sin(theta)
     turning = np.outer(c, c) + (np.outer(s, s) if system.axial_inertia else 0.0)
-    return np.asarray(product * turning + np.diag(system.inertias))
+    return np.asarray(mass_products(system) * turning + np.diag(system.inertias))
+
+
+def centrifugal(system: ChainSystem, theta: Array) -> tuple[Array, Array]:
+    """Gradient (N,) and second derivatives (N, N) of minus half rate^2 times the moment of inertia about the base.
+
+    That moment is the sum of `mass_products` times cos(theta_i - theta_j). Raises InputError where something acts on
+    the chain that does not turn with the base.
+    """
+    _refuse_still(system)
+    angles = np.subtract.outer(theta, theta)
+    products = system.rotation.rate**2 * mass_products(system)
+    stiffness = -products * np.cos(angles)
+    np.fill_diagonal(stiffness, 0.0)
+    np.fill_diagonal(stiffness, -stiffness.sum(axis=1))
+    return np.asarray((products * np.sin(angles)).sum(axis=1)), stiffness
+
+
+def gyroscopic(system: ChainSystem, theta: Array) -> Array:
+    """Moments by rates of a chain whose base turns, (N, N), N m s, antisymmetric; none where it is straight."""
+    return np.asarray(2.0 * system.rotation.rate * mass_products(system) * np.sin(np.subtract.outer(theta, theta)))
+
+
+def _refuse_still(system: ChainSystem) -> None:
+    """Raise InputError for what keeps its direction while the base turns: there is no equilibrium then."""
+    still = {
+        "a roller": system.tip == "roller",
+        "an actuator": bool(system.actuators),
+        "gravity": any(system.gravity),
+        "a dead force": any(load.frequency_hz == 0.0 and any(load.force) for load in system.loads),
+        "inertia across one direction alone": not system.axial_inertia,
+    }
+    found = [what for what, there in still.items() if there]
+    if found:
+        raise InputError(
+            f"rotation.rate = {system.rotation.rate!r}: {found[0]} does not turn with the base, so that the chain has "
+            "no equilibrium; leave it out or give rate = 0"
+        )
 
 
 def forces_at(system: ChainSystem, angles: Array, factor: float) -> Forces:
-    """Forces at relative angles under `factor` times the constant loads, gravity and displacements."""
-    theta = system.rotation.offset + np.cumsum(angles)
+    """Forces at relative angles under `factor` times the constant loads, gravity and displacements.
+
+    Where the base turns steadily the angles are those in the turning frame and centrifugal forces are among them.
+    Raises InputError where no equilibrium can turn with it.
+    """
+    theta = system.rotation.constant + np.cumsum(angles)
     c, s = np.cos(theta), np.sin(theta)
-    lengths = system.lengths
+    lengths, spin, turning = system.lengths, np.zeros(system.n_links), np.zeros((0, 0))
+    if system.rotation.rate:
+        spin, turning = centrifugal(system, theta)
     push, lever_x, lever_y, turn = _load_sums(system, factor)
     beyond = np.cumsum(push[::-1], axis=0)[::-1] - push
     ax, ay = lengths * beyond[:, 0] + lever_x, lengths * beyond[:, 1] + lever_y
@@ -70,10 +119,11 @@ def forces_at(system: ChainSystem, angles: Array, factor: float) -> Forces:
     springs = joints - np.append(joints[1:], 0.0)
     reach_x = -lengths * s
     return Forces(
-        moments=-(ay * c - ax * s) - turn + stretch * reach_x,
+        moments=-(ay * c - ax * s) - turn + stretch * reach_x + spin,
         springs=springs,
         geometric=ay * s + ax * c - stretch * lengths * c,
         reach_x=reach_x,
+        turning=turning,
         **_held(system, theta, factor),
     )
 
@@ -158,7 +208,9 @@ def _newton_step(system: ChainSystem, found: Forces, held: Array, residual: Arra
 
     k = system.stiffness
     diagonal = k + np.append(k[1:], 0.0) + found.geometric + held @ found.held_bends
-    core = diags_array([-k[1:], diagonal, -k[1:]], offsets=[-1, 0, 1])
+    core: Any = diags_array([-k[1:], diagonal, -k[1:]], offsets=[-1, 0, 1])
+    if len(found.turning):
+        core = core + csc_array(found.turning)
     border, corner = found.held_rows, np.zeros(len(held))
     if system.axial_spring:
         border, corner = np.vstack([border, found.reach_x]), np.append(corner, 1.0 / system.axial_spring)

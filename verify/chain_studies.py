@@ -1,6 +1,6 @@
 """Known problems solved by the nonlinear chain: figures that have a reference outside this suite."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import pi, sqrt
 
@@ -12,9 +12,17 @@ from verify.chain_dynamics import at_rest, linearise, positions
 from verify.chain_modal import modal_basis, simulate_linear, simulate_modal
 from verify.chain_motion import ChainMotion, simulate
 from verify.chain_statics import solve_static
-from verify.chain_system import ChainState, ChainSystem, LinkLoad, build_system
+from verify.chain_system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.chain_walls import Wall
+from verify.chain_work import MOST, STATIC_LINKS, check_links, check_modes_of
 from verify.errors import InputError
+
+Progress = Callable[[float], None]
+"""Hears how much of a motion is done, 0 to 1."""
+
+
+def unheard(part: float) -> None:
+    """Nobody listens."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +41,7 @@ def cantilever_tip(load: float, n_segments: int, wall: Wall = "gregory") -> TipP
     The reference is the elastica by elliptic integrals: K. E. Bisshopp and D. C. Drucker, Quart. Appl. Math. 3 (1945)
     272. Order 2 in the number of segments. Raises InputError where no equilibrium is found.
     """
+    _check_static(n_segments)
     system = build_system(UNIT_CANTILEVER, n_segments, wall=wall)
     at = float(system.lengths[-1])
     system = replace(system, loads=(LinkLoad(link=system.n_links, at=at, force=(0.0, load * UNIT_STIFFNESS)),))
@@ -43,11 +52,17 @@ def cantilever_tip(load: float, n_segments: int, wall: Wall = "gregory") -> TipP
 def rollup_gap(n_segments: int, wall: Wall = "half", turns: float = 1.0) -> float:
     """Distance of the ends over L of a cantilever under an end moment 2 pi EI / L times `turns`.
 
-    With equal joints, a wall joint 2EI/l among them, the circle closes exactly; Gregory's weights leave a gap.
+    With equal joints, a wall joint 2EI/l among them, the circle closes exactly; Gregory's weights leave a gap. Raises
+    InputError where no equilibrium is found.
     """
+    _check_static(n_segments)
     system = build_system(UNIT_CANTILEVER, n_segments, wall=wall)
     moment = 2.0 * pi * turns * UNIT_STIFFNESS
     return float(np.hypot(*_tip(replace(system, loads=(LinkLoad(link=system.n_links, at=0.0, moment=moment),)))))
+
+
+def _check_static(n_segments: int) -> None:
+    check_links(n_segments, 1, STATIC_LINKS, "an equilibrium takes a time in proportion to its links")
 
 
 def _tip(system: ChainSystem) -> tuple[float, float]:
@@ -66,12 +81,29 @@ def hanging_frequency(mode: int, n_segments: int) -> float:
     sqrt(3/2) for one link, j_{0,n} / 2 (Daniel Bernoulli) in the limit of many, approached with order 2. Raises
     InputError for more modes than links.
     """
+    check_modes_of(n_segments)
     if mode > n_segments:
         raise InputError(f"mode = {mode!r}: a hanging chain of {n_segments} segments has as many modes")
     lengths, masses, still = (np.full(n_segments, value) for value in (1.0 / n_segments, 1.0 / n_segments, 0.0))
     system = ChainSystem(lengths=lengths, masses=masses, inertias=link_inertia(masses, lengths), stiffness=still,
                          dashpots=still, gravity=(1.0, 0.0))  # fmt: skip
     return float(linearise(system, at_rest(system)).frequencies()[mode - 1])
+
+
+def turning_frequency(mode: int, n_segments: int, speed: float, wall: Wall = "gregory") -> float:
+    """Omega sqrt(rho A L^4 / EI) of a cantilever in the plane in which its clamp turns, `speed` in the same unit.
+
+    Lead-lag: its square is that of the flapping beam less the speed's (A. D. Wright et al., J. Appl. Mech. 49 (1982)
+    197, has flapping). Approached with order 2: the wave that bends is answered with order 4, the centrifugal pull with
+    order 2. Raises InputError for more modes than links.
+    """
+    check_modes_of(n_segments)
+    if mode > n_segments:
+        raise InputError(f"mode = {mode!r}: a chain of {n_segments} segments has as many modes, raise segments")
+    system = build_system(UNIT_CANTILEVER, n_segments, wall=wall)
+    unit = sqrt(UNIT_STIFFNESS / UNIT_CANTILEVER.mass_per_length)
+    system = replace(system, rotation=Rotation(rate=speed * unit))
+    return float(linearise(system, at_rest(system)).frequencies()[mode - 1]) / unit
 
 
 def first_shape(system: ChainSystem, amplitude: float) -> ChainState:
@@ -81,19 +113,23 @@ def first_shape(system: ChainSystem, amplitude: float) -> ChainState:
     return at_rest(system, np.diff(theta, prepend=0.0))
 
 
-def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int) -> float:
+def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int, progress: Progress = unheard) -> float:
     """Frequency over the linear chain's, first mode between immovable hinges, `amplitude` in radii of gyration.
 
-    The radius is h / sqrt(12); the immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J.
+    The radius is sqrt(I / A); the immovable end is a roller with an axial spring EA / L. S. Woinowsky-Krieger (J.
     Appl. Mech. 17 (1950) 35): q'' + q + a^2/4 q^3 = 0, to which a chain of any number of equal links comes but for
-    the square of its slopes. Raises InputError for an amplitude that the links do not reach.
+    the square of its slopes. Raises InputError for an amplitude that the links do not reach, and for a beam that is
+    not uniform, not between hinges, or damped.
     """
-    system = build_system(_hinged(beam), n_segments, immovable=True)
-    height = amplitude * beam.thickness / sqrt(12.0)
+    _check_hinged(beam, n_segments)
+    system = build_system(beam, n_segments, immovable=True)
+    height = amplitude * _radius(beam)
     _check_height(height, system)
     linear = float(linearise(system, at_rest(system)).frequencies()[0])
     times = np.linspace(0.0, 1.01 * pi / 2 / linear, 801)
-    motion = simulate(system, first_shape(system, height), times, tolerance=1e-10, ledger=False)
+    motion = simulate(
+        system, first_shape(system, height), times, tolerance=1e-10, ledger=False, most=MOST, progress=progress
+    )
     _finished(motion)
     middle = motion.deflection([0.5 * beam.length])[:, 0]
     k = int(np.argmax(middle <= 0.0))
@@ -101,10 +137,23 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int) -> 
     return pi / 2.0 / crossing / linear
 
 
-def _hinged(beam: Beam) -> Beam:
-    from msgspec.structs import replace as changed
+def _check_hinged(beam: Beam, n_segments: int) -> None:
+    """Raise InputError for a beam or a number of segments that has no motion between hinges to follow."""
+    if beam.supports != ("pinned", "pinned"):
+        raise InputError(
+            f"beam.supports = {list(beam.supports)!r}: this figure is of a beam between two hinges, give pinned ends"
+        )
+    check_modes_of(n_segments, 2)
 
-    return changed(beam, supports=("pinned", "pinned"))
+
+def _radius(beam: Beam) -> float:
+    """Sqrt(I / A) of a uniform beam, metres. Raises InputError where sections differ: no sine is their first mode."""
+    first, *others = ((p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) for p in beam.pieces)
+    if any(other != first for other in others):
+        raise InputError(
+            "beam.section: the first mode of unlike sections is no sine, as the amplitude asks for; give a uniform beam"
+        )
+    return sqrt(first[1] / first[3])
 
 
 def _check_height(height: float, system: ChainSystem) -> None:
@@ -113,21 +162,24 @@ def _check_height(height: float, system: ChainSystem) -> None:
 
 
 def energy_drift(
-    beam: Beam, n_segments: int, amplitude: float, periods: float, step: float | None, tolerance: float
-) -> float:
+    beam: Beam, n_segments: int, amplitude: float, periods: float, step: float | None, tolerance: float,
+    progress: Progress = unheard,
+) -> float:  # fmt: skip
     """Largest change of the energy of an undamped roller-ended chain, over what it was let go with.
 
-    Let go at rest from amplitude L sin(pi x / L); `periods` are the linear first mode's. Raises InputError.
+    Let go at rest from amplitude L sin(pi x / L); `periods` are the linear first mode's. Raises InputError, also for
+    a beam that is not between hinges, or damped.
     """
-    system = build_system(_hinged(beam), n_segments)
+    _check_hinged(beam, n_segments)
+    system = build_system(beam, n_segments)
     _check_height(amplitude * system.length, system)
     linear = float(linearise(system, at_rest(system)).frequencies()[0])
     times = np.linspace(0.0, 2.0 * pi * periods / linear, 65)
     start = first_shape(system, amplitude * system.length)
     motion = (
-        simulate(system, start, times, tolerance=tolerance)
+        simulate(system, start, times, tolerance=tolerance, most=MOST, progress=progress)
         if step is None
-        else simulate(system, start, times, method="rk4", step=step)
+        else simulate(system, start, times, method="rk4", step=step, most=MOST, progress=progress)
     )
     _finished(motion)
     kinetic, elastic, _ = motion.energies()
@@ -136,27 +188,41 @@ def energy_drift(
 
 def transient(
     beam: Beam, forces: Sequence[PointForce], frequency_hz: float, times: Sequence[float], n_segments: int, *,
-    step: float | None = None, method: str = "adaptive", axial_inertia: bool = True, tolerance: float = 1e-9,
+    step: float | None = None, method: str = "adaptive", axial_inertia: bool = True, tolerance: float | None = None,
+    most: float = MOST, progress: Progress = unheard,
 ) -> ChainMotion:  # fmt: skip
     """The chain from rest under harmonic forces A cos(2 pi f t + phase) on its links.
 
-    `method` is "adaptive", "rk4" or "modal" (two kicks) with a step, or "linear" for the exact linear flow. Raises
-    InputError.
+    `method` is "adaptive" with a tolerance (default 1e-9), "rk4" or "modal" (two kicks) with a step, or "linear" for
+    the exact linear flow, which takes neither and whose links have no inertia along x in any case. Raises InputError.
     """
+    _check_settings(method, step, tolerance)
+    if method in ("linear", "modal"):
+        check_modes_of(n_segments)
+    check_links(n_segments, 1, 5 * STATIC_LINKS, "a motion takes a time that grows with the cube of its links")
     system = build_system(beam, n_segments, forces, frequency_hz, axial_inertia=axial_inertia)
     start = at_rest(system)
     if method == "linear":
         motion = simulate_linear(modal_basis(system), start, times)
     elif method == "modal":
-        if step is None:
-            raise InputError("step is missing: give a step in seconds with method = 'modal'")
-        motion = simulate_modal(modal_basis(system), start, times, step=step)
+        assert step is not None
+        motion = simulate_modal(modal_basis(system), start, times, step=step, most=most)
     elif method == "rk4":
-        motion = simulate(system, start, times, method="rk4", step=step, ledger=False)
+        motion = simulate(system, start, times, method="rk4", step=step, ledger=False, most=most, progress=progress)
     else:
-        motion = simulate(system, start, times, step=step, tolerance=tolerance, ledger=False)
+        motion = simulate(system, start, times, tolerance=tolerance or 1e-9, ledger=False, most=most, progress=progress)
     _finished(motion)
     return motion
+
+
+def _check_settings(method: str, step: float | None, tolerance: float | None) -> None:
+    """Raise InputError for a step or a tolerance that a method does not take, or lacks."""
+    if method in ("rk4", "modal") and step is None:
+        raise InputError(f"step is missing: give a step in seconds with method = {method!r}")
+    if method not in ("rk4", "modal") and step is not None:
+        raise InputError(f"step = {step!r} is for method = 'rk4' or 'modal': {method!r} takes none, leave it out")
+    if method != "adaptive" and tolerance is not None:
+        raise InputError(f"tolerance = {tolerance!r} is for method = 'adaptive': {method!r} takes none, leave it out")
 
 
 def _finished(motion: ChainMotion) -> None:

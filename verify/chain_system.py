@@ -6,7 +6,7 @@ across it. Sections 2 and 7 of the paper's formalism: relative joint coordinates
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite, pi
+from math import isfinite, pi, radians, sin
 from typing import Literal
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from verify.beam import Beam, PointForce, check_number
 from verify.chain import Chain, Joints, build_chain
 from verify.chain_walls import Wall
-from verify.division import Array
+from verify.division import Array, divide
 from verify.errors import InputError
 from verify.point_loads import Load, joint_weights
 
@@ -36,6 +36,11 @@ class Rotation:
     def __post_init__(self) -> None:
         for field in ("offset", "rate", "amplitude", "frequency_hz", "phase_deg"):
             check_number(f"rotation.{field}", getattr(self, field), "SI, degrees for the phase")
+
+    @property
+    def constant(self) -> float:
+        """The part of the angle that stands still, radians: the offset, and an amplitude without a frequency."""
+        return self.offset + (0.0 if self.frequency_hz else self.amplitude * sin(radians(self.phase_deg)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,9 +202,10 @@ def build_system(
 
     Pinned or clamped on the left; free, or pinned as a roller, on the right. `load` puts a force on its link
     ("lever") or on the four joints around it ("reciprocal", `point_loads`). `immovable` holds the roller by an axial
-    spring EA/L. Raises InputError for other supports and for forces off the beam.
+    spring EA/L, that of all links in series on a stepped beam. Raises InputError for other supports, a loss factor,
+    and forces off the beam.
     """
-    _check_buildable(beam, wall)
+    check_buildable(beam, wall)
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
     unit, mass = chain.unit, beam.mass_per_length
@@ -208,12 +214,18 @@ def build_system(
         lengths=chain.lengths * unit, masses=chain.masses * mass * unit, inertias=chain.inertias * mass * unit**3,
         stiffness=stiffness, dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0), axial_inertia=axial_inertia,
         tip="roller" if beam.supports[1] == "pinned" else "free",
-        axial_spring=beam.youngs_modulus * beam.area / beam.length if immovable else 0.0,
+        axial_spring=1.0 / sum(p.length / p.axial_stiffness for p in beam.pieces) if immovable else 0.0,
     )  # fmt: skip
     return replace(system, loads=transverse_loads(chain, system, forces, frequency_hz, load))
 
 
-def _check_buildable(beam: Beam, wall: str) -> None:
+def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
+    """EA of every link, each of its own section, (N,), newton. Raises InputError as `divide` does."""
+    return divide(beam, n_segments, grading).axial_stiffnesses * (beam.youngs_modulus * beam.area)
+
+
+def check_buildable(beam: Beam, wall: str = "gregory") -> None:
+    """Raise InputError for supports, a wall or a loss that the nonlinear chain does not have."""
     left, right = beam.supports
     if left not in ("pinned", "clamped") or right not in ("pinned", "free"):
         raise InputError(
@@ -222,6 +234,11 @@ def _check_buildable(beam: Beam, wall: str) -> None:
         )
     if wall == "welded":
         raise InputError("wall = 'welded' is for the linear chain: choose another wall")
+    if beam.loss_factor:
+        raise InputError(
+            f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain moves in time and has no complex modulus, "
+            "give 0 (in Python a joint_dashpot damps the joints)"
+        )
 
 
 def transverse_loads(

@@ -107,8 +107,10 @@ def _print_axial(console: Console, study: "AxialStudy") -> None:
     """How linear the chain of rigid links was found to be."""
     for row in study.rows:
         verdict = "linear" if row.linear else "nonlinear"
+        low, high = row.along
         console.print(Text(f"{row.force:g} N: {verdict}, (kL)^2 <theta^2> {row.size:.1e}; rigid links lie "
-                           f"{row.full.at_end:.1e} off after {1e3 * study.duration:g} ms"))  # fmt: skip
+                           f"{row.full.at_end:.1e} off after {1e3 * study.duration:g} ms at x = {study.x:g} m, "
+                           f"{low:.1e} to {high:.1e} at the tenths of the beam"))  # fmt: skip
 
 
 def answer_in_words(answer: "Comparison") -> str:

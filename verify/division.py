@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """N parts from left to right, each (N,), relative to the beam's own E, I, rho A and to `unit` of length."""
+    """N parts from left to right, each (N,), relative to the beam's own E, I, rho A, A and to `unit` of length."""
 
     unit: float
     """Metres: the mean length of a part, so that equal parts have length 1 exactly."""
@@ -19,6 +19,7 @@ class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     moduli: Array
     second_moments: Array
     masses_per_length: Array
+    areas: Array
     equal: bool
     """Whether all parts are alike."""
 
@@ -26,6 +27,11 @@ class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def stiffnesses(self) -> Array:
         """EI, (N,)."""
         return self.moduli * self.second_moments
+
+    @property
+    def axial_stiffnesses(self) -> Array:
+        """EA, (N,)."""
+        return self.moduli * self.areas
 
     @property
     def nodes(self) -> Array:
@@ -45,14 +51,15 @@ def divide(beam: Beam, count: int, grading: float = 1.0) -> Parts:
     unit = beam.length / count
     if len(pieces) == 1 and not beam.stepped and grading == 1.0:
         one = np.ones(count)
-        return Parts(unit=unit, lengths=one, moduli=one, second_moments=one, masses_per_length=one, equal=True)
+        return Parts(unit=unit, lengths=one, moduli=one, second_moments=one, masses_per_length=one, areas=one,
+                     equal=True)  # fmt: skip
     shares = part_counts([piece.length for piece in pieces], count)
     lengths = [_graded(piece.length / unit, n, grading) for piece, n in zip(pieces, shares, strict=True)]
-    base = beam.youngs_modulus, beam.second_moment, beam.mass_per_length
-    ratios = [(p.youngs_modulus / base[0], p.second_moment / base[1], p.mass_per_length / base[2]) for p in pieces]
-    moduli, moments, masses = np.repeat(np.array(ratios), shares, axis=0).T
+    base = np.array([beam.youngs_modulus, beam.second_moment, beam.mass_per_length, beam.area])
+    ratios = [(p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) / base for p in pieces]
+    moduli, moments, masses, areas = np.repeat(np.array(ratios), shares, axis=0).T
     return Parts(unit=unit, lengths=np.concatenate(lengths), moduli=moduli, second_moments=moments,
-                 masses_per_length=masses, equal=False)  # fmt: skip
+                 masses_per_length=masses, areas=areas, equal=False)  # fmt: skip
 
 
 def check_division(beam: Beam, count: int, grading: float = 1.0) -> None:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 CHAIN_IN_TIME = ("chain.energy_drift", "chain.large_amplitude_frequency", "chain.transient_deflection",
                  "chain.axial_departure")  # fmt: skip
 """Quantities of the nonlinear chain that are stepped; its others are equilibria and modes."""
+STEPS_PER_RADIAN = 15
+"""Of a chain's fastest mode, which the tolerance of the study of axial inertia takes."""
 STUDIES = ("spectrum", "convergence", "sensitivity", "wave", "motion", "axial_inertia")
 """What a scene can ask for besides gates, by the name of its table."""
 
@@ -101,7 +103,7 @@ def _study_asks(scene: "Scene") -> list[Ask]:
     if scene.motion and scene.slider:
         asks.append(Ask(_motion_study(scene), ()))
     if scene.axial_inertia:
-        asks.append(Ask(_axial_study(scene.axial_inertia), ()))
+        asks.append(Ask(_axial_study(scene, scene.axial_inertia), ()))
     return asks
 
 
@@ -140,7 +142,7 @@ def _timed(scene: "Scene") -> set[str]:
     prefixes = ("friction.", "slider.", "motion.")
     gates = {f"gate {g.id}" for g in scene.gate if g.quantity.startswith(prefixes) or g.quantity in CHAIN_IN_TIME}
     gates |= {_motion_study(scene)} if scene.motion and scene.slider else set()
-    return gates | ({_axial_study(scene.axial_inertia)} if scene.axial_inertia else set())
+    return gates | ({_axial_study(scene, scene.axial_inertia)} if scene.axial_inertia else set())
 
 
 def _compiled(scene: "Scene") -> set[str]:
@@ -154,12 +156,13 @@ def _motion_study(scene: "Scene") -> str:
     return f"motion (slider on segments, elements and the exact beam, work against error at N = {sizes})"
 
 
-def _axial_study(asked: "AxialInertia") -> str:
+def _axial_study(scene: "Scene", asked: "AxialInertia") -> str:
+    fastest = 4.0 * 3.0**0.5 * (asked.count / scene.beam.length) ** 2 * scene.beam.wave_constant
     forces = ", ".join(f"{force:g}" for force in asked.forces)
     runs = 3 * len(asked.forces) + 3
-    steps = max(round(1.5e6 * asked.duration * (asked.count / 49) ** 2), 1)
+    steps = max(STEPS_PER_RADIAN * fastest * asked.duration, 1.0)
     return (f"axial_inertia (rigid, massless along x and stretching links at {forces} N, all models at "
-            f"{asked.shown:g} N: {runs} runs of N = {asked.count}, about {steps} steps each)")  # fmt: skip
+            f"{asked.shown:g} N: {runs} runs of N = {asked.count}, about {steps:.2g} steps each)")  # fmt: skip
 
 
 def _chosen(scene: "Scene") -> tuple[Skipped, ...]:

@@ -158,13 +158,17 @@ class AxialInertia(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
             check_number("axial_inertia.x", self.x, "metres", above=0)
 
     def check_on(self, beam: Beam, drive: Drive | None) -> None:
-        """Raise InputError unless the beam is a chain with a tip that slides, driven by forces, with an exact field."""
+        """Raise InputError unless the beam is a chain with a tip that slides, undamped and driven by forces."""
         if drive is None or drive.kind != "force" or not drive.force:
             raise InputError("axial_inertia: the chain is driven by forces, give the scene a [drive] of kind force")
         if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or beam.stepped:
             raise InputError(
                 f"axial_inertia with beam.supports = {list(beam.supports)!r}: give a uniform beam that is pinned or "
                 "clamped on the left and pinned, or free behind a clamp, on the right"
+            )
+        if beam.loss_factor:
+            raise InputError(
+                f"axial_inertia with beam.loss_factor = {beam.loss_factor!r}: its chains move undamped, give 0"
             )
         if self.x is not None and self.x > beam.length:
             raise InputError(f"axial_inertia.x = {self.x!r} lies off the beam: give up to {beam.length!r} m")

@@ -51,7 +51,7 @@ def _departures(study: "AxialStudy") -> dict[str, Any]:
                  "line": {"color": GREY, "width": 4}})  # fmt: skip
     log = {"type": "log", "exponentformat": "power"}
     return chart(
-        "axial-departures", f"Departure from the linear chain over the force, N = {study.count}",
+        "axial-departures", f"Departure from the linear chain at x = {study.x:g} m over the force, N = {study.count}",
         "Over the linear chain's rms deflection: at the end of the run, and as rms over the run. Grey: the number that "
         f"decides between linear and nonlinear, felt from {NONLINEAR:g} on.",
         data, axes("force, N", "departure, relative", xaxis=log | {"exponentformat": "none"}, yaxis=log),
