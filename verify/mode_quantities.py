@@ -41,6 +41,8 @@ def _over_sizes(a: Any, scene: "Scene") -> tuple[Need, ...]:
 
 def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
     if a.model == "analytic" or a.count is None:
+        if a.theory == "euler-bernoulli":
+            return bench.exact_hz(a.mode)
         from verify.closed_forms import frequency_hz
 
         return frequency_hz(scene.beam, a.mode, a.theory)
