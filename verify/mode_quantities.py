@@ -89,9 +89,10 @@ def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
 
 
 def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
-    from verify.sizing import count_needed
+    from verify.sizing import enough_from
 
-    return count_needed(bench, a.model, a.mode, a.error, a.settings)
+    found = enough_from(bench, a.model, a.mode, a.error, a.settings)
+    return found.smaller if a.of == "least" and found.smaller is not None else found.count
 
 
 def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
@@ -163,7 +164,8 @@ MODE_QUANTITIES = (
             lambda a, s, bench: bench.bracket(a.mode, a.count, a.settings),
         ),
         Quantity(
-            "mode.count_needed", "1", "Fewest segments or elements whose frequency error is within `error`.",
+            "mode.count_needed", "1",
+            "Segments or elements from which on the frequency error stays within `error`, or the least that happen to.",
             ToError, _count_guess, _count_needed,
         ),
         Quantity(

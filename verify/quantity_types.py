@@ -157,6 +157,10 @@ class ToError(Divided, frozen=True, kw_only=True):
     model: DiscreteModel
     mode: Mode
     error: Annotated[float, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
+    of: Annotated[
+        Literal["enough", "least"],
+        Meta(description="from here on enough; or the least that does, where an error changes its sign below that"),
+    ] = "enough"
 
     def __post_init__(self) -> None:
         self.check_settings(self.model)
