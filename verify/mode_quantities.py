@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def _solved(model: str, count: int | None, n_modes: int, settings: Settings = ()) -> tuple[Need, ...]:
-    """The solves behind one figure; the mean of both models takes both."""
+    """The solves behind one figure; the middle of both models takes both."""
     if model == "analytic" or count is None:
         return ()
     models = ("segment", "fem") if model == "mean" else (model,)

@@ -81,7 +81,7 @@ WAVE_QUANTITIES = (
              "1/cond([Re w, Im w]) over the window's whole half wavelengths: (1 - Gamma)/(1 + Gamma) for two waves.",
              InWindow, _nothing, _figure("travelling_index")),
     Quantity("wave.axis_ratio", "1",
-             "Signed axis ratio of the surface ellipse at x, or its mean over whole half wavelengths; below 0 towards +x.",
+             "Signed axis ratio of the surface ellipse at x, else the mean over whole half waves; below 0 towards +x.",
              AxisRatio, _nothing, _axis_ratio),
     Quantity("wave.signed_area_spread", "1",
              "(max - min)/|mean| of the ellipses' signed area over the window, at any place.",
