@@ -545,7 +545,7 @@ def link_inertia_left_out_in_time(patch):
 
 
 def drift_of_second_order_dropped(patch):
-    """What rises and falls carries a point that follows it: 218 of 219 parts of the drift are gone."""
+    """What rises and falls carries a point that follows it: 219 of 220 parts of the drift are gone."""
     true = pure_wave.law_entries
 
     def followed(*given):
