@@ -273,3 +273,31 @@ def test_the_memory_guard_counts_more_than_a_driven_field_takes(titanium_strip, 
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     counted = eigen.required_bytes(MODELS[model].unknowns(titanium_strip, 100_000), 1)
     assert 0.3 * counted < int(done.stdout) < counted
+
+
+@pytest.mark.parametrize("count", [3, 12, 31, 47])
+@pytest.mark.parametrize(
+    "supports",
+    [("pinned", "pinned"), ("guided", "guided"), ("guided", "pinned"), ("free", "free"), ("free", "guided"),
+     ("pinned", "free")],
+    ids="-".join,
+)  # fmt: skip
+def test_the_mean_of_both_is_nearer_than_elements_up_to_seven_tenths_of_the_modes(titanium_strip, supports, count):
+    """Every mode that both have: exactly where it is said on pinned and guided ends, at most a mode later on free ones."""
+    beam = replace(titanium_strip, supports=supports)
+    n_modes = min(module.n_elastic(beam, count) for module in (segment_model, fem_beam))
+    exact = [closed_forms.frequency_hz(beam, n) for n in range(1, n_modes + 1)]
+    below, above = (module.solve_modes(beam, n_modes, count).frequencies_hz for module in (segment_model, fem_beam))
+    nearer = [abs((b + a) / 2 / e - 1) < abs(a / e - 1) for b, a, e in zip(below, above, exact, strict=True)]
+    said = [error_laws.mean_is_nearest(supports, n, count) for n in range(1, n_modes + 1)]
+    assert sum(nearer) - supports.count("free") <= sum(said) <= sum(nearer)
+    assert nearer == sorted(nearer, reverse=True)
+    assert said == sorted(said, reverse=True)
+
+
+def test_the_means_limit_is_where_segments_are_three_times_as_far_off():
+    mu = error_laws.MEAN_LIMIT
+    segment, hermite = (np.sqrt(root(mu)) / mu**2 - 1 for root in (error_laws._segment_root, error_laws._hermite_root))
+    assert segment / hermite == pytest.approx(-3, abs=1e-10)
+    assert mu / np.pi == pytest.approx(0.69635, abs=1e-5)
+    assert not error_laws.mean_is_nearest(("clamped", "free"), 1, 1000)

@@ -16,10 +16,10 @@ MODELS = ("analytic_modes", "fem_beam", "segment_model")
 FLOORS = [
     {"errors", "timing", "search"}, {"chain_work", "beam", "checked", "files", "contact_kernels", "chain_kernels", "elastic_kernels"},
     {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis"},
-    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "drives", "forcing", "contact"},
+    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "section_minors", "drives", "forcing", "contact"},
     {"point_loads", "motion", "validity"},
     {"chain_system", *MODELS}, {"segment_motion", "fem_motion", "analytic_motion", "chain_statics", "chain_elastic", "chain_modes", "chain_linear"}, {"moving_surface", "chain_dynamics"},
-    {"slider_run", "energy", "chain_motion", "moving_mass", "excited", "request"}, {"margins"}, {"chain_modal", "chain_slider"}, {"chain_studies"}, {"compare", "travelling_wave"}, {"workbench"},
+    {"slider_run", "energy", "chain_motion", "moving_mass", "excited", "request"}, {"margins"}, {"chain_modal", "chain_slider"}, {"chain_studies"}, {"compare", "intervals"}, {"travelling_wave"}, {"workbench"},
     {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"}, {"rigid_surface", "pure_wave", "carried"}, {"simulate"}, {"motion_arguments", "axial_study"}, {"motions"},
     {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"}, {"work_precision"}, {"motion_study"},
     {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
@@ -55,7 +55,7 @@ def modules():
 @pytest.mark.parametrize("model", MODELS)
 def test_a_model_imports_no_other_model_and_no_judge(model):
     own = {
-        "analytic_modes": {"closed_forms", "analytic_harmonic"},
+        "analytic_modes": {"closed_forms", "analytic_harmonic", "section_minors"},
         "fem_beam": {"harmonic_solvers"},
         "segment_model": {"chain", "chain_walls", "point_loads", "harmonic_solvers"},
     }
@@ -66,7 +66,7 @@ def test_a_model_imports_no_other_model_and_no_judge(model):
 def test_what_a_model_is_made_of_knows_no_other_model_either():
     shared = {"beam", "division", "modes", "fields", "errors", "eigen"}
     parts = {
-        "analytic_harmonic": {"closed_forms"}, "chain": {"chain_walls"}, "point_loads": {"chain"}, "harmonic_solvers": set(),
+        "analytic_harmonic": {"closed_forms"}, "section_minors": set(), "chain": {"chain_walls"}, "point_loads": {"chain"}, "harmonic_solvers": set(),
     }  # fmt: skip
     for part, own in parts.items():
         assert imports_of(PACKAGE / f"{part}.py", typing_too=True) <= shared | own, part

@@ -201,3 +201,16 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
     assert done.stdout.count('class="main-svg"') >= charts
     assert done.stdout.count("scatterlayer") >= traces
     assert ("heatmaplayer" in done.stdout) or name != "paper-wave"
+
+
+def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(titanium_strip):
+    from verify.report.charts import mean_in_words
+    from verify.scene import Convergence
+    from verify.studies import convergence
+    from verify.workbench import Workbench
+
+    bench = Workbench(titanium_strip)
+    low = convergence(bench, Convergence(modes=(3, 7), counts=(12, 24)))
+    assert mean_in_words(low).endswith("always nearer than elements alone.")
+    high = convergence(bench, Convergence(modes=(3, 9), counts=(12, 13, 24)))
+    assert mean_in_words(high).endswith("beyond about n = 0.7 N: mode 9 at N = 12.")

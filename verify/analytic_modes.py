@@ -10,7 +10,9 @@ import numpy as np
 from verify.analytic_harmonic import solve_harmonic, unit_responses
 from verify.beam import Beam, check_whole
 from verify.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
+from verify.errors import InputError
 from verify.modes import Array, Modes
+from verify.section_minors import end_minor
 
 __all__ = [
     "exact_frequency_hz",
@@ -23,6 +25,10 @@ __all__ = [
 
 _MIRRORED = {("pinned", "clamped"), ("pinned", "free"), ("free", "clamped"), ("guided", "clamped"),
              ("guided", "free"), ("pinned", "guided")}  # fmt: skip
+
+
+_LEAST = 1e-9
+"""Of beta L: below it a count sees rounding alone."""
 
 
 def solve_modes(beam: Beam, n_modes: int) -> Modes:
@@ -130,21 +136,45 @@ def exact_frequency_hz(beam: Beam, mode: int) -> float:
 
 
 def stepped_frequency_hz(beam: Beam, mode: int) -> float:
-    """The exact frequency of one elastic mode of a beam of any number of sections, Hz, to about 1e-12.
+    """The exact frequency of one elastic mode of a beam of any number of sections, Hz, to 1e-14.
 
     The transfer matrix of each section is rearranged into its dynamic stiffness, which does not overflow, and
     frequencies below a trial value are counted (Wittrick and Williams, Q. J. Mech. Appl. Math. 24, 1971), so
-    that none is missed; the count is bisected to rest. The floor grows with (L / shortest section)^3 eps, to
-    1e-10 at a fiftieth of the length. Raises InputError for mode < 1.
+    that none is missed. The count is bisected until it has singled one out; the digits come from the minors of the
+    transfer, since a count is blurred by (L / shortest section)^3 eps, which is 1e-5 on beams that somebody might
+    build. Raises InputError for mode < 1, and where rounding tells a frequency from its neighbours in no interval.
     """
     check_mode(mode)
     wanted = mode + beam.rigid_motions
     low, high = 0.0, 1.0
     while modes_below(beam, high) < wanted:
         low, high = high, 2.0 * high
-    while low < (middle := 0.5 * (low + high)) < high:
+    while low < (middle := 0.5 * (low + high)) < high and high > _LEAST:
+        if low > 0.0 and (root := _root_near(beam, low, high)) is not None:
+            return root * root * beam.wave_constant / (2.0 * pi * beam.length**2)
         low, high = (low, middle) if modes_below(beam, middle) >= wanted else (middle, high)
-    return high * high * beam.wave_constant / (2.0 * pi * beam.length**2)
+    raise InputError(
+        f"mode = {mode}: rounding does not tell this frequency of a beam of {len(beam.pieces)} sections from its "
+        "neighbours, make the shortest section longer"
+    )
+
+
+def _root_near(beam: Beam, low: float, high: float) -> float | None:
+    """The root of the frequency equation in or beside an interval of beta L; None where there it is not alone.
+
+    The interval is widened to three times its length: its ends are as blurred as the count that set them.
+    """
+    stretches = _stretches(beam)
+    low, high = max(2.0 * low - high, 0.5 * low), 2.0 * high - low
+    above = end_minor(stretches, beam.supports, high) > 0.0
+    if modes_below(beam, high) - modes_below(beam, low) != 1 or above == (
+        end_minor(stretches, beam.supports, low) > 0.0
+    ):
+        return None
+    while low < (middle := 0.5 * (low + high)) < high:
+        same = (end_minor(stretches, beam.supports, middle) > 0.0) == above
+        low, high = (low, middle) if same else (middle, high)
+    return high
 
 
 def modes_below(beam: Beam, beta_length: float) -> int:

@@ -178,7 +178,7 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
 @_overrides
 @_as_json
 def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """How many segments or elements an accuracy takes, confirmed by solves, with the time each costs."""
+    """From how many segments or elements on an accuracy is kept, how that is known, and what they cost."""
     from verify.plain import accuracy, choice_as_plain, mode_number
     from verify.workbench import Workbench
 

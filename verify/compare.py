@@ -26,7 +26,7 @@ class Bracket(msgspec.Struct, frozen=True):
 
     @property
     def mean(self) -> float:
-        """The middle, an improved estimate: the leading errors of both sides cancel."""
+        """The middle: the leading errors of both sides cancel, if the lower is not more than three times as far off."""
         return 0.5 * (self.lower + self.upper)
 
     @property

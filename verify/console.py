@@ -263,7 +263,9 @@ def _map_table(found: "DesignMap") -> Table:
 def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]") -> None:
     """What `verify choose` found, and which of the models costs less."""
     console = Terminal()
-    console.print(f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact_hz:.4f} Hz takes")
+    console.print(
+        f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact_hz:.4f} Hz: enough from"
+    )
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_header=True)
     for name in ("model", "N", "unknowns", "error", "error law", "time"):
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
@@ -272,7 +274,11 @@ def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choic
         table.add_row(names[one.model], str(one.count), str(one.unknowns), percent(one.error),
                       percent(one.expected_error), seconds_in_words(one.run_time_s))  # fmt: skip
     console.print(table)
-    console.print("[dim]solved at N; one part less is not enough; time of a warm solve, set-up included[/]")
+    for one in choices:
+        console.print(Text(f"{names[one.model]}: N = {one.count - 1} does not; {one.known_by}"))
+        if one.smaller:
+            console.print(Text(f"  N = {one.smaller} happens to do as well, with {percent(one.smaller_error)}"))
+    console.print("[dim]errors solved at N; time of a warm solve, set-up included[/]")
 
 
 def print_plan(plan: "Plan") -> None:

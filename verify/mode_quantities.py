@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def _solved(model: str, count: int | None, n_modes: int, settings: Settings = ()) -> tuple[Need, ...]:
-    """The solves behind one figure; the mean of both models takes both."""
+    """The solves behind one figure; the middle of both models takes both."""
     if model == "analytic" or count is None:
         return ()
     models = ("segment", "fem") if model == "mean" else (model,)
@@ -41,6 +41,8 @@ def _over_sizes(a: Any, scene: "Scene") -> tuple[Need, ...]:
 
 def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
     if a.model == "analytic" or a.count is None:
+        if a.theory == "euler-bernoulli":
+            return bench.exact_hz(a.mode)
         from verify.closed_forms import frequency_hz
 
         return frequency_hz(scene.beam, a.mode, a.theory)
@@ -87,9 +89,10 @@ def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
 
 
 def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
-    from verify.sizing import count_needed
+    from verify.sizing import enough_from
 
-    return count_needed(bench, a.model, a.mode, a.error, a.settings)
+    found = enough_from(bench, a.model, a.mode, a.error, a.settings)
+    return found.smaller if a.of == "least" and found.smaller is not None else found.count
 
 
 def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
@@ -161,7 +164,8 @@ MODE_QUANTITIES = (
             lambda a, s, bench: bench.bracket(a.mode, a.count, a.settings),
         ),
         Quantity(
-            "mode.count_needed", "1", "Fewest segments or elements whose frequency error is within `error`.",
+            "mode.count_needed", "1",
+            "Segments or elements from which on the frequency error stays within `error`, or the least that happen to.",
             ToError, _count_guess, _count_needed,
         ),
         Quantity(

@@ -17,7 +17,7 @@ Size = Annotated[int, Meta(ge=1, description="segments or elements; the exact be
 Sizes = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(description="three or more sizes, 20,40,80")]
 AnyModel = Annotated[
     Literal["analytic", "fem", "segment", "mean"],
-    Meta(description="mean is the middle between segment (below) and fem (above)"),
+    Meta(description="mean is the middle between segment (below) and fem (above), nearer up to beta L = 0.696 pi N"),
 ]
 DiscreteModel = Annotated[Literal["fem", "segment"], Meta(description="which discrete model")]
 Theory = Annotated[
@@ -121,7 +121,10 @@ class NodeAt(Divided, frozen=True, kw_only=True):
 class OverSizes(Divided, frozen=True, kw_only=True):
     """One mode of one model over several sizes."""
 
-    model: Annotated[Literal["fem", "segment", "mean"], Meta(description="mean is the middle of the bracket")]
+    model: Annotated[
+        Literal["fem", "segment", "mean"],
+        Meta(description="mean is the middle of the bracket"),
+    ]
     mode: Mode
     counts: Sizes
 
@@ -157,6 +160,10 @@ class ToError(Divided, frozen=True, kw_only=True):
     model: DiscreteModel
     mode: Mode
     error: Annotated[float, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
+    of: Annotated[
+        Literal["enough", "least"],
+        Meta(description="from here on enough; or the least that does, where an error changes its sign below that"),
+    ] = "enough"
 
     def __post_init__(self) -> None:
         self.check_settings(self.model)

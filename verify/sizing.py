@@ -1,11 +1,12 @@
-"""How many segments or elements an accuracy takes: the error law's guess, confirmed by solves."""
+"""How many segments or elements an accuracy takes: from which size on it is kept, and how that is known."""
 
 from collections.abc import Callable
+from math import ceil
 from typing import TYPE_CHECKING
 
 import msgspec
 
-from verify.error_laws import expected_error, fewest_parts, smallest_count
+from verify.error_laws import expected_error, parts_from_here_on, sine_fits, smallest_count
 from verify.errors import InputError, PairingError
 from verify.timing import interleaved_medians
 from verify.workbench import Settings, Workbench, model_module
@@ -14,13 +15,31 @@ if TYPE_CHECKING:
     from verify.beam import Beam
 
 _LARGEST_COUNT = 200_000
+_EVERY, _CLOSELY = 100, 2000
+"""Sizes are gone through one by one up to the first, 5 % apart up to the second, then doubled."""
+_LOWER_BRANCH = 0.05
+"""Above the lower branch Hermite elements are at least 7.9 % off: smaller errors are found on it."""
+
+Reached = Callable[[int], bool]
+
+
+class Enough(msgspec.Struct, frozen=True, kw_only=True):
+    """From which size on an accuracy is kept."""
+
+    count: int
+    """At this size and every larger one, as far as `known_by` says, the error is within what was asked."""
+    smaller: int | None = None
+    """The smallest size below it that happens to do, though one between does not; None where none was found."""
+    known_by: str
+    """How it is known that larger sizes do."""
 
 
 class Choice(msgspec.Struct, frozen=True, kw_only=True):
-    """The fewest parts of one model that reach an accuracy, and what they cost."""
+    """The parts of one model from which on an accuracy is kept, and what they cost."""
 
     model: str
     count: int
+    """From here on enough."""
     unknowns: int
     error: float
     """Signed relative frequency error at `count`, solved."""
@@ -28,18 +47,26 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     """The same from the error law; None where there is none (stepped beams)."""
     run_time_s: float
     """Median of warm solves, set-up included."""
+    smaller: int | None
+    """A smaller size that happens to do, though one between does not; None where none was found."""
+    smaller_error: float | None
+    """Its error."""
+    known_by: str
+    """How it is known that every larger size does."""
 
 
 def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
     """Where to begin: the error law's answer, on a stepped beam the fewest parts that have the mode."""
-    return smallest_count(model, beam, mode) if beam.stepped else fewest_parts(model, beam, mode, error)
+    return smallest_count(model, beam, mode) if beam.stepped else parts_from_here_on(model, beam, mode, error)
 
 
-def count_needed(bench: Workbench, model: str, mode: int, error: float, settings: Settings = ()) -> int:
-    """The fewest parts whose solved frequency error is within `error`, with one part less outside it.
+def enough_from(bench: Workbench, model: str, mode: int, error: float, settings: Settings = ()) -> Enough:
+    """From which size on the solved frequency error is within `error`; one part less is outside it.
 
-    From the guess the search gallops in steps that double, so that a right guess costs two solves. Raises
-    InputError where no size up to 200 000 reaches the error.
+    Where the discrete dispersion is known, it proves it. Elsewhere an error may change its sign and dip under `error`
+    before it stays there: sizes are gone through from the smallest to twice the last that fails, and what holds
+    beyond is the error law's word. A chain or mesh of more than 2000 parts by the law is looked for around it alone.
+    Raises InputError where no size up to 200 000 reaches the error.
     """
 
     def reached(count: int) -> bool:
@@ -51,17 +78,59 @@ def count_needed(bench: Workbench, model: str, mode: int, error: float, settings
             return False
 
     guess = count_guess(model, bench.beam, mode, error)
+    smallest = max(len(bench.beam.pieces), 1 + (model == "segment"))
+    uniform = not (bench.beam.section or settings)
+    if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:
+        count = _around(reached, guess, smallest, model, error)
+        return Enough(count=count, smaller=_dip(model, bench.beam, mode, error, count),
+                      known_by="every larger N does, proven by the discrete dispersion")  # fmt: skip
+    if guess > _CLOSELY:
+        known_by = "every larger N does by the error law; smaller ones were not looked through"
+        return Enough(count=_around(reached, guess, smallest, model, error), known_by=known_by)
+    count, smaller, end = _scanned(reached, smallest, guess, model, error)
+    tried = f"all N up to {end}" if end <= _EVERY else f"all N up to {_EVERY} and some up to {end}"
+    beyond = "beyond that by the error law" if uniform else "beyond that nothing is known"
+    return Enough(count=count, smaller=smaller, known_by=f"every larger N does, solved for {tried}, {beyond}")
+
+
+def _dip(model: str, beam: "Beam", mode: int, error: float, count: int) -> int | None:
+    """The smallest size below `count` within `error` by the discrete dispersion."""
+    sizes = range(smallest_count(model, beam, mode), count)
+    if model == "segment" or len(sizes) == 0 or abs(expected_error(model, beam, mode, sizes[0])) > error:
+        return None  # towards the cut-off the error falls again: if the smallest size does not do, none does
+    return sizes[0] if any(abs(expected_error(model, beam, mode, n)) > error for n in sizes) else None
+
+
+def _scanned(reached: Reached, smallest: int, guess: int, model: str, error: float) -> tuple[int, int | None, int]:
+    """(the size from which on all that were tried reach, the smallest below it that does, the last tried)."""
+    does: dict[int, bool] = {}
+    count, failed = smallest, smallest - 1
+    while count <= max(2 * failed, guess, smallest + 4):
+        if count > _LARGEST_COUNT:
+            raise _unreached(model, error, count)
+        does[count] = reached(count)
+        failed = failed if does[count] else count
+        count = count + 1 if count < _EVERY else ceil(1.05 * count) if count < _CLOSELY else 2 * count
+    enough = _between(reached, failed, min(n for n in does if n > failed))
+    return enough, next((n for n in does if n < failed and does[n]), None), max(does)
+
+
+def _around(reached: Reached, guess: int, smallest: int, model: str, error: float) -> int:
+    """The size that reaches with one part less that does not, next to a guess: a right guess costs two solves."""
     if reached(guess):
-        low, high = _gallop_down(reached, guess, smallest=max(len(bench.beam.pieces), 1 + (model == "segment")))
-    else:
-        low, high = _gallop_up(reached, guess, model, error)
+        return _between(reached, *_gallop_down(reached, guess, smallest))
+    return _between(reached, *_gallop_up(reached, guess, model, error))
+
+
+def _between(reached: Reached, low: int, high: int) -> int:
+    """The first that reaches between one that fails and one that reaches."""
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if reached(middle) else (middle, high)
     return high
 
 
-def _gallop_down(reached: Callable[[int], bool], good: int, smallest: int) -> tuple[int, int]:
+def _gallop_down(reached: Reached, good: int, smallest: int) -> tuple[int, int]:
     """(a count that fails, or one below the smallest; a count that reaches)."""
     step = 1
     while good - step >= smallest:
@@ -71,26 +140,32 @@ def _gallop_down(reached: Callable[[int], bool], good: int, smallest: int) -> tu
     return smallest - 1, good
 
 
-def _gallop_up(reached: Callable[[int], bool], bad: int, model: str, error: float) -> tuple[int, int]:
+def _gallop_up(reached: Reached, bad: int, model: str, error: float) -> tuple[int, int]:
     step = 1
     while not reached(bad + step):
         bad, step = bad + step, 2 * step
         if bad + step > _LARGEST_COUNT:
-            raise InputError(f"error = {error!r}: the {model} model does not reach it up to count = {bad}")
+            raise _unreached(model, error, bad)
     return bad, bad + step
 
 
+def _unreached(model: str, error: float, count: int) -> InputError:
+    return InputError(f"error = {error!r}: the {model} model does not reach it up to count = {count}")
+
+
 def choose(bench: Workbench, mode: int, error: float, models: tuple[str, ...] = ("segment", "fem")) -> list[Choice]:
-    """For each model the fewest parts within `error` and the time of a solve, timed in turns. Raises InputError."""
-    counts = {model: count_needed(bench, model, mode, error) for model in models}
-    jobs = [_solver(bench, model, count, mode) for model, count in counts.items()]
+    """For each model the size from which on it keeps `error`, and its time, taken in turns. Raises InputError."""
+    found = {model: enough_from(bench, model, mode, error) for model in models}
+    jobs = [_solver(bench, model, one.count, mode) for model, one in found.items()]
     return [
         Choice(
-            model=model, count=count, unknowns=model_module(model).unknowns(bench.beam, count),
-            error=bench.frequency_error(model, count, mode), run_time_s=seconds,
-            expected_error=None if bench.beam.stepped else expected_error(model, bench.beam, mode, count),
+            model=model, count=one.count, unknowns=model_module(model).unknowns(bench.beam, one.count),
+            error=bench.frequency_error(model, one.count, mode), run_time_s=seconds,
+            expected_error=None if bench.beam.stepped else expected_error(model, bench.beam, mode, one.count),
+            smaller=one.smaller, known_by=one.known_by,
+            smaller_error=None if one.smaller is None else bench.frequency_error(model, one.smaller, mode),
         )
-        for (model, count), seconds in zip(counts.items(), interleaved_medians(jobs), strict=True)
+        for (model, one), seconds in zip(found.items(), interleaved_medians(jobs), strict=True)
     ]  # fmt: skip
 
 

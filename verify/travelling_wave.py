@@ -5,7 +5,8 @@ its ellipse has the signed area S3 = 2 Im(conj(u_x) u_y) (times pi/2), negative 
 surface points turn counter-clockwise and move backwards at the crest.
 """
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
 import msgspec
 import numpy as np
@@ -15,12 +16,15 @@ from verify.beam import Beam, check_number
 from verify.closed_forms import check_uniform
 from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
 from verify.fields import Array, ComplexArray, HarmonicField, phasor, unit_response, wavenumber
+from verify.intervals import Rule, extremes, mean_over, rule_over, whole_halves
 from verify.search import least_over
 
 STANDING = 1e-12
 """A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
 SHARPNESS = 24
-"""Sample points for each half wavelength of the window."""
+"""Points for each half wavelength of the window, to draw from and to look for extremes around."""
+HILLS_OF_A_PART = 8
+"""Points in each segment or element where a discrete field's extremes are looked for: it ripples at their length."""
 STILL = 1e-13
 """A deflection this small beside the forces' own size is rounding: nothing moves."""
 REACH = 0.04
@@ -77,17 +81,25 @@ class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Metres."""
     waves: TwoWaves
     envelope: float
-    """(max - min) / (max + min) of |w|: equals Gamma for two waves, but under-reads at high Gamma."""
+    """(max - min) / (max + min) of |w| over the window: equals Gamma for two waves."""
     travelling_index: float
-    """1 / cond([Re W, Im W]) (Feeny's complex orthogonal decomposition): 1 travelling, 0 standing."""
+    """1 / cond of [Re w, Im w] in the mean square (Feeny's complex orthogonal decomposition): 1 travelling, 0 standing.
+
+    Over whole half wavelengths, the most that fit in the middle of the window: there, and only there, it equals
+    (1 - Gamma) / (1 + Gamma) for two waves.
+    """
+    mean_axis_ratio: float
+    """Of `axis_ratio` over the same whole half wavelengths: there k h/2 for any two waves as kh goes to 0."""
     x: Array
-    """(n,), metres: where the surface quantities are given."""
+    """(n,), metres: where the surface quantities are given, 24 points for each half wavelength of the exact beam."""
     axis_ratio: Array
     """(n,), signed ratio of the ellipse's axes, tan chi; k h/2 for a pure wave, negative towards +x."""
     tilt_deg: Array
     """(n,), angle of the long axis from x, degrees."""
     signed_area: Array
     """(n,), S3, m^2."""
+    signed_area_range: tuple[float, float, float]
+    """Least, mean and largest over the window, not over the points."""
     ideal_axis_ratio: float
     """k h / 2."""
     crest_speed: float
@@ -112,12 +124,13 @@ class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         Raises StandingError where the wave stands.
         """
         self.waves.check_travelling()
-        return float(np.ptp(self.signed_area) / abs(self.signed_area.mean()))
+        least, mean, largest = self.signed_area_range
+        return (largest - least) / abs(mean)
 
     @property
     def rotation(self) -> str:
         """The sense in which most surface points turn, in (x, y)."""
-        return "counter-clockwise" if self.signed_area.mean() < 0 else "clockwise"
+        return "counter-clockwise" if self.signed_area_range[1] < 0 else "clockwise"
 
 
 def measure(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> WaveMeasures:
@@ -127,35 +140,54 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
     window that leaves the span between two forces or is shorter than half a wavelength, for a field that is zero
     there and for a fit that ends at its edge.
     """
+    waves = two_waves(field, window, wave_number)
+    x = sample_points(window, wavenumber(field.beam, field.frequency_hz).real)
+    parts = HILLS_OF_A_PART * (field.count or 0) * (window[1] - window[0]) / field.beam.length
+    fine = x if len(x) > parts else np.linspace(*window, int(parts) + 1)
+    return _measures(field.beam, field.omega, x, fine, field.deflection, field.slope, waves)
+
+
+def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> TwoWaves:
+    """The two waves alone, fitted in the mean square over the whole window. Raises as `measure` does."""
     check_uniform(field.beam)
     check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
-    x = sample_points(window, wavenumber(field.beam, field.frequency_hz).real)
-    deflection, slope = field.deflection(x), field.slope(x)
+    start = wavenumber(field.beam, field.frequency_hz)
+    rule = window_rule(window, start.real)
+    deflection = field.deflection(rule.x)
     force = sum(abs(phasor(force)) for force in field.forces)
     if abs(deflection).max() <= STILL * force * unit_response(field.beam, field.frequency_hz):
         raise zero_field()
-    start = wavenumber(field.beam, field.frequency_hz)
-    waves = fit_waves(
-        x, deflection, wave_number if wave_number is not None else fitted_wavenumber(x, deflection, start)
-    )
-    return _measures(field.beam, field.omega, window, x, deflection, slope, waves)
+    if wave_number is None:
+        wave_number = fitted_wavenumber(rule.x, deflection, start, rule.weights)
+    return fit_waves(rule.x, deflection, wave_number, rule.weights)
+
+
+Along: TypeAlias = Callable[[Array], ComplexArray]
 
 
 def _measures(
-    beam: Beam,
-    omega: float,
-    window: tuple[float, float],
-    x: Array,
-    deflection: ComplexArray,
-    slope: ComplexArray,
-    waves: TwoWaves,
+    beam: Beam, omega: float, x: Array, fine: Array, deflection: Along, slope: Along, waves: TwoWaves
 ) -> WaveMeasures:
-    across = surface_motion(beam, slope)
-    size = abs(deflection)
-    ratio, tilt, area = ellipse(across, deflection)
+    """The measures of a field known at any place of the window: means and extremes do not depend on points.
+
+    x (n,): where ellipses are given; fine (m,): close enough to tell the hills of the field apart.
+    """
+    window = float(x[0]), float(x[-1])
+
+    def ellipses(at: Array) -> tuple[Array, Array, Array]:
+        return ellipse(surface_motion(beam, slope(at)), deflection(at))
+
+    whole, halves = whole_halves(window, waves.wavenumber.real)
+    rule = rule_over(whole, 2 * halves)
+    least, largest = extremes(lambda at: np.abs(deflection(at)), fine)
+    low, high = extremes(lambda at: ellipses(at)[2], fine)
+    ratio, tilt, area = ellipses(x)
     return WaveMeasures(
-        window=window, waves=waves, envelope=float((size.max() - size.min()) / (size.max() + size.min())),
-        travelling_index=travelling_index(deflection), x=x, axis_ratio=ratio, tilt_deg=tilt, signed_area=area,
+        window=window, waves=waves, envelope=(largest - least) / (largest + least),
+        travelling_index=travelling_index(deflection(rule.x), rule.weights),
+        mean_axis_ratio=mean_over(lambda at: ellipses(at)[0], whole, 2 * halves),
+        x=x, axis_ratio=ratio, tilt_deg=tilt, signed_area=area,
+        signed_area_range=(low, mean_over(lambda at: ellipses(at)[2], window, 2 * halves), high),
         ideal_axis_ratio=0.5 * waves.wavenumber.real * beam.thickness,
         crest_speed=float(crest_speed(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
         energy_flux=float(energy_flux(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
@@ -201,23 +233,28 @@ def energy_flux(beam: Beam, omega: Any, k: Any, forward: Any, backward: Any) -> 
     return 0.5 * np.real(stiffness * (shear * np.conj(speed) - moment * np.conj(turning)))
 
 
-def travelling_index(deflection: ComplexArray) -> float:
-    """1 / cond([Re W, Im W]), 0 to 1."""
-    values = np.linalg.svd(np.column_stack([deflection.real, deflection.imag]), compute_uv=False)
+def travelling_index(deflection: ComplexArray, weights: Array) -> float:
+    """1 / cond([Re w, Im w]), 0 to 1, both weighted by the length that each point stands for, (n,)."""
+    columns = np.column_stack([deflection.real, deflection.imag]) * np.sqrt(weights)[:, None]
+    values = np.linalg.svd(columns, compute_uv=False)
     return float(values[1] / values[0]) if values[0] > 0 else 0.0
 
 
-def wave_basis(x: Array, k: Any) -> ComplexArray:
+def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
     """e^{-ik(x - middle)} and e^{+ik(x - middle)}, (..., len(x), 2) for k of shape (...)."""
-    phase = 1j * np.asarray(k)[..., None] * (x - 0.5 * (x[0] + x[-1]))
+    phase = 1j * np.asarray(k)[..., None] * (x - middle)
     return np.stack([np.exp(-phase), np.exp(phase)], axis=-1)
 
 
-def fit_waves(x: Array, deflection: ComplexArray, k: complex) -> TwoWaves:
-    """Forward and backward amplitude by least squares on the phasors, exact on two-wave fields."""
-    basis = wave_basis(x, k)
-    amplitudes = np.linalg.lstsq(basis, deflection, rcond=None)[0]
-    rest = np.linalg.norm(deflection - basis @ amplitudes) / np.linalg.norm(deflection)
+def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | None = None) -> TwoWaves:
+    """Forward and backward amplitude by least squares on the phasors, exact on two-wave fields.
+
+    weights (n,): what each point counts, all the same where they are left out; amplitudes are meant in the middle.
+    """
+    root = np.sqrt(np.full(len(x), 1.0) if weights is None else weights)
+    basis, values = wave_basis(x, k, 0.5 * (x[0] + x[-1])) * root[:, None], deflection * root
+    amplitudes = np.linalg.lstsq(basis, values, rcond=None)[0]
+    rest = np.linalg.norm(values - basis @ amplitudes) / np.linalg.norm(values)
     return TwoWaves(wavenumber=complex(k), forward=complex(amplitudes[0]), backward=complex(amplitudes[1]),
                     residual=float(rest))  # fmt: skip
 
@@ -229,7 +266,7 @@ def zero_field() -> ZeroFieldError:
     )
 
 
-def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex) -> complex:
+def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weights: Array | None = None) -> complex:
     """The wavenumber near `start` (within 4 %, the same phase) that leaves the least residual.
 
     Raises InputError where the residual still falls at the edge of the search.
@@ -237,7 +274,9 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex) -> com
     halves = float(x[-1] - x[0]) * start.real / np.pi
     grid = np.linspace(1.0 - REACH, 1.0 + REACH, 2 * int(np.ceil(4.0 * REACH * halves)) + 9)
     least = least_over(
-        lambda factors: np.array([fit_waves(x, deflection, complex(f * start)).residual for f in factors]), grid, 1e-10
+        lambda factors: np.array([fit_waves(x, deflection, complex(f * start), weights).residual for f in factors]),
+        grid,
+        1e-10,
     )
     if least.at_edge:
         raise InputError(
@@ -248,9 +287,14 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex) -> com
 
 
 def sample_points(window: tuple[float, float], k: float) -> Array:
-    """Evenly spaced points of a window, its ends included, 24 for each half wavelength."""
+    """Evenly spaced points of a window to draw from, its ends included, 24 for each half wavelength."""
     halves = (window[1] - window[0]) * k / np.pi
     return np.linspace(window[0], window[1], int(np.ceil(SHARPNESS * halves)) + 1)
+
+
+def window_rule(window: tuple[float, float], k: float) -> Rule:
+    """Where and with what weight a field is fitted: a quadrature, so that the fit is one over the whole window."""
+    return rule_over(window, max(int(np.ceil(2.0 * (window[1] - window[0]) * k / np.pi)), 1))
 
 
 def check_window(beam: Beam, places: list[float], frequency_hz: float, window: tuple[float, float]) -> None:
@@ -320,8 +364,11 @@ def measure_series(
 ) -> WaveMeasures:
     """The same measures from time series at positions x (ascending), values (n_times, n_positions), metres.
 
-    Slopes come from the two fitted waves. Raises InputError for series or spans that are too short.
+    Between the positions the field is that of a cubic spline through their phasors; slopes come from the two fitted
+    waves. Raises InputError for series or spans that are too short.
     """
+    from scipy.interpolate import CubicSpline
+
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
     start, x = wavenumber(beam, frequency_hz), np.asarray(x, dtype=float)
     if not (np.isfinite(x).all() and (np.diff(x) > 0).all() and np.shape(values)[1:] == x.shape):
@@ -332,6 +379,11 @@ def measure_series(
     if not abs(deflection).max() > STILL * abs(np.asarray(values)).max():
         raise ZeroFieldError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
     waves = fit_waves(x, deflection, k if k is not None else fitted_wavenumber(x, deflection, start))
-    basis = wave_basis(x, waves.wavenumber)
-    slope = 1j * waves.wavenumber * (basis @ np.array([-waves.forward, waves.backward]))
-    return _measures(beam, 2.0 * np.pi * frequency_hz, (float(x[0]), float(x[-1])), x, deflection, slope, waves)
+    middle = 0.5 * (x[0] + x[-1])
+
+    def slope(at: Array) -> ComplexArray:
+        turn = np.exp(1j * waves.wavenumber * (at - middle))
+        return np.asarray(1j * waves.wavenumber * (waves.backward * turn - waves.forward / turn))
+
+    spline = CubicSpline(x, deflection)
+    return _measures(beam, 2.0 * np.pi * frequency_hz, x, x, spline, slope, waves)

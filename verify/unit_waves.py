@@ -17,8 +17,8 @@ from verify.travelling_wave import (
     check_window,
     crest_speed,
     energy_flux,
-    sample_points,
     wave_basis,
+    window_rule,
     zero_field,
 )
 
@@ -76,8 +76,8 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         Raises InputError where the model or the window is none.
         """
         check_window(self.beam, list(self.places), float(frequencies.max()), self.window)  # or it suits none of them
-        x = sample_points(self.window, wavenumber(self.beam, float(frequencies.max())).real)
-        fields = self._responses(frequencies, x)
+        rule = window_rule(self.window, wavenumber(self.beam, float(frequencies.max())).real)
+        fields = self._responses(frequencies, rule.x)
         k = np.full(len(frequencies), np.nan, dtype=complex)
         for i, frequency in enumerate(frequencies):
             try:
@@ -85,8 +85,8 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
             except NoFigureError as error:
                 gaps.add(error, points)
         known = np.isfinite(k)
-        basis = wave_basis(x, k[known])
-        adjoint = np.conj(np.swapaxes(basis, 1, 2))
+        basis = wave_basis(rule.x, k[known], 0.5 * sum(self.window))
+        adjoint = np.conj(np.swapaxes(basis, 1, 2)) * rule.weights
         waves = np.linalg.solve(adjoint @ basis, adjoint @ np.swapaxes(fields[known], 1, 2))
         return UnitWaves(known, k[known], np.asarray(waves[:, 0], complex), np.asarray(waves[:, 1], complex))
 

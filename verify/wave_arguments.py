@@ -78,7 +78,7 @@ class Power(InWindow, frozen=True, kw_only=True):
 class AxisRatio(InWindow, frozen=True, kw_only=True):
     """A window, and a place in it."""
 
-    x: Annotated[float, Meta(description="metres; default: the mean over the window")] | None = None
+    x: Annotated[float, Meta(description="metres; default: the mean over whole half wavelengths")] | None = None
 
 
 class WaveOrder(InWindow, frozen=True, kw_only=True):

@@ -32,7 +32,7 @@ def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
 
 def _axis_ratio(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> float:
     if getattr(a, "x", None) is None:
-        return float(measured(a, scene, bench, count).axis_ratio.mean())
+        return measured(a, scene, bench, count).mean_axis_ratio
     from verify.travelling_wave import ellipse, surface_motion
 
     field = field_of(a, scene, bench, count)
@@ -70,17 +70,21 @@ def _nothing(a: Any, scene: "Scene") -> tuple[()]:
 
 WAVE_QUANTITIES = (
     Quantity("wave.deflection", "m", "Complex deflection, e^{+i omega t}.", At, _nothing, _deflection),
-    Quantity("wave.standing_wave_ratio", "1", "(1 + Gamma)/(1 - Gamma) of the two waves fitted in the window.",
+    Quantity("wave.standing_wave_ratio", "1",
+             "(1 + Gamma)/(1 - Gamma) of the two waves fitted in the mean square over the window.",
              InWindow, _nothing, _figure("standing_wave_ratio")),
     Quantity("wave.reflection", "1", "Gamma, the weaker wave over the stronger, at the middle of the window.",
              InWindow, _nothing, _figure("reflection")),
-    Quantity("wave.envelope", "1", "(max - min)/(max + min) of |w| in the window.",
+    Quantity("wave.envelope", "1", "(max - min)/(max + min) of |w| over the window, at any place; Gamma for two waves.",
              InWindow, _nothing, _figure("envelope")),
-    Quantity("wave.travelling_index", "1", "1 for a travelling, 0 for a standing wave: 1/cond([Re W, Im W]).",
+    Quantity("wave.travelling_index", "1",
+             "1/cond([Re w, Im w]) over the window's whole half wavelengths: (1 - Gamma)/(1 + Gamma) for two waves.",
              InWindow, _nothing, _figure("travelling_index")),
-    Quantity("wave.axis_ratio", "1", "Signed axis ratio of the surface ellipse; negative for a wave towards +x.",
+    Quantity("wave.axis_ratio", "1",
+             "Signed axis ratio of the surface ellipse at x, else the mean over whole half waves; below 0 towards +x.",
              AxisRatio, _nothing, _axis_ratio),
-    Quantity("wave.signed_area_spread", "1", "(max - min)/|mean| of the ellipses' signed area in the window.",
+    Quantity("wave.signed_area_spread", "1",
+             "(max - min)/|mean| of the ellipses' signed area over the window, at any place.",
              InWindow, _nothing, _figure("signed_area_spread")),
     Quantity("wave.crest_speed", "m/s", "Speed of the surface at the crests, along +x.",
              InWindow, _nothing, _figure("crest_speed")),

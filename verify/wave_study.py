@@ -26,7 +26,7 @@ class Operation(msgspec.Struct, frozen=True, kw_only=True):
     frequency_hz: float
     standing_wave_ratio: float
     axis_ratio: float
-    """Signed mean over the window."""
+    """Signed mean over the whole half wavelengths in the window's middle."""
     crest_speed: float
     """m/s for the scene's forces."""
 
@@ -93,7 +93,7 @@ def motor_row(scene: "Scene", bench: "Workbench", model: str, count: int | None)
 def _operation(a: Any, scene: "Scene", bench: "Workbench", frequency: float) -> Operation:
     found = measures(driven(replace(a, frequency_hz=frequency), scene, bench, a.count), a.window)
     return Operation(frequency_hz=frequency, standing_wave_ratio=found.standing_wave_ratio,
-                     axis_ratio=float(found.axis_ratio.mean()), crest_speed=found.crest_speed)  # fmt: skip
+                     axis_ratio=found.mean_axis_ratio, crest_speed=found.crest_speed)  # fmt: skip
 
 
 def motor_table(

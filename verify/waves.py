@@ -13,7 +13,7 @@ from verify.error_laws import check_carried, discrete_wavenumber
 from verify.errors import InputError, ResonanceError
 from verify.fields import Array, HarmonicField, phasor
 from verify.search import Least, least_over
-from verify.travelling_wave import WaveMeasures, measure, middle_half
+from verify.travelling_wave import WaveMeasures, measure, middle_half, two_waves
 from verify.wave_arguments import InWindow
 from verify.workbench import model_module
 
@@ -143,7 +143,7 @@ def quietest_drive(a: Any, scene: "Scene", bench: "Workbench") -> Least:
             field = driven(replace(a, frequency_hz=frequency), scene, bench, a.count)
         except ResonanceError:
             return 1.0  # on a resonance the wave stands
-        return measures(field, a.window).reflection
+        return two_waves(field, a.window or middle_half(field.beam), own_wavenumber(field)).reflection
 
     grid = np.linspace((1.0 - a.span) * centre, (1.0 + a.span) * centre, 41)
     return quietest(lambda frequencies: np.array([reflection(float(f)) for f in frequencies]), grid)
@@ -170,7 +170,7 @@ def wave_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
         if a.of == "deflection":
             return complex(field.deflection(0.5 * sum(window))[0])
         found = measures(field, window)
-        return complex(found.standing_wave_ratio if a.of == "standing_wave_ratio" else found.axis_ratio.mean())
+        return complex(found.standing_wave_ratio if a.of == "standing_wave_ratio" else found.mean_axis_ratio)
 
     exact = figure("analytic", None)
     return observed_order(a.counts, [abs(figure(a.model, n) - exact) / abs(exact) for n in a.counts])

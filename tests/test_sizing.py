@@ -1,0 +1,130 @@
+"""From which size on an accuracy is kept, against every size tried one by one."""
+
+import pytest
+from msgspec.structs import replace
+
+from verify import error_laws, sizing
+from verify.beam import Section
+from verify.errors import InputError
+from verify.scene import load_scene
+from verify.workbench import Workbench, model_module
+
+
+def errors_of(bench, model, mode, sizes, settings=()):
+    """The size of the solved error at every size, infinite where the model has no such mode."""
+    found = {}
+    for count in sizes:
+        try:
+            found[count] = abs(bench.frequency_error(model, count, mode, settings))
+        except InputError:
+            found[count] = float("inf")
+    return found
+
+
+def by_brute_force(errors, error):
+    """(the size from which on all are within, the smallest of all that are, None where it is the same)."""
+    enough = max((n for n in errors if errors[n] > error), default=min(errors) - 1) + 1
+    least = min((n for n in errors if errors[n] <= error), default=enough)
+    return enough, least if least < enough else None
+
+
+def smallest(beam, model):
+    return max(len(beam.pieces), 1 + (model == "segment"))
+
+
+@pytest.mark.parametrize(
+    ("model", "supports", "mode", "most"),
+    [
+        ("segment", ("clamped", "clamped"), 3, 70),
+        ("segment", ("clamped", "free"), 2, 70),
+        ("segment", ("pinned", "clamped"), 4, 70),
+        ("segment", ("free", "free"), 3, 70),
+        ("segment", ("guided", "pinned"), 5, 70),
+        ("fem", ("clamped", "guided"), 3, 40),
+        ("fem", ("pinned", "pinned"), 4, 40),
+    ],
+)
+def test_from_here_on_is_what_every_size_tried_says(titanium_strip, model, supports, mode, most):
+    bench = Workbench(replace(titanium_strip, supports=supports))
+    errors = errors_of(bench, model, mode, range(smallest(bench.beam, model), most))
+    compared = 0
+    for error in (0.3, 0.04, 1e-2, 1.1e-3, 3e-5, 3e-6, 1e-6):
+        expected = by_brute_force(errors, error)
+        if expected[0] <= most - 10:
+            found = sizing.enough_from(bench, model, mode, error)
+            assert (found.count, found.smaller) == expected, error
+            compared += 1
+    assert compared >= 4
+
+
+def test_an_error_that_changes_its_sign_does_before_it_stays(titanium_strip):
+    beam = replace(titanium_strip, supports=("clamped", "clamped"))
+    found = sizing.enough_from(Workbench(beam), "segment", 3, 1e-6)
+    assert (found.count, found.smaller) == (55, 33)
+
+
+@pytest.mark.parametrize(
+    ("error", "settings"), [(1e-3, ()), (9e-3, (("joints", "printed"),)), (2e-3, (("grading", 1.4),))]
+)
+def test_a_stepped_beam_goes_by_what_was_solved_and_says_so(error, settings):
+    bench = Workbench(load_scene("stepped-beam").beam)
+    errors = errors_of(bench, "segment", 3, range(2, 81), settings)
+    found = sizing.enough_from(bench, "segment", 3, error, settings)
+    assert found.count <= 40
+    assert (found.count, found.smaller) == by_brute_force(errors, error)
+    assert found.known_by.endswith("beyond that nothing is known")
+
+
+def test_sections_alike_leave_unequal_parts_which_no_dispersion_describes(titanium_strip):
+    cut = replace(titanium_strip, section=(Section(length=0.3), Section(length=0.43)))
+    assert "proven" in sizing.enough_from(Workbench(titanium_strip), "segment", 4, 1e-3).known_by
+    assert "proven" not in sizing.enough_from(Workbench(cut), "segment", 4, 1e-3).known_by
+
+
+@pytest.mark.parametrize(("mode", "error"), [(40, 0.035), (40, 0.0372), (9, 0.03), (200, 0.02), (1000, 0.01)])
+def test_elements_near_their_cut_off_happen_to_do(titanium_strip, mode, error):
+    """Towards mu = pi their error falls from 3.7 to 0.7 %: a mesh of one element more than the mode may do."""
+    law = {n: abs(error_laws.expected_error("fem", titanium_strip, mode, n)) for n in range(mode + 1, 3 * mode)}
+    failing = [n for n in law if law[n] > error]
+    enough = max(failing, default=mode) + 1
+    least = min(n for n in law if law[n] <= error)
+    assert error_laws.parts_from_here_on("fem", titanium_strip, mode, error) == enough
+    assert sizing._dip("fem", titanium_strip, mode, error, enough) == (least if least < enough else None)
+    if mode == 40 and error == 0.035:
+        found = sizing.enough_from(Workbench(titanium_strip), "fem", mode, error)
+        assert (found.count, found.smaller) == (44, 41)
+
+
+@pytest.mark.parametrize(
+    "supports", [("clamped", "clamped"), ("clamped", "free"), ("free", "free"), ("pinned", "guided")]
+)
+@pytest.mark.parametrize("model", ["segment", "fem"])
+@pytest.mark.parametrize("error", [3e-3, 1e-6, 1e-8, 4e-10, 3e-11])
+def test_the_law_is_kept_from_there_on_and_not_before(titanium_strip, supports, model, error):
+    beam = replace(titanium_strip, supports=supports)
+    found = error_laws.parts_from_here_on(model, beam, 2, error)
+    sizes = range(error_laws.smallest_count(model, beam, 2), 12_000)
+    failing = [n for n in sizes if abs(error_laws.expected_error(model, beam, 2, n)) > error]
+    assert found == max(failing, default=sizes[0] - 1) + 1
+    assert found < 12_000
+
+
+def test_a_size_beyond_reach_is_refused_and_a_large_one_goes_by_the_law(titanium_strip):
+    half = replace(titanium_strip, supports=("clamped", "free"))
+    found = sizing.enough_from(Workbench(half), "segment", 12, 5e-11)
+    assert found.count > 2000
+    assert "by the error law" in found.known_by
+    assert "not looked through" in found.known_by
+    with pytest.raises(InputError, match="does not reach it up to count"):
+        sizing._scanned(lambda count: False, 2, 3, "segment", 1e-9)
+
+
+def test_sizes_are_solved_once(titanium_strip, monkeypatch):
+    beam = replace(titanium_strip, supports=("clamped", "free"))
+    module, solved = model_module("segment"), []
+    true = module.solve_modes
+    monkeypatch.setattr(
+        module, "solve_modes", lambda beam, n, count, **s: solved.append(count) or true(beam, n, count, **s)
+    )
+    found = sizing.enough_from(Workbench(beam), "segment", 2, 1e-5)
+    assert len(solved) == len(set(solved)) <= 2 * found.count
