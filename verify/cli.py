@@ -254,10 +254,10 @@ def scenes(as_json: bool) -> None:
 @_as_json
 def init(path: Path, force: bool, as_json: bool) -> None:
     """Write a commented scene to PATH to start from."""
-    from verify.files import write_whole
+    from verify.files import exists, write_whole
     from verify.scene import STARTER
 
-    if path.exists() and not force:
+    if exists(path, "path") and not force:
         raise InputError(f"path = {str(path)!r} exists: name another file, or replace it with --force")
     write_whole(path, STARTER.read_text("utf-8"), "path")
     if as_json:

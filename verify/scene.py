@@ -8,7 +8,8 @@ from msgspec import Meta
 
 from verify.beam import Beam, PointForce, check_number
 from verify.checked import checked
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, shown
+from verify.files import exists
 from verify.slider import Slider
 
 PACKAGED = Path(__file__).parent / "scenes"
@@ -216,7 +217,8 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What exists (beam, drive) and what is asked (gates, tables, studies). What is not asked does not run."""
 
-    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
+    """Also of its report's file, hence not longer."""
     title: str = ""
     description: str = ""
     beam: Beam
@@ -262,10 +264,10 @@ def scene_path(name_or_path: str) -> Path:
     if name_or_path in packaged_scenes():
         return PACKAGED / f"{name_or_path}.toml"
     path = Path(name_or_path)
-    if path.exists() or path.suffix or len(path.parts) != 1:
+    if exists(path, "scene") or path.suffix or len(path.parts) != 1:
         return path
     raise InputError(
-        f"scene = {name_or_path!r} is neither a packaged scene nor a file: {near_name(name_or_path, packaged_scenes())}"
+        f"scene = {shown(name_or_path)} is neither a packaged scene nor a file: {near_name(name_or_path, packaged_scenes())}"
     )
 
 
@@ -273,14 +275,27 @@ def read_toml(path: Path) -> dict[str, Any]:
     """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
     import tomllib
 
+    exists(path, "scene")
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return _whole(tomllib.loads(path.read_bytes().decode("utf-8-sig")))
     except OSError as error:
         raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except InputError as error:
+        raise InputError(f"scene file {str(path)!r}: {error}") from None
+    except (ValueError, RecursionError) as error:  # tomllib's own, and Python's for more than 4300 digits
         raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
+
+
+def _whole(data: Any) -> Any:
+    """The same data. Raises InputError for a whole number beyond the 64 bits of TOML."""
+    inside = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    for value in inside:
+        _whole(value)
+    if isinstance(data, int) and not -(2**63) <= data < 2**63:
+        raise InputError(f"{shown(data)} does not fit into the 64 bits of TOML: write a large number as 1e30")
+    return data
 
 
 def literal(text: str) -> Any:
@@ -288,8 +303,10 @@ def literal(text: str) -> Any:
     import tomllib
 
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, KeyError, RecursionError):
+        return _whole(tomllib.loads(f"value = {text}")["value"])
+    except InputError as error:
+        raise InputError(f"value {error}") from None
+    except (ValueError, KeyError, RecursionError):  # tomllib's own, and Python's for more than 4300 digits
         if "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
             return [literal(part.strip()) for part in text.split(",") if part.strip()]
         return text
@@ -337,11 +354,11 @@ def _entry(here: Any, step: str, field: str) -> Any:
 
 def _position(entries: list[Any], step: str, field: str) -> int:
     """Where in a list an entry stands: by its id, or by its number from 0."""
-    names = [str(e.get("id", i)) if isinstance(e, dict) else str(i) for i, e in enumerate(entries)]
-    if step in names:
-        return names.index(step)
-    if step.isdigit() and int(step) < len(entries):
-        return int(step)
+    numbers = [str(i) for i in range(len(entries))]
+    names = [str(e.get("id", i)) if isinstance(e, dict) else i for i, e in zip(numbers, entries, strict=True)]
+    for known in (names, numbers):
+        if step in known:
+            return known.index(step)
     raise InputError(f"--set {field} names no entry: {near_name(step, names) if names else 'the list is empty'}")
 
 
