@@ -1,6 +1,6 @@
 """What a beam is: geometry, material, supports and the forces on it. Data, no numerics."""
 
-from math import inf, log10
+from math import inf, log10, pi, sqrt
 from operator import index
 from sys import float_info
 from typing import Literal, get_args
@@ -14,10 +14,12 @@ SUPPORTS: tuple[str, ...] = get_args(Support)
 LARGEST = float_info.max
 FIGURE_DECADES = 80
 """Powers of ten within which a beam's derived figures lie, so that their squares and cubes are numbers too."""
-CONTRAST_DECADES = 24
-"""Powers of ten between the stiffness or mass of a section and the beam's own."""
 SHORTEST_SECTION = 1e-6
-"""Of the beam's length. Exact frequencies lose (length / shortest)^3 eps."""
+"""Of the beam's length."""
+CONTRAST = 1e12
+"""Of EI / l^3 between two sections: beyond it the softer one is lost in the rounding of the stiffer one."""
+LONGEST_WAVE, SHORTEST_WAVE = 1e20, 1e-7
+"""Of the beam's length over 2 pi: what k L may come to in floating point, and in points along the beam."""
 
 
 def check_number(
@@ -135,7 +137,14 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
                     f"beam.length = {self.length!r} m: leave it out or check its unit"
                 )
             self._check_figures(f"beam.section[{i}]", section)
-            self._check_contrast(f"beam.section[{i}]", self._piece(section))
+        stiff = [piece.bending_stiffness / piece.length**3 for piece in self.pieces]
+        if max(stiff) > CONTRAST * min(stiff):
+            stiffest, softest = stiff.index(max(stiff)), stiff.index(min(stiff))
+            raise InputError(
+                f"beam.section[{stiffest}] is {max(stiff) / min(stiff):.1e} times as stiff (EI / l^3) as "
+                f"beam.section[{softest}], more than {CONTRAST:g}: make them more alike, or leave out what is rigid or "
+                "too short to bend"
+            )
 
     def _check_figures(self, where: str, section: Section) -> None:
         """Raise InputError where a size, or a figure made of several, leaves what floating point carries."""
@@ -151,18 +160,6 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
                 raise InputError(
                     f"{where}: {figure} is about 1e{power:+.0f} (SI), and beyond 1e+-{FIGURE_DECADES} figures made of "
                     "it leave floating point: check their units"
-                )
-
-    def _check_contrast(self, where: str, piece: Piece) -> None:
-        """Raise InputError for a section so far from the beam's own that one of the two would be rounding."""
-        for name, here, own in (
-            ("bending stiffness", piece.bending_stiffness, self.bending_stiffness),
-            ("mass per length", piece.mass_per_length, self.mass_per_length),
-        ):
-            if abs(log10(here / own)) > CONTRAST_DECADES:
-                raise InputError(
-                    f"{where}: its {name} is {here / own:.1e} of the beam's own, more than 1e+-{CONTRAST_DECADES} apart: "
-                    "check the units of its width, thickness, youngs_modulus and density"
                 )
 
     @property
@@ -226,6 +223,19 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     def wave_constant(self) -> float:
         """Sqrt(EI / (rho A)), m^2/s: omega = beta^2 times this."""
         return float((self.youngs_modulus / self.density / 12.0) ** 0.5 * self.thickness)
+
+
+def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
+    """Raise InputError unless a frequency is positive and its waves on the beam are of a length that can be told."""
+    check_number(field, frequency_hz, "hertz", above=0)
+    turns = sqrt(2.0 * pi) * sqrt(frequency_hz / beam.wave_constant) * beam.length
+    if 1.0 / LONGEST_WAVE < turns < 1.0 / SHORTEST_WAVE:
+        return
+    unit = beam.wave_constant / (2.0 * pi * beam.length**2)
+    raise InputError(
+        f"{field} = {frequency_hz!r} Hz bends this beam in {turns / (2.0 * pi):.1e} waves: give a frequency between "
+        f"{unit / LONGEST_WAVE**2:.1e} and {unit / SHORTEST_WAVE**2:.1e} Hz, or check the beam's units"
+    )
 
 
 class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from math import isfinite
+from typing import TypeVar
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from verify.errors import InputError, NoBracketError, PairingError
+from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.modes import Array, Modes
 
+T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
 """Relative frequency error that rounding may leave (measured: 1.1e-14 up to 10^4 segments or elements)."""
 ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
@@ -35,8 +37,10 @@ class Bracket(msgspec.Struct, frozen=True):
         return (self.upper - self.lower) / self.mean
 
 
-def relative_error(value: float, exact: float) -> float:
-    """(value - exact) / exact, signed."""
+def relative_error(value: T, exact: T) -> T:
+    """(value - exact) / exact, signed or complex. Raises NoFigureError where the exact figure is zero."""
+    if not exact:
+        raise NoFigureError("the exact figure is zero, so that no error is relative to it: drive it, or ask elsewhere")
     return (value - exact) / exact
 
 

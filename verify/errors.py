@@ -2,7 +2,6 @@
 
 from reprlib import Repr
 
-
 SENTENCE = 1600
 """Characters of the longest message: what was given in it may be of any length."""
 VALUE = 120

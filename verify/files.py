@@ -19,7 +19,9 @@ def exists(path: Path, field: str) -> bool:
             return True  # whoever opens it hears why it cannot
         raise InputError(f"{field} = {shown(str(path))} is too long for a file name: shorten it") from None
     except ValueError:  # a null byte, or what the file system cannot encode
-        raise InputError(f"{field} = {shown(str(path))} can be no file name: give one without such characters") from None
+        raise InputError(
+            f"{field} = {shown(str(path))} can be no file name: give one without such characters"
+        ) from None
     return True
 
 

@@ -184,7 +184,8 @@ def _coupling(slider: "Slider", field: "HarmonicField") -> Skipped:
     speed = surface_speed(field, slider.start_on(field.beam))
     found = coupling_of(slider, field.beam, field.frequency_hz, speed)
     kind = "two-way" if found.two_way else "one-way"
-    return Skipped(f"{kind} coupling", f"full friction moves the surface by {found.relative_size:.1e} of its own speed"
+    size = f"by {found.relative_size:.1e} of its own speed" if speed else "that the drive leaves at rest"
+    return Skipped(f"{kind} coupling", f"full friction moves the surface {size}"
                    f"{', as slider.coupling says' if found.forced else f' (felt from {FELT:g} on)'}")  # fmt: skip
 
 
@@ -209,8 +210,8 @@ def _over_the_force(scene: "Scene", asked: "AxialInertia") -> Skipped:
     forces = [replace(force, amplitude=1.0) for force in scene.forces]
     size = _size(solve_harmonic(scene.beam, forces, scene.drive.frequency_hz))
     sizes = ", ".join(f"{size * force**2:.1e} at {force:g} N" for force in asked.forces)
-    limit = (NONLINEAR / size) ** 0.5 if size else float("inf")
-    return Skipped(f"linear chain up to {limit:.2g} N, nonlinear above",
+    limit = f"up to {(NONLINEAR / size) ** 0.5:.2g} N, nonlinear above" if size else "at any force"
+    return Skipped(f"linear chain {limit}",
                    f"decided by the axial inertia, (kL)^2 <theta^2> of the steady field: {sizes} (felt from "
                    f"{NONLINEAR:g} on)")  # fmt: skip
 

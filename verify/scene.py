@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 import msgspec
 from msgspec import Meta
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce, check_frequency, check_number
 from verify.checked import checked
 from verify.errors import InputError, near_name, shown
 from verify.files import exists
@@ -14,6 +14,7 @@ from verify.slider import Slider
 
 PACKAGED = Path(__file__).parent / "scenes"
 STARTER = PACKAGED / "starter.toml"
+_LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
 
 Count: TypeAlias = Annotated[int, Meta(ge=1)]
 Counts: TypeAlias = Annotated[tuple[Count, ...], Meta(min_length=1)]
@@ -55,7 +56,7 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Spectrum(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Ask for the error of modes 1..modes of both discrete models at one size."""
 
-    modes: Count = 22
+    modes: Annotated[int, Meta(ge=1, le=10_000)] = 22
     count: Count = 49
 
 
@@ -238,6 +239,8 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             if gate.id in seen:
                 raise InputError(f"gate.{gate.id} stands twice: give every gate an id of its own")
             seen.add(gate.id)
+        if self.drive is not None:
+            check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
         forces = self.forces  # built here, so that one off the beam is refused with the scene
         if self.wave is not None and len(forces) != 2:
             raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
@@ -266,9 +269,8 @@ def scene_path(name_or_path: str) -> Path:
     path = Path(name_or_path)
     if exists(path, "scene") or path.suffix or len(path.parts) != 1:
         return path
-    raise InputError(
-        f"scene = {shown(name_or_path)} is neither a packaged scene nor a file: {near_name(name_or_path, packaged_scenes())}"
-    )
+    remedy = near_name(name_or_path, packaged_scenes())
+    raise InputError(f"scene = {shown(name_or_path)} is neither a packaged scene nor a file: {remedy}")
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -277,38 +279,44 @@ def read_toml(path: Path) -> dict[str, Any]:
 
     exists(path, "scene")
     try:
-        return _whole(tomllib.loads(path.read_bytes().decode("utf-8-sig")))
+        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in data.items()}
     except OSError as error:
         raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
-    except InputError as error:
-        raise InputError(f"scene file {str(path)!r}: {error}") from None
-    except (ValueError, RecursionError) as error:  # tomllib's own, and Python's for more than 4300 digits
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
+    except InputError:
+        raise
+    except ValueError:  # Python reads no whole number of more than 4300 digits
+        raise InputError(f"scene file {str(path)!r} has a number of thousands of digits: {_LARGE}") from None
 
 
-def _whole(data: Any) -> Any:
-    """The same data. Raises InputError for a whole number beyond the 64 bits of TOML."""
-    inside = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
-    for value in inside:
-        _whole(value)
+def _whole(data: Any, where: str) -> Any:
+    """The same data. Raises InputError for a whole number beyond TOML's 64 bits, named by its key."""
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            _whole(value, f"{where}[{key}]" if isinstance(data, list) else f"{where}.{key}")
     if isinstance(data, int) and not -(2**63) <= data < 2**63:
-        raise InputError(f"{shown(data)} does not fit into the 64 bits of TOML: write a large number as 1e30")
+        raise InputError(f"{where} = {shown(data)}: {_LARGE}")
     return data
 
 
-def literal(text: str) -> Any:
-    """A TOML literal; a bare word is a string; comma-separated values are a list."""
+def literal(text: str, field: str = "value") -> Any:
+    """A TOML literal; a bare word is a string; comma-separated values are a list. Raises InputError.
+
+    `field` is what messages call it.
+    """
     import tomllib
 
     try:
-        return _whole(tomllib.loads(f"value = {text}")["value"])
-    except InputError as error:
-        raise InputError(f"value {error}") from None
+        return _whole(tomllib.loads(f"value = {text}")["value"], field)
+    except InputError:
+        raise
     except (ValueError, KeyError, RecursionError):  # tomllib's own, and Python's for more than 4300 digits
         if "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
-            return [literal(part.strip()) for part in text.split(",") if part.strip()]
+            return [literal(part.strip(), field) for part in text.split(",") if part.strip()]
         return text
 
 
@@ -317,7 +325,7 @@ def split_assignment(text: str) -> tuple[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip() or not value.strip():
         raise InputError(f"{text!r} is not an assignment: write key=value, for instance mode=22")
-    return key.strip(), literal(value.strip())
+    return key.strip(), literal(value.strip(), key.strip())
 
 
 def given_arguments(assignments: tuple[str, ...]) -> dict[str, Any]:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
-from verify.compare import observed_order
+from verify.beam import Beam, PointForce, check_frequency
+from verify.compare import observed_order, relative_error
 from verify.drives import driven_field
 from verify.error_laws import check_carried, discrete_wavenumber
 from verify.errors import InputError, ResonanceError
@@ -66,7 +66,9 @@ def drive_frequency(a: Any, scene: "Scene") -> float:
     """The frequency given, else the scene's. Raises InputError where there is none."""
     if a.frequency_hz is None and scene.drive is None:
         raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")
-    return float(a.frequency_hz if a.frequency_hz is not None else scene.drive.frequency_hz)  # type: ignore[union-attr]
+    frequency = float(a.frequency_hz if a.frequency_hz is not None else scene.drive.frequency_hz)  # type: ignore[union-attr]
+    check_frequency("frequency_hz", frequency, scene.beam)
+    return frequency
 
 
 def drive_forces(a: Any, scene: "Scene") -> tuple[PointForce, ...]:
@@ -173,7 +175,7 @@ def wave_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
         return complex(found.standing_wave_ratio if a.of == "standing_wave_ratio" else found.axis_ratio.mean())
 
     exact = figure("analytic", None)
-    return observed_order(a.counts, [abs(figure(a.model, n) - exact) / abs(exact) for n in a.counts])
+    return observed_order(a.counts, [abs(relative_error(figure(a.model, n), exact)) for n in a.counts])
 
 
 def _exact(a: Any) -> Any:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec.structs import replace
 
+from verify.compare import relative_error
 from verify.motion_arguments import SliderInTime
 from verify.motions import described, slider_of
 from verify.simulate import simulate
@@ -72,10 +73,10 @@ def run_once(scene: "Scene", model: str, count: int | None, ledger: bool = False
 
 
 def _row(model: str, count: int, found: "list[Motion]", exact: float) -> WorkRow:
-    length = float(found[0].times[-1] - found[0].times[0])
+    length = found[0].duration
     return WorkRow(
         model=model, count=count, rows=len(found[0].end.q), displacement=found[0].displacement,
-        error=found[0].displacement / exact - 1.0,
+        error=relative_error(found[0].displacement, exact),
         run_ms_per_ms=median(m.statistics.wall_s for m in found) / length,
         set_up_ms=1e3 * median(m.statistics.set_up_s for m in found),
     )  # fmt: skip
