@@ -39,9 +39,17 @@ class Bracket(msgspec.Struct, frozen=True):
 
 def relative_error(value: T, exact: T) -> T:
     """(value - exact) / exact, signed or complex. Raises NoFigureError where the exact figure is zero."""
-    if not exact:
-        raise NoFigureError("the exact figure is zero, so that no error is relative to it: drive it, or ask elsewhere")
+    check_reference(exact)
     return (value - exact) / exact
+
+
+def check_reference(exact: complex) -> None:
+    """Raise NoFigureError for an exact figure that no error can be relative to."""
+    if not exact or not np.isfinite(exact):
+        raise NoFigureError(
+            f"the exact figure is {'infinite' if exact else 'zero'}, so that no error is relative to it: change the "
+            "drive, or ask elsewhere"
+        )
 
 
 def mac(reference: Array, shapes: Array) -> Array:
@@ -124,7 +132,9 @@ def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:
     sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=float)
     if len(sizes) < 3 or len(set(counts)) != len(sizes):
         raise InputError(f"counts = {list(counts)}: an observed order needs three or more different sizes")
-    if not np.isfinite(values).all() or (abs(values) < ORDER_FLOOR).any():
+    if not np.isfinite(values).all():
+        raise InputError(f"counts = {list(counts)}: the figure has no finite error there, ask for another one")
+    if (abs(values) < ORDER_FLOOR).any():
         raise InputError(
             f"counts = {list(counts)}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "
             "use coarser sizes or a higher mode"

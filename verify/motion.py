@@ -112,7 +112,7 @@ class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """What was simulated, seconds. Raises InputError where the slider was gone before the first sample."""
         if not (seconds := float(self.times[-1] - self.times[0])):
             raise InputError(
-                f"the slider {self.statistics.stopped} before the first sample: change its position, speed or mu, or ask "
-                "for more samples"
+                f"the slider {self.statistics.stopped} before the first sample: change its position, speed or mu, or "
+                "ask for more samples"
             )
         return seconds

@@ -15,8 +15,9 @@ from verify.fields import check_drive
 from verify.forcing import CONSTANT, SMOOTH_STEP, check_no_resonance
 from verify.motion import EndState, Ledger, Motion, Statistics
 from verify.moving_surface import Growth, Stage, basis_of, check_line, cut, free_at, stages_from_rest, steady_stage
+from verify.patience import check_work
 from verify.slider import GRAVITY, Slider
-from verify.slider_run import Sliding, run_stages
+from verify.slider_run import Sliding, run_stages, slider_seconds
 from verify.time_basis import Array, TimeBasis
 
 STEPS_PER_PERIOD = 64
@@ -313,6 +314,8 @@ def _with_slider(
                             request.accounts and request.start == "rest")  # fmt: skip
     sliding.motion[1:] = speed, stuck
     z = _begin(request, stages[0])
+    check_work("duration", sum(stage.duration for stage in stages), slider_seconds(request.n_steps, z.shape[1],
+               coupling.two_way), "shorten it or lengthen the step")  # fmt: skip
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
     ready = perf_counter()
     stopped, q, rates = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / request.n_steps))

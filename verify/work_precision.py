@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec.structs import replace
 
-from verify.compare import relative_error
+from verify.compare import check_reference, relative_error
 from verify.motion_arguments import SliderInTime
 from verify.motions import described, slider_of
+from verify.patience import check_work
 from verify.simulate import simulate
+from verify.slider_run import slider_seconds
 
 if TYPE_CHECKING:
     from verify.motion import Motion
@@ -52,7 +54,9 @@ def work_rows(
     scene: "Scene", counts: tuple[int, ...], progress: Callable[[str], None] = lambda step: None
 ) -> tuple[WorkRow, ...]:
     """Both models at every size; the exact beam is the reference. Raises InputError."""
+    _check_rounds(scene, counts)
     exact = run_once(scene, "analytic", None).displacement
+    check_reference(exact)
     cases = [(model, n) for model in ("segment", "fem") for n in counts]
     runs: dict[tuple[str, int], list[Motion]] = {case: [] for case in cases}
     for number in range(ROUNDS):
@@ -60,6 +64,15 @@ def work_rows(
         for model, n in cases:
             runs[model, n].append(run_once(scene, model, n))
     return tuple(_row(model, n, found, exact) for (model, n), found in runs.items())
+
+
+def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
+    """Raise InputError where all rounds together would take too long."""
+    assert scene.motion is not None
+    assert scene.drive is not None
+    steps = scene.motion.duration * scene.drive.frequency_hz * scene.motion.steps_per_period
+    seconds = ROUNDS * sum(slider_seconds(steps, 3 * n, two_way=False) for n in counts)
+    check_work("motion.counts", list(counts), 2.0 * seconds, "give fewer or smaller ones, or a shorter duration")
 
 
 def run_once(scene: "Scene", model: str, count: int | None, ledger: bool = False, samples: int = 2) -> "Motion":
