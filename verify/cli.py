@@ -48,7 +48,8 @@ def cli() -> None:
     """Say how far a finite-segment model of a vibrating beam can be trusted, and what that costs in run time.
 
     SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
-    Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on.
+    Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on. What would take more
+    than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment gives more seconds.
     """
 
 
