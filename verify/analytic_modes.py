@@ -3,6 +3,8 @@
 For stepped beams the exact frequencies, from the transfer of the end conditions through the sections.
 """
 
+from collections.abc import Sequence
+from functools import lru_cache
 from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
@@ -41,7 +43,7 @@ def solve_modes(beam: Beam, n_modes: int) -> Modes:
     frequencies = np.array([frequency_hz(beam, n) for n in range(1, n_modes + 1)])
 
     def shapes(x: Array, derivative: int) -> Array:
-        return np.array([mode_shape(beam, n, x, derivative) for n in range(1, n_modes + 1)])
+        return mode_shapes(beam, n_modes, x, derivative)
 
     def nowhere() -> Array:
         return np.empty((n_modes, 0))
@@ -56,24 +58,34 @@ def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0) -> Array:
 
     x in metres. Positive where the beam first moves off its left end. Raises InputError.
     """
+    return np.asarray(_shapes(beam, (mode,), x, derivative)[0])
+
+
+def mode_shapes(beam: Beam, n_modes: int, x: Array, derivative: int = 0) -> Array:
+    """The same of the first `n_modes` modes, (n_modes, len(x))."""
+    return _shapes(beam, range(1, n_modes + 1), x, derivative)
+
+
+def _shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int) -> Array:
     check_uniform(beam)
     xi = np.asarray(x, dtype=float) / beam.length
     left, right = beam.supports
     if (left, right) in _MIRRORED:
-        sign = _mirror_sign(beam.supports, mode) * (-1.0) ** derivative
-        values = sign * _unit_shape((right, left), mode, 1.0 - xi, xi, derivative)
+        signs = np.array([_mirror_sign(beam.supports, mode) for mode in modes]) * (-1.0) ** derivative
+        values = signs[:, None] * _unit_shapes((right, left), modes, 1.0 - xi, xi, derivative)
     else:
-        values = _unit_shape((left, right), mode, xi, 1.0 - xi, derivative)
+        values = _unit_shapes((left, right), modes, xi, 1.0 - xi, derivative)
     return np.asarray(values / sqrt(beam.mass_per_length * beam.length) / beam.length**derivative)
 
 
+@lru_cache(maxsize=20_000)
 def _mirror_sign(supports: tuple[str, str], mode: int) -> float:
     """+1 or -1, so that a mirrored shape is positive where it first moves off its left end."""
     near = np.array([1e-3 / mode])
-    return float(np.sign(_unit_shape((supports[1], supports[0]), mode, 1.0 - near, near, 0)[0]))
+    return float(np.sign(_unit_shapes((supports[1], supports[0]), (mode,), 1.0 - near, near, 0)[0, 0]))
 
 
-def _quarter_turns(turns: float, remainder: float, xi: Array) -> tuple[Array, Array]:
+def _quarter_turns(turns: Array, remainder: Array, xi: Array) -> tuple[Array, Array]:
     """Cos and sin of ((n + c) pi + remainder) xi, the large part reduced exactly (two-product, fmod 2)."""
     high = turns * xi
     low = _product_error(turns, xi, high)
@@ -85,7 +97,7 @@ def _quarter_turns(turns: float, remainder: float, xi: Array) -> tuple[Array, Ar
     return np.choose(quarter, [c, -s, -c, s]), np.choose(quarter, [s, c, -s, -c])
 
 
-def _product_error(a: float, b: Array, product: Array) -> Array:
+def _product_error(a: Array, b: Array, product: Array) -> Array:
     """A b - fl(a b) exactly (Dekker's two-product with Veltkamp splitting)."""
     split = 134217729.0
     a_high = a * split - (a * split - a)
@@ -94,17 +106,24 @@ def _product_error(a: float, b: Array, product: Array) -> Array:
     return np.asarray(((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low)
 
 
-def _unit_shape(supports: tuple[str, str], mode: int, xi: Array, eta: Array, derivative: int) -> Array:
-    """Shape over xi = x / L with integral of phi^2 over the unit length 1; eta = 1 - xi. (len(xi),)."""
-    turns, remainder = root_parts(supports, mode)
+def _unit_shapes(supports: tuple[str, str], modes: Sequence[int], xi: Array, eta: Array, derivative: int) -> Array:
+    """Shapes over xi = x / L with integral of phi^2 over the unit length 1; eta = 1 - xi. (modes, len(xi))."""
+    parts = np.array([_parts(supports, mode) for mode in modes])
+    turns, remainder, c, s, a, b = parts.T[:, :, None]
     y = turns * pi + remainder
     cosine, sine = _quarter_turns(turns, remainder, xi)
-    c, s, a, b = _coefficients(supports, y, turns, remainder)
     # derivative k of c cos + s sin + a e^{-y xi} + b e^{-y eta}, each divided by y^k
     turned = [c * cosine + s * sine, s * cosine - c * sine]
     waves = turned[derivative % 2] * (1.0 if derivative < 2 else -1.0)
     decay = a * (-1.0) ** derivative * np.exp(-y * xi) + b * np.exp(-y * eta)
     return np.asarray((waves + decay) * y**derivative)
+
+
+@lru_cache(maxsize=20_000)
+def _parts(supports: tuple[str, str], mode: int) -> tuple[float, ...]:
+    """(whole turns and remainder of y, then c, s, a, b) of one mode."""
+    turns, remainder = root_parts(supports, mode)
+    return turns, remainder, *_coefficients(supports, turns * pi + remainder, turns, remainder)
 
 
 def _coefficients(
@@ -115,7 +134,7 @@ def _coefficients(
     if pair <= {"pinned", "guided"}:
         wave = sqrt(2.0)
         return (0.0, wave, 0.0, 0.0) if supports[0] == "pinned" else (wave, 0.0, 0.0, 0.0)
-    c, s = (float(part[0]) for part in _quarter_turns(turns, remainder, np.array([1.0])))
+    c, s = (float(part[0]) for part in _quarter_turns(np.array([turns]), np.array([remainder]), np.ones(1)))
     tail = exp(-y)
     if supports[1] == supports[0]:
         b = (c - s - tail) / (1.0 - tail * tail - 2.0 * tail * s)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from msgspec.structs import replace
 
-from verify.analytic_modes import mode_shape, solve_harmonic, solve_modes
+from verify.analytic_modes import mode_shapes, solve_harmonic, solve_modes
 from verify.beam import Beam, PointForce, check_whole
 from verify.closed_forms import check_uniform
 from verify.errors import InputError
@@ -39,7 +39,7 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
         if key not in known:
             if len(known) >= KNOWN:
                 known.clear()
-            known[key] = np.array([mode_shape(beam, n, x, rest) for n in range(1, n_modes + 1)])
+            known[key] = mode_shapes(beam, n_modes, x, rest)
         return np.asarray(known[key] * fourth[:, None] ** turns)
 
     cells = int(np.ceil(beam.length * float(fourth[-1]) ** 0.25 / 0.4)) + 1

@@ -1,15 +1,25 @@
 """What a beam is: geometry, material, supports and the forces on it. Data, no numerics."""
 
-from math import inf, isfinite, log10
+from math import inf, log10, pi, sqrt
 from operator import index
+from sys import float_info
 from typing import Literal, get_args
 
 import msgspec
 
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, shown
 
 Support = Literal["pinned", "clamped", "free", "guided"]
 SUPPORTS: tuple[str, ...] = get_args(Support)
+LARGEST = float_info.max
+FIGURE_DECADES = 80
+"""Powers of ten within which a beam's derived figures lie, so that their squares and cubes are numbers too."""
+SHORTEST_SECTION = 1e-6
+"""Of the beam's length."""
+CONTRAST = 1e12
+"""Of EI / l^3 between two sections: beyond it the softer one is lost in the rounding of the stiffer one."""
+MOST_WAVES = 1e6
+"""Along a beam, from end to end: more take too many points, and their phase loses its digits."""
 
 
 def check_number(
@@ -17,12 +27,12 @@ def check_number(
 ) -> None:
     """Raise InputError unless `value` is a finite number, at least `at_least`, strictly between `above` and `below`."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if number and isfinite(value) and above < value < below and value >= at_least:  # type: ignore[arg-type, operator]
+    if number and -LARGEST <= value <= LARGEST and above < value < below and value >= at_least:  # type: ignore[operator]
         return
     limits = [f"above {above:g}"] * (above > -inf) + [f"of at least {at_least:g}"] * (at_least > -inf)
     limits += [f"below {below:g}"] * (below < inf)
     wanted = " ".join(["a finite number", " and ".join(limits)]).strip()
-    raise InputError(f"{field} = {value!r}: give {wanted} ({unit})")
+    raise InputError(f"{field} = {shown(value)}: give {wanted} ({unit})")
 
 
 def check_whole(field: str, value: object, least: int) -> None:
@@ -30,9 +40,9 @@ def check_whole(field: str, value: object, least: int) -> None:
     try:
         whole = index(value)  # type: ignore[arg-type]
     except TypeError:
-        raise InputError(f"{field} = {value!r}: give a whole number of at least {least}") from None
+        raise InputError(f"{field} = {shown(value)}: give a whole number of at least {least}") from None
     if isinstance(value, bool) or whole < least:
-        raise InputError(f"{field} = {value!r}: give a whole number of at least {least}")
+        raise InputError(f"{field} = {shown(value)}: give a whole number of at least {least}")
 
 
 class Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -118,9 +128,8 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         for support in self.supports:
             if support not in SUPPORTS:
                 raise InputError(f"beam.supports has {support!r}: {near_name(str(support), SUPPORTS)}")
+        self._check_figures("beam", Section(length=self.length))
         self._check_sections()
-        if self._decades() > 200:
-            raise InputError("beam: its sizes lie too many powers of ten apart for floating point, check their units")
 
     def _check_sections(self) -> None:
         total = sum(section.length for section in self.section)
@@ -128,6 +137,37 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             raise InputError(
                 f"beam.section lengths add up to {total!r} m and beam.length = {self.length!r} m: make them equal"
             )
+        for i, section in enumerate(self.section):
+            if section.length < SHORTEST_SECTION * self.length:
+                raise InputError(
+                    f"beam.section[{i}].length = {section.length!r} m is less than {SHORTEST_SECTION:g} of "
+                    f"beam.length = {self.length!r} m: leave it out or check its unit"
+                )
+            self._check_figures(f"beam.section[{i}]", section)
+        stiff = [piece.bending_stiffness / piece.length**3 for piece in self.pieces]
+        if max(stiff) > CONTRAST * min(stiff):
+            stiffest, softest = stiff.index(max(stiff)), stiff.index(min(stiff))
+            raise InputError(
+                f"beam.section[{stiffest}] is {max(stiff) / min(stiff):.1e} times as stiff (EI / l^3) as "
+                f"beam.section[{softest}], more than {CONTRAST:g}: make them more alike, or leave out what is rigid or "
+                "too short to bend"
+            )
+
+    def _check_figures(self, where: str, section: Section) -> None:
+        """Raise InputError where a size, or a figure made of several, leaves what floating point carries."""
+        b, h, e, rho = (log10(value) for value in self._sizes(section))
+        length = log10(self.length)
+        decades = {
+            "width": b, "thickness": h, "youngs_modulus": e, "density": rho, "length": length,
+            "youngs_modulus * width * thickness^3": e + b + 3 * h, "density * width * thickness": rho + b + h,
+            "youngs_modulus * thickness^2 / (density * length^4)": e - rho + 2 * h - 4 * length,
+        }  # fmt: skip
+        for figure, power in decades.items():
+            if abs(power) > FIGURE_DECADES:
+                raise InputError(
+                    f"{where}: {figure} is about 1e{power:+.0f} (SI), and beyond 1e+-{FIGURE_DECADES} figures made of "
+                    "it leave floating point: check their units"
+                )
 
     @property
     def stepped(self) -> bool:
@@ -140,11 +180,17 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         """The stretches of constant section from left to right; one for a uniform beam."""
         return tuple(self._piece(section) for section in self.section or (Section(length=self.length),))
 
+    def _sizes(self, section: Section) -> tuple[float, float, float, float]:
+        """(width, thickness, E, rho) of a section, the beam's own where it says nothing."""
+        return (
+            self.width if section.width is None else section.width,
+            self.thickness if section.thickness is None else section.thickness,
+            self.youngs_modulus if section.youngs_modulus is None else section.youngs_modulus,
+            self.density if section.density is None else section.density,
+        )
+
     def _piece(self, section: Section) -> Piece:
-        width = self.width if section.width is None else section.width
-        thickness = self.thickness if section.thickness is None else section.thickness
-        modulus = self.youngs_modulus if section.youngs_modulus is None else section.youngs_modulus
-        density = self.density if section.density is None else section.density
+        width, thickness, modulus, density = self._sizes(section)
         return Piece(length=section.length, youngs_modulus=modulus, second_moment=width * thickness**3 / 12.0,
                      mass_per_length=density * (width * thickness), area=width * thickness)  # fmt: skip
 
@@ -159,13 +205,6 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         """The same beam seen from the other side."""
         left, right = self.supports
         return msgspec.structs.replace(self, supports=(right, left), section=self.section[::-1])
-
-    def _decades(self) -> float:
-        """The largest power of ten, up or down, among EI, rho A and EI / (rho A L^4)."""
-        b, h, e, rho, length = (
-            log10(v) for v in (self.width, self.thickness, self.youngs_modulus, self.density, self.length)
-        )
-        return max(abs(e + b + 3 * h), abs(rho + b + h), abs(e - rho + 2 * h - 4 * length), abs(2 * length))
 
     @property
     def area(self) -> float:
@@ -191,6 +230,17 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     def wave_constant(self) -> float:
         """Sqrt(EI / (rho A)), m^2/s: omega = beta^2 times this."""
         return float((self.youngs_modulus / self.density / 12.0) ** 0.5 * self.thickness)
+
+
+def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
+    """Raise InputError unless a frequency is positive and its waves on the beam are long enough to be followed."""
+    check_number(field, frequency_hz, "hertz", above=0)
+    waves = sqrt(frequency_hz) / sqrt(2.0 * pi * beam.wave_constant) * beam.length
+    if waves > MOST_WAVES:
+        raise InputError(
+            f"{field} = {frequency_hz!r} Hz bends this beam in {waves:.1e} waves from end to end, more than "
+            f"{MOST_WAVES:g}: lower it or check the beam's units"
+        )
 
 
 class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

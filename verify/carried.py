@@ -14,9 +14,10 @@ from verify.margins import margins_of
 from verify.motion import EndState, Ledger, Motion, Statistics
 from verify.moving_mass import carried_along, receptance, weighed_down
 from verify.moving_surface import Stage
+from verify.patience import check_work
 from verify.request import MOST_STEPS, Request
 from verify.slider import Slider
-from verify.slider_run import Sliding, run_stages
+from verify.slider_run import Sliding, run_stages, slider_seconds
 from verify.time_basis import Array, TimeBasis
 
 
@@ -88,8 +89,11 @@ def slide(
     z = begin(request, stages[0], basis, coupling)
     stages, step_note = _in_steps(request, stages, z, coupling)
     start, sliding = _fresh(request, slider, stages, coupling)
+    n_steps = sum(stage.n_steps for stage in stages)
+    check_work("duration", sum(stage.duration for stage in stages),
+               slider_seconds(n_steps, z.shape[1], coupling.two_way), "shorten it or lengthen the step")  # fmt: skip
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
-    n_steps, ready = sum(stage.n_steps for stage in stages), perf_counter()
+    ready = perf_counter()
     stopped, q, rates = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / n_steps))
     wall = perf_counter() - ready - sliding.set_up_s
     statistics = Statistics(steps=sliding.steps, evaluations=2 * sliding.steps + 1, step_s=stages[-1].dt,

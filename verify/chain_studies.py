@@ -107,9 +107,14 @@ def turning_frequency(mode: int, n_segments: int, speed: float, wall: Wall = "gr
 
 
 def first_shape(system: ChainSystem, amplitude: float) -> ChainState:
-    """At rest, the joints on amplitude sin(pi x / L), metres."""
+    """At rest, the joints on amplitude sin(pi x / L), metres. Raises InputError where a link is too short for it."""
     heights = amplitude * np.sin(pi * np.arange(system.n_links + 1) / system.n_links)
-    theta = np.arcsin(np.diff(heights) / system.lengths)
+    sines = np.diff(heights) / system.lengths
+    if not (steepest := float(abs(sines).max())) < 1.0:
+        raise InputError(
+            f"amplitude: a link would rise by {steepest:.3g} of its own length, give a lower one or other segments"
+        )
+    theta = np.arcsin(sines)
     return at_rest(system, np.diff(theta, prepend=0.0))
 
 
@@ -132,7 +137,8 @@ def large_amplitude_frequency(beam: Beam, amplitude: float, n_segments: int, pro
     )
     _finished(motion)
     middle = motion.deflection([0.5 * beam.length])[:, 0]
-    k = int(np.argmax(middle <= 0.0))
+    if not (k := int(np.argmax(middle <= 0.0))):
+        raise InputError("amplitude: the middle is not back within a quarter of the linear period, give another one")
     crossing = float(np.interp(0.0, [middle[k], middle[k - 1]], [times[k], times[k - 1]]))
     return pi / 2.0 / crossing / linear
 

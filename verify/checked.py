@@ -6,7 +6,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, shown
 
 T = TypeVar("T")
 
@@ -49,8 +49,8 @@ def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
     value = _value_at(data, steps)
     if what.startswith("Invalid enum value"):
         words = tuple(str(word) for word in get_args(_bare(_type_at(kind, steps))))
-        return f"{field} = {value!r} is not known: {near_name(str(value), words)}"
-    return f"{field} = {value!r}: {_humane(what)}"
+        return f"{field} = {shown(value)} is not known: {near_name(str(value), words)}"
+    return f"{field} = {shown(value)}: {_humane(what)}"
 
 
 def _humane(what: str) -> str:

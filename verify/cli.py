@@ -48,24 +48,25 @@ def cli() -> None:
     """Say how far a finite-segment model of a vibrating beam can be trusted, and what that costs in run time.
 
     SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
-    Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on.
+    Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on. What would take more
+    than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment gives more seconds.
     """
 
 
 @cli.command()
 @_scene
 @_overrides
-@click.option("--reports", "folder", default="reports", show_default=True, type=click.Path(path_type=Path),
+@click.option("--reports", "folder", default="reports", show_default=True, metavar="PATH",
               help="Folder for the HTML report.")  # fmt: skip
 @click.option("--no-report", is_flag=True, help="Judge only; write nothing.")
 @_as_json
-def run(scene: str, overrides: tuple[str, ...], folder: Path, no_report: bool, as_json: bool) -> None:
+def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as_json: bool) -> None:
     """Run everything SCENE asks for; write its report; exit 1 when a gate fails."""
     from verify.files import writable_folder
     from verify.run import n_steps, run_scene
 
     asked = _load(scene, overrides)
-    target = None if no_report else writable_folder(folder, "reports") / f"{asked.name}.html"
+    target = None if no_report else writable_folder(Path(folder), "reports") / f"{asked.name}.html"
     with _progress(n_steps(asked), quiet=as_json) as step:
         result = run_scene(asked, step)
     if target is not None:
@@ -249,19 +250,21 @@ def scenes(as_json: bool) -> None:
 
 
 @cli.command()
-@click.argument("path", type=click.Path(path_type=Path))
+@click.argument("path")
 @click.option("--force", is_flag=True, help="Replace a file that is there.")
 @_as_json
-def init(path: Path, force: bool, as_json: bool) -> None:
+def init(path: str, force: bool, as_json: bool) -> None:
     """Write a commented scene to PATH to start from."""
-    from verify.files import write_whole
+    from verify.files import exists, write_whole
     from verify.scene import STARTER
 
-    if path.exists() and not force:
-        raise InputError(f"path = {str(path)!r} exists: name another file, or replace it with --force")
-    write_whole(path, STARTER.read_text("utf-8"), "path")
+    if path.startswith("--"):
+        raise InputError(f"path = {path!r} looks like an option: write it as './{path}'")
+    if exists(Path(path), "path") and not force:
+        raise InputError(f"path = {path!r} exists: name another file, or replace it with --force")
+    write_whole(Path(path), STARTER.read_text("utf-8"), "path")
     if as_json:
-        _print_json({"path": str(path), "next": ["verify", "run", str(path)]})
+        _print_json({"path": path, "next": ["verify", "run", path]})
     else:
         click.echo(f"wrote {path}; next: verify run {path}")
 

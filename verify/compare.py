@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from math import isfinite
+from typing import TypeVar
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from verify.errors import InputError, NoBracketError, PairingError
+from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.modes import Array, Modes
 
+T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
 """Relative frequency error that rounding may leave (measured: 1.1e-14 up to 10^4 segments or elements)."""
 ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
@@ -35,9 +37,19 @@ class Bracket(msgspec.Struct, frozen=True):
         return (self.upper - self.lower) / self.mean
 
 
-def relative_error(value: float, exact: float) -> float:
-    """(value - exact) / exact, signed."""
+def relative_error(value: T, exact: T) -> T:
+    """(value - exact) / exact, signed or complex. Raises NoFigureError where the exact figure is zero."""
+    check_reference(exact)
     return (value - exact) / exact
+
+
+def check_reference(exact: complex) -> None:
+    """Raise NoFigureError for an exact figure that no error can be relative to."""
+    if not exact or not np.isfinite(exact):
+        raise NoFigureError(
+            f"the exact figure is {'infinite' if exact else 'zero'}, so that no error is relative to it: change the "
+            "drive, or ask elsewhere"
+        )
 
 
 def mac(reference: Array, shapes: Array) -> Array:
@@ -120,7 +132,9 @@ def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:
     sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=float)
     if len(sizes) < 3 or len(set(counts)) != len(sizes):
         raise InputError(f"counts = {list(counts)}: an observed order needs three or more different sizes")
-    if not np.isfinite(values).all() or (abs(values) < ORDER_FLOOR).any():
+    if not np.isfinite(values).all():
+        raise InputError(f"counts = {list(counts)}: the figure has no finite error there, ask for another one")
+    if (abs(values) < ORDER_FLOOR).any():
         raise InputError(
             f"counts = {list(counts)}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "
             "use coarser sizes or a higher mode"

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import groupby
+from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -61,7 +62,12 @@ def figure(value: Any) -> str:
         return f"{value['re']:.6g} {value['im']:+.6g}i"
     if isinstance(value, dict):
         return " .. ".join(figure(part) for part in value.values())
-    return f"{value:.7g}"
+    return number(value, 7)
+
+
+def number(value: float, digits: int) -> str:
+    """A number to so many digits; a standing wave's ratio is infinity."""
+    return f"{value:.{digits}g}" if isfinite(value) else "–" if isnan(value) else "infinity"
 
 
 def print_run(result: "RunResult", report: Path | None) -> None:
@@ -200,7 +206,7 @@ def print_motor(rows: "tuple[MotorRow, ...]") -> None:
 def _operation(one: "Operation") -> tuple[str, str, str]:
     """SWR, axis ratio and crest speed, at most 8, 8 and 9 characters."""
     ratio = one.standing_wave_ratio
-    return f"{ratio:.5f}" if ratio < 10 else f"{ratio:.4g}", f"{one.axis_ratio:+.5f}", f"{1e3 * one.crest_speed:+.5g}"
+    return f"{ratio:.5f}" if ratio < 10 else number(ratio, 4), f"{one.axis_ratio:+.5f}", f"{1e3 * one.crest_speed:+.5g}"
 
 
 def print_work(rows: "tuple[WorkRow, ...]") -> None:
@@ -256,7 +262,7 @@ def _map_table(found: "DesignMap") -> Table:
         head = f"{second[0].values[j]:g}" if second else found.quantity
         table.add_column(head, justify="right", overflow="fold")
     for i in rows:
-        table.add_row(f"{first.values[i]:g}", *("–" if np.isnan(v) else f"{v:.4g}" for v in grid[i, columns]))
+        table.add_row(f"{first.values[i]:g}", *(number(float(v), 4) for v in grid[i, columns]))
     return table
 
 

@@ -135,6 +135,15 @@ def _superposed(found: Any, asked: Any, axes: tuple[Axis, ...], scene: "Scene") 
                      values=values.reshape(shape), of=_whose(asked, axes, scene))  # fmt: skip
 
 
+def _check_points(asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> None:
+    """Raise InputError where the solves behind all points would take too long."""
+    from verify.waves import check_fields
+
+    counts = next((axis.values for axis in axes if axis.name == "count"), (asked.count,))
+    others = prod(len(axis.values) for axis in axes if axis.name != "count")
+    check_fields(scene.beam, asked.model, [None if n is None else int(n) for n in counts], others)
+
+
 def _pointwise(
     found: Any,
     asked: Any,
@@ -143,6 +152,7 @@ def _pointwise(
     bench: "Workbench",
     progress: Callable[[str], None],
 ) -> DesignMap:
+    _check_points(asked, axes, scene)
     shape = [len(axis.values) for axis in axes]
     values, gaps = np.full(shape, np.nan), Gaps()
     for index in product(*(range(n) for n in shape)):

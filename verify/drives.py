@@ -104,6 +104,8 @@ def check_held(here: ComplexArray, beside: ComplexArray, places: Array, beam: Be
             "one point"
         )
     own, other = np.linalg.det(here / abs(here).max()), np.linalg.det(beside / abs(here).max())
+    if own == other:
+        return  # so far below the first resonance that the determinant stands still
     distance = complex(STEP * own / (own - other))
     if not beam.loss_factor and abs(here.imag).max() < 1e-12 * abs(here).max() and abs(distance) < RESONANCE:
         resonance = frequency_hz * (1.0 + distance.real)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.errors import InputError
+from verify.patience import check_work
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -60,7 +61,7 @@ class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def check_size(n_unknowns: int, n_modes: int, available: int, field: str, count: int) -> None:
-    """Raise InputError, before anything large is allocated, where modes or memory do not suffice.
+    """Raise InputError, before anything large is allocated, where modes, memory or time do not suffice.
 
     `available` is the number of elastic modes the model has; `field` and `count` name what the user chose.
     """
@@ -75,6 +76,7 @@ def check_size(n_unknowns: int, n_modes: int, available: int, field: str, count:
             f"{field} = {count} needs about {needed / 2**30:.3g} GiB and this machine has "
             f"{memory / 2**30:.3g} GiB: lower {field}"
         )
+    check_work(field, count, solve_seconds(n_unknowns, n_modes), f"lower {field} or the number of modes")
 
 
 def uses_dense(n_unknowns: int, n_modes: int) -> bool:
@@ -87,6 +89,13 @@ def required_bytes(n_unknowns: int, n_modes: int) -> int:
     if uses_dense(n_unknowns, n_modes):
         return 8 * 8 * n_unknowns**2
     return n_unknowns * (_BYTES_PER_UNKNOWN + 8 * 4 * (2 * n_modes + 20))
+
+
+def solve_seconds(n_unknowns: int, n_modes: int) -> float:
+    """An estimate from above of the time a solve takes: n^3 where it is dense, else what each Lanczos vector costs."""
+    if uses_dense(n_unknowns, n_modes):
+        return 1e-9 * n_unknowns**3
+    return n_unknowns * (1e-5 + 8e-7 * n_modes)
 
 
 def _memory_bytes() -> int:

@@ -1,8 +1,21 @@
 """The one family of errors that a user can cause: one sentence naming field, value and remedy."""
 
+from reprlib import Repr
+
+SENTENCE = 1600
+"""Characters of the longest message: what was given in it may be of any length."""
+VALUE = 120
+"""Characters of the longest value shown in one."""
+
 
 class InputError(ValueError):
-    """Bad input. The message is one sentence that names the field, its value and what to do."""
+    """Bad input. The message is one sentence that names the field, its value and what to do.
+
+    Its middle is left out where it is long, and what no terminal should be sent is escaped.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(one_line(message))
 
 
 class PairingError(InputError):
@@ -43,3 +56,34 @@ def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
 
     close = get_close_matches(word, known, n=1, cutoff=0.6)
     return f"did you mean {close[0]!r}?" if close else f"known are {', '.join(known)}"
+
+
+def one_line(text: str) -> str:
+    """A text of at most SENTENCE printable characters; beginning and end, where field and remedy stand, are kept."""
+    plain = "".join(c if c.isprintable() else repr(c)[1:-1] for c in shortened(text, SENTENCE))
+    return shortened(plain, SENTENCE)
+
+
+class _Short(Repr):
+    """`repr` of the first parts of what is long or deep."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlevel, self.maxstring, self.maxother = 3, VALUE // 2, VALUE // 2
+
+    def repr_int(self, x: int, level: int) -> str:
+        """A whole number, beyond 100 bits by its length: Python does not print thousands of digits."""
+        return repr(x) if x.bit_length() <= 100 else f"a whole number of {x.bit_length()} bits"
+
+
+def shown(value: object) -> str:
+    """A value as a message shows it: `repr`, of its first and last parts where it is long."""
+    return shortened(_Short().repr(value), VALUE)
+
+
+def shortened(text: str, limit: int) -> str:
+    """A text without its middle where it is longer than `limit`."""
+    if len(text) <= limit:
+        return text
+    kept = (limit - 5) // 2
+    return f"{text[:kept]} ... {text[-kept:]}"

@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ def unit_response(beam: Beam, frequency_hz: float) -> float:
 
 def check_drive(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> None:
     """Raise InputError for a frequency that is not finite and positive, no force, or a force off the beam."""
-    check_number("frequency_hz", frequency_hz, "hertz", above=0)
+    check_frequency("frequency_hz", frequency_hz, beam)
     if not forces:
         raise InputError("forces is empty: give at least one PointForce")
     for force in forces:

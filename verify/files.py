@@ -2,13 +2,32 @@
 
 import os
 import tempfile
+from errno import ENAMETOOLONG
 from pathlib import Path
 
-from verify.errors import InputError
+from verify.errors import InputError, shown
+
+
+def exists(path: Path, field: str) -> bool:
+    """Whether there is a file or folder. Raises InputError for what can be no name: too long, or with a null byte."""
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    except OSError as error:
+        if error.errno != ENAMETOOLONG:
+            return True  # whoever opens it hears why it cannot
+        raise InputError(f"{field} = {shown(str(path))} is too long for a file name: shorten it") from None
+    except ValueError:  # a null byte, or what the file system cannot encode
+        raise InputError(
+            f"{field} = {shown(str(path))} can be no file name: give one without such characters"
+        ) from None
+    return True
 
 
 def writable_folder(folder: Path, field: str) -> Path:
     """Make `folder` and prove that a file can be written there. Raises InputError naming `field`."""
+    exists(folder, field)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -21,6 +40,7 @@ def writable_folder(folder: Path, field: str) -> Path:
 
 def write_whole(path: Path, text: str, field: str = "file") -> None:
     """Write a text file through a neighbour and a rename, so that no reader ever sees half of it."""
+    exists(path, field)
     handle = None
     try:
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")

@@ -1,13 +1,13 @@
 """Gates judged: expected, measured, band, reason."""
 
-from math import isfinite
+from math import hypot, isfinite
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities import arguments_of, as_plain, evaluate, needs_of, quantity
+from verify.quantities import arguments_of, as_plain, evaluate, in_words, needs_of, quantity
 from verify.quantity_types import Quantity
 from verify.scene import Complex
 
@@ -51,8 +51,8 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
         unit, value = found.unit, _evaluated(found, gate, scene, bench)
     except InputError as error:
         reason = f"cannot be evaluated: {error}"
-    except Exception as error:
-        reason = f"cannot be evaluated: {type(error).__name__}: {error}"
+    except Exception:  # a fault of the suite's own, not of the input: every such place is to become an InputError
+        reason = f"cannot be evaluated: the suite itself fails on it, `verify measure {gate.quantity}` shows where"
     share = None
     if not reason:
         reason, share = _verdict(gate, value)
@@ -83,7 +83,7 @@ def _verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
     if isinstance(gate.expect, Complex):
         return _disc_verdict(gate.expect, gate.within, value)
     if isinstance(value, complex) or not isfinite(value):
-        return f"measured {value!r}, which is not a finite real number", None
+        return f"measured {in_words(as_plain(value))}, which is not a finite real number", None
     if gate.expect is not None and gate.within is None:
         return f"measured {value!r}, and a number needs within beside expect = {gate.expect!r}", None
     low, high = band(gate)
@@ -98,7 +98,7 @@ def _disc_verdict(expect: Complex, within: float | None, value: Any) -> tuple[st
     """A complex figure has to lie within a distance of the expected one."""
     if not isinstance(value, complex) or within is None:
         return f"measured {value!r}, and a complex expect with within judges complex figures", None
-    distance = abs(value - complex(expect.re, expect.im)) / within
+    distance = hypot(value.real - expect.re, value.imag - expect.im) / within
     return ("" if distance <= 1.0 else f"measured {value!r} lies outside the disc"), distance
 
 

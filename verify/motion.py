@@ -3,6 +3,7 @@
 import msgspec
 
 from verify.contact import Coupling, Margins
+from verify.errors import InputError
 from verify.slider import Slider
 from verify.time_basis import Array
 
@@ -113,4 +114,14 @@ class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def mean_speed(self) -> float:
         """Displacement over duration, m/s."""
-        return self.displacement / float(self.times[-1] - self.times[0])
+        return self.displacement / self.duration
+
+    @property
+    def duration(self) -> float:
+        """What was simulated, seconds. Raises InputError where the slider was gone before the first sample."""
+        if not (seconds := float(self.times[-1] - self.times[0])):
+            raise InputError(
+                f"the slider {self.statistics.stopped} before the first sample: change its position, speed or mu, or "
+                "ask for more samples"
+            )
+        return seconds

@@ -123,14 +123,14 @@ def slider_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
 
     Over counts against the exact beam, over steps against one sixteen times finer than the finest.
     """
-    from verify.compare import observed_order
+    from verify.compare import observed_order, relative_error
 
     def displacement(**other: Any) -> float:
         return with_slider(replace(a, counts=None, steps=(1.0,), **other), scene, bench).displacement
 
     if a.counts is not None:
         exact = displacement(model="analytic", count=None)
-        return observed_order(a.counts, [abs(displacement(count=n) - exact) / abs(exact) for n in a.counts])
+        return observed_order(a.counts, [abs(relative_error(displacement(count=n), exact)) for n in a.counts])
     exact = displacement(step=min(a.steps) / 16.0)
-    errors = [abs(displacement(step=dt) - exact) / abs(exact) for dt in a.steps]
+    errors = [abs(relative_error(displacement(step=dt), exact)) for dt in a.steps]
     return observed_order([round(max(a.steps) / dt * 1e6) for dt in a.steps], errors)

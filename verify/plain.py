@@ -88,7 +88,7 @@ def finite(data: Any) -> Any:
 
 def mode_number(text: str) -> int:
     """A mode number as typed. Raises InputError."""
-    value = literal(text)
+    value = literal(text, "mode")
     if isinstance(value, bool) or not isinstance(value, int) or value < 1:
         raise InputError(f"mode = {text!r}: give a whole number from 1")
     return value
@@ -96,7 +96,7 @@ def mode_number(text: str) -> int:
 
 def accuracy(text: str) -> float:
     """A relative error as typed, '1%' or '0.01'. Raises InputError unless it lies between 1e-12 and 1."""
-    value = literal(text.strip().removesuffix("%"))
+    value = literal(text.strip().removesuffix("%"), "error")
     number = isinstance(value, int | float) and not isinstance(value, bool)
     error = float(value) / (100.0 if text.strip().endswith("%") else 1.0) if number else 0.0
     if not 1e-12 <= error < 1.0:

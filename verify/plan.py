@@ -215,8 +215,8 @@ def _over_the_force(scene: "Scene", asked: "AxialInertia") -> Skipped:
     forces = [replace(force, amplitude=1.0) for force in scene.forces]
     size = _size(solve_harmonic(scene.beam, forces, scene.drive.frequency_hz))
     sizes = ", ".join(f"{size * force**2:.1e} at {force:g} N" for force in asked.forces)
-    limit = (NONLINEAR / size) ** 0.5 if size else float("inf")
-    return Skipped(f"linear chain up to {limit:.2g} N, nonlinear above",
+    limit = f"up to {(NONLINEAR / size) ** 0.5:.2g} N, nonlinear above" if size else "at any force"
+    return Skipped(f"linear chain {limit}",
                    f"decided by the axial inertia, (kL)^2 <theta^2> of the steady field: {sizes} (felt from "
                    f"{NONLINEAR:g} on)")  # fmt: skip
 

@@ -4,6 +4,7 @@ A quantity is data: its name, unit, typed arguments, what it will need solved, a
 imports numpy until a figure that needs it is asked for.
 """
 
+from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import msgspec
@@ -81,7 +82,7 @@ def in_words(plain: Any) -> str:
             if "lower" in plain
             else f"{plain['re']:.12g} {plain['im']:+.12g}i"
         )
-    return f"{plain:.12g}"
+    return f"{plain:.12g}" if isfinite(plain) else "no number" if isnan(plain) else "infinity"
 
 
 def described() -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ HELD = 1.0 - 1e-6
 """Share of mu g up to which a pull is held: beyond it the creep depends on digits that mu g does not have."""
 DOUBLINGS = 60
 """Of the step, from the time that friction takes to act."""
-MOST_STEPS = 200_000_000
+MOST_STEPS = 40_000_000
 
 
 def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Array:

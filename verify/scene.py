@@ -6,13 +6,15 @@ from typing import Annotated, Any, Literal, TypeAlias
 import msgspec
 from msgspec import Meta
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce, check_frequency, check_number
 from verify.checked import checked
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, shown
+from verify.files import exists
 from verify.slider import Slider
 
 PACKAGED = Path(__file__).parent / "scenes"
 STARTER = PACKAGED / "starter.toml"
+_LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
 
 Count: TypeAlias = Annotated[int, Meta(ge=1)]
 Counts: TypeAlias = Annotated[tuple[Count, ...], Meta(min_length=1)]
@@ -54,7 +56,7 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Spectrum(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Ask for the error of modes 1..modes of both discrete models at one size."""
 
-    modes: Count = 22
+    modes: Annotated[int, Meta(ge=1, le=10_000)] = 22
     count: Count = 49
 
 
@@ -221,7 +223,8 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What exists (beam, drive) and what is asked (gates, tables, studies). What is not asked does not run."""
 
-    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
+    """Also of its report's file, hence not longer."""
     title: str = ""
     description: str = ""
     beam: Beam
@@ -241,6 +244,8 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             if gate.id in seen:
                 raise InputError(f"gate.{gate.id} stands twice: give every gate an id of its own")
             seen.add(gate.id)
+        if self.drive is not None:
+            check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
         forces = self.forces  # built here, so that one off the beam is refused with the scene
         if self.wave is not None and len(forces) != 2:
             raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
@@ -267,36 +272,56 @@ def scene_path(name_or_path: str) -> Path:
     if name_or_path in packaged_scenes():
         return PACKAGED / f"{name_or_path}.toml"
     path = Path(name_or_path)
-    if path.exists() or path.suffix or len(path.parts) != 1:
+    if exists(path, "scene") or path.suffix or len(path.parts) != 1:
         return path
-    raise InputError(
-        f"scene = {name_or_path!r} is neither a packaged scene nor a file: {near_name(name_or_path, packaged_scenes())}"
-    )
+    remedy = near_name(name_or_path, packaged_scenes())
+    raise InputError(f"scene = {shown(name_or_path)} is neither a packaged scene nor a file: {remedy}")
 
 
 def read_toml(path: Path) -> dict[str, Any]:
     """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
     import tomllib
 
+    exists(path, "scene")
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in data.items()}
     except OSError as error:
         raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
+    except InputError:
+        raise
+    except ValueError:  # Python reads no whole number of more than 4300 digits
+        raise InputError(f"scene file {str(path)!r} has a number of thousands of digits: {_LARGE}") from None
 
 
-def literal(text: str) -> Any:
-    """A TOML literal; a bare word is a string; comma-separated values are a list."""
+def _whole(data: Any, where: str) -> Any:
+    """The same data. Raises InputError for a whole number beyond TOML's 64 bits, named by its key."""
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            _whole(value, f"{where}[{key}]" if isinstance(data, list) else f"{where}.{key}")
+    if isinstance(data, int) and not -(2**63) <= data < 2**63:
+        raise InputError(f"{where} = {shown(data)}: {_LARGE}")
+    return data
+
+
+def literal(text: str, field: str = "value") -> Any:
+    """A TOML literal; a bare word is a string; comma-separated values are a list. Raises InputError.
+
+    `field` is what messages call it.
+    """
     import tomllib
 
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, KeyError, RecursionError):
+        return _whole(tomllib.loads(f"value = {text}")["value"], field)
+    except InputError:
+        raise
+    except (ValueError, KeyError, RecursionError):  # tomllib's own, and Python's for more than 4300 digits
         if "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
-            return [literal(part.strip()) for part in text.split(",") if part.strip()]
+            return [literal(part.strip(), field) for part in text.split(",") if part.strip()]
         return text
 
 
@@ -305,7 +330,7 @@ def split_assignment(text: str) -> tuple[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip() or not value.strip():
         raise InputError(f"{text!r} is not an assignment: write key=value, for instance mode=22")
-    return key.strip(), literal(value.strip())
+    return key.strip(), literal(value.strip(), key.strip())
 
 
 def given_arguments(assignments: tuple[str, ...]) -> dict[str, Any]:
@@ -342,11 +367,11 @@ def _entry(here: Any, step: str, field: str) -> Any:
 
 def _position(entries: list[Any], step: str, field: str) -> int:
     """Where in a list an entry stands: by its id, or by its number from 0."""
-    names = [str(e.get("id", i)) if isinstance(e, dict) else str(i) for i, e in enumerate(entries)]
-    if step in names:
-        return names.index(step)
-    if step.isdigit() and int(step) < len(entries):
-        return int(step)
+    numbers = [str(i) for i in range(len(entries))]
+    names = [str(e.get("id", i)) if isinstance(e, dict) else i for i, e in zip(numbers, entries, strict=True)]
+    for known in (names, numbers):
+        if step in known:
+            return known.index(step)
     raise InputError(f"--set {field} names no entry: {near_name(step, names) if names else 'the list is empty'}")
 
 

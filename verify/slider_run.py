@@ -130,6 +130,11 @@ def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) ->
                 points=np.ascontiguousarray(stage.rows(points).T))  # fmt: skip
 
 
+def slider_seconds(steps: float, rows: int, two_way: bool) -> float:
+    """An estimate from above of the time the loop takes: so much for a step, and for each mode that it advances."""
+    return steps * (8e-6 + 6e-8 * rows if two_way else 1.5e-6 + 1.5e-8 * rows)
+
+
 Window = tuple[Array, Array]
 """Polynomials of the pieces around the slider, (pieces, degree + 1, rows), and their edges, metres."""
 

@@ -8,6 +8,7 @@ import msgspec
 
 from verify.closed_forms import THEORIES, frequency_hz
 from verify.errors import InputError
+from verify.patience import check_work
 from verify.timing import interleaved_medians
 from verify.workbench import Workbench, model_module
 
@@ -98,6 +99,7 @@ def convergence(
     for count in asked.counts:
         for model in MODELS:
             check_size(bench.beam, model, count, max(asked.modes))
+    _check_together(bench.beam, asked.counts, max(asked.modes))
     seconds = {}
     for count in asked.counts:
         progress(f"{count} segments and elements")
@@ -115,6 +117,17 @@ def check_size(beam: "Beam", model: str, count: int, n_modes: int) -> None:
     """Raise InputError for a size that cannot be solved at all, before any work on it."""
     module = model_module(model)
     module.check(beam, max(min(n_modes, module.n_elastic(beam, count)), 1), count)
+
+
+def _check_together(beam: "Beam", counts: tuple[int, ...], n_modes: int) -> None:
+    """Raise InputError where all solves, each done and then timed, would take too long."""
+    from verify.eigen import solve_seconds
+
+    sizes = [(model_module(model), count) for count in counts for model in MODELS]
+    seconds = sum(
+        solve_seconds(module.unknowns(beam, n), min(n_modes, module.n_elastic(beam, n))) for module, n in sizes
+    )
+    check_work("counts", list(counts), 2.0 * seconds, "give fewer or smaller ones")
 
 
 def _timed_pair(bench: Workbench, count: int, n_modes: int) -> dict[str, float]:

@@ -25,6 +25,8 @@ SHARPNESS = 24
 """Points for each half wavelength of the window, to draw from and to look for extremes around."""
 HILLS_OF_A_PART = 8
 """Points in each segment or element where a discrete field's extremes are looked for: it ripples at their length."""
+MOST_HALVES = 10_000
+"""Half wavelengths of the longest window: its points are held at once."""
 STILL = 1e-13
 """A deflection this small beside the forces' own size is rounding: nothing moves."""
 REACH = 0.04
@@ -315,6 +317,11 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
     half = float(np.pi / wavenumber(beam, frequency_hz).real)
     if end - start < half:
         raise WindowError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
+    if end - start > MOST_HALVES * half:
+        raise WindowError(
+            f"window = {list(window)} spans {(end - start) / half:.2g} half wavelengths of {half:.4g} m, more than "
+            f"{MOST_HALVES}: narrow it or lower frequency_hz"
+        )
 
 
 def check_series(times: Array, values: Array, frequency_hz: float) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from verify.beam import Beam
 from verify.drives import held_units
 from verify.error_laws import discrete_wavenumber
-from verify.errors import NoFigureError, ResonanceError
+from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.fields import Array, ComplexArray, unit_response, wavenumber
 from verify.travelling_wave import (
     STANDING,
@@ -23,6 +23,8 @@ from verify.travelling_wave import (
 )
 
 BoolArray = NDArray[np.bool_]
+MOST_READINGS = 50_000_000
+"""Complex deflections that a map holds at once: 0.8 GB, and as much again twice while waves are fitted."""
 FAST = ("wave.reflection", "wave.standing_wave_ratio", "wave.crest_speed", "wave.energy_flux")
 
 
@@ -77,6 +79,11 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         """
         check_window(self.beam, list(self.places), float(frequencies.max()), self.window)  # or it suits none of them
         rule = window_rule(self.window, wavenumber(self.beam, float(frequencies.max())).real)
+        if (n := len(frequencies) * len(self.places) * len(rule.x)) > MOST_READINGS:
+            raise InputError(
+                f"frequency_hz: {len(frequencies)} frequencies read at {len(rule.x)} points each are {n:.1e} figures, "
+                f"more than {MOST_READINGS:.0e}: give fewer steps, or a narrower window"
+            )
         fields = self._responses(frequencies, rule.x)
         k = np.full(len(frequencies), np.nan, dtype=complex)
         for i, frequency in enumerate(frequencies):

@@ -13,7 +13,7 @@ from verify.errors import InputError
 from verify.operating_point import OperatingPoint, edge_note, operating_points
 from verify.travelling_wave import surface_motion
 from verify.wave_arguments import BestFrequency, InWindow
-from verify.waves import driven, measures, quietest_drive
+from verify.waves import SEARCHED, check_fields, driven, measures, quietest_drive
 
 if TYPE_CHECKING:
     from verify.scene import Scene, Wave
@@ -100,6 +100,8 @@ def motor_table(
     scene: "Scene", bench: "Workbench", counts: tuple[int, ...], progress: Callable[[str], None] = lambda step: None
 ) -> tuple[MotorRow, ...]:
     """The exact beam, then both discrete models at every size. Raises InputError."""
+    for model in ("segment", "fem"):
+        check_fields(scene.beam, model, counts, SEARCHED)
     rows = [motor_row(scene, bench, "analytic", None)]
     for model in ("segment", "fem"):
         for count in counts:

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
-from verify.compare import observed_order
+from verify.beam import Beam, PointForce, check_frequency
+from verify.compare import observed_order, relative_error
 from verify.drives import driven_field
+from verify.eigen import solve_seconds
 from verify.error_laws import check_carried, discrete_wavenumber
 from verify.errors import InputError, ResonanceError
 from verify.fields import Array, HarmonicField, phasor
+from verify.patience import check_work
 from verify.search import Least, least_over
 from verify.travelling_wave import WaveMeasures, measure, middle_half, two_waves
 from verify.wave_arguments import InWindow
@@ -20,6 +22,9 @@ from verify.workbench import model_module
 if TYPE_CHECKING:
     from verify.scene import Scene
     from verify.workbench import Workbench
+
+SEARCHED = 70
+"""Driven fields behind a best frequency: a grid of 41, the rest by Brent's method."""
 
 
 def driven(a: Any, scene: "Scene", bench: "Workbench", count: int | None) -> HarmonicField:
@@ -50,6 +55,16 @@ def drive_kind(a: Any, scene: "Scene") -> str:
     return str(a.drive or (scene.drive.kind if scene.drive else "force"))
 
 
+def check_fields(beam: Beam, model: str, counts: Sequence[int | None], times: int = 1) -> None:
+    """Raise InputError where driven fields of a discrete model at all sizes, so many times, would take too long."""
+    sizes = [count for count in counts if count is not None]
+    if model == "analytic" or not sizes:
+        return
+    module = model_module(model)
+    seconds = times * sum(solve_seconds(module.unknowns(beam, count), 1) for count in sizes)
+    check_work("count", max(sizes), seconds, f"lower it, {times * len(sizes)} driven fields are asked for")
+
+
 def solve_by_model(
     model: str, beam: Beam, forces: Any, frequency_hz: float, count: int | None, settings: dict[str, Any]
 ) -> HarmonicField:
@@ -66,7 +81,9 @@ def drive_frequency(a: Any, scene: "Scene") -> float:
     """The frequency given, else the scene's. Raises InputError where there is none."""
     if a.frequency_hz is None and scene.drive is None:
         raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")
-    return float(a.frequency_hz if a.frequency_hz is not None else scene.drive.frequency_hz)  # type: ignore[union-attr]
+    frequency = float(a.frequency_hz if a.frequency_hz is not None else scene.drive.frequency_hz)  # type: ignore[union-attr]
+    check_frequency("frequency_hz", frequency, scene.beam)
+    return frequency
 
 
 def drive_forces(a: Any, scene: "Scene") -> tuple[PointForce, ...]:
@@ -137,6 +154,7 @@ def best_frequency(a: Any, scene: "Scene", bench: "Workbench") -> float:
 def quietest_drive(a: Any, scene: "Scene", bench: "Workbench") -> Least:
     """Where within `span` of the drive's frequency the reflection is least. Raises InputError where the wave stands."""
     centre = drive_frequency(a, scene)
+    check_fields(scene.beam, a.model, (a.count,), SEARCHED)
 
     def reflection(frequency: float) -> float:
         try:
@@ -163,6 +181,7 @@ def quietest(reflection: Callable[[Array], Array], frequencies: Array) -> Least:
 def wave_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
     """The observed order of a discrete model's figure towards the exact field's. Raises InputError."""
     window = a.window or middle_half(scene.beam)
+    check_fields(scene.beam, a.model, a.counts)
 
     def figure(model: str, count: int | None) -> complex:
         asked = replace(a, model=model) if model != "analytic" else _exact(a)
@@ -173,7 +192,7 @@ def wave_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
         return complex(found.standing_wave_ratio if a.of == "standing_wave_ratio" else found.mean_axis_ratio)
 
     exact = figure("analytic", None)
-    return observed_order(a.counts, [abs(figure(a.model, n) - exact) / abs(exact) for n in a.counts])
+    return observed_order(a.counts, [abs(relative_error(figure(a.model, n), exact)) for n in a.counts])
 
 
 def _exact(a: Any) -> Any:

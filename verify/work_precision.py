@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec.structs import replace
 
+from verify.compare import check_reference, relative_error
 from verify.motion_arguments import SliderInTime
 from verify.motions import described, slider_of
+from verify.patience import check_work
 from verify.simulate import simulate
+from verify.slider_run import slider_seconds
 
 if TYPE_CHECKING:
     from verify.motion import Motion
@@ -51,7 +54,9 @@ def work_rows(
     scene: "Scene", counts: tuple[int, ...], progress: Callable[[str], None] = lambda step: None
 ) -> tuple[WorkRow, ...]:
     """Both models at every size; the exact beam is the reference. Raises InputError."""
+    _check_rounds(scene, counts)
     exact = run_once(scene, "analytic", None).displacement
+    check_reference(exact)
     cases = [(model, n) for model in ("segment", "fem") for n in counts]
     runs: dict[tuple[str, int], list[Motion]] = {case: [] for case in cases}
     for number in range(ROUNDS):
@@ -59,6 +64,15 @@ def work_rows(
         for model, n in cases:
             runs[model, n].append(run_once(scene, model, n))
     return tuple(_row(model, n, found, exact) for (model, n), found in runs.items())
+
+
+def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
+    """Raise InputError where all rounds together would take too long."""
+    assert scene.motion is not None
+    assert scene.drive is not None
+    steps = scene.motion.duration * scene.drive.frequency_hz * scene.motion.steps_per_period
+    seconds = ROUNDS * sum(slider_seconds(steps, 3 * n, two_way=False) for n in counts)
+    check_work("motion.counts", list(counts), 2.0 * seconds, "give fewer or smaller ones, or a shorter duration")
 
 
 def run_once(scene: "Scene", model: str, count: int | None, ledger: bool = False, samples: int = 2) -> "Motion":
@@ -72,10 +86,10 @@ def run_once(scene: "Scene", model: str, count: int | None, ledger: bool = False
 
 
 def _row(model: str, count: int, found: "list[Motion]", exact: float) -> WorkRow:
-    length = float(found[0].times[-1] - found[0].times[0])
+    length = found[0].duration
     return WorkRow(
         model=model, count=count, rows=len(found[0].end.q), displacement=found[0].displacement,
-        error=found[0].displacement / exact - 1.0,
+        error=relative_error(found[0].displacement, exact),
         run_ms_per_ms=median(m.statistics.wall_s for m in found) / length,
         set_up_ms=1e3 * median(m.statistics.set_up_s for m in found),
     )  # fmt: skip

@@ -1,0 +1,44 @@
+"""Work estimated before it is begun: what would take too long without a word is refused."""
+
+import os
+
+from verify.errors import InputError
+
+PATIENCE_S = 20.0
+"""Seconds of work that are begun without asking."""
+VARIABLE = "VERIFY_PATIENCE"
+"""The environment variable that says otherwise, in seconds."""
+
+
+def check_work(field: str, value: object, seconds: float, remedy: str) -> None:
+    """Raise InputError where work is estimated to take longer than is waited for.
+
+    Estimates are of one slow core and from above; they count operations, so that they do not depend on the day.
+    """
+    if seconds <= (limit := _limit()):
+        return
+    raise InputError(
+        f"{field} = {value!r} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
+        f"{remedy}, or set {VARIABLE} to more seconds"
+    )
+
+
+def _words(seconds: float) -> str:
+    for most, unit, name in ((120.0, 1.0, "s"), (7200.0, 60.0, "minutes"), (172800.0, 3600.0, "hours")):
+        if seconds < most:
+            return f"{seconds / unit:.0f} {name}"
+    return f"{seconds / 86400.0:.2g} days"
+
+
+def _limit() -> float:
+    """Seconds. Raises InputError where the variable is no number above 0."""
+    given = os.environ.get(VARIABLE, "")
+    if not given:
+        return PATIENCE_S
+    try:
+        seconds = float(given)
+    except ValueError:
+        seconds = 0.0
+    if not seconds > 0.0:
+        raise InputError(f"{VARIABLE} = {given!r}: give seconds above 0 in the environment, or leave it unset")
+    return seconds
