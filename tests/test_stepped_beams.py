@@ -161,3 +161,48 @@ def test_sections_alike_but_other_than_the_beam_are_what_counts():
         assert analytic_modes.stepped_frequency_hz(beam, 3) == pytest.approx(exact, rel=1e-7)
         assert fem_beam.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-5)
         assert segment_model.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-4)
+
+
+@pytest.mark.parametrize("y", [0.03, 0.4, 0.97, 1.03, 1.9, 2.6])
+def test_the_series_and_the_functions_of_a_section_are_its_dynamic_stiffness(y):
+    """Forces and moments at its ends under end deflections and slopes, from the four wave functions, in 50 digits."""
+    with mpmath.workdps(50):
+        z = mpmath.mpf(y)
+        ends = [[f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)] for t in (0, z) for d in (0, 1)]
+        shears = [[s * f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)]
+                  for t, d, s in ((0, 3, 1), (0, 2, -1), (z, 3, -1), (z, 2, 1))]  # fmt: skip
+        exact = mpmath.matrix(shears) * mpmath.matrix(ends) ** -1
+    functions = (exact[0, 0], exact[0, 1], exact[1, 1], exact[0, 2], exact[0, 3], exact[1, 3])
+    expected = [float(v) for v in functions]
+    solvers = [analytic_modes._stiffness_series] if y < 1.0 else [analytic_modes._stiffness_functions]
+    if 0.9 < y < 2.0:
+        solvers = [analytic_modes._stiffness_series, analytic_modes._stiffness_functions]
+    for solver in solvers:
+        assert solver(y) == pytest.approx(expected, rel=2e-12), solver.__name__
+
+
+def mpmath_cos(t, d):
+    return mpmath.cos(t + d * mpmath.pi / 2)
+
+
+def mpmath_sin(t, d):
+    return mpmath.sin(t + d * mpmath.pi / 2)
+
+
+def mpmath_cosh(t, d):
+    return mpmath.sinh(t) if d % 2 else mpmath.cosh(t)
+
+
+def mpmath_sinh(t, d):
+    return mpmath.cosh(t) if d % 2 else mpmath.sinh(t)
+
+
+def test_a_section_that_hardly_waves_is_a_static_beam():
+    """EI / l^3 times 12, 6 l, 4 l^2, -12, 6 l, 2 l^2, less what inertia takes: 13/35, 11/210, 1/105, 9/70 of it."""
+    beta, length = 0.02, 0.7
+    found = analytic_modes._dynamic_stiffness(beta, length)
+    k = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], dtype=float)
+    m = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) / 420
+    turn = np.diag([1, length, 1, length])
+    expected = turn @ (k / length**3 - beta**4 * length * m) @ turn
+    assert found == pytest.approx(expected, rel=1e-12)
