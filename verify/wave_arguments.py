@@ -104,3 +104,34 @@ class BestFrequency(InWindow, frozen=True, kw_only=True):
     """Where the reflection is least."""
 
     span: Annotated[float, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = 0.015
+
+
+class Receptance(Arguments, frozen=True, kw_only=True):
+    """One place under a unit force at another."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    count: Size | None = None
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    position: Annotated[float, Meta(ge=0, description="of the force, metres from the left end")]
+    x: Annotated[float, Meta(ge=0, description="metres from the left end")]
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+
+
+class Sensitivity(Arguments, frozen=True, kw_only=True):
+    """The reflection about a point of frequency and phase, in the middle half of the beam."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    count: Size | None = None
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
+    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
+    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    drive: (
+        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
+    ) = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
