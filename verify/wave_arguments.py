@@ -76,9 +76,14 @@ class Power(InWindow, frozen=True, kw_only=True):
 
 
 class AxisRatio(InWindow, frozen=True, kw_only=True):
-    """A window, and a place in it."""
+    """A window to take the mean over, or a place."""
 
     x: Annotated[float, Meta(description="metres; default: the mean over the window")] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.x is not None and self.window is not None:
+            raise InputError(f"x = {self.x!r} and window = {list(self.window)!r}: a place needs no window, give one")
 
 
 class WaveOrder(InWindow, frozen=True, kw_only=True):
@@ -96,8 +101,11 @@ class WaveOrder(InWindow, frozen=True, kw_only=True):
         if self.count is not None:
             raise InputError(f"count = {self.count!r}: wave.order takes several sizes, give counts instead")
         self.check_settings()
-        if self.modal_damping or self.joint_dashpot:
-            raise InputError("wave.order compares with the exact beam, which takes a loss_factor: give that instead")
+        for name in ("modal_damping", "joint_dashpot"):
+            if value := getattr(self, name):
+                raise InputError(
+                    f"{name} = {value!r}: wave.order compares with the exact beam, which takes a loss_factor: give that"
+                )
 
 
 class BestFrequency(InWindow, frozen=True, kw_only=True):
