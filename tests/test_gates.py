@@ -29,7 +29,9 @@ from verify import (
     fem_beam,
     fem_motion,
     forcing,
+    harmonic_solvers,
     motions,
+    operating_point,
     pure_wave,
     request,
     rigid_surface,
@@ -279,6 +281,41 @@ def grading_that_stretches_the_last_part_alone(patch):
     patch.setattr(division, "_graded", stretched)
 
 
+def parts_taken_from_the_first_section_that_has_them(patch):
+    """By no remainder: the middle section gives one to the first."""
+    true = division.part_counts
+
+    def shifted(lengths, count):
+        counts = true(lengths, count)
+        middle = counts.index(max(counts))
+        counts[middle] -= 1
+        counts[0] += 1
+        return counts
+
+    patch.setattr(division, "part_counts", shifted)
+
+
+def grading_over_one_part_too_many(patch):
+    true = division._graded
+    patch.setattr(division, "_graded", lambda length, n, g: true(length, n, g ** ((n - 1) / n) if n > 1 else g))
+
+
+def sections_of_the_mean_thickness(patch):
+    """Each part keeps its material and gets the thickness of the whole."""
+    for module in (chain, fem_beam):
+        true = module.divide
+
+        def even(beam, *given, true=true):
+            return true(
+                structs.replace(
+                    beam, section=tuple(structs.replace(part, thickness=beam.thickness) for part in beam.section)
+                ),
+                *given,
+            )
+
+        patch.setattr(module, "divide", even)
+
+
 def link_curvature_for_the_joints_moment(patch):
     true = segment_model.joint_curvatures
     patch.setattr(segment_model, "joint_curvatures", lambda links, joints: true(links, joints) * links.compliances)
@@ -341,6 +378,86 @@ def wavenumber_two_per_cent_off(patch):
 def stiffness_without_its_loss(patch):
     true = analytic_harmonic.wavenumber
     patch.setattr(analytic_harmonic, "wavenumber", lambda beam, f: true(structs.replace(beam, loss_factor=0.0), f))
+
+
+def ratio_twice_as_large(patch):
+    for module in (fem_beam, segment_model):
+        true = module.damped_response
+
+        def doubled(pencil, loads, omega2, stiffness, ratio, true=true):
+            return true(pencil, loads, omega2, stiffness, 2 * ratio)
+
+        patch.setattr(module, "damped_response", doubled)
+
+
+def modes_of_the_driven_pencil_without_their_losses(patch):
+    """The modal sum leaves out what the stiffness loses."""
+    for module in (fem_beam, segment_model):
+        true = module.damped_response
+
+        def lossless(pencil, loads, omega2, stiffness, ratio, true=true):
+            return true(pencil, loads, omega2, stiffness.real + 0j if ratio else stiffness, ratio)
+
+        patch.setattr(module, "damped_response", lossless)
+
+
+def losses_that_feed(patch):
+    """The field of a growing time, for the direct solve and the sum over modes."""
+    for module in (fem_beam, segment_model):
+        direct, summed = module.damped_response, module.modal_receptance
+
+        def response(pencil, loads, omega2, stiffness, ratio, true=direct):
+            return true(pencil, loads, omega2, stiffness.conj(), -ratio)
+
+        def receptance(pencil, weights, omega2, eta, true=summed):
+            return true(pencil, weights, omega2, -eta)
+
+        patch.setattr(module, "damped_response", response)
+        patch.setattr(module, "modal_receptance", receptance)
+
+
+def modes_summed_with_their_sign_lost(patch):
+    for module in (fem_beam, segment_model):
+        true = module.modal_receptance
+
+        def turned(*given, true=true):
+            modes, shares = true(*given)
+            return modes, -shares
+
+        patch.setattr(module, "modal_receptance", turned)
+
+
+def modes_summed_at_frequencies_a_thousandth_higher(patch):
+    true = harmonic_solvers.modal_basis
+
+    def higher(pencil):
+        values, vectors = true(pencil)
+        return 1.001 * values, vectors
+
+    patch.setattr(harmonic_solvers, "modal_basis", higher)
+
+
+def sensitivities_exchanged(patch):
+    true = operating_point.driven_point
+
+    def exchanged(*given):
+        found = true(*given)
+        return structs.replace(found, per_hertz=found.per_degree, per_degree=found.per_hertz)
+
+    patch.setattr(operating_point, "driven_point", exchanged)
+
+
+def changes_of_both_sides_with_their_signs(patch):
+    """On a slope they cancel: what is left is the curvature."""
+    true = operating_point.Landscape.at
+
+    def mirrored_at(self, frequency, phase):
+        here = true(self, 4276.0, 90.0)
+        there = true(self, frequency, phase)
+        other = true(self, 2 * 4276.0 - frequency, 180.0 - phase)
+        return here[0] + 0.5 * (there[0] + other[0] - 2 * here[0]), there[1]
+
+    patch.setattr(operating_point.Landscape, "at", mirrored_at)
 
 
 def displacement_taken_for_force(patch):
@@ -787,6 +904,30 @@ FAULTS_ELSEWHERE = {
         power_of_both_waves_added: {"flux", "energy-flux"},
         singular_values_squared: {"travelling-index"},
         section_turned_on_its_side: {"swr-law", "envelope", "best-frequency"},
+        ratio_twice_as_large: {"ratio-on-elements", "three-dampings-on-segments"},
+        modes_of_the_driven_pencil_without_their_losses: {"ratio-on-elements", "three-dampings-on-segments"},
+        losses_that_feed: {
+            "loss-on-elements", "ratio-on-elements", "dashpots-on-segments", "three-dampings-on-segments",
+            "receptance-of-elements",
+        },
+        modes_summed_with_their_sign_lost: {"receptance-of-elements", "receptance-of-segments"},
+        modes_summed_at_frequencies_a_thousandth_higher: {
+            "ratio-on-elements", "three-dampings-on-segments", "receptance-of-elements", "receptance-of-segments",
+            "reflection-per-hertz",
+        },
+        sensitivities_exchanged: {"reflection-per-hertz", "reflection-per-degree"},
+        changes_of_both_sides_with_their_signs: {"reflection-per-hertz", "reflection-per-degree"},
+    },
+    "patched-strip": {
+        parts_taken_from_the_first_section_that_has_them: {
+            "elements-at-24", "segments-at-24", "graded-elements-at-24", "graded-segments-at-24", "elements-at-96",
+            "graded-segments-at-96",
+        },
+        grading_over_one_part_too_many: {"graded-elements-at-24", "graded-segments-at-24", "graded-segments-at-96"},
+        grading_that_stretches_the_last_part_alone: {"graded-elements-at-24", "graded-segments-at-24"},
+        sections_of_the_mean_thickness: {"elements-at-24", "segments-at-24", "fem-order", "fem-error"},
+        lumped_element_mass: {"elements-at-24", "fem-order", "fem-error"},
+        section_order_reversed: {"elements-at-96", "segments-at-24", "fem-error", "fem-order"},
     },
     "steel-cantilever": {
         link_inertia_left_out: {"gregory-mode-10", "gregory-law", "gregory-law-after-the-sign-change"},
@@ -894,12 +1035,19 @@ def test_every_wave_gate_says_its_damping_and_its_window():
     assert len(gates) >= 26
     for gate in gates:
         given = gate.arguments
-        eta = given.get("loss_factor")
-        damping = f"Loss factor {eta:g}, " if eta else "Undamped, "
-        at_a_point = gate.quantity == "wave.deflection" or given.get("of") == "deflection"
+        dampings = [
+            f"{word} {given[name]:{form}}"
+            for word, name, form in (
+                ("loss factor", "loss_factor", "g"), ("ratio", "modal_damping", "g"), ("dashpots", "joint_dashpot", ".0e"),
+            )
+            if given.get(name)
+        ]  # fmt: skip
+        damping = ", ".join(dampings).replace("e-0", "e-") + " N m s" * ("joint_dashpot" in given) + ", "
+        at_a_point = gate.quantity in ("wave.deflection", "wave.receptance") or given.get("of") == "deflection"
         window = "[{} m, {} m]".format(*given["window"]) if "window" in given else "[L/4, 3L/4]"
-        assert gate.why.startswith(damping + ("at L/2" if at_a_point else window)), gate.id
-        assert given.get("x", 0.25) == 0.25  # L/2
+        x = given.get("x", 0.25)
+        place = ("at L/2" if x == 0.25 else f"at {x} m") if at_a_point else window
+        assert gate.why.lower().startswith(((damping if dampings else "undamped, ") + place).lower()), gate.id
 
 
 def verdict(monkeypatch, value, **band):

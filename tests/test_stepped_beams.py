@@ -4,16 +4,19 @@ import mpmath
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from scipy.linalg import eigh
 
 from verify import analytic_modes, chain, closed_forms, fem_beam, segment_model
 from verify.beam import Beam, Section
 from verify.division import divide, part_counts
 from verify.errors import InputError
+from verify.scene import load_scene
 
 STEPPED = Beam(
     length=0.6, width=0.02, thickness=0.004, youngs_modulus=70e9, density=2700.0, supports=("clamped", "pinned"),
     section=(Section(length=0.25), Section(length=0.35, thickness=0.002, youngs_modulus=210e9, density=7850.0)),
 )  # fmt: skip
+PATCHED = load_scene("patched-strip").beam
 CONDITIONS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 
 
@@ -226,3 +229,99 @@ def test_sections_alike_but_other_than_the_beam_are_what_counts():
         assert analytic_modes.stepped_frequency_hz(beam, 3) == pytest.approx(exact, rel=1e-7)
         assert fem_beam.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-5)
         assert segment_model.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-4)
+
+
+@pytest.mark.parametrize("y", [0.03, 0.4, 0.97, 1.03, 1.9, 2.6])
+def test_the_series_and_the_functions_of_a_section_are_its_dynamic_stiffness(y):
+    """Forces and moments at its ends under end deflections and slopes, from the four wave functions, in 50 digits."""
+    with mpmath.workdps(50):
+        z = mpmath.mpf(y)
+        ends = [[f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)] for t in (0, z) for d in (0, 1)]
+        shears = [[s * f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)]
+                  for t, d, s in ((0, 3, 1), (0, 2, -1), (z, 3, -1), (z, 2, 1))]  # fmt: skip
+        exact = mpmath.matrix(shears) * mpmath.matrix(ends) ** -1
+    functions = (exact[0, 0], exact[0, 1], exact[1, 1], exact[0, 2], exact[0, 3], exact[1, 3])
+    expected = [float(v) for v in functions]
+    solvers = [analytic_modes._stiffness_series] if y < 1.0 else [analytic_modes._stiffness_functions]
+    if 0.9 < y < 2.0:
+        solvers = [analytic_modes._stiffness_series, analytic_modes._stiffness_functions]
+    for solver in solvers:
+        assert solver(y) == pytest.approx(expected, rel=2e-12), solver.__name__
+
+
+def mpmath_cos(t, d):
+    return mpmath.cos(t + d * mpmath.pi / 2)
+
+
+def mpmath_sin(t, d):
+    return mpmath.sin(t + d * mpmath.pi / 2)
+
+
+def mpmath_cosh(t, d):
+    return mpmath.sinh(t) if d % 2 else mpmath.cosh(t)
+
+
+def mpmath_sinh(t, d):
+    return mpmath.cosh(t) if d % 2 else mpmath.sinh(t)
+
+
+def test_a_section_that_hardly_waves_is_a_static_beam():
+    """EI / l^3 times 12, 6 l, 4 l^2, -12, 6 l, 2 l^2, less what inertia takes: 13/35, 11/210, 1/105, 9/70 of it."""
+    beta, length = 0.02, 0.7
+    found = analytic_modes._dynamic_stiffness(beta, length)
+    k = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], dtype=float)
+    m = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) / 420
+    turn = np.diag([1, length, 1, length])
+    expected = turn @ (k / length**3 - beta**4 * length * m) @ turn
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def written_out(model, counts, grading):
+    """K and M of the patched strip for so many parts in each section, from the textbook's element or link, SI."""
+    parts = [
+        (piece, piece.length * grading ** (i / max(n - 1, 1)) / sum(grading ** (j / max(n - 1, 1)) for j in range(n)))
+        for piece, n in zip(PATCHED.pieces, counts, strict=True)
+        for i in range(n)
+    ]
+    n = len(parts)
+    if model == "fem":
+        stiffness, mass = np.zeros((2, 2 * n + 2, 2 * n + 2))
+        for i, (piece, length) in enumerate(parts):
+            at, turn = slice(2 * i, 2 * i + 4), np.diag([1, length, 1, length])
+            k = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
+            m = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
+            stiffness[at, at] += piece.bending_stiffness / length**3 * turn @ k @ turn
+            mass[at, at] += piece.mass_per_length * length / 420 * turn @ m @ turn
+        free = [i for i in range(2 * n + 2) if i not in (0, 1, 2 * n)]
+    else:
+        slopes, middles = np.zeros((2, n, n + 1))
+        for i, (_, length) in enumerate(parts):
+            slopes[i, i : i + 2], middles[i, i : i + 2] = (-1 / length, 1 / length), 0.5
+        angles = np.diff(slopes, axis=0, prepend=np.zeros((1, n + 1)))
+        half = np.array([0.5 * length / piece.bending_stiffness for piece, length in parts])
+        compliances = half + np.append(half[0], half[:-1])  # behind the wall the first link goes on
+        compliances[:3] *= 3 / 8, 7 / 6, 23 / 24
+        stiffness = angles.T @ (angles / compliances[:, None])
+        masses = np.array([piece.mass_per_length * length for piece, length in parts])
+        spins = masses * np.array([length for _, length in parts]) ** 2 / 12
+        mass = middles.T @ (masses[:, None] * middles) + slopes.T @ (spins[:, None] * slopes)
+        free = list(range(1, n))
+    return stiffness[np.ix_(free, free)], mass[np.ix_(free, free)]
+
+
+@pytest.mark.parametrize(
+    ("gate", "model", "counts", "grading"),
+    [
+        ("elements-at-24", "fem", (1, 1, 20, 1, 1), 1.0),
+        ("segments-at-24", "segment", (1, 1, 20, 1, 1), 1.0),
+        ("graded-elements-at-24", "fem", (1, 1, 20, 1, 1), 1.7),
+        ("graded-segments-at-24", "segment", (1, 1, 20, 1, 1), 1.7),
+        ("elements-at-96", "fem", (1, 3, 86, 5, 1), 1.0),
+        ("graded-segments-at-96", "segment", (1, 3, 86, 5, 1), 1.7),
+    ],
+)
+def test_the_patched_strips_gates_expect_what_matrices_written_out_give(gate, model, counts, grading):
+    expected = next(g for g in load_scene("patched-strip").gate if g.id == gate)
+    values = eigh(*written_out(model, counts, grading), eigvals_only=True)
+    assert expected.expect == pytest.approx(np.sqrt(values[8]) / (2 * np.pi), abs=3e-7)
+    assert expected.arguments["mode"] == 9

@@ -103,7 +103,8 @@ def rule_frequency_hz(beam: Beam, lower: int, upper: int) -> float:
 
 
 def quarter_wavelength(beam: Beam, frequency: float) -> float:
-    """A quarter of the bending wavelength at `frequency` (Hz), metres. Raises InputError."""
+    """A quarter of the bending wavelength of a uniform beam at `frequency` (Hz), metres. Raises InputError."""
+    check_uniform(beam)
     if not frequency > 0:
         raise InputError(f"frequency_hz = {frequency!r}: give a positive frequency in hertz")
     return pi / 2.0 / sqrt(2.0 * pi * frequency / beam.wave_constant)

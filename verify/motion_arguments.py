@@ -75,7 +75,7 @@ class InTime(Arguments, frozen=True, kw_only=True):
         Annotated[float, Meta(ge=0, description="over which the forces grow; default: the scene's")] | None
     ) = None
     modal_damping: Annotated[float, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
-    modes: Annotated[int, Meta(ge=1, description="the exact beam keeps from rest")] = 400
+    modes: Annotated[int, Meta(ge=1, description="the exact beam keeps from rest; default 400")] | None = None
     frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
     phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
     position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
@@ -85,6 +85,10 @@ class InTime(Arguments, frozen=True, kw_only=True):
             raise InputError(
                 f"count = {self.count!r} does not fit model = {self.model}: give fem and segment a count, "
                 "the exact beam none"
+            )
+        if self.modes is not None and self.model != "analytic":
+            raise InputError(
+                f"modes = {self.modes!r} is for model = analytic: {self.model} keeps all it has, leave it out"
             )
 
 
@@ -162,6 +166,8 @@ class SliderOrder(SliderInTime, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if (self.counts is None) == (self.steps is None):
             raise InputError("slider.order takes counts or steps: give one of the two")
+        if self.steps is not None and self.step is not None:
+            raise InputError(f"step = {self.step!r}: slider.order over steps takes its steps from there, leave it out")
         if self.counts is None:
             super().__post_init__()
         elif self.count is not None or self.model == "analytic":

@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.motion import Motion
+from verify.motion_arguments import SliderInTime
 from verify.request import STEPS_PER_PERIOD
 from verify.simulate import simulate
 from verify.slider import Slider
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from verify.scene import Scene
     from verify.workbench import Workbench
 
+MODES = 400
+"""Of the exact beam from rest, unless asked for otherwise."""
 _OWN = {"mu": "mu", "slope": "slope", "mass": "mass", "law": "law", "coupling": "coupling", "line": "line",
         "kinematics": "kinematics", "normal": "normal", "preload": "preload", "slider_position": "position",
         "slider_speed": "speed"}  # fmt: skip
@@ -44,7 +47,8 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
     damping = a.modal_damping if a.modal_damping is not None else (motion.modal_damping if motion else None)
     return {
         "forces": drive_forces(a, scene), "frequency_hz": drive_frequency(a, scene), "duration": time, "model": a.model,
-        "count": a.count, "modes": a.modes, "start": start, "soft_start_periods": soft, "modal_damping": damping,
+        "count": a.count, "modes": a.modes or MODES, "start": start, "soft_start_periods": soft,
+        "modal_damping": damping,
     }  # fmt: skip
 
 
@@ -75,12 +79,20 @@ def with_slider(
             f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {asked['duration']!r} s: "
             "shorten time or start it elsewhere"
         )
+    _check_modes(a, asked["start"], bool(found.coupling and found.coupling.two_way))
     return found
+
+
+def _check_modes(a: Any, start: str, felt: bool) -> None:
+    """Raise InputError for a number of modes where no mode is taken."""
+    if a.modes is not None and start == "steady" and not felt:
+        raise InputError(f"modes = {a.modes!r}: a steady beam that feels no slider is one field, leave it out")
 
 
 def without_slider(a: Any, scene: "Scene", bench: "Workbench") -> Motion:
     """The beam alone at the times 0 and `time`, at x."""
     asked = described(a, scene)
+    _check_modes(a, asked["start"], felt=False)
     key = ("beam", scene.beam, a.x, *asked.values())
     if key not in bench.motions:
         bench.motions[key] = simulate(scene.beam, at=[a.x], samples=2, ledger=False, **asked)
@@ -125,12 +137,15 @@ def slider_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
     """
     from verify.compare import observed_order, relative_error
 
+    given = {name: getattr(a, name) for name in SliderInTime.__struct_fields__}
+
     def displacement(**other: Any) -> float:
-        return with_slider(replace(a, counts=None, steps=(1.0,), **other), scene, bench).displacement
+        return with_slider(SliderInTime(**{**given, **other}), scene, bench).displacement
 
     if a.counts is not None:
         exact = displacement(model="analytic", count=None)
-        return observed_order(a.counts, [abs(relative_error(displacement(count=n), exact)) for n in a.counts])
+        found = [displacement(count=n, modes=None) for n in a.counts]
+        return observed_order(a.counts, [abs(relative_error(one, exact)) for one in found])
     exact = displacement(step=min(a.steps) / 16.0)
     errors = [abs(relative_error(displacement(step=dt), exact)) for dt in a.steps]
     return observed_order([round(max(a.steps) / dt * 1e6) for dt in a.steps], errors)

@@ -1,6 +1,6 @@
 """Where to drive: the frequency of least reflection, and the fastest crests under a limit on the reflection."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.fields import Array
 from verify.travelling_wave import middle_half
 from verify.unit_waves import Gaps, UnitDrive, superposed
-from verify.waves import quietest
+from verify.waves import drive_forces, drive_frequency, drive_kind, driven_beam, quietest
 
 if TYPE_CHECKING:
     from verify.scene import Scene
@@ -84,6 +84,16 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
         inside = min(frequency - frequencies[0], frequencies[-1] - frequency) > 0.01 * np.diff(frequencies)[0]
         note = "" if inside else edge_note("the crests still grow faster", frequency)
         return self.point(frequency, phase, f"largest crest speed with a reflection up to {limit:g}", note)
+
+
+def driven_point(a: Any, scene: "Scene") -> OperatingPoint:
+    """The point at which `wave_arguments.Sensitivity` arguments drive. Raises InputError without two forces."""
+    forces = drive_forces(a, scene)
+    if len(forces) != 2:
+        raise InputError(f"the reflection has a phase between two forces, the scene has {len(forces)}: give it two")
+    land = Landscape(beam=driven_beam(a, scene), forces=(forces[0], forces[1]), model=a.model, count=a.count,
+                     kind=drive_kind(a, scene))  # fmt: skip
+    return land.point(drive_frequency(a, scene), forces[1].phase_deg - forces[0].phase_deg, "as driven")
 
 
 def edge_note(what: str, frequency: float) -> str:

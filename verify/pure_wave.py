@@ -3,6 +3,7 @@
 import numpy as np
 
 from verify.beam import Beam, check_number
+from verify.closed_forms import check_uniform
 from verify.contact import law_entries
 from verify.errors import InputError
 from verify.forcing import CONSTANT
@@ -16,7 +17,11 @@ STEPS = 1024
 
 
 def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 0.0) -> Stage:
-    """One period of the wave amplitude cos(omega t - k x), as a slider of mean speed `mean` meets it."""
+    """One period of the wave amplitude cos(omega t - k x), as a slider of mean speed `mean` meets it.
+
+    Raises InputError for a stepped beam.
+    """
+    check_uniform(beam)
     omega = 2.0 * np.pi * frequency_hz
     k = float(np.sqrt(omega / beam.wave_constant))
 

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from verify.beam import Beam
+from verify.beam import Beam, check_number
 from verify.drives import held_units
 from verify.error_laws import discrete_wavenumber
 from verify.errors import InputError, NoFigureError, ResonanceError
@@ -101,11 +101,7 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         """The model's own. Raises NoFigureError where the frequency has none, or no field."""
         check_window(self.beam, list(self.places), frequency, self.window)
         if not np.isfinite(field).all():
-            held = " held at its actuators" if self.kind == "displacement" else ""
-            raise ResonanceError(
-                f"frequency_hz = {frequency!r} is an undamped resonance of the {self.model} model{held}: give the beam "
-                "a loss_factor or choose another frequency"
-            )
+            raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
         if self.count is None:
             return wavenumber(self.beam, frequency)
         return discrete_wavenumber(self.model, self.beam, self.count, frequency)
@@ -115,15 +111,43 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         places = np.array(self.places)
 
         def units(f: Array, at: Array) -> ComplexArray:
-            if self.count is None:
-                from verify.analytic_modes import unit_responses
-
-                return unit_responses(self.beam, self.places, f, at)
-            from verify.workbench import model_module
-
-            return np.asarray(model_module(self.model).unit_responses(self.beam, self.places, f, at, self.count))
+            return unit_fields(self.model, self.beam, self.places, f, at, self.count)
 
         return units(frequencies, x) if self.kind == "force" else held_units(units, places, self.beam, frequencies, x)
+
+
+def unit_fields(
+    model: str, beam: Beam, places: tuple[float, ...], frequencies: Array, x: Array, count: int | None
+) -> ComplexArray:
+    """Deflection at x under a unit force at each place by a model's name, (n, n_places, len(x)), m/N.
+
+    NaN at undamped resonances. Raises InputError.
+    """
+    if count is None:
+        from verify.analytic_modes import unit_responses
+
+        return unit_responses(beam, places, frequencies, x)
+    from verify.workbench import model_module
+
+    return np.asarray(model_module(model).unit_responses(beam, places, frequencies, x, count))
+
+
+def receptance(model: str, beam: Beam, place: float, frequency_hz: float, x: float, count: int | None) -> complex:
+    """Deflection at x under a unit force at `place`, m/N; both in metres. Raises InputError."""
+    for name, value in (("position", place), ("x", x)):
+        check_number(name, value, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
+    found = unit_fields(model, beam, (place,), np.array([frequency_hz]), np.array([x]), count)[0, 0, 0]
+    if not np.isfinite(found):
+        raise resonant(model, frequency_hz)
+    return complex(found)
+
+
+def resonant(model: str, frequency_hz: float, held: str = "") -> ResonanceError:
+    """What there is to say of an undamped model at a resonance."""
+    return ResonanceError(
+        f"frequency_hz = {frequency_hz!r} is an undamped resonance of the {model} model{held}: give the beam "
+        "a loss_factor or choose another frequency"
+    )
 
 
 def wave_figure(name: str, beam: Beam, frequency: Array, k: ComplexArray, forward: Any, backward: Any) -> Array:

@@ -76,9 +76,14 @@ class Power(InWindow, frozen=True, kw_only=True):
 
 
 class AxisRatio(InWindow, frozen=True, kw_only=True):
-    """A window, and a place in it."""
+    """A window to take the mean over, or a place."""
 
     x: Annotated[float, Meta(description="metres; default: the mean over whole half wavelengths")] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.x is not None and self.window is not None:
+            raise InputError(f"x = {self.x!r} and window = {list(self.window)!r}: a place needs no window, give one")
 
 
 class WaveOrder(InWindow, frozen=True, kw_only=True):
@@ -96,11 +101,45 @@ class WaveOrder(InWindow, frozen=True, kw_only=True):
         if self.count is not None:
             raise InputError(f"count = {self.count!r}: wave.order takes several sizes, give counts instead")
         self.check_settings()
-        if self.modal_damping or self.joint_dashpot:
-            raise InputError("wave.order compares with the exact beam, which takes a loss_factor: give that instead")
+        for name in ("modal_damping", "joint_dashpot"):
+            if value := getattr(self, name):
+                raise InputError(
+                    f"{name} = {value!r}: wave.order compares with the exact beam, which takes a loss_factor: give that"
+                )
 
 
 class BestFrequency(InWindow, frozen=True, kw_only=True):
     """Where the reflection is least."""
 
     span: Annotated[float, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = 0.015
+
+
+class Receptance(Arguments, frozen=True, kw_only=True):
+    """One place under a unit force at another."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    count: Size | None = None
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    position: Annotated[float, Meta(ge=0, description="of the force, metres from the left end")]
+    x: Annotated[float, Meta(ge=0, description="metres from the left end")]
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+
+
+class Sensitivity(Arguments, frozen=True, kw_only=True):
+    """The reflection about a point of frequency and phase, in the middle half of the beam."""
+
+    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    count: Size | None = None
+    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
+    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
+    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
+    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    drive: (
+        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
+    ) = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)

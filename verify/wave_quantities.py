@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.quantity_types import Quantity
-from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, Power, WaveOrder
+from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, Power, Receptance, Sensitivity, WaveOrder
 from verify.workbench import Workbench
 
 if TYPE_CHECKING:
@@ -58,6 +58,24 @@ def _order(a: WaveOrder, scene: "Scene", bench: Workbench) -> float:
     return wave_order(a, scene, bench)
 
 
+def _receptance(a: Receptance, scene: "Scene", bench: Workbench) -> complex:
+    from verify.unit_waves import receptance
+    from verify.waves import drive_frequency, driven_beam
+
+    return receptance(a.model, driven_beam(a, scene), a.position, drive_frequency(a, scene), a.x, a.count)
+
+
+def _sensitivity(name: str) -> Any:
+    """One sensitivity of the operating point at which the scene drives."""
+
+    def evaluate(a: Sensitivity, scene: "Scene", bench: Workbench) -> float:
+        from verify.operating_point import driven_point
+
+        return float(getattr(driven_point(a, scene), name))
+
+    return evaluate
+
+
 def _figure(name: str) -> Any:
     """One attribute of the measures."""
     return lambda a, scene, bench: float(getattr(measured(a, scene, bench), name))
@@ -96,4 +114,10 @@ WAVE_QUANTITIES = (
              BestFrequency, _nothing, _best_frequency),
     Quantity("wave.order", "1", "Observed order of a wave figure's error against the exact field.",
              WaveOrder, _nothing, _order),
+    Quantity("wave.receptance", "m/N", "Deflection at one place under a unit force at another, by all modes at once.",
+             Receptance, _nothing, _receptance),
+    Quantity("wave.reflection_per_hertz", "1/Hz", "Change of the reflection over half a hertz, mean of both sides.",
+             Sensitivity, _nothing, _sensitivity("per_hertz")),
+    Quantity("wave.reflection_per_degree", "1/degree", "Change over half a degree of phase, mean of both sides.",
+             Sensitivity, _nothing, _sensitivity("per_degree")),
 )  # fmt: skip

@@ -1,0 +1,121 @@
+"""How fast the surface moves, and how large friction's answer is beside it: from the beam itself, formula by formula."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import analytic_modes
+from verify.beam import PointForce
+from verify.contact import FELT, coupling_of, surface_speed
+from verify.fields import HarmonicField
+from verify.simulate import simulate
+from verify.slider import Slider
+
+HERTZ = 1310.0
+PRESSED = Slider(mass=1e-9, mu=0.23, preload=0.031)  # so light that friction alone is felt, its weight 1e-8 N
+
+
+def friction_size(slider, beam, frequency_hz, speed):
+    """Speed that full friction gives to the surface over `speed`: the part of coupling that friction has."""
+    return coupling_of(slider, beam, frequency_hz, speed).relative_size
+
+
+def wave(beam, amplitude, k, frequency_hz=HERTZ):
+    """The field amplitude e^{-ikx} on a beam, whatever drives it."""
+    return HarmonicField(
+        model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=(),
+        shapes=lambda x, derivative: amplitude * (-1j * k) ** derivative * np.exp(-1j * k * x),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("x", [0.0, 0.0317, 0.41, 0.73])
+def test_the_surface_of_a_travelling_wave_has_one_speed_wherever_it_is_asked(titanium_strip, x):
+    """|w'| = k A at every phase: its real part alone would pass through zero and change its sign."""
+    field = wave(titanium_strip, 1.3e-6 * np.exp(0.7j), 47.0)
+    expected = 0.5 * 0.0023 * 2 * np.pi * HERTZ * 47.0 * 1.3e-6
+    assert surface_speed(field, x) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_slope_that_falls_gives_the_speed_of_one_that_rises(titanium_strip):
+    still = replace(titanium_strip, loss_factor=0.0)
+    force = PointForce(position=0.21, amplitude=2.7)
+    field = analytic_modes.solve_harmonic(still, [force], HERTZ)
+    places = np.linspace(0.02, 0.71, 60)
+    slopes = field.slope(places)
+    assert (slopes.real < 0).sum() > 10
+    assert (slopes.real > 0).sum() > 10
+    step = 1e-5
+    for x in places[::7]:
+        rise = (field.deflection(x + step) - field.deflection(x - step))[0] / (2 * step)
+        expected = 0.5 * still.thickness * 2 * np.pi * HERTZ * abs(rise)
+        assert surface_speed(field, float(x)) == pytest.approx(expected, rel=1e-5, abs=1e-9)
+
+
+def test_full_friction_turns_a_long_beam_as_a_pair_of_forces_at_its_surface_does(titanium_strip):
+    """The moment (h/2) mu N, as two forces a hair apart on a beam of 1500 wavelengths whose losses swallow the echo."""
+    k = float(np.sqrt(2 * np.pi * HERTZ / titanium_strip.wave_constant))
+    apart = 1e-5 / k
+    long = replace(titanium_strip, length=1500 * 2 * np.pi / k, loss_factor=0.01)
+    moment = 0.5 * long.thickness * PRESSED.mu * PRESSED.normal_force
+    middle = 0.4137 * long.length
+    pair = [
+        PointForce(position=middle - 0.5 * apart, amplitude=-moment / apart),
+        PointForce(position=middle + 0.5 * apart, amplitude=moment / apart),
+    ]
+    answered = analytic_modes.solve_harmonic(long, pair, HERTZ)
+    expected = 0.5 * long.thickness * 2 * np.pi * HERTZ * abs(answered.slope([middle]))[0]
+    found = friction_size(PRESSED, replace(long, loss_factor=0.0), HERTZ, 0.0071) * 0.0071
+    assert found == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "power"),
+    [("thickness", -0.5), ("width", -1.0), ("youngs_modulus", -0.75), ("density", -0.25), ("length", 0.0)],
+)
+def test_what_makes_a_beam_stiffer_makes_it_feel_less(titanium_strip, change, power):
+    """(h/2)^2 omega / (EI k) with k ~ omega^{1/2} h^{-1/2}: h^{2 - 3 + 1/2} = h^{-1/2}, E^{-3/4}, rho^{-1/4}, 1/b."""
+    other = replace(titanium_strip, **{change: 1.7 * getattr(titanium_strip, change)})
+    before, after = (friction_size(PRESSED, beam, HERTZ, 0.0071) for beam in (titanium_strip, other))
+    assert after / before == pytest.approx(1.7**power, rel=1e-12)
+
+
+def test_faster_shaking_halves_what_friction_is_beside_it(titanium_strip):
+    once = friction_size(PRESSED, titanium_strip, HERTZ, 0.0071)
+    assert friction_size(PRESSED, titanium_strip, HERTZ, 0.0142) == pytest.approx(0.5 * once, rel=1e-14)
+    assert friction_size(PRESSED, titanium_strip, 4 * HERTZ, 0.0071) == pytest.approx(2 * once, rel=1e-14)
+    assert friction_size(replace(PRESSED, mu=0.69), titanium_strip, HERTZ, 0.0071) == pytest.approx(3 * once, rel=1e-14)
+
+
+@pytest.mark.parametrize(("share", "two_way"), [(0.9997, False), (1.0003, True)])
+def test_friction_is_felt_from_a_thousandth_of_the_surfaces_speed_on(titanium_strip, share, two_way):
+    assert FELT == 1e-3
+    at_limit = friction_size(PRESSED, titanium_strip, HERTZ, 1.0) / 1e-3
+    found = coupling_of(PRESSED, titanium_strip, HERTZ, at_limit / share)
+    assert found.relative_size == pytest.approx(share * 1e-3, rel=1e-12)
+    assert (found.two_way, found.forced) == (two_way, False)
+
+
+@pytest.mark.parametrize(("choice", "two_way"), [("one-way", False), ("two-way", True)])
+@pytest.mark.parametrize("speed", [1e-9, 1e3])
+def test_a_choice_of_coupling_outweighs_its_size(titanium_strip, choice, two_way, speed):
+    found = coupling_of(replace(PRESSED, coupling=choice), titanium_strip, HERTZ, speed)
+    assert (found.two_way, found.forced) == (two_way, True)
+
+
+def test_a_surface_at_rest_feels_every_slider(titanium_strip):
+    assert coupling_of(PRESSED, titanium_strip, HERTZ, 0.0).two_way
+
+
+@pytest.mark.parametrize("start", ["rest", "steady"])
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("fem", 60), ("segment", 240)])
+def test_a_run_sizes_its_coupling_by_the_steady_surface_where_the_slider_starts(titanium_strip, model, count, start):
+    """At 0.25 m a slope of both phases, of which neither part is the whole."""
+    slider = Slider(mass=1e-9, mu=0.23, preload=0.031, position=0.25)
+    drives = (PointForce(position=0.05, amplitude=30.0), PointForce(position=0.66, amplitude=22.0, phase_deg=71.0))
+    found = simulate(titanium_strip, drives, HERTZ, 2e-5, model=model, count=count, start=start, slider=slider,
+                     samples=2, ledger=False).coupling  # fmt: skip
+    field = analytic_modes.solve_harmonic(titanium_strip, drives, HERTZ)
+    slope = field.slope([0.25])[0]
+    assert min(abs(slope.real), abs(slope.imag)) > 0.5 * abs(slope)
+    expected = friction_size(slider, titanium_strip, HERTZ, surface_speed(field, 0.25))
+    assert found.relative_size == pytest.approx(expected, rel=2e-3)

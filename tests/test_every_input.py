@@ -1,0 +1,537 @@
+"""Every input of every quantity moves its figure, is refused by name, or stands in one table with the reason.
+
+Inputs are generated from the types: every field of the scene's beam, sections, drive, slider and motion, of what it
+asks for, and every argument. Each is turned alone, in every case below; nothing may be dropped in silence.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from typing import Any, Literal, get_args, get_origin
+
+import msgspec
+import pytest
+from msgspec.structs import replace
+
+from verify.checked import checked
+from verify.errors import InputError
+from verify.quantities import QUANTITIES, arguments_of, evaluate
+from verify.scene import Scene
+from verify.workbench import Workbench
+
+FORCES = [
+    {"position": 0.0411, "measured_from": "left", "amplitude": 1.3, "phase_deg": 17.0},
+    {"position": 0.0573, "measured_from": "right", "amplitude": 0.8, "phase_deg": 101.0},
+]
+BASE: dict[str, Any] = {
+    "name": "every-input",
+    "beam": {
+        "length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0,
+        "supports": ["pinned", "pinned"], "loss_factor": 0.021,
+    },
+    "drive": {"frequency_hz": 731.0, "kind": "force", "force": FORCES},
+    "spectrum": {}, "convergence": {}, "sensitivity": {"mode": 3}, "wave": {},
+    "slider": {"mass": 3e-6, "mu": 0.23, "slope": 310.0, "position": 0.271, "speed": 0.004, "preload": 0.003},
+    "motion": {"duration": 1.1e-3, "soft_start_periods": 0.3, "modal_damping": 0.013, "steps_per_period": 40},
+    "gate": [{"id": "g", "quantity": "mode.frequency", "at_least": 1.0, "why": "it asks"}],
+}  # fmt: skip
+STEP = [{"length": 0.31}, {"length": 0.42, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 97e9, "density": 5e3}]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One way to ask for a figure: arguments, and what the scene has other than BASE."""
+
+    arguments: dict[str, Any]
+    scene: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A case of one quantity, whole."""
+
+    quantity: str
+    arguments: dict[str, Any]
+    scene: dict[str, Any]
+
+    def __str__(self) -> str:
+        given = ",".join(f"{k}={v}" for k, v in self.arguments.items())
+        return f"{self.quantity}({given})"
+
+
+def stepped(*supports):
+    return {"beam": {"section": STEP, "supports": list(supports)}}
+
+
+def on(*supports):
+    return {"beam": {"supports": list(supports)}}
+
+
+STILL = {"beam": {"loss_factor": 0.0}}
+SHAKEN = {
+    "drive": {"force": [{**force, "amplitude": 90.0 * force["amplitude"]} for force in FORCES]},
+    "slider": {"speed": 3e-4, "slope": 2100.0, "mu": 0.003, "preload": 0.03, "mass": 1e-5}, "motion": {"duration": 2.3e-3},
+}  # fmt: skip
+COULOMB = {
+    **SHAKEN,
+    "slider": {"preload": 0.03, "mass": 1e-5, "law": "coulomb", "mu": 0.0004, "mu_static": 0.0007, "speed": 0.0},
+}
+STEADY = {"motion": {"start": "steady", "soft_start_periods": 0.0}}
+FEM, SEGMENT = {"model": "fem", "count": 9}, {"model": "segment", "count": 9}
+SETTINGS = {"wall": "third-order", "grading": 1.3, "joints": "printed"}
+FIELDS = ("standing_wave_ratio", "reflection", "envelope", "travelling_index", "signed_area_spread", "crest_speed")
+CASES: dict[str, list[Case]] = {
+    "mode.frequency": [
+        Case({"model": "analytic", "mode": 3}, on("clamped", "free")),
+        Case({"model": "analytic", "mode": 3, "theory": "timoshenko"}, {"axial_inertia": {}}),
+        Case({**FEM, "mode": 3}, stepped("clamped", "free")),
+        Case({**SEGMENT, "mode": 3, **SETTINGS}, stepped("clamped", "free")),
+        Case({"model": "mean", "count": 9, "mode": 3}),
+    ],
+    "mode.frequency_error": [
+        Case({"model": "analytic", "mode": 3, "theory": "timoshenko"}),
+        Case({**FEM, "mode": 3}, stepped("clamped", "free")),
+        Case({**SEGMENT, "mode": 3, **SETTINGS}, stepped("clamped", "free")),
+        Case({**SEGMENT, "mode": 3}, on("clamped", "pinned")),
+    ],
+    "mode.dispersion_error": [Case({"model": "segment", "count": 12, "modes": 4})],
+    "mode.law_ratio": [Case({**SEGMENT, "mode": 2}, on("clamped", "pinned")), Case({**FEM, "mode": 2})],
+    "mode.shape_error": [
+        Case({**SEGMENT, "mode": 2, "reading": "raw"}, on("clamped", "pinned")),
+        Case({**FEM, "mode": 2}, on("clamped", "pinned")),
+    ],
+    "mode.curvature_error": [Case({**SEGMENT, "mode": 2}, on("clamped", "pinned"))],
+    "mode.node_position": [
+        Case({"model": "analytic", "mode": 4}, on("clamped", "free")),
+        Case({**SEGMENT, "mode": 4}, on("clamped", "free")),
+    ],
+    "mode.order": [
+        Case({"model": "segment", "mode": 5, "counts": [12, 16, 24], "wall": "half"}, on("clamped", "pinned")),
+        Case({"model": "fem", "mode": 3, "counts": [8, 16, 32]}, stepped("clamped", "free")),
+    ],
+    "mode.shape_order": [Case({"model": "segment", "mode": 2, "counts": [8, 16, 32], "reading": "raw"}, on("clamped", "pinned"))],
+    "mode.bracket": [Case({"mode": 3, "count": 9, "wall": "half"}, on("clamped", "free"))],
+    "mode.count_needed": [
+        Case({"model": "segment", "mode": 3, "error": 4e-3, "wall": "half"}, on("clamped", "free")),
+        Case({"model": "fem", "mode": 6, "error": 3e-3}),
+    ],
+    "drive.rule_frequency": [Case({"mode": 5}, on("clamped", "free"))],
+    "drive.quarter_wavelength": [Case({"frequency_hz": 310.0}), Case({})],
+    "wave.deflection": [
+        Case({"x": 0.31}),
+        Case({"model": "fem", "count": 24, "x": 0.323, "modal_damping": 0.011}, stepped("clamped", "pinned")),
+        Case({"model": "segment", "count": 24, "x": 0.323, "joint_dashpot": 0.01, "load": "lever", "reading": "raw"}, stepped("clamped", "pinned")),
+        Case({"x": 0.31, "phase_deg": 33.0, "position": 0.05, "frequency_hz": 700.0, "loss_factor": 0.03, "drive": "displacement"}),
+    ],
+    **{f"wave.{name}": [Case({}), Case({"model": "segment", "count": 40, "window": [0.2, 0.5]})] for name in FIELDS},
+    "wave.axis_ratio": [Case({"x": 0.33}), Case({"model": "fem", "count": 40, "window": [0.2, 0.5]})],
+    "wave.energy_flux": [Case({}), Case({"model": "segment", "count": 40, "window": [0.2, 0.5]})],
+    "wave.power_imbalance": [Case({"window": [0.2, 0.5]})],
+    "wave.best_frequency": [Case({"frequency_hz": 704.0, "span": 0.13}, STILL)],
+    "wave.order": [
+        Case({"model": "fem", "counts": [40, 60, 90]}),
+        Case({"model": "segment", "counts": [40, 60, 90], "of": "deflection", "window": [0.2, 0.5]}),
+    ],
+    "wave.receptance": [
+        Case({"position": 0.11, "x": 0.37}),
+        Case({"model": "segment", "count": 12, "position": 0.11, "x": 0.37}, stepped("clamped", "pinned")),
+    ],
+    "wave.reflection_per_hertz": [Case({}), Case({"model": "segment", "count": 24})],
+    "wave.reflection_per_degree": [Case({}), Case({"model": "fem", "count": 14})],
+    "friction.free_decay": [Case({"mu": 0.23, "slope": 90.0, "speed": 0.013, "time": 0.004})],
+    "friction.creep_speed": [Case({"mu": 0.23, "slope": 900.0, "pull": 1.1})],
+    "friction.belt_stick_time": [Case({"mass": 0.7, "stiffness": 310.0, "static": 2.9, "kinetic": 1.7, "speed": 0.11})],
+    "friction.belt_slip_time": [Case({"mass": 0.7, "stiffness": 310.0, "static": 2.9, "kinetic": 1.7, "speed": 0.11})],
+    "friction.coulomb_decrement": [Case({"mass": 0.7, "stiffness": 310.0, "force": 1.7})],
+    "slider.terminal_speed": [Case({"amplitude": 2.3e-6, "slope": 3e4, "mu": 0.02})],
+    "slider.displacement": [
+        Case({"model": "segment", "count": 12}, SHAKEN),
+        Case({"model": "fem", "count": 12, "kinematics": "following"}, COULOMB),
+        Case({"model": "analytic", "modes": 9, "mass": 0.3, "coupling": "two-way"}, SHAKEN),
+        Case({"model": "segment", "count": 12}, {**SHAKEN, "motion": {**STEADY["motion"], "duration": 2.3e-3}}),
+        Case({"model": "segment", "count": 12}, {**SHAKEN, **stepped("clamped", "pinned")}),
+        Case({"model": "fem", "count": 12, "step": 2e-5}, {**SHAKEN, "motion": {"modal_damping": None}}),
+    ],
+    "slider.mean_speed": [Case({"model": "segment", "count": 12}, SHAKEN)],
+    "slider.order": [
+        Case({"model": "fem", "counts": [8, 12, 18], "modes": 30}, SHAKEN),
+        Case({"model": "segment", "count": 12, "steps": [9e-5, 5e-5, 3e-5]}, SHAKEN),
+    ],
+    "motion.deflection": [
+        Case({"model": "segment", "count": 12, "x": 0.31}),
+        Case({"model": "fem", "count": 12, "x": 0.31}, stepped("clamped", "pinned")),
+        Case({"model": "analytic", "modes": 9, "x": 0.31}),
+        Case({"model": "fem", "count": 12, "x": 0.31}, {"motion": {**STEADY["motion"], "modal_damping": None}}),
+    ],
+    "chain.cantilever_tip": [Case({"load": 2.3, "segments": 5}), Case({"load": 2.3, "segments": 5, "component": "shortening"})],
+    "chain.rollup_gap": [Case({"segments": 7, "wall": "gregory"})],
+    "chain.hanging_frequency": [Case({"mode": 2, "segments": 4})],
+    "chain.large_amplitude_frequency": [Case({"amplitude": 21.0, "segments": 4}, STILL)],
+    "chain.energy_drift": [Case({"segments": 3, "step": 2e-4, "periods": 0.3}, STILL), Case({"segments": 3, "periods": 0.3}, STILL)],
+    "chain.transient_deflection": [
+        Case({"time": 9e-4, "x": 0.31, "segments": 5, "force": 300.0}, STILL),
+        Case({"time": 9e-4, "x": 0.31, "segments": 5, "step": 3e-5, "inertia": "transverse"}, {**STILL, "drive": SHAKEN["drive"]}),
+    ],
+    "chain.axial_departure": [Case({"segments": 4, "force": 90.0, "time": 9e-4}, STILL)],
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Dead:
+    """Inputs without effect on some quantities, and why that is right."""
+
+    quantities: str
+    inputs: str
+    why: str
+    when: Callable[[Asked], bool] = lambda asked: True
+
+    def covers(self, asked, name, value):
+        named = matches(name, self.inputs) or matches(f"{name}={value}", self.inputs)
+        return named and matches(asked.quantity, self.quantities) and self.when(asked)
+
+
+def matches(name, patterns):
+    return any(fnmatchcase(name, pattern) for pattern in patterns.split())
+
+
+def uniform(asked):
+    return not asked.scene["beam"]["section"]
+
+
+def unclamped(asked):
+    return "clamped" not in asked.scene["beam"]["supports"]
+
+
+def given(*names):
+    """Whether all of these arguments were given."""
+    return lambda asked: all(asked.arguments.get(name) is not None for name in names)
+
+
+def euler(asked):
+    return asked.arguments.get("theory") != "timoshenko"
+
+
+RELATIVE = "mode.frequency_error mode.law_ratio mode.shape_error mode.curvature_error mode.*order mode.count_needed"
+MATERIAL = "beam.width beam.thickness beam.youngs_modulus beam.density"
+DEAD = [
+    Dead("*", "name title description gate spectrum.* convergence.* sensitivity.* wave.* axial_inertia.*",
+         "what a scene asks for beside the figure"),
+    Dead("*", "motion.count motion.counts motion.samples", "sizes and samples of the scene's own study"),
+    Dead("mode.* drive.rule_frequency", "drive.* slider.* motion.* beam.loss_factor",
+         "free vibration without losses: nothing drives, nothing lies on it"),
+    Dead("*", "beam.poissons_ratio beam.shear_coefficient", "of Timoshenko's theory alone", euler),
+    Dead("mode.frequency mode.node_position mode.bracket drive.*", "beam.width", "EI / rho A has no width", uniform),
+    Dead(RELATIVE, f"{MATERIAL} beam.length", "a relative error of a uniform beam knows mode, size and supports",
+         lambda a: uniform(a) and euler(a)),
+    Dead("mode.frequency_error", "beam.width beam.youngs_modulus beam.density",
+         "Timoshenko against Euler-Bernoulli: slenderness and Poisson's ratio alone", lambda a: not euler(a)),
+    Dead("mode.node_position", "beam.thickness beam.youngs_modulus beam.density", "a shape is geometry", uniform),
+    Dead("mode.dispersion_error", "*", "rounding, whatever the beam and the size: that is what it says"),
+    Dead("mode.*", "arguments.wall", "no clamped end has a joint", unclamped),
+    Dead("mode.*", "arguments.joints", "both forms of Eq. (1) are one where E and I do not change", uniform),
+    Dead("drive.quarter_wavelength", "beam.length beam.supports.* beam.loss_factor drive.force.* drive.kind slider.* motion.*",
+         "of a wave on the beam's section, however long and held it is"),
+    Dead("*", "drive.frequency_hz", "given instead", given("frequency_hz")),
+    Dead("mode.shape*", "arguments.reading", "nodal is the elements' one reading", lambda a: a.arguments["model"] == "fem"),
+    Dead("wave.*", "slider.* motion.*", "a steady field with nothing on it"),
+    Dead("wave.standing_wave_ratio wave.reflection* wave.envelope wave.travelling_index wave.axis_ratio wave.signed_area_spread "
+         "wave.power_imbalance wave.best_frequency wave.order", "beam.width", "a ratio of one field: EI and rho A share the width"),
+    Dead("wave.deflection", "beam.width", "imposed, not forced", lambda a: a.arguments["drive"] == "displacement"),
+    Dead("*", "beam.loss_factor", "given instead", given("loss_factor")),
+    Dead("*", "drive.kind", "given instead", given("drive")),
+    Dead("wave.* slider.* motion.*", "drive.force.*.position drive.force.*.measured_from", "given instead", given("position")),
+    Dead("wave.* slider.* motion.*", "drive.force.1.phase_deg", "given instead", given("phase_deg")),
+    Dead("wave.receptance", "drive.kind drive.force.*", "one newton at `position` instead"),
+    Dead("friction.belt_stick_time", "arguments.mass", "2 (F_s - F_k)/(k V): what rides has no inertia to show"),
+    Dead("friction.coulomb_decrement", "arguments.mass", "4 F/k"),
+    Dead("friction.*", "beam.* drive.* slider.* motion.*", "a rigid surface of its own"),
+    Dead("slider.terminal_speed", "beam.length beam.width beam.supports.* beam.loss_factor drive.kind drive.force.* slider.* motion.*",
+         "a pure wave on the beam's section under a slider of its own"),
+    Dead("slider.* motion.*", "beam.loss_factor", "a modal ratio is given instead",
+         lambda a: a.scene["motion"]["modal_damping"] is not None or a.arguments.get("modal_damping") is not None),
+    Dead("slider.*", "slider.coupling=one-way arguments.coupling=one-way", "auto chooses it for a slider so light",
+         lambda a: a.arguments.get("coupling") is None and a.scene["slider"]["coupling"] == "auto"),
+    Dead("slider.*", "slider.coupling", "given instead", given("coupling")),
+    Dead("slider.*", "slider.mass", "given instead", given("mass")),
+    Dead("slider.*", "slider.kinematics", "given instead", given("kinematics")),
+    Dead("slider.*", "slider.slope arguments.slope", "Coulomb's law has none", lambda a: a.scene["slider"]["law"] == "coulomb"),
+    Dead("slider.*", "motion.steps_per_period", "given instead", lambda a: any(a.arguments.get(k) for k in ("step", "steps"))),
+    Dead("motion.deflection", "motion.steps_per_period", "closed form in time: no step"),
+    Dead("motion.deflection", "slider.*", "the beam alone"),
+    Dead("chain.cantilever_tip chain.rollup_gap chain.hanging_frequency", "beam.* drive.*", "a chain of unit length of its own"),
+    Dead("chain.large_amplitude_frequency", "beam.width beam.youngs_modulus beam.density", "a ratio of two frequencies", uniform),
+    Dead("chain.large_amplitude_frequency chain.energy_drift", "beam.supports.* drive.*", "between hinges of its own, let go"),
+    Dead("chain.*", "slider.* motion.*", "the chain's runs have arguments of their own"),
+    Dead("chain.transient_deflection", "drive.force.*.amplitude", "given instead", given("force")),
+    Dead("chain.transient_deflection", "arguments.method=adaptive", "so without a step", lambda a: a.arguments["step"] is None),
+    Dead("chain.transient_deflection", "arguments.method=rk4", "so with a step", given("step")),
+    Dead("wave.best_frequency", "arguments.span arguments.frequency_hz", "a wider search, or one about another middle, finds the same"),
+    Dead("chain.axial_departure", "drive.force.*.amplitude", "given instead"),
+    Dead("chain.*", "beam.loss_factor", "PENDING: the chain takes no losses and does not say so"),
+    Dead("chain.*", "arguments.tolerance", "PENDING: a fixed step has no tolerance", given("step")),
+]  # fmt: skip
+
+OFF: dict[str, Any] = {
+    "loss_factor": 0.017, "modal_damping": 0.019, "joint_dashpot": 0.013, "preload": 0.0041, "speed": 0.0037,
+    "phase_deg": 61.0, "soft_start_periods": 0.37, "position": 0.083, "frequency_hz": 761.0, "x": 0.283, "mu_static": 0.31,
+    "window": [0.21, 0.51], "count": 7, "published_hz": 1e3, "time": 9e-4, "step": 1.7e-5, "mu": 0.31, "slope": 270.0, "mass": 0.0019,
+    "slider_position": 0.313, "slider_speed": 0.0061, "force": 23.0, "counts": [9, 13, 19], "steps": [3e-5, 2e-5, 1e-5], "section": STEP,
+    "width": 0.028, "thickness": 0.0021, "youngs_modulus": 99e9, "density": 4800.0, "gate": [], "modes": 7, "title": "t", "description": "d",
+}  # fmt: skip
+"""What an input is turned to that is nothing or not given."""
+FACTORS = {"error": 2.0, "grading": 2.0, "tolerance": 1e3}
+"""Where a seventh more is too little to show."""
+WORDS = {
+    "reading": ["raw", "nodal", "corrected"], "name": ["another"], "title": ["t"], "description": ["d"],
+    "quantity": ["wave.crest_speed"],
+}  # fmt: skip
+"""What words without a list of their own are turned to."""
+
+
+OF_SCENE = {
+    "drive": ("drive", "kind"), "start": ("motion", "start"), "law": ("slider", "law"), "coupling": ("slider", "coupling"),
+    "line": ("slider", "line"), "kinematics": ("slider", "kinematics"),
+}  # fmt: skip
+"""Whose word counts where an argument is left out: it is not turned to that."""
+
+
+def words_of(kind):
+    """The words a type allows, or none."""
+    if get_origin(kind) is Literal:
+        return list(get_args(kind))
+    return next((found for arm in get_args(kind) if (found := words_of(arm))), [])
+
+
+def turned(name, kind, value):
+    """Other values of an input, each well away from its own."""
+    if words := words_of(kind):
+        return [word for word in words if word != value]
+    if name in WORDS:
+        return [word for word in WORDS[name] if word != value]
+    if not value or name == "gate":
+        assert name in OFF, f"{name} is off in a case: say in OFF what it is to be turned to"
+        return [OFF[name]]
+    if isinstance(value, list):
+        assert isinstance(value[0], int | float), f"{name} = {value!r}: say in turned() how to turn it"
+        return [[*value[:i], turned(name, kind, one)[0], *value[i + 1 :]] for i, one in enumerate(value)]
+    if isinstance(value, int):
+        return [value + max(value // 5, 1)]
+    assert isinstance(value, float), f"{name} = {value!r}: say in turned() how to turn it"
+    return [FACTORS.get(name, 1.137) * value]
+
+
+def bare(kind):
+    """A type without None and annotations."""
+    if hasattr(kind, "__metadata__"):
+        return bare(get_args(kind)[0])
+    arms = [arm for arm in get_args(kind) if arm is not type(None)]
+    return bare(arms[0]) if type(None) in get_args(kind) else kind
+
+
+def inputs_of(kind, data, where=()):
+    """(path, name, type) of every leaf of a struct's plain data."""
+    for one in msgspec.structs.fields(kind):
+        path, inner, value = (*where, one.name), bare(one.type), data[one.name]
+        element = bare(get_args(inner)[0]) if get_origin(inner) is tuple else None
+        if isinstance(inner, type) and issubclass(inner, msgspec.Struct):
+            yield from inputs_of(inner, value, path) if value is not None else ()
+        elif isinstance(element, type) and issubclass(element, msgspec.Struct) and value and one.name != "gate":
+            for i, part in enumerate(value):
+                yield from inputs_of(element, part, (*path, i))
+        elif element is not None and words_of(element):
+            yield from (((*path, i), one.name, element) for i in range(len(value)))
+        else:
+            yield path, one.name, one.type
+
+
+def plain(value):
+    """Tables, lists and numbers, a copy."""
+    return msgspec.json.decode(msgspec.json.encode(value))
+
+
+def put(data, path, value):
+    """`data` with one value changed; a section that grows takes its length from its neighbour."""
+    whole = plain(data)
+    here = whole
+    for step in path[:-1]:
+        here = here[step]
+    if path[1:2] == ("section",) and path[-1] == "length":
+        other = whole["beam"]["section"][path[2] - 1]
+        other["length"] -= value - here["length"]
+    here[path[-1]] = value
+    return whole
+
+
+def joined(base, change):
+    return {**base, **{k: {**base.get(k, {}), **v} if isinstance(v, dict) else v for k, v in change.items()}}
+
+
+def asked_of(name, case):
+    """A case with everything stated, defaults and all."""
+    scene = plain(checked(joined(BASE, case.scene), Scene))
+    return Asked(name, plain(arguments_of(QUANTITIES[name], case.arguments)), scene)
+
+
+def figure(asked, scene=None, arguments=None):
+    """The figure, everything solved afresh, as a tuple of numbers."""
+    found = QUANTITIES[asked.quantity]
+    given = checked(scene or asked.scene, Scene)
+    stated = {k: v for k, v in (arguments or asked.arguments).items() if v is not None}
+    value = evaluate(found, arguments_of(found, stated), given, Workbench(given.beam))
+    return (value.lower, value.upper) if hasattr(value, "lower") else (value,)
+
+
+def all_inputs(asked):
+    """{dotted name: (whether of the scene, path, values to turn it to)}."""
+    found = {}
+    for scene, kind, data in (
+        (True, Scene, asked.scene),
+        (False, QUANTITIES[asked.quantity].arguments, asked.arguments),
+    ):
+        for path, name, type_ in inputs_of(kind, data):
+            here = data
+            for step in path:
+                here = here[step]
+            values = turned(name, type_, here)
+            if here is None and name in OF_SCENE:
+                own = asked.scene
+                for step in OF_SCENE[name]:
+                    own = own[step]
+                values = [value for value in values if value != own]
+            found[".".join(map(str, path if scene else ("arguments", *path)))] = (scene, path, values)
+    return found
+
+
+STILL_BELOW, MOVED_ABOVE = 1e-10, 1e-9
+"""Relative changes of a figure: rounding, and anything else. Between them a case is too weak to tell."""
+SCALE = {"mode.dispersion_error": 1e-3, "wave.best_frequency": 1e6}
+"""What a change is held against where a figure is rounding itself, or is searched for to 1e-5 Hz."""
+
+
+def change(asked, base, turns):
+    """The relative change of a figure under turned inputs, or the InputError that refuses them."""
+    scene, arguments = asked.scene, asked.arguments
+    for of_scene, path, value in turns:
+        if of_scene:
+            scene = put(scene, path, value)
+        else:
+            arguments = put(arguments, path, value)
+    try:
+        found = figure(asked, scene, arguments)
+    except InputError as refusal:
+        return refusal
+    scale = max(*map(abs, base), SCALE.get(asked.quantity, 0.0))
+    return max(abs(a - b) for a, b in zip(found, base, strict=True)) / scale
+
+
+def dead_ones_that_live(asked, base, turns):
+    """Which of the inputs declared without effect have one; all at once, and by halves where something shows.
+
+    Two that are refused together only are tried apart; one that is refused alone is no worse for being declared.
+    """
+    if not turns:
+        return []
+    found = change(asked, base, [turn for _, turn in turns])
+    if isinstance(found, float) and found <= STILL_BELOW:
+        return []
+    if len(turns) == 1:
+        return (
+            [] if isinstance(found, InputError) else [f"{turns[0][0]} is declared without effect and moves {found:.1e}"]
+        )
+    half = len(turns) // 2
+    return dead_ones_that_live(asked, base, turns[:half]) + dead_ones_that_live(asked, base, turns[half:])
+
+
+def live_ones_that_do_not(asked, base, name, turn):
+    """What is wrong with one input that is not declared without effect; nothing where it moves or is refused."""
+    found = change(asked, base, [turn])
+    said = f"{name} turned to {turn[2]!r}"
+    leaf = next(step for step in reversed(turn[1]) if isinstance(step, str))
+    if isinstance(found, InputError):
+        by_name = leaf in str(found) or not isinstance(turn[2], int | float)
+        return [] if by_name else [f"{said} is refused for another reason, {str(found)[:160]!r}: choose another case"]
+    if found <= STILL_BELOW:
+        return [f"{said} is dropped in silence: use it, refuse it, or declare it in DEAD with the reason"]
+    return [] if found > MOVED_ABOVE else [f"{said} moves {found:.1e} only: choose a case in which it shows"]
+
+
+def every_case():
+    return [asked_of(name, case) for name in QUANTITIES for case in CASES.get(name, [])]
+
+
+def problems_of(quantity):
+    """What is wrong with any input of any case of a quantity, a sentence each."""
+    problems = []
+    for case in CASES[quantity]:
+        asked = asked_of(quantity, case)
+        base = figure(asked)
+        dead, wrong = [], []
+        for name, (of_scene, path, values) in all_inputs(asked).items():
+            for value in values:
+                turn = of_scene, path, value
+                if any(entry.covers(asked, name, value) for entry in DEAD):
+                    dead.append((name, turn))
+                else:
+                    wrong += live_ones_that_do_not(asked, base, name, turn)
+        for together in rounds(dead):
+            wrong += dead_ones_that_live(asked, base, together)
+        problems += [f"{asked}: {text}" for text in wrong]
+    return problems
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_every_input_moves_its_figure_or_is_refused_or_declared(quantity):
+    assert CASES.get(quantity), f"{quantity} has no base case: give CASES one, with values that are not symmetric"
+    problems = problems_of(quantity)
+    assert not problems, "\n".join(problems)
+
+
+def test_an_input_dropped_in_silence_is_found(monkeypatch):
+    """Of the scene and of the arguments."""
+    friction, wave = QUANTITIES["friction.creep_speed"], QUANTITIES["wave.receptance"]
+    deaf = replace(friction, evaluate=lambda a, *given: friction.evaluate(replace(a, slope=900.0), *given))
+    monkeypatch.setitem(QUANTITIES, friction.name, deaf)
+    (found,) = problems_of("friction.creep_speed")
+    assert "arguments.slope turned to 1023" in found
+    assert "is dropped in silence" in found
+    lossless = replace(
+        wave,
+        evaluate=lambda a, scene, bench: wave.evaluate(replace(a, loss_factor=a.loss_factor or 0.021), scene, bench),
+    )
+    monkeypatch.setitem(QUANTITIES, wave.name, lossless)
+    assert all("beam.loss_factor turned to" in text for text in problems_of("wave.receptance"))
+    assert len(problems_of("wave.receptance")) == 2
+
+
+def test_a_declaration_that_is_not_true_is_found(monkeypatch):
+    monkeypatch.setattr(
+        f"{__name__}.DEAD", [*DEAD, Dead("friction.creep_speed", "arguments.mu beam.*", "so it is said")]
+    )
+    (found,) = problems_of("friction.creep_speed")
+    assert "arguments.mu is declared without effect and moves" in found
+
+
+def rounds(turns):
+    """The turns shared out so that no round turns one input twice."""
+    left = list(turns)
+    while left:
+        here = dict(reversed(left))
+        yield list(here.items())
+        left = [(name, turn) for name, turn in left if here[name] is not turn]
+
+
+def test_every_entry_of_the_table_speaks_of_some_input_of_some_case():
+    """A reason that nothing needs any more goes."""
+    cases = [(asked, all_inputs(asked)) for asked in every_case()]
+    for entry in DEAD:
+        assert any(
+            entry.covers(asked, name, value)
+            for asked, inputs in cases
+            for name, (_, _, values) in inputs.items()
+            for value in values
+        ), f"{entry.quantities}: {entry.inputs} ({entry.why})"
+
+
+def test_the_base_has_every_part_that_a_scene_can_have():
+    """A new part of scenes is turned as well, or this says so."""
+    assert set(BASE) | {"title", "description", "axial_inertia"} == {f.name for f in msgspec.structs.fields(Scene)}

@@ -1,0 +1,82 @@
+"""Sensitivities of an operating point, against the closed form of two waves between two forces on a pinned beam."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import travelling_wave
+from verify.beam import PointForce
+from verify.operating_point import Landscape
+from verify.waves import own_wavenumber, solve_by_model
+
+WINDOW = (0.1825, 0.5475)
+"""The middle half of 0.73 m."""
+
+
+def reflection(beam, frequency, phase_deg):
+    """Gamma between two equal forces at equal distances: |sin((kL + phi)/2)| over |sin((kL - phi)/2)|, or its inverse.
+
+    w ~ sin k(L - x) + e^{i phi} sin kx; the near field e^{-kL/4} is left out.
+    """
+    turn, phi = beam.length * np.sqrt(2 * np.pi * frequency / beam.wave_constant), np.deg2rad(phase_deg)
+    sizes = sorted(abs(np.sin(0.5 * (turn + side * phi))) for side in (1, -1))
+    return sizes[0] / sizes[1]
+
+
+def land(beam, model="analytic", count=None):
+    drives = (PointForce(position=0.021, amplitude=1.3), PointForce(position=0.709, amplitude=1.3))
+    return Landscape(beam=beam, forces=drives, model=model, count=count)
+
+
+def mean_change(beam, frequency, phase, hertz, degrees):
+    """Over half a step on each side."""
+    middle = reflection(beam, frequency, phase)
+    ahead, back = (reflection(beam, frequency + s * hertz, phase + s * degrees) for s in (0.5, -0.5))
+    return abs(ahead - middle) + abs(back - middle)
+
+
+@pytest.mark.parametrize(("turns", "phase"), [(17.31, 77.0), (17.69, 77.0), (18.27, -128.0), (17.5, 90.0)])
+def test_sensitivities_are_the_mean_changes_of_the_closed_form(titanium_strip, turns, phase):
+    """In size, on a slope and in the least reflection alike: there both sides rise, and no change is less than zero."""
+    frequency = (turns * np.pi / 0.73) ** 2 * titanium_strip.wave_constant / (2 * np.pi)
+    found = land(titanium_strip).point(frequency, phase, "here")
+    assert found.reflection == pytest.approx(reflection(titanium_strip, frequency, phase), rel=1e-4, abs=1e-6)
+    assert found.per_hertz == pytest.approx(mean_change(titanium_strip, frequency, phase, 1.0, 0.0), rel=1e-4, abs=1e-7)
+    assert found.per_degree == pytest.approx(
+        mean_change(titanium_strip, frequency, phase, 0.0, 1.0), rel=1e-4, abs=1e-7
+    )
+    assert min(found.per_hertz, found.per_degree) > 5e-4
+    assert (found.frequency_hz, found.phase_deg, found.what, found.note) == (frequency, phase, "here", "")
+
+
+def test_a_pure_wave_is_spoilt_by_half_a_degree_as_by_half_its_sine(titanium_strip):
+    """Where kL = 17.5 pi, phi = 90 degrees: Gamma = |tan(delta/2)| for a phase or a turn kL that is off by delta."""
+    frequency = (17.5 * np.pi / 0.73) ** 2 * titanium_strip.wave_constant / (2 * np.pi)
+    least = land(titanium_strip).quiet_point(np.linspace(0.98, 1.02, 101) * frequency, 90.0)
+    assert least.reflection < 1e-5
+    assert least.frequency_hz == pytest.approx(frequency, rel=1e-7)
+    assert least.per_degree == pytest.approx(2 * np.tan(np.pi / 720), rel=1e-4)
+    off = 17.5 * np.pi * 0.5 / (2 * frequency)
+    assert least.per_hertz == pytest.approx(2 * np.tan(off / 2), rel=1e-3)
+
+
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("fem", 60), ("segment", 75)])
+def test_a_point_reads_what_the_field_itself_measures(titanium_strip, model, count):
+    """The sum over unit forces against one field solved directly, with losses and unequal forces."""
+    beam = replace(titanium_strip, loss_factor=0.013)
+    drives = (PointForce(position=0.021, amplitude=1.3, phase_deg=0.0), PointForce(position=0.66, amplitude=0.9))
+    found = Landscape(beam=beam, forces=drives, model=model, count=count).point(1510.0, 68.0, "here")
+
+    def measured(frequency, phase):
+        turned = (drives[0], replace(drives[1], phase_deg=phase))
+        field = solve_by_model(model, beam, turned, frequency, count, {})
+        return travelling_wave.measure(field, WINDOW, own_wavenumber(field))
+
+    here = measured(1510.0, 68.0)
+    assert found.reflection == pytest.approx(here.reflection, rel=1e-6)
+    assert found.crest_speed == pytest.approx(here.crest_speed, rel=1e-6)
+    for name, hertz, degrees in (("per_hertz", 0.5, 0.0), ("per_degree", 0.0, 0.5)):
+        sides = [measured(1510.0 + s * hertz, 68.0 + s * degrees).reflection for s in (1, -1)]
+        expected = sum(abs(side - here.reflection) for side in sides)
+        assert getattr(found, name) == pytest.approx(expected, rel=1e-4), name
+        assert expected > 1e-4

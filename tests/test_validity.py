@@ -1,0 +1,64 @@
+"""Which mode a drive lies nearest, and what a run at that drive cannot be believed beyond."""
+
+from itertools import pairwise, product
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify.beam import SUPPORTS, Section
+from verify.closed_forms import frequency_hz
+from verify.validity import axial_inertia_size, discretisation, model_form, nearest_mode
+
+
+@pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)
+def test_the_nearest_mode_is_nearest_for_every_drive(titanium_strip, supports):
+    """By looking at them all: well below the first, on each side of every middle, and on the modes themselves."""
+    beam = replace(titanium_strip, supports=supports)
+    modes = np.array([frequency_hz(beam, n) for n in range(1, 16)])
+    middles = 0.5 * (modes[1:-1] + modes[:-2])
+    drives = [0.01 * modes[0], 0.37 * modes[0], *modes[:-2], *(0.9999 * middles), *(1.0001 * middles)]
+    drives += [share * a + (1 - share) * b for a, b in pairwise(modes[:-1]) for share in (0.1, 0.8)]
+    for drive in drives:
+        assert nearest_mode(beam, float(drive)) == int(abs(modes - drive).argmin()) + 1, drive
+
+
+def test_the_nearest_mode_is_that_of_the_beam_it_is_asked_of(titanium_strip):
+    """f_n = n^2 (pi/2 L^2) h sqrt(E / 12 rho): every size of the beam counts."""
+    c = 0.0023 * (113e9 / 4470.0 / 12) ** 0.5
+    for n in (7, 19):
+        drive = n**2 * np.pi / 2 / 0.73**2 * c
+        assert nearest_mode(titanium_strip, drive) == n
+        for name, factor, expected in (("length", 2.0, 2 * n), ("thickness", 0.25, 2 * n), ("width", 3.0, n)):
+            other = replace(titanium_strip, **{name: factor * getattr(titanium_strip, name)})
+            assert nearest_mode(other, drive) == expected
+        assert nearest_mode(replace(titanium_strip, youngs_modulus=113e9 / 16), drive) == 2 * n
+        assert nearest_mode(replace(titanium_strip, density=4470.0 * 16), drive) == 2 * n
+
+
+@pytest.mark.parametrize(
+    ("drive", "mode"), [(0.5, 1), (2.4, 1), (2.6, 2), (6.4, 2), (6.6, 3), (110.0, 10), (111.0, 11)]
+)
+def test_model_form_and_division_are_those_of_the_mode_nearest_the_drive(titanium_strip, drive, mode):
+    """Pinned modes lie at 1, 4, 9, 16, ... times the first, their middles at 2.5, 6.5, ..., 110.5."""
+    hertz = drive * frequency_hz(titanium_strip, 1)
+    ratio = frequency_hz(titanium_strip, mode, "timoshenko") / frequency_hz(titanium_strip, mode)
+    assert model_form(titanium_strip, hertz) == pytest.approx(ratio - 1.0, rel=1e-12)
+    assert ratio < 1.0
+    mu = mode * np.pi / 37
+    assert discretisation(titanium_strip, "segment", 37, hertz) == pytest.approx(-(mu**4) / 1440, rel=1e-12)
+    assert discretisation(titanium_strip, "fem", 37, hertz) == pytest.approx(mu**4 / 1440, rel=1e-12)
+
+
+def test_what_has_no_closed_form_has_no_margin(titanium_strip):
+    stepped = replace(titanium_strip, section=(Section(length=0.23), Section(length=0.5, thickness=0.001)))
+    assert model_form(stepped, 100.0) is None
+    assert discretisation(stepped, "fem", 40, 100.0) is None
+    assert model_form(replace(titanium_strip, supports=("clamped", "pinned")), 100.0) is None
+    assert discretisation(replace(titanium_strip, supports=("clamped", "pinned")), "fem", 40, 100.0) > 0
+    assert discretisation(titanium_strip, "analytic", None, 100.0) is None
+
+
+def test_axial_inertia_grows_with_the_square_of_wavenumber_length_and_slope(titanium_strip):
+    k2 = 2 * np.pi * 1310.0 / (0.0023 * (113e9 / 4470.0 / 12) ** 0.5)
+    assert axial_inertia_size(titanium_strip, 1310.0, 3.1e-5) == pytest.approx(k2 * 0.73**2 * 3.1e-5, rel=1e-12)
