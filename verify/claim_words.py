@@ -137,6 +137,6 @@ def answer_in_words(answer: "Comparison | NotCompared") -> str:
     return (
         f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take {answer.ratio:.2f} times "
         f"as long as segments in the loop ({fem.run_ms_per_ms:.3g} and {segment.run_ms_per_ms:.3g} ms for a simulated "
-        f"ms), after a set-up of {fem.set_up_ms:.3g} and {segment.set_up_ms:.3g} ms: {answer.whole_ratio:.2f} times for the "
-        f"whole run of {1e3 * answer.duration:g} ms"
+        f"ms), after a set-up of {fem.set_up_ms:.3g} and {segment.set_up_ms:.3g} ms: {answer.whole_ratio:.2f} times for "
+        f"the whole run of {1e3 * answer.duration:g} ms"
     )

@@ -267,8 +267,8 @@ def print_work(work: "Work") -> None:
     console = Terminal()
     console.print(table)
     console.print(f"[dim]errors against the exact beam at the same step, half of which changes it by "
-                  f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond and set-up, medians "
-                  "of interleaved rounds[/]")  # fmt: skip
+                  f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond and set-up, "
+                  "medians of interleaved rounds[/]")  # fmt: skip
     console.print(Text(answer_in_words(at_equal_error(work))))
 
 

@@ -27,8 +27,8 @@ def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
     log = {"type": "log", "exponentformat": "none"}
     return [chart(
         "slider-readings", f"Readings of the slider: size of the mean speed over the force, {_model(study)}",
-        "Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods over which the "
-        "forces grow). Points above one another differ in place, mu and K. On hover: the claims that hold, by letter.",
+        "Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods over which "
+        "the forces grow). Points above one another differ in place, mu and K. On hover: the claims that hold, by letter.",
         data, axes("force, N", "size of the mean speed, cm/s", xaxis=log,
                    yaxis={"type": "log", "exponentformat": "power"}),
     )]  # fmt: skip
