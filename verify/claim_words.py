@@ -101,6 +101,11 @@ def bound_words(bound: "Bound") -> str:
             "bound.")  # fmt: skip
 
 
+def legend(study: ReadingsStudy) -> str:
+    """'A to-the-left, B mean-speed': which claim a letter is."""
+    return ", ".join(f"{letter(i)} {claim.id}" for i, claim in enumerate(study.claims))
+
+
 def turn_words(study: ReadingsStudy) -> list[tuple[str, str]]:
     """(letter and id of a claim, what its verdict turns with)."""
     lines = []
@@ -137,6 +142,6 @@ def answer_in_words(answer: "Comparison | NotCompared") -> str:
     return (
         f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take {answer.ratio:.2f} times "
         f"as long as segments in the loop ({fem.run_ms_per_ms:.3g} and {segment.run_ms_per_ms:.3g} ms for a simulated "
-        f"ms), after a set-up of {fem.set_up_ms:.3g} and {segment.set_up_ms:.3g} ms: {answer.whole_ratio:.2f} times for "
-        f"the whole run of {1e3 * answer.duration:g} ms"
+        f"ms), after a set-up of {fem.set_up_ms:.3g} and {segment.set_up_ms:.3g} ms: {answer.whole_ratio:.2f} times "
+        f"for the whole run of {1e3 * answer.duration:g} ms"
     )

@@ -128,7 +128,16 @@ def _print_claims(console: Console, claims: "tuple[ClaimResult, ...]") -> None:
 
 def _print_readings(console: Console, study: "ReadingsStudy") -> None:
     """Which claims each group of readings meets, the best of each on the exact beam too, what verdicts turn with."""
-    from verify.claim_words import best_cells, bound_words, cm_per_s, group_cells, letter, searched_words, turn_words
+    from verify.claim_words import (
+        best_cells,
+        bound_words,
+        cm_per_s,
+        group_cells,
+        legend,
+        letter,
+        searched_words,
+        turn_words,
+    )
 
     console.print(Text(f"readings: {searched_words(study)}"))
     head = ("kinematics", "start", "place")
@@ -140,7 +149,8 @@ def _print_readings(console: Console, study: "ReadingsStudy") -> None:
         met.add_row(*group_cells(group), *(cm_per_s(v) for v in group.speeds or (None, None)), *counts)
         best.add_row(*group_cells(group), *best_cells(group))
     each = len(study.groups[0].readings)
-    console.print(f"mean speeds from and to, cm/s, and how many of {each} readings each claim holds in")
+    console.print(f"mean speeds from and to, cm/s, and how many of {each} readings each claim holds in:")
+    console.print(Text(legend(study)))
     console.print(met)
     console.print("the first of those that meet most claims, and the same on the exact beam")
     console.print(best)

@@ -104,7 +104,7 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def run_words(self) -> str:
         """Kinematics, start and duration."""
-        return f"{self.kinematics}, {self.start_words}, {1e3 * self.duration:g} ms"
+        return f"{self.kinematics} kinematics, {self.start_words}, {1e3 * self.duration:g} ms"
 
     @property
     def words(self) -> str:

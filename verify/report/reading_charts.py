@@ -10,6 +10,9 @@ if TYPE_CHECKING:
 
 _COLOURS = (COLOUR["segment"], COLOUR["fem"], "#2a9d5c", "#8f5bd1", "#b8860b", GREY)
 
+BESIDE = 1.09
+"""From one colour's place to the next, as a factor of the force."""
+
 
 def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
     """Mean speed over the force, one colour for kinematics and start, towards -x full and towards +x open."""
@@ -18,7 +21,10 @@ def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
         how = one.condition
         start = "steady" if how.start == "steady" else start_words(how.soft_start_periods)
         ways.setdefault((how.kinematics, start), []).append(one)
-    data = [_way(name, readings, _COLOURS[i % len(_COLOURS)]) for i, (name, readings) in enumerate(ways.items())]
+    data = [
+        _way(name, readings, _COLOURS[i % len(_COLOURS)], BESIDE ** (i - 0.5 * (len(ways) - 1)))
+        for i, (name, readings) in enumerate(ways.items())
+    ]
     claimed = {abs(c.number): c.id for c in study.claims if c.quantity == "slider.mean_speed" and c.number}
     forces = [max(one.condition.forces) for one in study.readings]
     for value, name in claimed.items():
@@ -28,7 +34,8 @@ def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
     return [chart(
         "slider-readings", f"Readings of the slider: size of the mean speed over the force, {_model(study)}",
         "Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods over which "
-        "the forces grow). Points above one another differ in place, mu and K. On hover: the claims that hold, by letter.",
+        "the forces grow), drawn a little beside its force. Points of a colour above one another differ in place, mu "
+        "and K. On hover: the claims that hold, by letter.",
         data, axes("force, N", "size of the mean speed, cm/s", xaxis=log,
                    yaxis={"type": "log", "exponentformat": "power"}),
     )]  # fmt: skip
@@ -38,14 +45,14 @@ def _model(study: "ReadingsStudy") -> str:
     return study.readings[0].condition.model_words
 
 
-def _way(name: tuple[str, str], readings: "list[Reading]", colour: str) -> Figure:
-    """One colour."""
+def _way(name: tuple[str, str], readings: "list[Reading]", colour: str, beside: float) -> Figure:
+    """One colour, drawn at its forces times `beside`."""
     ended = [one for one in readings if one.speed]
     return {
         "type": "scatter", "mode": "markers", "name": f"{name[0]}, {name[1]}",
-        "x": [max(one.condition.forces) for one in ended], "y": [100 * abs(one.speed or 0.0) for one in ended],
+        "x": [beside * max(one.condition.forces) for one in ended], "y": [100 * abs(one.speed or 0.0) for one in ended],
         "text": [_hover(one) for one in ended], "hoverinfo": "text",
-        "marker": {"color": colour, "size": 8, "line": {"color": colour, "width": 1.5},
+        "marker": {"color": colour, "size": 7, "line": {"color": colour, "width": 1.5},
                    "symbol": ["circle" if (one.speed or 0.0) < 0 else "circle-open" for one in ended]},
     }  # fmt: skip
 
