@@ -24,8 +24,8 @@ def met_words(reading: "Reading | None") -> str:
     if reading is None:
         return "–"
     if reading.stopped != "end":
-        return reading.stopped
-    return " ".join(letter(i) for i, met in enumerate(reading.met) if met) or "none"
+        return "broke off"
+    return "".join(letter(i) for i, met in enumerate(reading.met) if met) or "none"
 
 
 def value_words(value: float | None, unit: str) -> str:
@@ -85,9 +85,11 @@ def searched_words(study: ReadingsStudy) -> str:
         f"{NAMES[name]} {', '.join(v if isinstance(v, str) else f'{v:g}' for v in values)}{UNITS.get(name, '')}"
         for name, values in study.searched.items() if values
     )  # fmt: skip
-    how = study.readings[0].condition
-    return (f"{len(study.readings)} readings, every combination of {lists}; {how.model_words}, "
-            f"{1e3 * how.duration:g} ms from the start; {study.n_runs} runs. Nothing is tuned.")  # fmt: skip
+    how, n = study.readings[0].condition, sum(one.condition.model != "chain" for one in study.readings)
+    chain = len(study.readings) - n
+    also = f"; those at once also on the nonlinear chain of {how.count} rigid links ({chain})" if chain else ""
+    return (f"{n} readings, every combination of {lists} and no other; {how.model_words}, {1e3 * how.duration:g} ms "
+            f"from the start{also}; {study.n_runs} runs in all. Nothing is fitted.")  # fmt: skip
 
 
 def bound_words(bound: "Bound") -> str:
@@ -117,10 +119,10 @@ def turn_words(study: ReadingsStudy) -> list[tuple[str, str]]:
 
 
 def group_cells(group: "Group") -> list[str]:
-    """Kinematics, start, place of a row."""
+    """Model, kinematics, start, place of a row."""
     how = group.best.condition
     start = "steady" if how.start == "steady" else start_words(how.soft_start_periods)
-    return [how.kinematics, start, f"{how.position:g}"]
+    return ["chain" if how.model == "chain" else "linear", how.kinematics, start, f"{how.position:g}"]
 
 
 def best_cells(group: "Group") -> list[str]:

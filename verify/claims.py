@@ -17,6 +17,7 @@ Sign = Literal["negative", "positive"]
 Read = Literal["stated", "figure", "follows"]
 READ = {"stated": "stated in the text", "figure": "read off a figure", "follows": "follows from what is stated"}
 MOST_READINGS = 10_000
+MOST_LINKS = 250
 MOST_WORK = 1e10
 """Rows advanced times steps of all readings: about a minute."""
 
@@ -112,6 +113,8 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Segments or elements; the motion's unless given."""
     duration: float | None = None
     """Seconds; the motion's unless given."""
+    chain: bool = False
+    """Whether those whose forces act at once are run on the nonlinear chain of as many rigid links as well."""
     shown: Annotated[int, Meta(ge=0, le=50)] = 8
     """On how many rows of the table the best reading is run on the exact beam as well."""
 
@@ -169,8 +172,30 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
                     f"readings.soft_start_periods[{i}] = {periods!r} take longer than the {seconds!r} s of a run: "
                     "shorten them or lengthen readings.duration"
                 )
+        if self.chain:
+            self._check_chain(scene)
         self._check_masses(slider.preload, slider.gravity, self.mu or (slider.mu,))
         self._check_work(scene)
+
+    def _check_chain(self, scene: "Scene") -> None:
+        """Raise InputError for what the nonlinear chain does not know."""
+        beam, motion, slider = scene.beam, scene.motion, scene.slider
+        assert motion is not None
+        assert slider is not None
+        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or beam.stepped:
+            raise InputError(
+                f"readings.chain with beam.supports = {list(beam.supports)!r}: give a uniform beam, pinned or clamped "
+                "on the left and pinned, or free behind a clamp, on the right, or leave it out"
+            )
+        if motion.start != "rest" or beam.loss_factor or motion.modal_damping or slider.coupling == "two-way":
+            raise InputError(
+                "readings.chain: the chain starts from rest, is undamped and carries a slider one way; leave it out, "
+                "or motion.start, damping and slider.coupling"
+            )
+        if (self.count or motion.count) > MOST_LINKS:
+            raise InputError(
+                f"readings.chain: {self.count or motion.count} links are more than {MOST_LINKS}, give a smaller count"
+            )
 
     def _check_masses(self, preload: float, gravity: float, mus: tuple[float, ...]) -> None:
         if self.saturation is None:
@@ -187,16 +212,22 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
             raise InputError(
                 f"readings: the lists make {self.n_readings} readings, shorten them to at most {MOST_READINGS}"
             )
-        runs, steps, rows = self.n_runs(scene.claim), self.n_steps(scene), self.n_rows(scene)
+        runs, steps, rows = self.n_runs(scene), self.n_steps(scene), self.n_rows(scene)
         if runs * steps * rows > MOST_WORK:
             raise InputError(
                 f"readings: {runs} runs of about {steps:.3g} steps of {rows} modes, multiplied, are more than the "
                 f"{MOST_WORK:g} that are run at most: shorten the lists, the duration or count"
             )
 
-    def n_runs(self, claims: "tuple[Claim, ...]") -> int:
-        """How many runs of the model: each again with its phases turned round where a claim asks for it."""
-        return self.n_readings * (2 if asks_for_turned(claims) else 1)
+    def n_chain(self, scene: "Scene") -> int:
+        """How many readings the nonlinear chain takes: those without a soft start."""
+        assert scene.motion is not None
+        starts = self.soft_start_periods or (scene.motion.soft_start_periods,)
+        return self.n_readings // len(starts) * starts.count(0.0) if self.chain else 0
+
+    def n_runs(self, scene: "Scene") -> int:
+        """How many runs of model and chain: each again with its phases turned round where a claim asks for it."""
+        return (self.n_readings + self.n_chain(scene)) * (2 if asks_for_turned(scene.claim) else 1)
 
     def n_steps(self, scene: "Scene") -> float:
         """About how many steps a run takes."""

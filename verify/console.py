@@ -140,10 +140,10 @@ def _print_readings(console: Console, study: "ReadingsStudy") -> None:
     )
 
     console.print(Text(f"readings: {searched_words(study)}"))
-    head = ("kinematics", "start", "place")
+    head = ("model", "kinematics", "start", "place")
     letters = [letter(i) for i in range(len(study.claims))]
-    met = _plain_table((*head, "from", "to", *letters), left=2)
-    best = _plain_table((*head, "N", "mu", "K", "cm/s", "meets", "exact", "meets"), left=2)
+    met = _plain_table((*head, "from", "to", *letters), left=3)
+    best = _plain_table((*head, "N", "mu", "K", "cm/s", "meets", "exact", "meets"), left=3)
     for group in study.groups:
         counts = [f"{group.n_meeting(i)}" for i in range(len(letters))]
         met.add_row(*group_cells(group), *(cm_per_s(v) for v in group.speeds or (None, None)), *counts)

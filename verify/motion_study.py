@@ -13,6 +13,7 @@ from verify.slider_figures import RUN_FIGURES, Condition, condition_of
 from verify.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
 
 if TYPE_CHECKING:
+    from verify.chain_slider import ChainRide
     from verify.scene import Scene
 
 MOST_SAMPLES = 100_000
@@ -51,7 +52,9 @@ def motion_study(scene: "Scene", progress: Callable[[str], None] = lambda step: 
         progress(f"slider on {model}")
         runs[model] = run_once(scene, model, count, ledger=True, samples=max(asked.samples, every_step(scene)))
         conditions[model] = condition_of(scene, model, count)
-        figures[model] = figures_of(runs[model], run_once(back, model, count) if back else None)
+        turned = run_once(back, model, count) if back else None
+        ended = all(one is None or one.statistics.stopped == "end" for one in (runs[model], turned))
+        figures[model] = figures_of(runs[model], turned) if ended else {}
     progress("slider on the steady wave")
     drifts = [_drift(one) for one in (scene, reversed_scene(scene))]
     work = work_of(scene, asked.counts, progress)
@@ -61,10 +64,8 @@ def motion_study(scene: "Scene", progress: Callable[[str], None] = lambda step: 
     )  # fmt: skip
 
 
-def figures_of(run: Motion, back: Motion | None) -> dict[str, float]:
-    """All figures of a run, those of the one turned round only where there is one; none of a run that broke off."""
-    if any(one is not None and one.statistics.stopped != "end" for one in (run, back)):
-        return {}
+def figures_of(run: "Motion | ChainRide", back: "Motion | ChainRide | None") -> dict[str, float]:
+    """All figures of a run, those of the one turned round only where there is one."""
     return {name: one.of(run, back) for name, one in RUN_FIGURES.items() if back is not None or not one.turned}
 
 
@@ -108,7 +109,7 @@ def _findings(
                 f"nm on the exact beam{off}"),
         Finding(what="largest friction in that run",
                 found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of mu N = {1e3 * limit:.4g} mN"),
-        Finding(what=f"mean speed over {DRIFT_S:g} s of steady wave ({how.kinematics} kinematics, exact beam); reversed",
+        Finding(what=f"mean speed over {DRIFT_S:g} s of steady wave ({how.kinematics}, exact beam); phases reversed",
                 found=f"{1e6 * drifts[0]:+.4g} µm/s; {1e6 * drifts[1]:+.4g} µm/s"),
         _bound(slider.kinematics, limit / slider.mass, how.duration, chain),
     )  # fmt: skip

@@ -173,7 +173,8 @@ def _readings_study(scene: "Scene") -> str:
     asked = scene.readings
     assert asked is not None
     assert scene.motion is not None
-    return (f"readings ({asked.n_readings} readings of the slider, {asked.n_runs(scene.claim)} runs of {asked.model} "
+    chain = f" and {asked.n_chain(scene)} on the nonlinear chain" if asked.chain else ""
+    return (f"readings ({asked.n_readings} readings of the slider{chain}, {asked.n_runs(scene)} runs of {asked.model} "
             f"at N = {asked.count or scene.motion.count} of about {asked.n_steps(scene):.3g} steps, "
             f"{min(asked.shown, asked.n_groups)} on the exact beam beside)")  # fmt: skip
 

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec.structs import replace
 
+from verify.chain_readings import Chains
 from verify.claims import Claim, ReadingsAsk, asks_for_turned
+from verify.errors import InputError
 from verify.motion_study import every_step, figures_of, reversed_scene
 from verify.slider_figures import Condition, condition_of
 from verify.work_precision import run_once
@@ -33,10 +35,10 @@ class Reading(msgspec.Struct, frozen=True, kw_only=True):
     """By quantity; empty where the run did not reach its end."""
     met: tuple[bool, ...]
     """Whether each claim about the run holds, in their order."""
-    lift_off: float
-    """Acceleration of the surface over what presses the slider on; above 1 a real slider lifts off."""
-    nonlinearity: float
-    """(kL)^2 <theta^2>, which the linear model leaves out."""
+    lift_off: float | None
+    """Acceleration of the surface over what presses the slider on; above 1 a real slider lifts off. None on a chain."""
+    nonlinearity: float | None
+    """(kL)^2 <theta^2>, which the linear model leaves out; None on the nonlinear chain."""
     stopped: str = "end"
 
     @property
@@ -51,7 +53,7 @@ class Reading(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Group(msgspec.Struct, frozen=True, kw_only=True):
-    """All readings of one kinematics, one start and one place."""
+    """All readings of one model, one kinematics, one start and one place."""
 
     readings: tuple[Reading, ...]
     best: Reading
@@ -144,9 +146,48 @@ def readings_study(scene: "Scene", progress: Callable[[str], None] = lambda step
     groups = tuple(Group(readings=tuple(one for _, one in rows), best=best[key][1], exact=exact.get(key))
                    for key, rows in drawn.items())  # fmt: skip
     every = [one for group in groups for one in group.readings]
-    runs = (2 if asks_for_turned(claims) else 1) * (len(every) + len(exact))
-    return ReadingsStudy(claims=claims, groups=groups, turns=tuple(_turns(claims, every, searched)),
-                         bounds=tuple(_bounds(scene, claims, every)), searched=searched, n_runs=runs)  # fmt: skip
+    chained = _on_the_chain([row for rows in drawn.values() for row in rows], claims, progress) if asked.chain else ()
+    riding = [one for group in chained for one in group.readings]
+    runs = (2 if asks_for_turned(claims) else 1) * (len(every) + len(exact) + len(riding))
+    return ReadingsStudy(claims=claims, groups=(*groups, *chained), turns=tuple(_turns(claims, every, searched)),
+                         bounds=tuple(_bounds(scene, claims, every + riding)), searched=searched, n_runs=runs)  # fmt: skip
+
+
+def _on_the_chain(
+    rows: "Sequence[tuple[Scene, Reading]]", claims: Sequence[Claim], progress: Callable[[str], None]
+) -> tuple[Group, ...]:
+    """Those readings whose forces act at once, on the nonlinear chain of as many links."""
+    chains, drawn = Chains({}), dict[tuple[str, float], list[Reading]]()
+    at_once = [row for row in rows if not row[1].condition.soft_start_periods]
+    for number, (scene, linear) in enumerate(at_once):
+        progress(f"reading {number + 1} of {len(at_once)} on the nonlinear chain")
+        how = linear.condition
+        drawn.setdefault((how.kinematics, how.position), []).append(chain_reading(scene, claims, chains))
+    return tuple(Group(readings=tuple(found), best=max(found, key=lambda one: one.n_met), exact=None)
+                 for found in drawn.values())  # fmt: skip
+
+
+def chain_reading(scene: "Scene", claims: Sequence[Claim], chains: Chains) -> Reading:
+    """One combination on the nonlinear chain; one on which it breaks off says so."""
+    slider, motion = scene.slider, scene.motion
+    assert slider is not None
+    assert motion is not None
+    stopped, figures = "end", {}
+    try:
+        run = chains.ride(scene, motion.count)
+        back = chains.ride(reversed_scene(scene), motion.count) if asks_for_turned(tuple(claims)) else None
+        stopped = next((one.stopped for one in (run, back) if one is not None and one.stopped != "end"), "end")
+        figures = figures_of(run, back) if stopped == "end" else {}
+    except InputError as error:
+        stopped = str(error)
+    return Reading(
+        condition=condition_of(scene, "chain", motion.count), mass=slider.mass, figures=figures,
+        met=_verdicts(claims, figures), lift_off=None, nonlinearity=None, stopped=stopped,
+    )  # fmt: skip
+
+
+def _verdicts(claims: Sequence[Claim], figures: dict[str, float]) -> tuple[bool, ...]:
+    return tuple(bool(figures) and claim.holds(figures[claim.quantity]) for claim in claims)
 
 
 def read_as(scene: "Scene", asked: ReadingsAsk, values: "dict[str, float | str | None]") -> "Scene":
@@ -174,11 +215,10 @@ def reading(scene: "Scene", claims: Sequence[Claim], model: str, count: int | No
     run = run_once(scene, model, count, samples=every_step(scene))
     back = run_once(reversed_scene(scene), model, count) if asks_for_turned(tuple(claims)) else None
     ends = {one.statistics.stopped for one in (run, back) if one is not None} - {"end"}
-    figures = figures_of(run, back)
+    figures = {} if ends else figures_of(run, back)
     return Reading(
         condition=condition_of(scene, model, count), mass=scene.slider.mass, figures=figures,
-        met=tuple(bool(figures) and claim.holds(figures[claim.quantity]) for claim in claims),
-        lift_off=run.margins.lift_off, nonlinearity=run.margins.nonlinearity,
+        met=_verdicts(claims, figures), lift_off=run.margins.lift_off, nonlinearity=run.margins.nonlinearity,
         stopped=" and ".join(sorted(ends)) or "end",
     )  # fmt: skip
 

@@ -125,6 +125,6 @@ def n_steps(scene: Scene) -> int:
     waves = 2 * len(scene.wave.counts) + 1 if scene.wave else 0
     motion = 11 if scene.motion and scene.slider else 0
     asked = scene.readings
-    slid = asked.n_readings + min(asked.shown, asked.n_groups) if asked else 0
+    slid = asked.n_readings + asked.n_chain(scene) + min(asked.shown, asked.n_groups) if asked else 0
     axial = len(scene.axial_inertia.forces) + 1 if scene.axial_inertia else 0
     return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion + slid + axial + len(scene.claim)

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 import msgspec
 
 if TYPE_CHECKING:
+    from verify.chain_slider import ChainRide
     from verify.motion import Motion
     from verify.scene import Scene
     from verify.time_basis import Array
 
 MODELS = {"segment": "segments", "fem": "elements"}
+COUNTED = MODELS | {"chain": "rigid links, nonlinear"}
 
 
 class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
@@ -18,7 +20,7 @@ class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
 
     unit: str
     summary: str
-    of: "Callable[[Motion, Motion | None], float]"
+    of: "Callable[[Motion | ChainRide, Motion | ChainRide | None], float]"
     """Of the run, and of the one with all phases turned round where `turned` asks for it."""
     sampled: bool = True
     """Whether it takes the run at every step, not at its end alone."""
@@ -31,7 +33,7 @@ def mean(times: "Array", values: "Array") -> float:
     return float((0.5 * (values[1:] + values[:-1]) * steps).sum() / steps.sum())
 
 
-def _reversal(run: "Motion", turned: "Motion | None") -> float:
+def _reversal(run: "Motion | ChainRide", turned: "Motion | ChainRide | None") -> float:
     assert turned is not None
     way = run.displacement
     return turned.displacement / way if way else float("nan")
@@ -85,7 +87,7 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def model_words(self) -> str:
         """'49 segments', 'exact beam'."""
-        return f"{self.count} {MODELS[self.model]}" if self.count else "exact beam"
+        return f"{self.count} {COUNTED[self.model]}" if self.count else "exact beam"
 
     @property
     def start_words(self) -> str:

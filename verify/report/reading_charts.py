@@ -20,7 +20,7 @@ def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
     for one in study.readings:
         how = one.condition
         start = "steady" if how.start == "steady" else start_words(how.soft_start_periods)
-        ways.setdefault((how.kinematics, start), []).append(one)
+        ways.setdefault((how.kinematics, "nonlinear chain" if how.model == "chain" else start), []).append(one)
     data = [
         _way(name, readings, _COLOURS[i % len(_COLOURS)], BESIDE ** (i - 0.5 * (len(ways) - 1)))
         for i, (name, readings) in enumerate(ways.items())
