@@ -149,8 +149,10 @@ def readings_study(scene: "Scene", progress: Callable[[str], None] = lambda step
     chained = _on_the_chain([row for rows in drawn.values() for row in rows], claims, progress) if asked.chain else ()
     riding = [one for group in chained for one in group.readings]
     runs = (2 if asks_for_turned(claims) else 1) * (len(every) + len(exact) + len(riding))
-    return ReadingsStudy(claims=claims, groups=(*groups, *chained), turns=tuple(_turns(claims, every, searched)),
-                         bounds=tuple(_bounds(scene, claims, every + riding)), searched=searched, n_runs=runs)  # fmt: skip
+    return ReadingsStudy(
+        claims=claims, groups=(*groups, *chained), turns=tuple(_turns(claims, every, searched)),
+        bounds=tuple(_bounds(scene, claims, every + riding)), searched=searched, n_runs=runs,
+    )  # fmt: skip
 
 
 def _on_the_chain(
