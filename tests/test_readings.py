@@ -72,7 +72,7 @@ def test_the_readings_of_the_claimed_speed_on_49_segments():
 
 
 def test_without_the_turning_surface_friction_reaches_a_fiftieth_of_the_claimed_speed():
-    """mu = 3.2, eleven forces to 150 N, both starts, mid-span: far from the bound 0.49 mu cm/s too."""
+    """At mu = 3.2, eleven forces to 150 N, both starts, mid-span: far from the bound 0.49 mu cm/s too."""
     forces = (1, 10, 20, 30, 40, 50, 60, 80, 100, 120, 150)
     speeds = [abs(read(mu=3.2, force=float(f), soft=soft).speed) for f in forces for soft in (0.0, 2.0)]
     assert 0.02e-2 < max(speeds) < 0.035e-2
@@ -117,7 +117,7 @@ def test_a_chain_under_small_forces_reads_as_the_linear_one():
 
 
 def test_means_are_the_balances_of_the_run():
-    """m dv the mean friction in the tangential kinematics; the slope at the end the mean of the surface's speed."""
+    """Mean friction is m dv / t in the tangential kinematics, the slope at the end the mean of the surface's speed."""
     from verify.motion_study import every_step
     from verify.slider_figures import RUN_FIGURES
     from verify.work_precision import run_once

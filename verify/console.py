@@ -155,7 +155,7 @@ def _print_readings(console: Console, study: "ReadingsStudy") -> None:
     console.print("the first of those that meet most claims, and the same on the exact beam")
     console.print(best)
     if study.turns:
-        console.print("what a verdict turns with: share of neighbouring readings, one thing apart, that differ in it")
+        console.print("what a verdict turns with: share of neighbouring linear readings, one thing apart, that differ")
     for name, turns in turn_words(study):
         console.print(Text(f"{name}: {turns}"))
     for bound in study.bounds:
