@@ -40,6 +40,7 @@ from verify import (
     segment_motion,
     simulate,
     sizing,
+    slider_figures,
     travelling_wave,
     waves,
     workbench,
@@ -818,8 +819,26 @@ def friction_of_half_the_slope(patch):
     patch.setattr(rigid_surface, "_law", lambda coulomb, b, static, slope: true(coulomb, b, static, 0.5 * slope))
 
 
+def means_of_the_size_alone(patch):
+    true = slider_figures.mean
+    patch.setattr(slider_figures, "mean", lambda times, values: true(times, abs(values)))
+
+
+def phases_left_as_they_are_where_they_were_to_turn(patch):
+    patch.setattr(motions, "turned", tuple)
+
+
+def ends_for_the_largest(patch):
+    """The run is looked at where it ends, not at every step."""
+    true = motions.with_slider
+    patch.setattr(motions, "with_slider", lambda *given, sampled, **more: true(*given, sampled=False, **more))
+
+
 FAULTS_ELSEWHERE = {
     "paper-slider": {
+        means_of_the_size_alone: {"slider-mean-friction", "slider-mean-surface-speed"},
+        phases_left_as_they_are_where_they_were_to_turn: {"slider-turned-round"},
+        ends_for_the_largest: {"slider-largest-friction", "slider-mean-friction", "slider-mean-surface-speed"},
         surface_lever_forgotten: {
             "terminal-speed-steep", "slider-elements", "slider-segments", "slider-against-the-wave", "slider-reversed",
             "slider-steady", "slider-felt",

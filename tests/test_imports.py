@@ -15,14 +15,14 @@ MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
     {"errors", "timing", "search"}, {"chain_work", "patience", "beam", "checked", "files", "contact_kernels", "chain_kernels", "elastic_kernels"},
-    {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis"},
-    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "section_minors", "drives", "forcing", "contact"},
+    {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis", "slider_figures"},
+    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "section_minors", "drives", "forcing", "contact", "claims"},
     {"point_loads", "motion", "validity"},
     {"chain_system", *MODELS}, {"segment_motion", "fem_motion", "analytic_motion", "chain_statics", "chain_elastic", "chain_modes", "chain_linear"}, {"moving_surface", "chain_dynamics"},
     {"slider_run", "energy", "chain_motion", "moving_mass", "excited", "request"}, {"margins"}, {"chain_modal", "chain_slider"}, {"chain_studies"}, {"compare", "intervals"}, {"travelling_wave"}, {"workbench"},
     {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"}, {"rigid_surface", "pure_wave", "carried"}, {"simulate"}, {"motion_arguments", "axial_study"}, {"motions"},
-    {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"}, {"work_precision"}, {"motion_study"},
-    {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point"}, {"studies", "wave_study"},
+    {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"}, {"work_precision"}, {"motion_study"}, {"chain_readings"}, {"readings"},
+    {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point", "claim_results", "claim_words"}, {"studies", "wave_study"},
     {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 

@@ -14,15 +14,17 @@ from rich.text import Text
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy
+    from verify.claim_results import ClaimResult
     from verify.design_map import DesignMap
     from verify.gates import GateResult
     from verify.motion_study import MotionStudy
     from verify.plan import Plan
+    from verify.readings import ReadingsStudy
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Cell, Row
     from verify.wave_study import MotorRow, Operation
-    from verify.work_precision import Comparison, WorkRow
+    from verify.work_precision import Work
 
 
 class Terminal(Console):
@@ -85,6 +87,10 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     )  # fmt: skip
     if result.motion:
         _print_slider(console, result.motion)
+    if result.claims:
+        _print_claims(console, result.claims)
+    if result.readings:
+        _print_readings(console, result.readings)
     if result.axial_inertia:
         _print_axial(console, result.axial_inertia)
     console.print(f"{verdict} in {seconds_in_words(result.seconds)}: {work_in_words(result)}")
@@ -100,13 +106,74 @@ def work_in_words(result: "RunResult") -> str:
 
 def _print_slider(console: Console, study: "MotionStudy") -> None:
     """What the slider was found to do, how far that can be believed, and what it costs."""
-    for fact in study.facts:
-        console.print(Text(f"{'holds ' if fact.holds else 'not so'}  {fact.what}: {fact.found}"), soft_wrap=False)
+    from verify.claim_words import answer_in_words
+
+    for finding in study.findings:
+        console.print(Text(f"{finding.what}: {finding.found}"))
     margins = study.runs["segment"].margins
     console.print(Text(f"margins of the run: acceleration over what presses the slider on {margins.lift_off:.3g}, "
                        f"(kL)^2 <theta^2> {margins.nonlinearity:.1e}"))  # fmt: skip
-    if study.answer:
-        console.print(answer_in_words(study.answer))
+    console.print(Text(answer_in_words(study.answer)))
+
+
+def _print_claims(console: Console, claims: "tuple[ClaimResult, ...]") -> None:
+    """Who says what, what is found, and how."""
+    from verify.claim_words import VERDICT, claimed_words, found_words
+
+    for condition, group in groupby(claims, key=lambda claim: claim.condition):
+        console.print(Text.assemble(("published claims", "bold"), f", found with {condition}"))
+        for claim in group:
+            found = Text(f"{claim.id}: {claimed_words(claim)}; found {found_words(claim)}")
+            source = Text(f"{claim.source} ({claim.read})", style="dim")
+            table = Table.grid(padding=(0, 1))
+            table.add_column(width=8)
+            table.add_row(VERDICT[claim.holds], found)
+            table.add_row("", source)
+            console.print(table)
+
+
+def _print_readings(console: Console, study: "ReadingsStudy") -> None:
+    """Which claims each group of readings meets, the best of each on the exact beam too, what verdicts turn with."""
+    from verify.claim_words import (
+        best_cells,
+        bound_words,
+        cm_per_s,
+        group_cells,
+        legend,
+        letter,
+        searched_words,
+        turn_words,
+    )
+
+    console.print(Text(f"readings: {searched_words(study)}"))
+    head = ("model", "kinematics", "start", "place")
+    letters = [letter(i) for i in range(len(study.claims))]
+    met = _plain_table((*head, "from", "to", *letters), left=3)
+    best = _plain_table((*head, "N", "mu", "K", "cm/s", "meets", "exact", "meets"), left=3)
+    for group in study.groups:
+        counts = [f"{group.n_meeting(i)}" for i in range(len(letters))]
+        met.add_row(*group_cells(group), *(cm_per_s(v) for v in group.speeds or (None, None)), *counts)
+        best.add_row(*group_cells(group), *best_cells(group))
+    each = len(study.groups[0].readings)
+    console.print(f"mean speeds from and to, cm/s, and how many of {each} readings each claim holds in:")
+    console.print(Text(legend(study)))
+    console.print(met)
+    console.print("the first of those that meet most claims, and the same on the exact beam")
+    console.print(best)
+    if study.turns:
+        console.print("what a verdict turns with: share of neighbouring linear readings, one thing apart, that differ")
+    for name, turns in turn_words(study):
+        console.print(Text(f"{name}: {turns}"))
+    for bound in study.bounds:
+        console.print(Text(bound_words(bound)))
+
+
+def _plain_table(names: tuple[str, ...], left: int) -> Table:
+    """An empty table whose first columns are words."""
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
+    for i, name in enumerate(names):
+        table.add_column(name, justify="left" if i < left else "right", overflow="fold")
+    return table
 
 
 def _print_axial(console: Console, study: "AxialStudy") -> None:
@@ -117,12 +184,6 @@ def _print_axial(console: Console, study: "AxialStudy") -> None:
         console.print(Text(f"{row.force:g} N: {verdict}, (kL)^2 <theta^2> {row.size:.1e}; rigid links lie "
                            f"{row.full.at_end:.1e} off after {1e3 * study.duration:g} ms at x = {study.x:g} m, "
                            f"{low:.1e} to {high:.1e} at the tenths of the beam"))  # fmt: skip
-
-
-def answer_in_words(answer: "Comparison") -> str:
-    """Both models at one error."""
-    return (f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take {answer.ratio:.2f} "
-            "times as long as segments")  # fmt: skip
 
 
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
@@ -209,22 +270,24 @@ def _operation(one: "Operation") -> tuple[str, str, str]:
     return f"{ratio:.5f}" if ratio < 10 else number(ratio, 4), f"{one.axis_ratio:+.5f}", f"{1e3 * one.crest_speed:+.5g}"
 
 
-def print_work(rows: "tuple[WorkRow, ...]") -> None:
+def print_work(work: "Work") -> None:
     """A slider's run time against its error, and both models at one error."""
+    from verify.claim_words import answer_in_words
     from verify.work_precision import at_equal_error
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
-    for name in ("model", "N", "modes", "displacement, nm", "error %", "ms per ms", "set-up ms"):
+    for name in ("model", "N", "modes", "displacement, nm", "error %", "order", "ms per ms", "set-up ms"):
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
-    for row in rows:
+    for row in work.rows:
+        order = "–" if row.order is None else f"{row.order:.2f}"
         table.add_row(row.model, str(row.count), str(row.rows), f"{1e9 * row.displacement:+.6f}",
-                      _bare_percent(row.error), f"{row.run_ms_per_ms:.3g}", f"{row.set_up_ms:.3g}")  # fmt: skip
+                      _bare_percent(row.error), order, f"{row.run_ms_per_ms:.3g}", f"{row.set_up_ms:.3g}")  # fmt: skip
     console = Terminal()
     console.print(table)
-    console.print("[dim]errors against the exact beam at the same step; run time of the loop for a simulated "
-                  "millisecond, medians of interleaved rounds[/]")  # fmt: skip
-    if (answer := at_equal_error(rows)) is not None:
-        console.print(answer_in_words(answer))
+    console.print(f"[dim]errors against the exact beam at the same step, half of which changes it by "
+                  f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond and set-up, "
+                  "medians of interleaved rounds[/]")  # fmt: skip
+    console.print(Text(answer_in_words(at_equal_error(work))))
 
 
 def print_map(found: "DesignMap") -> None:

@@ -169,11 +169,11 @@ MODE_QUANTITIES = (
             ToError, _count_guess, _count_needed,
         ),
         Quantity(
-            "drive.rule_frequency", "Hz", "The paper's drive rule: root mean square of two exact neighbours.",
+            "drive.rule_frequency", "Hz", "Root mean square of two exact neighbours: where both answer alike.",
             NeighbourModes, lambda a, s: (), _rule_frequency,
         ),
         Quantity(
-            "drive.quarter_wavelength", "m", "A quarter of the bending wavelength: the paper's actuator distance d.",
+            "drive.quarter_wavelength", "m", "A quarter of the bending wavelength: a force's distance from its end.",
             AtFrequency, lambda a, s: (), _quarter_wavelength,
         ),
 )  # fmt: skip

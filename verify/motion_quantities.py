@@ -16,6 +16,7 @@ from verify.motion_arguments import (
     SliderOrder,
 )
 from verify.quantity_types import Quantity
+from verify.slider_figures import RUN_FIGURES, RunFigure
 from verify.workbench import Workbench
 
 if TYPE_CHECKING:
@@ -60,13 +61,16 @@ def _terminal_speed(a: OnWave, scene: "Scene", bench: Workbench) -> float:
     return terminal_speed(scene.beam, slider, a.amplitude, drive_frequency(a, scene))
 
 
-def _slider(name: str) -> Any:
-    """One attribute of the slider's run."""
+def _slider(figure: RunFigure) -> Any:
+    """One figure of the slider's run."""
 
     def evaluate(a: SliderInTime, scene: "Scene", bench: Workbench) -> float:
         from verify.motions import with_slider
 
-        return float(getattr(with_slider(a, scene, bench), name))
+        run = with_slider(a, scene, bench, sampled=figure.sampled)
+        return figure.of(
+            run, with_slider(a, scene, bench, sampled=figure.sampled, back=True) if figure.turned else None
+        )
 
     return evaluate
 
@@ -118,9 +122,8 @@ MOTION_QUANTITIES = (
              Oscillator, _nothing, _decrement),
     Quantity("slider.terminal_speed", "m/s", "Settled mean speed along +x on a pure wave towards +x.",
              OnWave, _nothing, _terminal_speed),
-    Quantity("slider.displacement", "m", "Of the scene's slider along +x after a time.",
-             SliderInTime, _nothing, _slider("displacement")),
-    Quantity("slider.mean_speed", "m/s", "Displacement over time.", SliderInTime, _nothing, _slider("mean_speed")),
+    *(Quantity(name, figure.unit, figure.summary, SliderInTime, _nothing, _slider(figure))
+      for name, figure in RUN_FIGURES.items()),
     Quantity("slider.order", "1", "Observed order of the slider's displacement in the size or in the step.",
              SliderOrder, _nothing, _order),
     Quantity("slider.deflection", "m", "Of the beam at a place and time while the slider is on it.",

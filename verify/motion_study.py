@@ -1,4 +1,4 @@
-"""The slider for a report: the paper's Figures 3 and 4 on three models, what Eq. (3) bounds, which readings fit."""
+"""The slider for a report: its run on three models, what bounds it, and run time against error."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
@@ -7,30 +7,27 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.claims import asks_for_turned
 from verify.motion import Motion
-from verify.work_precision import Comparison, WorkRow, at_equal_error, run_once, work_rows
+from verify.slider_figures import RUN_FIGURES, Condition, condition_of
+from verify.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
 
 if TYPE_CHECKING:
+    from verify.chain_slider import ChainRide
     from verify.scene import Scene
 
-PAPER_SPEED = 0.015
-"""m/s: the mean speed that the paper reads off its Figure 3."""
+MOST_SAMPLES = 100_000
 DRIFT_S = 0.2
 """Seconds of steady wave: long enough for what the start adds once to fade in the mean."""
 DRIFT_PERIODS = 1000
 """At most as many: 0.2 s of a drive at megahertz would be another question, and hours."""
-PAPER_FORCE = 2e-3
-"""N: the saturation of its Figure 4."""
 
 
-class Fact(msgspec.Struct, frozen=True, kw_only=True):
-    """One statement about the slider, with what was found."""
+class Finding(msgspec.Struct, frozen=True, kw_only=True):
+    """One figure of the slider, with how it was found. Nothing is judged."""
 
     what: str
-    paper: str
     found: str
-    holds: bool | None
-    """None where nothing is claimed."""
 
 
 class MotionStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -38,28 +35,48 @@ class MotionStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     runs: dict[str, Motion]
     """By model: segment, fem, analytic."""
-    facts: tuple[Fact, ...]
-    readings: tuple[Fact, ...]
-    work: tuple[WorkRow, ...]
-    answer: Comparison | None
+    conditions: dict[str, Condition]
+    figures: dict[str, dict[str, float]]
+    """By model and quantity; empty where a run did not reach its end."""
+    findings: tuple[Finding, ...]
+    work: Work
+    answer: Comparison | NotCompared
     count: int
 
 
 def motion_study(scene: "Scene", progress: Callable[[str], None] = lambda step: None) -> MotionStudy:
-    """Run the scene's slider on three models, examine it, and weigh work against error. Raises InputError."""
+    """Run the scene's slider on three models, and weigh work against error. Raises InputError."""
     asked = scene.motion
     assert asked is not None
-    runs = {}
+    runs, conditions, figures = {}, {}, {}
+    back = reversed_scene(scene) if asks_for_turned(scene.claim) else None
     for model, count in (("segment", asked.count), ("fem", asked.count), ("analytic", None)):
         progress(f"slider on {model}")
-        runs[model] = run_once(scene, model, count, ledger=True, samples=asked.samples)
-    progress("slider, phase reversed")
+        runs[model] = run_once(scene, model, count, ledger=True, samples=max(asked.samples, every_step(scene)))
+        conditions[model] = condition_of(scene, model, count)
+        turned = run_once(back, model, count) if back else None
+        ended = all(one is None or one.statistics.stopped == "end" for one in (runs[model], turned))
+        figures[model] = figures_of(runs[model], turned) if ended else {}
+    progress("slider on the steady wave")
     drifts = [_drift(one) for one in (scene, reversed_scene(scene))]
-    facts = _facts(scene, runs, drifts)
-    progress("slider, readings of the figures")
-    work = work_rows(scene, asked.counts, progress)
-    return MotionStudy(runs=runs, facts=facts, readings=_readings(scene), work=work, answer=at_equal_error(work),
-                       count=asked.count)  # fmt: skip
+    work = work_of(scene, asked.counts, progress)
+    return MotionStudy(
+        runs=runs, conditions=conditions, figures=figures, findings=_findings(scene, runs, conditions, drifts),
+        work=work, answer=at_equal_error(work), count=asked.count,
+    )  # fmt: skip
+
+
+def figures_of(run: "Motion | ChainRide", back: "Motion | ChainRide | None") -> dict[str, float]:
+    """All figures of a run, those of the one turned round only where there is one."""
+    return {name: one.of(run, back) for name, one in RUN_FIGURES.items() if back is not None or not one.turned}
+
+
+def every_step(scene: "Scene") -> int:
+    """Samples that keep every step of a run and shorten none; fewer of a long one."""
+    assert scene.motion is not None
+    assert scene.drive is not None
+    steps = scene.motion.duration * scene.drive.frequency_hz * scene.motion.steps_per_period
+    return int(min(steps, MOST_SAMPLES)) + 2
 
 
 def reversed_scene(scene: "Scene") -> "Scene":
@@ -67,7 +84,7 @@ def reversed_scene(scene: "Scene") -> "Scene":
     drive = scene.drive
     assert drive is not None
     forces = tuple(replace(f, phase_deg=-f.phase_deg) for f in drive.force)
-    return replace(scene, drive=replace(drive, force=forces))
+    return replace(scene, drive=replace(drive, force=forces), readings=None)
 
 
 def drift_seconds(scene: "Scene") -> float:
@@ -81,63 +98,42 @@ def _drift(scene: "Scene") -> float:
     asked = scene.motion
     assert asked is not None
     steady = replace(asked, start="steady", soft_start_periods=0.0, duration=drift_seconds(scene))
-    return run_once(replace(scene, motion=steady), "analytic", None).mean_speed
+    return run_once(replace(scene, motion=steady, readings=None), "analytic", None).mean_speed
 
 
-def _facts(scene: "Scene", runs: dict[str, Motion], drifts: list[float]) -> tuple[Fact, ...]:
-    slider, chain = scene.slider, runs["segment"]
+def _findings(
+    scene: "Scene", runs: dict[str, Motion], conditions: dict[str, Condition], drifts: list[float]
+) -> tuple[Finding, ...]:
+    slider, chain, exact, how = scene.slider, runs["segment"], runs["analytic"], conditions["segment"]
     assert slider is not None
     limit = slider.mu * slider.normal_force
-    largest = float(abs(chain.friction).max())
-    time = float(chain.times[-1] - chain.times[0])
-    bound = 0.5 * limit / slider.mass * time
+    off = f", {100 * (chain.displacement / exact.displacement - 1):+.2g} % off it" if exact.displacement else ""
+    return (
+        Finding(what=f"mean speed ({how.run_words}, {how.force_words})",
+                found=f"{100 * chain.mean_speed:+.3g} cm/s on {chain.count} segments, "
+                f"{100 * exact.mean_speed:+.3g} cm/s on the exact beam"),
+        Finding(what="displacement in that run",
+                found=f"{1e9 * chain.displacement:+.4g} nm on {chain.count} segments, {1e9 * exact.displacement:+.4g} "
+                f"nm on the exact beam{off}"),
+        Finding(what="largest friction in that run",
+                found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of mu N = {1e3 * limit:.4g} mN"),
+        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, exact beam); phases "
+                "reversed",
+                found=f"{1e6 * drifts[0]:+.4g} µm/s; {1e6 * drifts[1]:+.4g} µm/s"),
+        _bound(slider.kinematics, limit / slider.mass, how.duration, chain),
+    )  # fmt: skip
+
+
+def _bound(kinematics: str, pull: float, duration: float, chain: Motion) -> Finding:
+    """What the law alone says of the speed: `pull` is mu N / m, m/s^2."""
+    what = "what friction alone allows"
     fastest = float(abs(chain.speed - chain.speed[0]).max())
-    return (
-        Fact(what="friction saturates at mu N", paper=f"±{1e3 * PAPER_FORCE:g} mN",
-             found=f"largest {1e3 * largest:.4g} mN of {1e3 * limit:.4g} mN", holds=largest <= limit * (1 + 1e-12)),
-        Fact(what="reversing the phases reverses the travel", paper="stated",
-             found=f"{1e6 * drifts[0]:+.4g} µm/s and {1e6 * drifts[1]:+.4g} µm/s over {drift_seconds(scene):g} s of "
-             "steady wave",
-             holds=bool(drifts[0] * drifts[1] < 0)),
-        Fact(what=f"to the left in the first {1e3 * time:.3g} ms from rest", paper="to the left",
-             found=f"{1e9 * chain.displacement:+.4g} nm on {chain.count} segments, "
-             f"{1e9 * runs['analytic'].displacement:+.4g} nm on the exact beam, by the way it starts",
-             holds=bool(chain.displacement < 0)),
-        Fact(what=f"mean speed over {1e3 * time:.3g} ms", paper=f"{-100 * PAPER_SPEED:g} cm/s",
-             found=f"{100 * chain.mean_speed:+.3g} cm/s on {chain.count} segments; "
-             f"Eq. (3) allows at most {100 * bound:.3g} cm/s from rest",
-             holds=abs(chain.mean_speed) >= PAPER_SPEED),
-        Fact(what="|dv| <= mu N t / m at every time", paper="follows from Eq. (3)",
-             found=f"largest |dv| {100 * fastest:.3g} cm/s of {200 * bound:.3g} cm/s", holds=fastest <= 2.0 * bound),
-    )  # fmt: skip
-
-
-def _readings(scene: "Scene") -> tuple[Fact, ...]:
-    """What would have to be otherwise for the paper's mean speed, each run or reckoned."""
-    slider, asked = scene.slider, scene.motion
-    assert slider is not None
-    assert asked is not None
-    pressing = slider.normal_force / slider.mass
-    mean_mu = 2.0 * PAPER_SPEED / (pressing * asked.duration)
-    moving = _mean(replace(scene, slider=replace(slider, speed=-PAPER_SPEED)))
-    factor = mean_mu / slider.mu
-    pressed = _mean(replace(scene, slider=replace(slider, preload=(factor - 1.0) * slider.mass * slider.gravity)))
-    longer = 2.0 * PAPER_SPEED / (slider.mu * pressing)
-    return (
-        Fact(what="a friction coefficient of", paper="unknown",
-             found=f"at least {mean_mu:.3g} (as a final speed {0.5 * mean_mu:.3g})", holds=None),
-        Fact(what="a longer time axis", paper="1 ms",
-             found=f"at least {1e3 * longer:.3g} ms at mu = {slider.mu:g}, at the limit throughout", holds=None),
-        Fact(what=f"pressed on with {factor:.3g} times its weight", paper="weight alone",
-             found=f"mean speed {100 * pressed:.3g} cm/s", holds=None),
-        Fact(what=f"already moving at {-100 * PAPER_SPEED:g} cm/s", paper="not said",
-             found=f"mean speed {100 * moving:.3g} cm/s", holds=None),
-    )  # fmt: skip
-
-
-def _mean(scene: "Scene") -> float:
-    assert scene.motion is not None
-    return run_once(scene, "segment", scene.motion.count).mean_speed
+    if kinematics == "tangential":
+        found = (f"tangential: the mean speed changes by at most mu N t / 2m = {50 * pull * duration:.3g} cm/s; "
+                 f"largest change of speed {100 * fastest:.3g} cm/s of {100 * pull * duration:.3g} cm/s")  # fmt: skip
+    else:
+        found = "following: no bound, the turning surface itself pushes the slider"
+    return Finding(what=what, found=found)
 
 
 def thinned(values: "np.ndarray | Sequence[float]", most: int = 1000) -> list[float]:

@@ -1,5 +1,6 @@
 """Simulations that arguments and a scene describe, kept on the bench."""
 
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
@@ -14,6 +15,9 @@ from verify.slider import Slider
 from verify.waves import drive_forces, drive_frequency, solve_by_model
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from verify.beam import PointForce
     from verify.scene import Scene
     from verify.workbench import Workbench
 
@@ -22,6 +26,7 @@ MODES = 400
 _OWN = {"mu": "mu", "slope": "slope", "mass": "mass", "law": "law", "coupling": "coupling", "line": "line",
         "kinematics": "kinematics", "normal": "normal", "preload": "preload", "slider_position": "position",
         "slider_speed": "speed"}  # fmt: skip
+MOST_SAMPLES = 1_000_000
 
 
 def slider_of(a: Any, scene: "Scene") -> Slider:
@@ -52,12 +57,24 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
     }  # fmt: skip
 
 
+def turned(forces: "Sequence[PointForce]") -> "tuple[PointForce, ...]":
+    """All phases turned round, and with them the wave."""
+    return tuple(replace(force, phase_deg=-force.phase_deg) for force in forces)
+
+
 def with_slider(
-    a: Any, scene: "Scene", bench: "Workbench", samples: int = 2, ledger: bool = False, at: tuple[float, ...] = ()
-) -> Motion:
-    """The slider's run, solved once. Raises InputError where it does not reach its end."""
+    a: Any, scene: "Scene", bench: "Workbench", ledger: bool = False, *, sampled: bool = False, back: bool = False,
+    at: tuple[float, ...] = (),
+) -> Motion:  # fmt: skip
+    """The slider's run, solved once; `sampled` at every step, `back` with all phases turned round.
+
+    Raises InputError where it does not reach its end.
+    """
     asked, slider = described(a, scene), slider_of(a, scene)
+    asked["forces"] = turned(asked["forces"]) if back else asked["forces"]
     steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
+    longest = a.step or 1.0 / (steps * asked["frequency_hz"])
+    samples = ceil(min(asked["duration"] / longest, MOST_SAMPLES)) + 1 if sampled else 2
     key = ("slider", scene.beam, slider, a.step, steps, samples, ledger, at, *asked.values())
     if key not in bench.motions:
         bench.motions[key] = simulate(

@@ -13,10 +13,12 @@ if TYPE_CHECKING:
     from verify.axial_study import AxialStudy
     from verify.motion import Motion
     from verify.motion_study import MotionStudy
+    from verify.readings import Reading, ReadingsStudy
     from verify.run import RunResult
     from verify.sizing import Choice
     from verify.studies import Row
     from verify.wave_study import WaveStudy
+    from verify.work_precision import Work
     from verify.workbench import Workbench
 
 
@@ -31,6 +33,8 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
         "sensitivity": msgspec.to_builtins(result.sensitivity),
         "wave": wave_as_plain(result.wave) if result.wave else None,
         "motion": motion_as_plain(result.motion) if result.motion else None,
+        "readings": readings_as_plain(result.readings) if result.readings else None,
+        "claims": [msgspec.to_builtins(one) | {"departure": one.departure} for one in result.claims],
         "axial_inertia": axial_as_plain(result.axial_inertia) if result.axial_inertia else None,
         "solves": msgspec.to_builtins(result.solves),
         "seconds": result.seconds,
@@ -45,17 +49,41 @@ def wave_as_plain(study: "WaveStudy") -> dict[str, Any]:
 
 
 def motion_as_plain(study: "MotionStudy") -> dict[str, Any]:
-    """A slider study: displacements and margins by model, facts, readings, work against error."""
+    """A slider study: displacements and margins by model, findings, work against error."""
     runs = {
         model: {"displacement": run.displacement, "mean_speed": run.mean_speed, "largest_friction": largest(run),
+                "condition": msgspec.to_builtins(study.conditions[model]), "figures": study.figures[model],
                 "coupling": msgspec.to_builtins(run.coupling), "margins": msgspec.to_builtins(run.margins),
                 "ledger": msgspec.to_builtins(run.ledger), "statistics": msgspec.to_builtins(run.statistics),
                 "notes": list(run.notes)}
         for model, run in study.runs.items()
     }  # fmt: skip
-    answer = msgspec.to_builtins(study.answer) | {"ratio": study.answer.ratio} if study.answer else None
-    return {"runs": runs, "facts": msgspec.to_builtins(study.facts), "readings": msgspec.to_builtins(study.readings),
-            "work": msgspec.to_builtins(study.work), "answer": answer}  # fmt: skip
+    return {"runs": runs, "findings": msgspec.to_builtins(study.findings)} | work_as_plain(study.work)
+
+
+def work_as_plain(work: "Work") -> dict[str, Any]:
+    """Run time against error, and both models at one error or why they are not compared."""
+    from verify.work_precision import Comparison, at_equal_error
+
+    answer = at_equal_error(work)
+    plain: dict[str, Any] = msgspec.to_builtins(answer)
+    if isinstance(answer, Comparison):
+        plain |= {"ratio": answer.ratio, "whole_ratio": answer.whole_ratio}
+    return {"work": msgspec.to_builtins(work.rows), "step_floor": work.step_floor, "answer": plain}
+
+
+def readings_as_plain(study: "ReadingsStudy") -> dict[str, Any]:
+    """All readings with their conditions, figures and verdicts; the best of each group on the exact beam beside."""
+    claims = [claim.id for claim in study.claims]
+
+    def plain(reading: "Reading | None") -> dict[str, Any] | None:
+        found: dict[str, Any] | None = msgspec.to_builtins(reading)
+        return found and found | {"met": dict(zip(claims, found["met"], strict=True))}
+
+    groups = [{"readings": [plain(one) for one in group.readings], "best": plain(group.best),
+               "exact": plain(group.exact)} for group in study.groups]  # fmt: skip
+    return {"claims": claims, "searched": study.searched, "n_runs": study.n_runs, "groups": groups,
+            "turns": msgspec.to_builtins(study.turns), "bounds": msgspec.to_builtins(study.bounds)}  # fmt: skip
 
 
 def axial_as_plain(study: "AxialStudy") -> dict[str, Any]:

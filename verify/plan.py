@@ -17,7 +17,7 @@ CHAIN_IN_TIME = ("chain.energy_drift", "chain.large_amplitude_frequency", "chain
 """Quantities of the nonlinear chain that are stepped; its others are equilibria and modes."""
 STEPS_PER_RADIAN = 15
 """Of a chain's fastest mode, which the tolerance of the study of axial inertia takes."""
-STUDIES = ("spectrum", "convergence", "sensitivity", "wave", "motion", "axial_inertia")
+STUDIES = ("spectrum", "convergence", "sensitivity", "wave", "motion", "readings", "axial_inertia")
 """What a scene can ask for besides gates, by the name of its table."""
 
 
@@ -84,7 +84,19 @@ def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
             asks.append(Ask(f"gate {gate.id}", gate_needs(gate, scene)))
         except InputError as error:
             asks.append(Ask(f"gate {gate.id}", (), str(error)))
-    return asks if gates_only else asks + _study_asks(scene)
+    return asks if gates_only else asks + _claim_asks(scene) + _study_asks(scene)
+
+
+def _claim_asks(scene: "Scene") -> list[Ask]:
+    asks = []
+    for claim in scene.claim:
+        from verify.claim_results import claim_needs
+
+        try:
+            asks.append(Ask(f"claim {claim.id}", claim_needs(claim, scene)))
+        except InputError as error:
+            asks.append(Ask(f"claim {claim.id}", (), str(error)))
+    return asks
 
 
 def _study_asks(scene: "Scene") -> list[Ask]:
@@ -102,6 +114,8 @@ def _study_asks(scene: "Scene") -> list[Ask]:
         asks.append(Ask(_wave_study(scene.wave), ()))
     if scene.motion and scene.slider:
         asks.append(Ask(_motion_study(scene), ()))
+    if scene.readings:
+        asks.append(Ask(_readings_study(scene), ()))
     if scene.axial_inertia:
         asks.append(Ask(_axial_study(scene, scene.axial_inertia), ()))
     return asks
@@ -127,8 +141,8 @@ def plan_scene(scene: "Scene") -> Plan:
 
 
 def _driven(scene: "Scene") -> set[str]:
-    """Who asks for driven fields: gates on waves and the wave study."""
-    gates = {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith("wave.")}
+    """Who asks for driven fields: gates and claims on waves and the wave study."""
+    gates = {who for who, quantity in _asked(scene) if quantity.startswith("wave.")}
     return gates | ({_wave_study(scene.wave)} if scene.wave else set())
 
 
@@ -140,14 +154,31 @@ def _wave_study(wave: "Wave") -> str:
 def _timed(scene: "Scene") -> set[str]:
     """Who asks for motion in time."""
     prefixes = ("friction.", "slider.", "motion.")
-    gates = {f"gate {g.id}" for g in scene.gate if g.quantity.startswith(prefixes) or g.quantity in CHAIN_IN_TIME}
+    gates = {who for who, name in _asked(scene) if name.startswith(prefixes) or name in CHAIN_IN_TIME}
     gates |= {_motion_study(scene)} if scene.motion and scene.slider else set()
+    gates |= {_readings_study(scene)} if scene.readings else set()
     return gates | ({_axial_study(scene, scene.axial_inertia)} if scene.axial_inertia else set())
 
 
 def _compiled(scene: "Scene") -> set[str]:
     """Who asks for the nonlinear chain at rest: its equilibria and modes, by compiled kernels without stepping."""
-    return {f"gate {gate.id}" for gate in scene.gate if gate.quantity.startswith("chain.")} - _timed(scene)
+    return {who for who, quantity in _asked(scene) if quantity.startswith("chain.")} - _timed(scene)
+
+
+def _asked(scene: "Scene") -> list[tuple[str, str]]:
+    """(who, quantity) of every gate and every claim."""
+    return [(f"{table} {one.id}", one.quantity)
+            for table, ones in (("gate", scene.gate), ("claim", scene.claim)) for one in ones]  # fmt: skip
+
+
+def _readings_study(scene: "Scene") -> str:
+    asked = scene.readings
+    assert asked is not None
+    assert scene.motion is not None
+    chain = f" and {asked.n_chain(scene)} on the nonlinear chain" if asked.chain else ""
+    return (f"readings ({asked.n_readings} readings of the slider{chain}, {asked.n_runs(scene)} runs of {asked.model} "
+            f"at N = {asked.count or scene.motion.count} of about {asked.n_steps(scene):.3g} steps, "
+            f"{min(asked.shown, asked.n_groups)} on the exact beam beside)")  # fmt: skip
 
 
 def _motion_study(scene: "Scene") -> str:
@@ -234,7 +265,8 @@ def _size(field: "HarmonicField") -> float:
 def _driven_elements(scene: "Scene") -> bool:
     """Whether a driven field of the finite elements is asked for."""
     prefixes = ("wave.", "slider.", "motion.")
-    gates = any(g.quantity.startswith(prefixes) and g.arguments.get("model") == "fem" for g in scene.gate)
+    asking = [(one.quantity, one.arguments) for one in scene.gate] + [(c.quantity, c.arguments) for c in scene.claim]
+    gates = any(name.startswith(prefixes) and given.get("model") == "fem" for name, given in asking)
     return any(study is not None for study in (scene.wave, scene.motion, scene.axial_inertia)) or gates
 
 
@@ -266,6 +298,7 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
         left += [] if compiled else [Skipped("numba", "nothing asked is stepped")]
     if scene.slider is None:
         left.append(Skipped("contact search", "the scene has no slider"))
+    left += [] if scene.claim else [Skipped("published claims", "the scene has no [[claim]]")]
     studies = {name: getattr(scene, name) for name in STUDIES}
     left += [Skipped(f"{name} study", f"the scene has no [{name}]") for name, asked in studies.items() if not asked]
     return tuple(left)

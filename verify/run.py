@@ -14,7 +14,9 @@ from verify.workbench import Solve, Workbench
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy
+    from verify.claim_results import ClaimResult
     from verify.motion_study import MotionStudy
+    from verify.readings import ReadingsStudy
     from verify.studies import Row, SensitivityStudy, SpectrumStudy
     from verify.wave_study import WaveStudy
 
@@ -29,12 +31,15 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     sensitivity: "SensitivityStudy | None"
     wave: "WaveStudy | None"
     motion: "MotionStudy | None"
+    readings: "ReadingsStudy | None"
     axial_inertia: "AxialStudy | None"
+    claims: "tuple[ClaimResult, ...]"
+    """Shown beside what is found; they pass no judgement on the run."""
     solves: tuple[Solve, ...]
     n_fields: int
     """How many driven fields were solved, those of superposed maps not counted."""
     n_motions: int
-    """How many simulations gates asked for, three models' of a slider study, and those of a study of axial inertia."""
+    """How many simulations gates asked for, those of a slider's studies, and those of a study of axial inertia."""
     seconds: float
 
     @property
@@ -61,8 +66,13 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
         progress(f"gate {gate.id}")
         gates.append(judge(gate, found, bench))
     studied = _studies(found, bench, progress)
+    claims: tuple[ClaimResult, ...] = ()
+    if found.claim:
+        from verify.claim_results import claim_results
+
+        claims = claim_results(found, bench, studied["motion"], progress)
     return RunResult(
-        scene=found, gates=tuple(gates), **studied, solves=tuple(bench.solves), n_fields=bench.n_fields,
+        scene=found, gates=tuple(gates), **studied, claims=claims, solves=tuple(bench.solves), n_fields=bench.n_fields,
         n_motions=_n_motions(found, bench, **studied), seconds=perf_counter() - start,
     )  # fmt: skip
 
@@ -88,6 +98,10 @@ def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) ->
         from verify.motion_study import motion_study
 
         done["motion"] = motion_study(scene, progress)
+    if scene.readings:
+        from verify.readings import readings_study
+
+        done["readings"] = readings_study(scene, progress)
     if scene.axial_inertia:
         from verify.axial_study import axial_study
 
@@ -95,17 +109,22 @@ def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) ->
     return done
 
 
-def _n_motions(scene: Scene, bench: Workbench, motion: Any, axial_inertia: Any, **others: Any) -> int:
+def _n_motions(
+    scene: Scene, bench: Workbench, motion: Any, readings: Any, axial_inertia: Any, **others: Any
+) -> int:  # fmt: skip
     """Simulations of a beam or a chain behind gates and studies."""
     chains = sum(gate.quantity in CHAIN_IN_TIME for gate in scene.gate)
     axial = 3 * len(axial_inertia.rows) + len(axial_inertia.lines) if axial_inertia else 0
-    return len(bench.motions) + chains + axial + (len(motion.runs) if motion else 0)
+    slid = (len(motion.runs) if motion else 0) + (readings.n_runs if readings else 0)
+    return len(bench.motions) + chains + axial + slid
 
 
 def n_steps(scene: Scene) -> int:
     """How many times `run_scene` reports progress."""
     sizes = len(scene.convergence.counts) if scene.convergence else 0
     waves = 2 * len(scene.wave.counts) + 1 if scene.wave else 0
-    motion = 12 if scene.motion and scene.slider else 0
+    motion = 11 if scene.motion and scene.slider else 0
+    asked = scene.readings
+    slid = asked.n_readings + asked.n_chain(scene) + min(asked.shown, asked.n_groups) if asked else 0
     axial = len(scene.axial_inertia.forces) + 1 if scene.axial_inertia else 0
-    return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion + axial
+    return len(scene.gate) + bool(scene.spectrum) + sizes + waves + motion + slid + axial + len(scene.claim)

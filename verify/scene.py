@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from verify.beam import Beam, PointForce, check_frequency, check_number
 from verify.checked import checked
+from verify.claims import Claim, ReadingsAsk
 from verify.errors import InputError, near_name, shown
 from verify.files import exists
 from verify.slider import Slider
@@ -221,7 +222,7 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What exists (beam, drive) and what is asked (gates, tables, studies). What is not asked does not run."""
+    """What exists, what is published about it, and what is asked. What is not asked does not run."""
 
     name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
     """Also of its report's file, hence not longer."""
@@ -235,15 +236,14 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     wave: Wave | None = None
     slider: Slider | None = None
     motion: MotionAsk | None = None
+    readings: ReadingsAsk | None = None
     axial_inertia: AxialInertia | None = None
+    claim: tuple[Claim, ...] = ()
     gate: tuple[Gate, ...] = ()
 
     def __post_init__(self) -> None:
-        seen: set[str] = set()
-        for gate in self.gate:
-            if gate.id in seen:
-                raise InputError(f"gate.{gate.id} stands twice: give every gate an id of its own")
-            seen.add(gate.id)
+        _check_ids("gate", [gate.id for gate in self.gate])
+        _check_ids("claim", [claim.id for claim in self.claim])
         if self.drive is not None:
             check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
         forces = self.forces  # built here, so that one off the beam is refused with the scene
@@ -255,11 +255,22 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
         if self.axial_inertia is not None:
             self.axial_inertia.check_on(self.beam, self.drive)
+        if self.readings is not None:
+            self.readings.check_on(self)
 
     @property
     def forces(self) -> tuple[PointForce, ...]:
         """The driving forces in the beam's own coordinate."""
         return tuple(force.on(self.beam) for force in self.drive.force) if self.drive else ()
+
+
+def _check_ids(table: str, ids: list[str]) -> None:
+    """Raise InputError where an id stands twice."""
+    seen: set[str] = set()
+    for one in ids:
+        if one in seen:
+            raise InputError(f"{table}.{one} stands twice: give every {table} an id of its own")
+        seen.add(one)
 
 
 def packaged_scenes() -> tuple[str, ...]:

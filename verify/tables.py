@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.checked import checked
-from verify.plain import finite, flat_row
+from verify.plain import finite, flat_row, work_as_plain
 from verify.scene import Convergence, Counts, Scene, given_arguments, literal
 from verify.workbench import Workbench
 
@@ -110,16 +110,16 @@ def slider(scene: Scene, counts: str | None) -> Job:
     sizes = checked(list(_listed(counts) if counts is not None else scene.motion.counts), Counts, "counts")
 
     def run(step: Step) -> Any:
-        from verify.work_precision import work_rows
+        from verify.work_precision import work_of
 
-        return work_rows(scene, tuple(sizes), step)
+        return work_of(scene, tuple(sizes), step)
 
-    def draw(rows: Any) -> None:
+    def draw(work: Any) -> None:
         from verify.console import print_work
 
-        print_work(rows)
+        print_work(work)
 
-    return Job(ROUNDS, run, lambda rows: [msgspec.to_builtins(row) for row in rows], draw)
+    return Job(ROUNDS, run, lambda work: [msgspec.to_builtins(row) for row in work.rows], draw, work_as_plain)
 
 
 def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple[str, ...]) -> Job:

@@ -9,10 +9,12 @@ import msgspec
 from msgspec.structs import replace
 
 from verify.compare import check_reference, relative_error
+from verify.errors import InputError
 from verify.motion_arguments import SliderInTime
 from verify.motions import described, slider_of
 from verify.patience import check_work
 from verify.simulate import simulate
+from verify.slider_figures import MODELS
 from verify.slider_run import slider_seconds
 
 if TYPE_CHECKING:
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
     from verify.scene import Scene
 
 ROUNDS = 7
+ORDER, ASTRAY = 4.0, 1.0
+"""Of both models' errors in the size, and how far an observed order may lie from it for times to be compared."""
+ABOVE_FLOOR = 3.0
+"""How many times an error has to exceed what the step leaves."""
 
 
 class WorkRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -32,8 +38,27 @@ class WorkRow(msgspec.Struct, frozen=True, kw_only=True):
     displacement: float
     error: float
     """Relative to the exact beam at the same step."""
+    order: float | None
+    """Observed from the size before; None at the first, and where an error is none or changes its sign."""
     run_ms_per_ms: float
     """Wall milliseconds of the loop for a simulated millisecond, median of interleaved rounds."""
+    set_up_ms: float
+
+
+class Work(msgspec.Struct, frozen=True, kw_only=True):
+    """Both models at every size, and what the step itself leaves."""
+
+    rows: tuple[WorkRow, ...]
+    step_floor: float
+    """Relative change of the exact beam's displacement when the step is halved."""
+    duration: float
+    """Of the motion, seconds."""
+
+
+class Cost(msgspec.Struct, frozen=True, kw_only=True):
+    """What one model costs at an error."""
+
+    run_ms_per_ms: float
     set_up_ms: float
 
 
@@ -41,29 +66,49 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
     """Segments against elements at one error."""
 
     error: float
-    segment_ms_per_ms: float
-    fem_ms_per_ms: float
+    segment: Cost
+    fem: Cost
+    duration: float
+    """Of the motion, seconds."""
 
     @property
     def ratio(self) -> float:
-        """How many times longer the elements take."""
-        return self.fem_ms_per_ms / self.segment_ms_per_ms
+        """How many times longer the elements take in the loop."""
+        return self.fem.run_ms_per_ms / self.segment.run_ms_per_ms
+
+    @property
+    def whole_ratio(self) -> float:
+        """The same for the whole run, set-up included."""
+        return self._whole(self.fem) / self._whole(self.segment)
+
+    def _whole(self, cost: Cost) -> float:
+        return cost.set_up_ms + 1e3 * self.duration * cost.run_ms_per_ms
 
 
-def work_rows(
-    scene: "Scene", counts: tuple[int, ...], progress: Callable[[str], None] = lambda step: None
-) -> tuple[WorkRow, ...]:
+class NotCompared(msgspec.Struct, frozen=True, kw_only=True):
+    """Why times stand for nothing, and what to change."""
+
+    why: str
+    remedy: str
+
+
+def work_of(scene: "Scene", counts: tuple[int, ...], progress: Callable[[str], None] = lambda step: None) -> Work:
     """Both models at every size; the exact beam is the reference. Raises InputError."""
     _check_rounds(scene, counts)
-    exact = run_once(scene, "analytic", None).displacement
+    exact, floor = _exact(scene)
     check_reference(exact)
-    cases = [(model, n) for model in ("segment", "fem") for n in counts]
+    cases = [(model, n) for model in MODELS for n in sorted(set(counts))]
     runs: dict[tuple[str, int], list[Motion]] = {case: [] for case in cases}
     for number in range(ROUNDS):
         progress(f"slider, work against error, round {number + 1}")
         for model, n in cases:
-            runs[model, n].append(run_once(scene, model, n))
-    return tuple(_row(model, n, found, exact) for (model, n), found in runs.items())
+            runs[model, n].append(run_once(scene, model, n, coupling="one-way"))
+    assert scene.motion is not None
+    rows: list[WorkRow] = []
+    for (model, n), found in runs.items():
+        before = rows[-1] if rows and rows[-1].model == model else None
+        rows.append(_row(model, n, found, exact, before))
+    return Work(rows=tuple(rows), step_floor=floor, duration=scene.motion.duration)
 
 
 def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
@@ -75,43 +120,95 @@ def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
     check_work("motion.counts", list(counts), 2.0 * seconds, "give fewer or smaller ones, or a shorter duration")
 
 
-def run_once(scene: "Scene", model: str, count: int | None, ledger: bool = False, samples: int = 2) -> "Motion":
-    """The scene's slider on one model, without its ledger unless asked for."""
-    a = SliderInTime(model=model, count=count)  # type: ignore[arg-type]
+def _exact(scene: "Scene") -> tuple[float, float]:
+    """The exact beam's displacement, and by what share half the step changes it. Raises InputError where it is none."""
+    assert scene.motion is not None
+    finer = replace(scene.motion, steps_per_period=2 * scene.motion.steps_per_period)
+    way, finer_way = (
+        run_once(one, "analytic", None, coupling="one-way").displacement
+        for one in (scene, replace(scene, motion=finer, readings=None))
+    )
+    if way == 0.0:
+        raise InputError("the slider does not move on the exact beam: no error can be relative to that, drive it")
+    return way, abs(finer_way / way - 1.0)
+
+
+def run_once(
+    scene: "Scene", model: str, count: int | None, *, ledger: bool = False, samples: int = 2,
+    coupling: str | None = None,
+) -> "Motion":  # fmt: skip
+    """The scene's slider on one model, coupled as it says unless told otherwise."""
+    a = SliderInTime(model=model, count=count, coupling=coupling)  # type: ignore[arg-type]
     asked = described(a, scene)
     per_period = scene.motion.steps_per_period if scene.motion else 64
-    slider = replace(slider_of(a, scene), coupling="one-way") if not ledger else slider_of(a, scene)
-    return simulate(scene.beam, slider=slider, steps_per_period=per_period, samples=samples,
-                    ledger=ledger, **asked)  # fmt: skip
+    found = simulate(scene.beam, slider=slider_of(a, scene), steps_per_period=per_period, samples=samples,
+                     ledger=ledger, **asked)  # fmt: skip
+    if found.statistics.stopped == "interrupted":
+        raise KeyboardInterrupt
+    return found
 
 
-def _row(model: str, count: int, found: "list[Motion]", exact: float) -> WorkRow:
+def _row(model: str, count: int, found: "list[Motion]", exact: float, before: WorkRow | None) -> WorkRow:
     length = found[0].duration
+    error = relative_error(found[0].displacement, exact)
     return WorkRow(
-        model=model, count=count, rows=len(found[0].end.q), displacement=found[0].displacement,
-        error=relative_error(found[0].displacement, exact),
+        model=model, count=count, rows=len(found[0].end.q), displacement=found[0].displacement, error=error,
+        order=log(before.error / error) / log(count / before.count) if before and before.error * error > 0 else None,
         run_ms_per_ms=median(m.statistics.wall_s for m in found) / length,
         set_up_ms=1e3 * median(m.statistics.set_up_s for m in found),
     )  # fmt: skip
 
 
-def at_equal_error(rows: tuple[WorkRow, ...]) -> Comparison | None:
-    """Both models at the smallest error that both reach, interpolated in logarithms; None where they share none."""
-    lines = {model: [r for r in rows if r.model == model and r.error] for model in ("segment", "fem")}
-    spans = [(min(abs(r.error) for r in line), max(abs(r.error) for r in line)) for line in lines.values() if line]
-    if len(spans) < 2 or max(low for low, _ in spans) > min(high for _, high in spans):
-        return None
+def at_equal_error(work: Work) -> Comparison | NotCompared:
+    """Both models at the smallest error that both reach, by logarithms, where errors fall at their order."""
+    lines = {model: [row for row in work.rows if row.model == model] for model in MODELS}
+    problem = next((found for model, line in lines.items() if (found := _unfit(MODELS[model], line, work))), None)
+    if problem is not None:
+        return problem
+    spans = [(abs(line[-1].error), abs(line[0].error)) for line in lines.values()]
     error = max(low for low, _ in spans)
-    times = {model: _time_at(line, error) for model, line in lines.items()}
-    return Comparison(error=error, segment_ms_per_ms=times["segment"], fem_ms_per_ms=times["fem"])
+    if error > min(high for _, high in spans):
+        words = ", ".join(f"{name} {100 * low:.3g} to {100 * high:.3g} %"
+                          for name, (low, high) in zip(MODELS.values(), spans, strict=True))  # fmt: skip
+        return NotCompared(why=f"the models share no error ({words})", remedy="give counts that overlap in error")
+    costs = {model: _cost_at(line, error) for model, line in lines.items()}
+    return Comparison(error=error, segment=costs["segment"], fem=costs["fem"], duration=work.duration)
 
 
-def _time_at(line: list[WorkRow], error: float) -> float:
-    """Run time at an error on the line through the two neighbours, in logarithms."""
-    ordered = sorted(line, key=lambda r: abs(r.error))
-    after = next((i for i, r in enumerate(ordered) if abs(r.error) >= error), len(ordered) - 1)
-    a, b = ordered[max(after - 1, 0)], ordered[after]
-    if a is b or a.error == b.error:
-        return b.run_ms_per_ms
-    part = log(error / abs(a.error)) / log(abs(b.error / a.error))
-    return exp(log(a.run_ms_per_ms) + part * log(b.run_ms_per_ms / a.run_ms_per_ms))
+def _unfit(name: str, line: list[WorkRow], work: Work) -> NotCompared | None:
+    """Why the errors of one model do not fall at their order; None where they do."""
+    if len(line) < 3:
+        return NotCompared(why=f"{len(line)} sizes show no order", remedy="give three counts or more")
+    low, high = min(row.error for row in line), max(row.error for row in line)
+    span = f"between {100 * low:+.3g} % and {100 * high:+.3g} %"
+    calmer = "give a longer soft start, a smaller slope K or a finer step (steps_per_period)"
+    if low <= 0.0 <= high:
+        return NotCompared(why=f"errors of {name} jump {span}", remedy=f"{calmer}, or larger counts")
+    least, floor = abs(line[-1].error), work.step_floor
+    if least < ABOVE_FLOOR * floor:
+        return NotCompared(
+            why=f"errors of {name} down to {100 * least:.2g} % lie too near the {100 * floor:.2g} % by which half the "
+            "step changes the exact beam's displacement",
+            remedy="give a finer step (steps_per_period) or smaller counts",
+        )
+    orders = [row.order for row in line[1:] if row.order is not None]
+    if any(abs(order - ORDER) > ASTRAY for order in orders):
+        seen = ", ".join(f"{order:.1f}" for order in orders)
+        return NotCompared(
+            why=f"errors of {name} do not fall at order {ORDER:g} but at {seen} ({span})",
+            remedy=f"{calmer}, or larger counts",
+        )
+    return None
+
+
+def _cost_at(line: list[WorkRow], error: float) -> Cost:
+    """Times at an error on the line through the two neighbours, in logarithms; errors fall along it."""
+    fine = next((i for i, row in enumerate(line) if abs(row.error) <= error), len(line) - 1)
+    a, b = line[max(fine - 1, 0)], line[fine]
+    part = 0.0 if a is b else log(error / abs(a.error)) / log(abs(b.error / a.error))
+
+    def between(name: str) -> float:
+        start, end = getattr(a, name), getattr(b, name)
+        return exp(log(start) + part * log(end / start))
+
+    return Cost(run_ms_per_ms=between("run_ms_per_ms"), set_up_ms=between("set_up_ms"))

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from verify import claim_words
 from verify.console import figure, percent, seconds_in_words, work_in_words
 from verify.errors import InputError
 from verify.files import write_whole
@@ -16,6 +17,7 @@ from verify.plain import finite
 from verify.report.axial_charts import NAMES, axial_charts
 from verify.report.charts import charts_of
 from verify.report.motion_charts import motion_charts
+from verify.report.reading_charts import reading_charts
 from verify.report.wave_charts import wave_charts
 
 if TYPE_CHECKING:
@@ -39,6 +41,7 @@ def page(result: "RunResult", command: str) -> str:
     templates.filters |= {"figure": figure, "percent": percent, "duration": seconds_in_words}
     charts = charts_of(result) + (wave_charts(result.wave) if result.wave else [])
     charts += motion_charts(result.motion) if result.motion else []
+    charts += reading_charts(result.readings) if result.readings else []
     charts += axial_charts(result.axial_inertia) if result.axial_inertia else []
     return templates.get_template("page.html.j2").render(
         result=result,
@@ -46,6 +49,7 @@ def page(result: "RunResult", command: str) -> str:
         failed=[gate for gate in result.gates if not gate.passed],
         charts=charts,
         model_names=NAMES,
+        words=claim_words,
         notes=dict.fromkeys(note for row in result.convergence or () for note in row.notes),
         figures=_safe_json({chart["id"]: chart["figure"] for chart in charts}),
         plotly=_plotly_script() if charts else "",

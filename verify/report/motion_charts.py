@@ -13,8 +13,23 @@ _COLOURS = {"analytic": GREY, **COLOUR}
 
 
 def motion_charts(study: "MotionStudy") -> list[dict[str, Any]]:
-    """The paper's Figures 3 and 4 on three models, the surface under the slider, work against error."""
+    """Way and force on three models, the surface under the slider, work against error."""
     return [_trajectory(study), _force(study), _speeds(study), _work(study)]
+
+
+def _how(study: "MotionStudy") -> str:
+    """Under which condition."""
+    how = study.conditions["segment"]
+    return f"{how.run_words}, {how.force_words}"
+
+
+def _set_up(study: "MotionStudy") -> str:
+    """What is not on the axis: the time before the loop, from the least to the most."""
+    spans = []
+    for model in ("segment", "fem"):
+        times = [row.set_up_ms for row in study.work.rows if row.model == model]
+        spans.append(f"{min(times):.2g} to {max(times):.2g} ms for {NAME[model]}")
+    return f"the set-up before the loop is not counted: {' and '.join(spans)}"
 
 
 def _lines(study: "MotionStudy", read: str, scale: float) -> list[Figure]:
@@ -30,17 +45,16 @@ def _lines(study: "MotionStudy", read: str, scale: float) -> list[Figure]:
 
 def _trajectory(study: "MotionStudy") -> dict[str, Any]:
     return chart(
-        "slider-trajectory", f"Slider on the beam, N = {study.count} (as the paper's Fig. 3)",
-        "Distance from the start, along +x. The paper reads a mean of -1.5 cm/s off its figure, 15 µm in this time; "
-        "from rest Eq. (3) does not allow it, see the readings below.",
+        "slider-trajectory", f"Way of the slider, N = {study.count}",
+        f"Distance from the start, along +x: {_how(study)}.",
         _lines(study, "travelled", 1e9), axes("time, ms", "distance, nm"),
     )  # fmt: skip
 
 
 def _force(study: "MotionStudy") -> dict[str, Any]:
     return chart(
-        "slider-force", f"Tangential force on the slider, N = {study.count} (as the paper's Fig. 4)",
-        "Eq. (3) saturates at ±mu N as soon as the surface moves faster than 1/K.",
+        "slider-force", f"Tangential force on the slider, N = {study.count}",
+        f"Friction saturates at ±mu N as soon as the surface moves faster than 1/K: {_how(study)}.",
         _lines(study, "friction", 1e3), axes("time, ms", "force, mN"),
     )  # fmt: skip
 
@@ -56,7 +70,7 @@ def _speeds(study: "MotionStudy") -> dict[str, Any]:
     ]  # fmt: skip
     return chart(
         "slider-speeds", "Speed of the slider and of the surface under it, segments",
-        "The surface swings both ways about nearly nothing; what is left over of a period is the drift.",
+        f"The surface swings both ways; what is left over of a period is the drift: {_how(study)}.",
         data, axes("time, ms", "speed, mm/s"),
     )  # fmt: skip
 
@@ -64,7 +78,7 @@ def _speeds(study: "MotionStudy") -> dict[str, Any]:
 def _work(study: "MotionStudy") -> dict[str, Any]:
     data: list[Figure] = []
     for model in ("segment", "fem"):
-        rows = sorted((r for r in study.work if r.model == model), key=lambda r: r.count)
+        rows = [row for row in study.work.rows if row.model == model]
         data.append({"type": "scatter", "mode": "lines+markers+text", "name": NAME[model],
                      "x": [abs(r.error) for r in rows], "y": [r.run_ms_per_ms for r in rows],
                      "text": [str(r.count) for r in rows], "textposition": "top center",
@@ -72,7 +86,7 @@ def _work(study: "MotionStudy") -> dict[str, Any]:
     log = {"type": "log", "exponentformat": "power"}
     return chart(
         "slider-work", "Run time against the error of the slider's displacement",
-        "The same contact code on both; sizes beside the points. Lower left is better; set-up is not counted.",
+        f"The same contact code on both; sizes beside the points. Lower left is better; {_set_up(study)}.",
         data, axes("error of the displacement against the exact beam", "wall ms per simulated ms", xaxis=log,
                    yaxis=log | {"exponentformat": "none"}),
     )  # fmt: skip

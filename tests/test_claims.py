@@ -1,0 +1,300 @@
+"""Published claims are a scene's data: what they are, how they are refused, and that no code knows a paper."""
+
+import ast
+import json
+import re
+from pathlib import Path
+
+import pytest
+from msgspec.structs import replace
+
+import verify
+from verify import load_scene, run_scene
+from verify.checked import checked
+from verify.claim_words import answer_in_words, found_words
+from verify.claims import Claim
+from verify.cli import status_of
+from verify.errors import InputError
+from verify.plan import plan_scene
+from verify.report.html import page
+from verify.work_precision import Comparison, NotCompared, Work, WorkRow, at_equal_error, work_of
+
+STRANGER = """
+name = "mine"
+[beam]
+length = 0.43
+width = 0.017
+thickness = 0.0013
+youngs_modulus = 113e9
+density = 4470
+[drive]
+frequency_hz = 1310
+force = [{ position = 0.037, amplitude = 1.3, phase_deg = 17 }, { position = 0.402, amplitude = 0.8, phase_deg = 101 }]
+[slider]
+mass = 0.002
+mu = 0.3
+slope = 300
+[motion]
+duration = DURATION
+soft_start_periods = 2
+count = 12
+counts = [12, 24, 48]
+"""
+CLAIM = {"id": "c", "source": "Somebody, page 3", "quantity": "slider.mean_speed", "read": "figure"}
+
+
+def stranger(tmp_path, text="", duration=2e-3):
+    path = tmp_path / "mine.toml"
+    path.write_text(STRANGER.replace("DURATION", str(duration)) + text, "utf-8")
+    return path
+
+
+# --- Claims as data ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("band", "inside", "outside"),
+    [
+        ({"value": -0.015, "tolerance": 5e-4}, (-0.01549, -0.01451), (-0.0156, 0.015, float("nan"))),
+        ({"value": "negative"}, (-1e-300, -4.0), (0.0, 2.0, float("nan"))),
+        ({"value": "positive"}, (1e-300, 7.0), (0.0, -2.0, float("nan"))),
+        ({"at_most": 2.0}, (2.0, -9.0), (2.1, float("nan"))),
+        ({"at_least": -1.0, "at_most": 2.0}, (-1.0, 2.0), (-1.1, 2.1)),
+    ],
+)
+def test_a_claim_holds_in_its_band_and_nowhere_else(band, inside, outside):
+    claim = checked(CLAIM | band, Claim)
+    assert all(claim.holds(value) for value in inside)
+    assert not any(claim.holds(value) for value in outside)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({}, "claims nothing clear"),
+        ({"value": 1.0}, "tolerance = None"),
+        ({"value": 1.0, "tolerance": 0.0}, "tolerance = 0.0"),
+        ({"value": "negative", "tolerance": 1.0}, "tolerance = 1.0"),
+        ({"value": "left"}, "left"),
+        ({"value": 1.0, "tolerance": 0.1, "at_most": 3.0}, "claims nothing clear"),
+        ({"at_least": 2.0, "at_most": 1.0}, "exchange them"),
+        ({"value": float("inf"), "tolerance": 1.0}, "claim.c.value = inf"),
+        ({"value": "negative", "read": "guessed"}, "guessed"),
+        ({"value": "negative", "source": ""}, "source"),
+        ({"value": "negative", "judge": 1}, "judge is not a known key"),
+    ],
+)
+def test_a_claim_that_is_none_is_refused_in_one_sentence(given, message):
+    with pytest.raises(InputError) as refused:
+        checked(CLAIM | given, Claim)
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_claim_may_not_stand_twice():
+    with pytest.raises(InputError, match="claim\\.to-the-left stands twice"):
+        load_scene("paper-slider", ("claim.1.id=to-the-left",))
+
+
+# --- Claims beside what is found -----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def result():
+    few = ("readings.forces=[30]", "readings.mu=[0.2]", "readings.slope=[1e4]", "readings.positions=[0.25]",
+           'readings.kinematics=["following"]', "motion.counts=[49,98,196]")  # fmt: skip
+    return run_scene(replace(load_scene("paper-slider", few), gate=()))
+
+
+def test_each_claim_stands_beside_what_is_found_under_a_condition_that_is_named(result):
+    by_id = {claim.id: claim for claim in result.claims}
+    assert {name: claim.holds for name, claim in by_id.items()} == {
+        "to-the-left": True, "mean-speed": False, "saturation": True, "mean-force": False, "surface-speed": False,
+        "reversal": True,
+    }  # fmt: skip
+    speed = by_id["mean-speed"]
+    assert speed.found == pytest.approx(-1.3834e-6, rel=1e-3)
+    assert speed.exact == pytest.approx(-9.107e-7, rel=1e-3)
+    assert speed.departure == pytest.approx(0.519, abs=0.002)
+    assert "+52 % off" in found_words(speed)
+    for words in ("tangential kinematics", "soft start of 2 periods", "1 ms", "1 N", "mu = 0.2", "49 segments"):
+        assert words in speed.condition
+    assert result.passed  # claims judge nothing
+
+
+def test_report_terminal_and_json_carry_claims_and_readings(result, capsys):
+    from verify.console import print_run
+    from verify.plain import finite, run_as_plain
+
+    text = page(result, "verify run x")
+    print_run(result, None)
+    shown = re.sub(r"\s+", " ", capsys.readouterr().out)
+    for words in ("does not", "+52 % off", "Collard et al., Section III", "ABCDEF", "ABCF", "-1.5303"):
+        assert words in text, words
+        assert words in shown, words
+    assert 'id="chart-slider-readings"' in text
+    plain = json.loads(json.dumps(finite(run_as_plain(result, None))))
+    assert [claim["holds"] for claim in plain["claims"]] == [True, False, True, False, False, True]
+    last = plain["readings"]["groups"][-1]
+    assert last["best"]["condition"]["model"] == "chain"
+    assert all(last["best"]["met"].values())
+
+
+def test_a_claim_that_cannot_be_evaluated_says_why(tmp_path):
+    text = """
+[[claim]]
+id = "odd"
+source = "Nobody"
+quantity = "slider.mean_sped"
+value = "negative"
+read = "stated"
+[[claim]]
+id = "many"
+source = "Nobody"
+quantity = "mode.frequency"
+arguments = { model = "segment", count = 3, mode = 9 }
+value = "positive"
+read = "stated"
+"""
+    path = stranger(tmp_path, text)
+    found = run_scene(path).claims
+    assert [claim.holds for claim in found] == [None, None]
+    assert "slider.mean_speed" in found[0].reason
+    assert "mode" in found[1].reason
+    problems = {problem.who: problem.why for problem in plan_scene(load_scene(path)).problems}
+    assert "slider.mean_speed" in problems["claim odd"]
+
+
+def test_a_plan_counts_readings_and_says_when_there_are_none(tmp_path):
+    planned = plan_scene(load_scene("paper-slider"))
+    assert any("320 readings of the slider and 160 on the nonlinear chain, 960 runs" in who for who in planned.stepped)
+    alone = {skipped.what for skipped in plan_scene(load_scene(stranger(tmp_path))).skipped}
+    assert {"readings study", "published claims"} <= alone
+
+
+# --- A stranger's motor --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("duration", [2e-3, 17e-3])
+def test_a_motor_without_claims_gets_its_figures_and_no_judgement(tmp_path, duration, capsys):
+    path = stranger(tmp_path, duration=duration)
+    assert status_of(["run", str(path), "--reports", str(tmp_path)]) == 0
+    shown = capsys.readouterr().out
+    report = (tmp_path / "mine.html").read_text("utf-8")
+    ours = re.sub(r"<style>.*?</style>|<script.*?</script>", "", report, flags=re.DOTALL)
+    for text in (shown, ours):
+        for word in ("aper", "1.5 cm/s", "4276 Hz", "holds", "does not", "not so"):
+            assert word not in text, word
+        assert "tangential" in text
+        assert "soft start of 2 periods" in text
+
+
+@pytest.mark.parametrize("duration", [0.016, 0.05])
+def test_a_longer_motion_of_the_paper_s_slider_runs_to_its_end(duration, capsys):
+    few = [
+        f"--set=readings.{name}=[{value}]"
+        for name, value in (("forces", 1), ("mu", 0.2), ("kinematics", '"tangential"'))
+    ]
+    sets = [
+        f"--set=motion.duration={duration}",
+        "--set=gate=[]",
+        "--set=motion.counts=[49]",
+        "--set=readings.duration=1e-3",
+    ]
+    assert status_of(["run", "paper-slider", "--no-report", *sets, *few]) == 0
+    assert f"{1e3 * duration:g} ms" in capsys.readouterr().out
+
+
+def test_no_printed_word_of_the_code_names_a_paper():
+    """Docstrings may cite an equation; what is printed of somebody's motor may not."""
+    root = Path(verify.__file__).parent
+    for path in root.rglob("*.py"):
+        tree = ast.parse(path.read_text("utf-8"))
+        docs = {
+            id(node.value)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        }
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docs:
+                words = node.value.replace("paper-slider", "").replace("_bgcolor", "")
+                assert "paper" not in words.lower() or words == "paper", f"{path.name}: {node.value!r}"
+    template = (root / "report" / "page.html.j2").read_text("utf-8").replace("paper_bgcolor", "")
+    assert "paper" not in template.lower()
+
+
+# --- Run times at equal error ----------------------------------------------------------------------------------------
+
+
+def rows(segment, fem, times=(1.0, 2.0, 4.0)):
+    """Work with the errors of both models at N = 20, 40, 80; elements take twice the time, and ten times the set-up."""
+    made = []
+    for model, errors, factor in (("segment", segment, 1.0), ("fem", fem, 2.0)):
+        before = None
+        for n, error, time in zip((20, 40, 80), errors, times, strict=True):
+            from math import log2
+
+            order = log2(before / error) if before and before * error > 0 else None
+            made.append(WorkRow(model=model, count=n, rows=n, displacement=1 + error, error=error, order=order,
+                                run_ms_per_ms=factor * time, set_up_ms=5 * factor**3.3219280948873626))  # fmt: skip
+            before = error
+    return Work(rows=tuple(made), step_floor=1e-7, duration=2e-3)
+
+
+GOOD = (-0.16, -0.01, -0.000625)
+
+
+def test_two_models_are_compared_at_one_error_loop_and_set_up_apart():
+    """Both at 6.25e-4: twice the loop; with the set-up of 5 and 50 ms over 2 ms: (50 + 16) / (5 + 8)."""
+    found = at_equal_error(rows(GOOD, tuple(-e for e in GOOD)))
+    assert isinstance(found, Comparison)
+    assert found.error == pytest.approx(6.25e-4)
+    assert found.ratio == pytest.approx(2.0)
+    assert found.whole_ratio == pytest.approx(66 / 13)
+    words = answer_in_words(found)
+    assert "2.00 times as long as segments in the loop" in words
+    assert "after a set-up of 50 and 5 ms: 5.08 times for the whole run of 2 ms" in words
+
+
+def test_times_are_interpolated_in_logarithms_where_one_model_reaches_less():
+    """Elements end at 0.01 - 2 ^ -2 of an order above: segments' time lies midway by logarithms."""
+    found = at_equal_error(rows(GOOD, (0.64, 0.04, 0.0025)))
+    assert found.error == pytest.approx(0.0025)
+    assert found.segment.run_ms_per_ms == pytest.approx(2.0 * 2**0.5)
+    assert found.ratio == pytest.approx(8.0 / (2.0 * 2**0.5))
+
+
+@pytest.mark.parametrize(
+    ("segment", "fem", "why"),
+    [
+        ((-2.77, 0.0066, -0.68), GOOD, "errors of segments jump between -277 % and +0.66 %"),
+        (GOOD, (0.2, 0.05, 0.0125), "errors of elements do not fall at order 4 but at 2.0, 2.0"),
+        (GOOD, (0.01, 0.16, 0.01), "errors of elements do not fall at order 4 but at -4.0, 4.0"),
+        ((-0.16, -0.01, -1e-5), GOOD, "do not fall at order 4 but at 4.0, 10.0"),
+        ((-1e-4, -3e-6, -2e-7), GOOD, "too near"),
+        ((-1.6e-2, -1e-3, -6.25e-5), (160.0, 10.0, 0.625), "share no error"),
+    ],
+)
+def test_nothing_is_compared_where_errors_do_not_fall_at_their_order(segment, fem, why):
+    found = at_equal_error(rows(segment, fem))
+    assert isinstance(found, NotCompared)
+    assert why in found.why
+    assert found.remedy.startswith("give ")
+    assert "times as long" not in answer_in_words(found)
+
+
+def test_two_sizes_show_no_order():
+    work = rows(GOOD, GOOD)
+    two = replace(work, rows=tuple(row for row in work.rows if row.count < 80))
+    assert "2 sizes show no order" in at_equal_error(two).why
+
+
+def test_a_step_load_seen_too_coarsely_is_not_compared_and_a_soft_start_is():
+    """Four milliseconds after a step load errors jump; two periods of soft start and both models keep order four."""
+    hard = load_scene("paper-slider", ("motion.duration=0.004", "motion.soft_start_periods=0"))
+    found = at_equal_error(work_of(hard, hard.motion.counts))
+    assert isinstance(found, NotCompared)
+    assert "errors of segments jump between -2" in found.why
+    assert "longer soft start" in found.remedy
+    soft = load_scene("paper-slider")
+    assert isinstance(at_equal_error(work_of(soft, soft.motion.counts)), Comparison)

@@ -1,0 +1,128 @@
+"""What a slider's run can be asked for, and the words for how it was run."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import msgspec
+
+if TYPE_CHECKING:
+    from verify.chain_slider import ChainRide
+    from verify.motion import Motion
+    from verify.scene import Scene
+    from verify.time_basis import Array
+
+MODELS = {"segment": "segments", "fem": "elements"}
+COUNTED = MODELS | {"chain": "rigid links, nonlinear"}
+
+
+class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
+    """A named figure of a slider's run."""
+
+    unit: str
+    summary: str
+    of: "Callable[[Motion | ChainRide, Motion | ChainRide | None], float]"
+    """Of the run, and of the one with all phases turned round where `turned` asks for it."""
+    sampled: bool = True
+    """Whether it takes the run at every step, not at its end alone."""
+    turned: bool = False
+
+
+def mean(times: "Array", values: "Array") -> float:
+    """Over time, by the trapezium rule."""
+    steps = times[1:] - times[:-1]
+    return float((0.5 * (values[1:] + values[:-1]) * steps).sum() / steps.sum())
+
+
+def _reversal(run: "Motion | ChainRide", turned: "Motion | ChainRide | None") -> float:
+    assert turned is not None
+    way = run.displacement
+    return turned.displacement / way if way else float("nan")
+
+
+RUN_FIGURES = {
+    "slider.displacement": RunFigure(
+        unit="m", summary="Of the scene's slider along +x after a time.", of=lambda run, _: run.displacement,
+        sampled=False,
+    ),
+    "slider.mean_speed": RunFigure(
+        unit="m/s", summary="Displacement over time.", of=lambda run, _: run.mean_speed, sampled=False
+    ),
+    "slider.largest_friction": RunFigure(
+        unit="N", summary="Largest friction force on the slider.", of=lambda run, _: float(abs(run.friction).max())
+    ),
+    "slider.mean_friction": RunFigure(
+        unit="N", summary="Friction on the slider along +x, mean over time.",
+        of=lambda run, _: mean(run.times, run.friction),
+    ),
+    "slider.mean_surface_speed": RunFigure(
+        unit="m/s", summary="Tangential velocity of the surface under the slider, mean over time.",
+        of=lambda run, _: mean(run.times, run.surface_speed),
+    ),
+    "slider.reversal": RunFigure(
+        unit="1", summary="Displacement with all phases turned round over the displacement; below 0 it reverses.",
+        of=_reversal, turned=True, sampled=False,
+    ),
+}  # fmt: skip
+"""By the name of the quantity."""
+
+
+class Condition(msgspec.Struct, frozen=True, kw_only=True):
+    """How a slider was run: what stands beside every figure of it."""
+
+    kinematics: str
+    start: str
+    soft_start_periods: float
+    forces: tuple[float, ...]
+    """Amplitudes, newton."""
+    law: str
+    mu: float
+    slope: float
+    """K, s/m; without effect in Coulomb's law."""
+    position: float
+    """Where it starts, metres."""
+    model: str
+    count: int | None
+    duration: float
+
+    @property
+    def model_words(self) -> str:
+        """'49 segments', 'exact beam'."""
+        return f"{self.count} {COUNTED[self.model]}" if self.count else "exact beam"
+
+    @property
+    def start_words(self) -> str:
+        """How the beam is set in motion."""
+        if self.start == "steady":
+            return "beam in its steady state"
+        return (
+            f"soft start of {self.soft_start_periods:g} periods" if self.soft_start_periods else "switched on at once"
+        )
+
+    @property
+    def force_words(self) -> str:
+        """'1 N', '1 and 0.7 N'."""
+        return " and ".join(f"{force:g}" for force in dict.fromkeys(self.forces)) + " N"
+
+    @property
+    def run_words(self) -> str:
+        """Kinematics, start and duration."""
+        return f"{self.kinematics} kinematics, {self.start_words}, {1e3 * self.duration:g} ms"
+
+    @property
+    def words(self) -> str:
+        """All of it."""
+        slope = "" if self.law == "coulomb" else f", K = {self.slope:g} s/m"
+        return (f"{self.run_words}, {self.force_words}, mu = {self.mu:g}{slope}, from x = {self.position:g} m, "
+                f"{self.model_words}")  # fmt: skip
+
+
+def condition_of(scene: "Scene", model: str, count: int | None) -> Condition:
+    """How the scene's own slider is run on a model."""
+    slider, asked = scene.slider, scene.motion
+    assert slider is not None
+    assert asked is not None
+    return Condition(
+        kinematics=slider.kinematics, start=asked.start, soft_start_periods=asked.soft_start_periods,
+        forces=tuple(force.amplitude for force in scene.forces), law=slider.law, mu=slider.mu, slope=slider.slope,
+        position=slider.start_on(scene.beam), model=model, count=count, duration=asked.duration,
+    )  # fmt: skip
