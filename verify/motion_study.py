@@ -117,8 +117,8 @@ def _findings(
                 f"nm on the exact beam{off}"),
         Finding(what="largest friction in that run",
                 found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of mu N = {1e3 * limit:.4g} mN"),
-        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, exact beam); phases "
-                "reversed",
+        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, exact beam); "
+                "phases reversed",
                 found=f"{1e6 * drifts[0]:+.4g} µm/s; {1e6 * drifts[1]:+.4g} µm/s"),
         _bound(slider.kinematics, limit / slider.mass, how.duration, chain),
     )  # fmt: skip
