@@ -167,9 +167,7 @@ read = "stated"
 
 def test_a_plan_counts_readings_and_says_when_there_are_none(tmp_path):
     planned = plan_scene(load_scene("paper-slider"))
-    assert any(
-        "320 readings of the slider and 160 on the nonlinear chain, 960 runs" in who for who in planned.stepped
-    )
+    assert any("320 readings of the slider and 160 on the nonlinear chain, 960 runs" in who for who in planned.stepped)
     alone = {skipped.what for skipped in plan_scene(load_scene(stranger(tmp_path))).skipped}
     assert {"readings study", "published claims"} <= alone
 
@@ -193,8 +191,16 @@ def test_a_motor_without_claims_gets_its_figures_and_no_judgement(tmp_path, dura
 
 @pytest.mark.parametrize("duration", [0.016, 0.05])
 def test_a_longer_motion_of_the_paper_s_slider_runs_to_its_end(duration, capsys):
-    few = [f"--set=readings.{name}=[{value}]" for name, value in (("forces", 1), ("mu", 0.2), ("kinematics", '"tangential"'))]
-    sets = [f"--set=motion.duration={duration}", "--set=gate=[]", "--set=motion.counts=[49]", "--set=readings.duration=1e-3"]
+    few = [
+        f"--set=readings.{name}=[{value}]"
+        for name, value in (("forces", 1), ("mu", 0.2), ("kinematics", '"tangential"'))
+    ]
+    sets = [
+        f"--set=motion.duration={duration}",
+        "--set=gate=[]",
+        "--set=motion.counts=[49]",
+        "--set=readings.duration=1e-3",
+    ]
     assert status_of(["run", "paper-slider", "--no-report", *sets, *few]) == 0
     assert f"{1e3 * duration:g} ms" in capsys.readouterr().out
 
@@ -204,7 +210,11 @@ def test_no_printed_word_of_the_code_names_a_paper():
     root = Path(verify.__file__).parent
     for path in root.rglob("*.py"):
         tree = ast.parse(path.read_text("utf-8"))
-        docs = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)}
+        docs = {
+            id(node.value)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        }
         for node in ast.walk(tree):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docs:
                 words = node.value.replace("paper-slider", "").replace("_bgcolor", "")

@@ -129,9 +129,7 @@ def test_means_are_the_balances_of_the_run():
     at_once = as_read(slope=70.0, mu=0.3, place=0.231, per_period=1024)
     run = run_once(at_once, "analytic", None, samples=every_step(at_once))
     surface = RUN_FIGURES["slider.mean_surface_speed"].of(run, None)
-    beam = PinnedBeam(
-        LENGTH, 0.02, 0.001, 70e9, 2700.0, [(PLACES[0], 1.0, 0.0), (PLACES[1], 1.0, np.pi / 2)], 4276.0
-    )
+    beam = PinnedBeam(LENGTH, 0.02, 0.001, 70e9, 2700.0, [(PLACES[0], 1.0, 0.0), (PLACES[1], 1.0, np.pi / 2)], 4276.0)
     assert surface == pytest.approx(-beam.half * beam.seen(1e-3, 0.231)[0] / 1e-3, rel=5e-3)
 
 
