@@ -58,9 +58,7 @@ class ChainCurve:
         first = int(x0 / link) - 3
         near = slice(first, first + 8)
         powers = np.vander(link * np.arange(first, first + 8) - x0, 8, increasing=True)
-        fit = np.linalg.inv(powers)[
-            :4
-        ]  # the polynomial through eight joints; delta^2 y / 12 takes them to the beam's line
+        fit = np.linalg.inv(powers)[:4]  # the polynomial through eight joints
         columns = [self.corrected(joints)[:, near] @ fit.T for joints in (heights, rises)]
         speed = np.array([np.interp(x0, link * np.arange(row.size), row) for row in along])
         self.known = CubicSpline(times, np.hstack([*columns, speed[:, None]]))
