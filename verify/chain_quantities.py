@@ -11,7 +11,7 @@ from verify.workbench import Workbench
 if TYPE_CHECKING:
     from verify.scene import Scene
 
-Links = Annotated[int, Meta(ge=1, le=1000, description="links of the chain; segments and count mean the same")]
+Links = Annotated[int, Meta(ge=1, description="links of the chain; segments and count mean the same")]
 Load = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]
 Component = Annotated[
     Literal["deflection", "shortening"], Meta(description="of the tip: w/L, or 1 - x/L along the beam")

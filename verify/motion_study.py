@@ -98,7 +98,7 @@ def _drift(scene: "Scene") -> float:
     asked = scene.motion
     assert asked is not None
     steady = replace(asked, start="steady", soft_start_periods=0.0, duration=drift_seconds(scene))
-    return run_once(replace(scene, motion=steady, readings=None), "analytic", None).mean_speed
+    return run_once(replace(scene, motion=steady, readings=None), "analytic", None, coupling="one-way").mean_speed
 
 
 def _findings(

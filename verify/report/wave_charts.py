@@ -9,6 +9,9 @@ from verify.report.charts import COLOUR, GREY, NAME, Figure, axes, chart
 if TYPE_CHECKING:
     from verify.wave_study import WaveStudy
 
+CLIPPED = 10.0
+"""The largest standing-wave ratio that a map tells from larger ones."""
+
 
 def wave_charts(study: "WaveStudy") -> list[dict[str, Any]]:
     """Envelopes, ellipses, map, figures over sizes."""
@@ -62,7 +65,7 @@ def _ellipses(study: "WaveStudy") -> dict[str, Any]:
 def _map(study: "WaveStudy") -> dict[str, Any]:
     found = study.map
     name = found.quantity.removeprefix("wave.").replace("_", " ").capitalize()
-    values = np.clip(found.values.T, None, 10.0) if found.quantity == "wave.standing_wave_ratio" else found.values.T
+    values = np.clip(found.values.T, None, CLIPPED) if found.quantity == "wave.standing_wave_ratio" else found.values.T
     rounded = [[None if not np.isfinite(v) else float(f"{v:.4g}") for v in row] for row in values]
     data: list[Figure] = [{
         "type": "heatmap", "x": list(found.axes[0].values), "z": rounded,
@@ -85,7 +88,7 @@ def _map_caption(study: "WaveStudy") -> str:
     clipped = study.map.quantity == "wave.standing_wave_ratio"
     return " ".join([
         f"In the window [L/4, 3L/4], with loss factor {study.operating_loss_factor:g}, as the operating points.",
-        *(["Values above 10 are drawn as 10."] if clipped else []),
+        *([f"Values above {CLIPPED:g} are drawn as {CLIPPED:g}."] if clipped else []),
         *(["Without losses the wave would be pure along phase = -kL (modulo 360°), at any frequency that is no "
            "resonance."] if study.pure_phase else []),
         *(f"{reason}." for reason in study.map.reasons),

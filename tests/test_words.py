@@ -1,0 +1,57 @@
+"""What the report and the terminal print in words holds no figure that a run did not give."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+import verify
+
+FIGURE = re.compile(
+    r"(?<![\w.^/])[-+]?\d+(?:\.\d+)?\s?(?:%|Hz|kHz|cm/s|mm/s|m/s|µm|nm|mm|ms|mN|N|times)(?!\w)|(?<![\w.^/])\d+\.\d+(?![\w.])"
+)
+GIVEN = {
+    "1.5 cm/s": "the paper's own figure",
+    "15 µm": "the paper's mean speed over its millisecond",
+    "1 ms": "the paper's time axis",
+}
+"""Figures in the words of a report that no run gives, and why they may stand there."""
+
+
+def words_of_the_report():
+    """(where, text) of every sentence that is printed: constants of the code, docstrings apart, and the template."""
+    package = Path(verify.__file__).parent
+    for path in [*(package / "report").glob("*.py"), *package.glob("*_study.py"), package / "console.py",
+                 package / "work_precision.py", package / "studies.py"]:  # fmt: skip
+        tree = ast.parse(path.read_text("utf-8"))
+        specs = {id(part) for node in ast.walk(tree) if isinstance(node, ast.FormattedValue) and node.format_spec
+                 for part in ast.walk(node.format_spec)}  # fmt: skip
+        docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in specs | docstrings:
+                yield path.name, node.value
+    template = (package / "report" / "page.html.j2").read_text("utf-8")
+    for cut in (r"<style>.*?</style>", r"<script>.*?</script>", r"\{\{.*?\}\}", r"\{%.*?%\}", r"<[^>]*>"):
+        template = re.sub(cut, "\n", template, flags=re.S)
+    yield from (("page.html.j2", line) for line in template.splitlines())
+
+
+def figures_in_words():
+    return [
+        (where, found) for where, text in words_of_the_report() for found in FIGURE.findall(text) if "rgba(" not in text
+    ]
+
+
+def test_no_sentence_of_the_report_holds_a_figure_that_a_run_did_not_give():
+    assert [(where, found) for where, found in figures_in_words() if found.strip("-+ ") not in GIVEN] == []
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    ["elements take 0.59 times as long", "an error of 3.9 % at mid-span", "-0.00014 cm/s on segments", "about 147.2 here",
+     "at 4276 Hz", "moves by 36 nm"],
+)  # fmt: skip
+def test_a_figure_written_into_a_sentence_is_seen(sentence):
+    assert FIGURE.findall(sentence)
+    assert not FIGURE.findall("of order 6, (kL)^2, Eq. (3), [L/4, 3L/4], 2EI/l, N = 49, 10⁻¹²")
