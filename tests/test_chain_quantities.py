@@ -231,7 +231,7 @@ def test_one_link_between_held_ends_is_refused_in_words_and_in_a_gates_verdict(n
         ("transient_deflection", {"segments": 49, "time": 1e3, "x": 0.1, "step": 1e-9, "method": "modal"}, (), "time = 1000 s takes about"),
         ("energy_drift", {"segments": 60, "periods": 1000.0}, (), "takes about .* accelerations of links"),
         ("energy_drift", {"segments": 9, "step": 1e-300}, (), "takes about .* accelerations of links"),
-        ("axial_departure", {"segments": 49, "force": 1.0}, ("drive.frequency_hz=1e15",), r"time = 0.001 s at drive.frequency_hz = 1000000000000000.0 would keep 4e\+13 states"),
+        ("axial_departure", {"segments": 49, "force": 1.0}, ("drive.frequency_hz=1e12",), r"time = 0.001 s at drive.frequency_hz = 1000000000000.0 would keep 4e\+10 states"),
         ("axial_departure", {"segments": 49, "force": 1.0, "time": 0.09}, ("beam.youngs_modulus=70e15",), "takes about .* accelerations"),
         ("axial_departure", {"segments": 49, "force": 1.0, "inertia": "elastic"}, ("beam.youngs_modulus=70e18",), "takes about .* accelerations"),
     ],

@@ -94,7 +94,7 @@ def drift_seconds(scene: "Scene") -> float:
 
 
 def _drift(scene: "Scene") -> float:
-    """Mean speed on the exact beam's steady wave over `drift_seconds`, m/s."""
+    """Mean speed on the exact beam's steady wave over `drift_seconds`, whose beam feels no slider, m/s."""
     asked = scene.motion
     assert asked is not None
     steady = replace(asked, start="steady", soft_start_periods=0.0, duration=drift_seconds(scene))
@@ -117,8 +117,8 @@ def _findings(
                 f"nm on the exact beam{off}"),
         Finding(what="largest friction in that run",
                 found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of mu N = {1e3 * limit:.4g} mN"),
-        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, exact beam); "
-                "phases reversed",
+        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, one-way, exact "
+                "beam); phases reversed",
                 found=f"{1e6 * drifts[0]:+.4g} µm/s; {1e6 * drifts[1]:+.4g} µm/s"),
         _bound(slider.kinematics, limit / slider.mass, how.duration, chain),
     )  # fmt: skip

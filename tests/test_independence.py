@@ -1,0 +1,334 @@
+"""What the models share is held by gates whose expected figure needs none of it.
+
+Agreement of two models is no evidence about what both go through. For every module that they share the table below
+plants faults in it and names a packaged gate that has to turn red; what that gate expects is worked out again here,
+by formulas that import nothing of the suite. A fault that is never reached, because its seam has moved, fails too.
+"""
+
+import ast
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+from scipy.optimize import brentq
+from test_stepped_beams import written_out
+
+import verify
+from verify.gates import judge
+from verify.run import workbench_for
+from verify.scene import Complex, load_scene
+
+L, WIDTH, H, E, RHO, HERTZ, D = 0.5, 0.02, 0.001, 70e9, 2700.0, 4276.0, 0.0116
+"""The paper's beam, as its scenes state it."""
+EI, LINE = E * WIDTH * H**3 / 12, RHO * WIDTH * H
+OMEGA = 2 * np.pi * HERTZ
+K = (LINE * OMEGA**2 / EI) ** 0.25
+DRIVES = ((D, 0.0), (L - D, 90.0))
+
+
+def pinned_omega(n):
+    return (n * np.pi / L) ** 2 * np.sqrt(EI / LINE)
+
+
+def modal_sum(x, drives, eta=0.0, ratio=0.0):
+    """The pinned beam's steady deflection under 1 N at each (place, phase in degrees), by 200 000 modes, metres."""
+    n = np.arange(200_000.0, 0.0, -1.0)
+    own = pinned_omega(n)
+    answers = np.sin(n * np.pi * x / L) / (own**2 * (1 + 1j * eta) - OMEGA**2 + 2j * ratio * own * OMEGA)
+    return complex(sum(
+        2 / (LINE * L) * np.exp(1j * np.deg2rad(phase)) * (np.sin(n * np.pi * place / L) * answers).sum()
+        for place, phase in drives
+    ))  # fmt: skip
+
+
+def from_rest(x, time, grow_s):
+    """The pinned beam from rest under forces that grow as 3 p^2 - 2 p^3, metres.
+
+    By Duhamel's integral of 150 modes; those above, fifty times as fast as the drive, follow it.
+    """
+    points, weights = np.polynomial.legendre.leggauss(12)
+    edges = np.concatenate([np.linspace(0, grow_s, 400), np.linspace(grow_s, time, 400)[1:]])
+    half = 0.5 * np.diff(edges)
+    t = (edges[:-1, None] + half[:, None] * (points + 1)).ravel()
+    p = np.minimum(t / grow_s, 1.0)
+    total = 0.0
+    for n in range(1, 20_001):
+        shape, own = 2 / (LINE * L) * np.sin(n * np.pi * x / L), pinned_omega(n)
+        shares = [(np.sin(n * np.pi * place / L), np.deg2rad(phase)) for place, phase in DRIVES]
+        if n > 150:
+            push = sum(share * np.cos(OMEGA * time + phase) for share, phase in shares)
+            total += shape * push / (own**2 - OMEGA**2)
+            continue
+        pushes = sum(share * np.cos(OMEGA * t + phase) for share, phase in shares)
+        kernel = p * p * (3 - 2 * p) * pushes * np.sin(own * (time - t)) / own
+        total += shape * float(kernel @ (half[:, None] * weights).ravel())
+    return total
+
+
+def link_omega2(mu):
+    """Of rigid links with half a wave of mu on each, in EI / (rho A l^4)."""
+    s2 = np.sin(mu / 2) ** 2
+    return 48 * s2**2 / (3 - 2 * s2)
+
+
+def link_wavenumber(count):
+    return float(
+        brentq(lambda k: link_omega2(k * L / count) * (count / L) ** 4 - LINE * OMEGA**2 / EI, 0.9 * K, 1.1 * K)
+    )
+
+
+def hermite_wavenumber(count, hertz=HERTZ):
+    """From the two nodal equations of equal Hermite elements."""
+    part, here = L / count, K * np.sqrt(hertz / HERTZ)
+
+    def determinant(k):
+        c, s, m = np.cos(k * part), np.sin(k * part), (here * part) ** 4 / 420
+        ww, tt = 24 * (1 - c) - m * (312 + 108 * c), 8 + 4 * c - m * (8 - 6 * c)
+        wt = 12 * s + m * 26 * s
+        return ww * tt - wt**2
+
+    return float(brentq(determinant, 0.99 * here, 1.01 * here))
+
+
+def gamma(turn, phase=0.5 * np.pi):
+    """The weaker over the stronger wave between two equal forces `turn` = kL apart."""
+    sizes = sorted(abs(np.sin(0.5 * (turn + side * phase))) for side in (1, -1))
+    return sizes[0] / sizes[1]
+
+
+def swr(weaker):
+    return (1 + weaker) / (1 - weaker)
+
+
+def imposed_ratio():
+    """Standing-wave ratio under two displacements a quarter turn apart, from the static and wave parts of Green's function."""
+
+    def green(x, place):
+        a, b = min(x, place), max(x, place)
+        wave, near = (f(K * a) * f(K * (L - b)) / f(K * L) for f in (np.sin, np.sinh))
+        return (wave - near) / (2 * EI * K**3)
+
+    places = (D, L - D)
+    first, second = np.linalg.solve([[green(x, p) for p in places] for x in places], [1.0, 1.0j])
+    sizes = sorted((abs(first * np.exp(1j * K * L) - second), abs(second - first * np.exp(-1j * K * L))))
+    return swr(sizes[0] / sizes[1])
+
+
+def free_node():
+    """Where the first mode of a free bar of 0.42 m stands still, m."""
+    y = brentq(lambda y: np.cos(y) * np.cosh(y) - 1, 4.0, 5.0)
+    share = (np.cosh(y) - np.cos(y)) / (np.sinh(y) - np.sin(y))
+    return 0.42 * brentq(lambda z: np.cosh(y * z) + np.cos(y * z) - share * (np.sinh(y * z) + np.sin(y * z)), 0.1, 0.4)
+
+
+def drift_against_the_wave():
+    """-k omega A^2 (1 + (k h/2)^2) of a steep slider on a pure wave of A = F |sin kd| / (2 EI k^3), m/s."""
+    amplitude = abs(np.sin(K * D)) / (2 * EI * K**3)
+    return -K * OMEGA * amplitude**2 * (1 + (0.5 * K * H) ** 2)
+
+
+def strip(model):
+    """The ninth frequency of the patched strip on 1, 1, 20, 1, 1 parts, Hz."""
+    stiffness, mass = written_out(model, (1, 1, 20, 1, 1), 1.0)
+    return float(np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)[8]) / (2 * np.pi))
+
+
+def per_hertz():
+    """Change of the elements' reflection over half a hertz on both sides."""
+    back, here, ahead = (gamma(hermite_wavenumber(98, HERTZ + step) * L) for step in (-0.5, 0.0, 0.5))
+    return abs(ahead - here) + abs(here - back)
+
+
+@dataclass(frozen=True)
+class Shared:
+    """A fault in a module that models share, and the gate that is to notice."""
+
+    module: str
+    fault: str
+    seams: tuple[str, ...]
+    """Where the fault sits: attributes below verify, as their users look them up."""
+    planted: Callable[[Any], Any]
+    """The true thing -> the faulty one."""
+    scene: str
+    gates: tuple[str, ...]
+    reference: Callable[[], complex]
+    """What those gates expect, by nothing of the suite."""
+
+
+def after(change):
+    """A fault in what a function returns."""
+    return lambda true: lambda *given, **more: change(true(*given, **more))
+
+
+def before(change):
+    """A fault in what a function is given first."""
+    return lambda true: lambda first, *given, **more: true(change(first), *given, **more)
+
+
+def second_argument(change):
+    return lambda true: lambda first, second, *given, **more: true(first, change(second), *given, **more)
+
+
+def heavier(values_and_vectors):
+    values, vectors = values_and_vectors
+    return 1.0002 * values, vectors
+
+
+MODELS = ("segment_model", "fem_beam")
+SHARED = [
+    Shared("beam", "the constant of its waves a ten-thousandth too large", ("beam.Beam.wave_constant",),
+           lambda true: property(lambda beam: 1.0001 * true.fget(beam)), "paper", ("exact-mode-22",),
+           lambda: pinned_omega(22) / (2 * np.pi)),
+    Shared("closed_forms", "roots of one half wave too many", ("closed_forms.root_parts",),
+           second_argument(lambda mode: mode + 1), "paper", ("segment-mode-22",),
+           lambda: np.sqrt(link_omega2(22 * np.pi / 49)) / (22 * np.pi / 49) ** 2 - 1),
+    Shared("division", "each part takes the stiffness of its neighbour", ("chain.divide", "fem_beam.divide"),
+           after(lambda parts: replace(parts, moduli=np.roll(parts.moduli, 1))), "patched-strip", ("elements-at-24",),
+           lambda: strip("fem")),
+    Shared("division", "each part takes the mass of its neighbour", ("chain.divide", "fem_beam.divide"),
+           after(lambda parts: replace(parts, masses_per_length=np.roll(parts.masses_per_length, 1))), "patched-strip",
+           ("segments-at-24",), lambda: strip("segment")),
+    Shared("eigen", "values two ten-thousandths too large in the quotient", ("eigen.factored_quotient",), after(heavier),
+           "paper", ("segment-mode-22",), lambda: np.sqrt(link_omega2(22 * np.pi / 49)) / (22 * np.pi / 49) ** 2 - 1),
+    Shared("eigen", "a driven pencil at a slightly higher frequency", ("harmonic_solvers.forced_response",),
+           lambda true: lambda pencil, loads, omega2, stiffness: true(pencil, loads, 1.0005 * omega2, stiffness),
+           "paper-wave", ("loss-on-elements",), lambda: modal_sum(0.2137, DRIVES, 0.01)),
+    Shared("eigen", "a driven pencil whose losses are conjugate", ("harmonic_solvers.forced_response",),
+           lambda true: lambda pencil, loads, omega2, stiffness: true(pencil, loads, omega2, stiffness.conj()),
+           "paper-wave", ("loss-on-elements",), lambda: modal_sum(0.2137, DRIVES, 0.01)),
+    Shared("harmonic_solvers", "damping ratios a tenth too large", tuple(f"{m}.damped_response" for m in MODELS),
+           lambda true: lambda pencil, loads, omega2, stiffness, ratio: true(pencil, loads, omega2, stiffness, 1.1 * ratio),
+           "paper-wave", ("ratio-on-elements",), lambda: modal_sum(0.2137, DRIVES, 0.004, 0.013)),
+    Shared("harmonic_solvers", "shares of the modes without their losses", tuple(f"{m}.modal_receptance" for m in MODELS),
+           lambda true: lambda pencil, weights, omega2, eta: true(pencil, weights, omega2, 0.0), "paper-wave",
+           ("receptance-of-elements",), lambda: modal_sum(0.2137, ((0.0731, 0.0),), 0.01)),
+    Shared("modes", "shapes read a hundredth nearer to the left end", ("modes.Modes._on_beam",),
+           lambda true: lambda modes, x: 0.99 * true(modes, x), "free-free-bar", ("node-by-segments",), free_node),
+    Shared("fields", "fields read a thousandth nearer to the left end", ("fields.HarmonicField._on_beam",),
+           lambda true: lambda field, x: 0.999 * true(field, x), "paper-wave", ("loss-on-elements",),
+           lambda: modal_sum(0.2137, DRIVES, 0.01)),
+    Shared("fields", "forces that lag instead of lead", ("analytic_harmonic.phasor", "fem_beam.phasor", "segment_model.phasor"),
+           after(np.conj), "paper-wave", ("loss-on-elements",), lambda: modal_sum(0.2137, DRIVES, 0.01)),
+    Shared("fields", "a wavenumber a ten-thousandth too large", ("analytic_harmonic.wavenumber", "fields.wavenumber"),
+           after(lambda k: 1.0001 * k), "paper-wave", ("swr-law",), lambda: swr(gamma(K * L))),
+    Shared("error_laws", "waves of the links a thousandth too short", ("waves.discrete_wavenumber",),
+           after(lambda k: 1.001 * k), "paper-wave", ("segment-49-ratio",), lambda: swr(gamma(link_wavenumber(49) * L))),
+    Shared("travelling_wave", "the backward wave taken a tenth too small", ("travelling_wave.wave_basis",),
+           after(lambda basis: basis * np.array([1.0, 1.1])), "paper-wave", ("segment-49-ratio",),
+           lambda: swr(gamma(link_wavenumber(49) * L))),
+    Shared("drives", "displacements imposed in phase", ("drives.phasor",), after(abs), "paper-wave",
+           ("imposed-displacement",), imposed_ratio),
+    Shared("unit_waves", "the second drive a hundredth stronger", ("operating_point.superposed",),
+           lambda true: lambda drive, names, f, first, second, gaps: true(drive, names, f, first, 1.01 * second, gaps),
+           "paper-wave", ("reflection-per-hertz",), per_hertz),
+    Shared("search", "a minimum found a hundred-thousandth beside itself", ("waves.least_over",),
+           after(lambda found: replace(found, x=found.x * (1 + 1e-5))), "paper-wave", ("best-frequency",),
+           lambda: (21.5 * np.pi / L) ** 2 * np.sqrt(EI / LINE) / (2 * np.pi)),
+    Shared("compare", "errors of twice their size", ("compare.relative_error",), after(lambda error: 2 * error), "paper",
+           ("segment-mode-22",), lambda: np.sqrt(link_omega2(22 * np.pi / 49)) / (22 * np.pi / 49) ** 2 - 1),
+    Shared("forcing", "the forced part a ten-thousandth too large", ("moving_surface.answer",),
+           after(lambda found: replace(found, amplitudes=1.0001 * found.amplitudes)), "paper-slider",
+           ("beam-segments", "beam-elements"), lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ)),
+    Shared("forcing", "free modes that turn the other way", ("moving_surface.advanced",),
+           lambda true: lambda modes, z, t: true(modes, z * np.array([[1.0], [-1.0]]), t), "paper-slider",
+           ("beam-segments",), lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ)),
+    Shared("forcing", "loads of every mode a ten-thousandth too large", ("moving_surface.modal",),
+           after(lambda modes: replace(modes, loads=1.0001 * modes.loads)), "paper-slider",
+           ("beam-segments", "beam-elements"), lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ)),
+    Shared("moving_surface", "a drive whose time is behind by a microsecond", ("moving_surface.Stage.drive_factors",),
+           lambda true: lambda stage, t: true(stage, t - 1e-6), "paper-slider", ("beam-segments",),
+           lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ)),
+    Shared("time_basis", "polynomials of the surface three per cent too large", ("moving_surface.taylor_table",),
+           after(lambda table: 1.03 * table), "paper-slider", ("slider-against-the-wave",), drift_against_the_wave),
+    Shared("contact", "a lever of the whole thickness", ("simulate.law_entries",),
+           after(lambda law: law * np.array([1, 1, 1, 1, 1, 40, 1, 1.0])), "paper-slider", ("slider-against-the-wave",),
+           drift_against_the_wave),
+]  # fmt: skip
+
+
+def seam(path):
+    """(what holds it, name) of an attribute below verify."""
+    module, *rest = path.split(".")
+    holder = import_module(f"{verify.__name__}.{module}")
+    for name in rest[:-1]:
+        holder = getattr(holder, name)
+    return holder, rest[-1]
+
+
+def plant(monkeypatch, shared):
+    """The fault in every seam; a list that grows whenever one is reached."""
+    reached: list[str] = []
+    for path in shared.seams:
+        holder, name = seam(path)
+        true = vars(holder)[name]
+        faulty = shared.planted(true)
+
+        called = faulty.fget if isinstance(faulty, property) else faulty
+
+        def watched(*given, called=called, path=path, **more):
+            reached.append(path)
+            return called(*given, **more)
+
+        monkeypatch.setattr(holder, name, property(watched) if isinstance(true, property) else watched)
+    return reached
+
+
+def verdicts(shared):
+    scene = load_scene(shared.scene)
+    bench = workbench_for(scene, gates_only=True)
+    return {gate.id: judge(gate, scene, bench) for gate in scene.gate if gate.id in shared.gates}
+
+
+def known(shared):
+    return pytest.param(shared, id=f"{shared.module}: {shared.fault}")
+
+
+@pytest.mark.parametrize("shared", [known(row) for row in SHARED])
+def test_what_a_gate_expects_of_a_shared_module_is_known_without_the_suite(shared):
+    """To three fifths of the gate's band: the rest is what the model itself leaves."""
+    reference = shared.reference()
+    gates = [gate for gate in load_scene(shared.scene).gate if gate.id in shared.gates]
+    assert len(gates) == len(shared.gates)
+    for gate in gates:
+        expected = complex(gate.expect.re, gate.expect.im) if isinstance(gate.expect, Complex) else gate.expect
+        assert abs(reference - expected) <= 0.6 * gate.within, gate.id
+
+
+@pytest.mark.parametrize("shared", [known(row) for row in SHARED])
+def test_a_fault_in_a_shared_module_turns_a_gate_red_that_does_not_share_it(shared, monkeypatch):
+    reached = plant(monkeypatch, shared)
+    found = verdicts(shared)
+    assert set(reached), f"{shared.seams} were never reached: the seam of this fault has moved, find it again"
+    for gate, verdict in found.items():
+        assert not verdict.passed, gate
+        assert "cannot be evaluated" not in verdict.reason, verdict.reason
+
+
+def test_the_gates_of_the_table_are_green_without_a_fault():
+    for shared in SHARED:
+        assert all(verdict.passed for verdict in verdicts(shared).values()), shared.fault
+
+
+def imported(module, found):
+    """The modules of the suite behind one, into `found`, lazily imported ones as well."""
+    if module not in found:
+        found.add(module)
+        tree = ast.parse((Path(verify.__file__).parent / f"{module}.py").read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("verify."):
+                imported(node.module.removeprefix("verify."), found)
+    return found
+
+
+def test_every_module_that_two_models_stand_on_is_in_the_table():
+    """`errors` carries sentences and no figures."""
+    faces = (("analytic_modes", "analytic_motion"), ("fem_beam", "fem_motion"), ("segment_model", "segment_motion"))
+    behind = [set().union(*(imported(face, set()) for face in pair)) for pair in faces]
+    shared = (behind[0] & behind[1]) | (behind[0] & behind[2]) | (behind[1] & behind[2])
+    assert shared >= {"modes", "fields", "division", "eigen", "harmonic_solvers", "time_basis"}
+    assert shared - {"errors"} <= {row.module for row in SHARED}
