@@ -119,10 +119,11 @@ def turn_words(study: ReadingsStudy) -> list[tuple[str, str]]:
 
 
 def group_cells(group: "Group") -> list[str]:
-    """Model, kinematics, start, place of a row."""
+    """Model, kinematics (and a slider that is held), start, place of a row."""
     how = group.best.condition
+    kinematics = how.kinematics if how.normal == "massless" else f"{how.kinematics}, {how.normal}"
     start = "steady" if how.start == "steady" else start_words(how.soft_start_periods)
-    return ["chain" if how.model == "chain" else "linear", how.kinematics, start, f"{how.position:g}"]
+    return ["chain" if how.model == "chain" else "linear", kinematics, start, f"{how.position:g}"]
 
 
 def best_cells(group: "Group") -> list[str]:

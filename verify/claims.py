@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from verify.beam import check_number
 from verify.errors import InputError
+from verify.slider import NormalChoice
 from verify.slider_figures import RUN_FIGURES
 
 if TYPE_CHECKING:
@@ -97,6 +98,8 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """
 
     kinematics: tuple[Literal["tangential", "following"], ...] = ()
+    normal: tuple[NormalChoice, ...] = ()
+    """Whether the beam carries the slider's weight and inertia."""
     soft_start_periods: tuple[float, ...] = ()
     """From rest; 0 is a step load, because cos(0) = 1."""
     forces: tuple[float, ...] = ()
@@ -126,7 +129,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
         ):  # fmt: skip
             for i, value in enumerate(getattr(self, name)):
                 check_number(f"readings.{name}[{i}]", value, unit, **bound)
-        for name in ("kinematics", "soft_start_periods", "forces", "mu", "slope", "positions"):
+        for name in ("kinematics", "normal", "soft_start_periods", "forces", "mu", "slope", "positions"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
                 raise InputError(f"readings.{name} = {list(values)!r} holds a value twice: give each once")
@@ -141,8 +144,9 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     @property
     def n_groups(self) -> int:
-        """Combinations of kinematics, start and place, each a row of the table."""
-        return prod(max(len(values), 1) for values in (self.kinematics, self.soft_start_periods, self.positions))
+        """Combinations of kinematics, normal, start and place, each a row of the table."""
+        lists = (self.kinematics, self.normal, self.soft_start_periods, self.positions)
+        return prod(max(len(values), 1) for values in lists)
 
     def check_on(self, scene: "Scene") -> None:
         """Raise InputError where the scene has nothing to read, or where the search would take too long."""
@@ -191,6 +195,11 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
             raise InputError(
                 "readings.chain: the chain starts from rest, is undamped and carries a slider one way; leave it out, "
                 "or motion.start, damping and slider.coupling"
+            )
+        if "massless" not in (self.normal or (slider.normal,)):
+            raise InputError(
+                "readings.chain: the nonlinear chain carries a slider that puts nothing on it, give slider.normal = "
+                "'massless' or leave it out"
             )
         if (self.count or motion.count) > MOST_LINKS:
             raise InputError(

@@ -79,6 +79,7 @@ class InTime(Arguments, frozen=True, kw_only=True):
     frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
     phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
     position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
+    force: Annotated[float, Meta(ge=0, description="of every force, newton; default: the scene's")] | None = None
 
     def __post_init__(self) -> None:
         if (self.model == "analytic") != (self.count is None):

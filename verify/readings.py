@@ -17,12 +17,12 @@ from verify.work_precision import run_once
 if TYPE_CHECKING:
     from verify.scene import Scene
 
-LISTS = ("kinematics", "soft_start_periods", "positions", "forces", "mu", "slope")
+LISTS = ("kinematics", "normal", "soft_start_periods", "positions", "forces", "mu", "slope")
 """What is varied, the slowest first."""
-GROUPED_BY = LISTS[:3]
+GROUPED_BY = LISTS[:4]
 """A row of the table is one of each of these."""
-NAMES = {"kinematics": "kinematics", "soft_start_periods": "start", "positions": "place", "forces": "force", "mu": "mu",
-         "slope": "slope K"}  # fmt: skip
+NAMES = {"kinematics": "kinematics", "normal": "normal", "soft_start_periods": "start", "positions": "place",
+         "forces": "force", "mu": "mu", "slope": "slope K"}  # fmt: skip
 
 
 class Reading(msgspec.Struct, frozen=True, kw_only=True):
@@ -119,7 +119,7 @@ def searched_of(scene: "Scene") -> dict[str, tuple[float | str, ...]]:
     assert slider is not None
     assert motion is not None
     own: dict[str, float | str | None] = {
-        "kinematics": slider.kinematics, "soft_start_periods": motion.soft_start_periods,
+        "kinematics": slider.kinematics, "normal": slider.normal, "soft_start_periods": motion.soft_start_periods,
         "positions": slider.start_on(scene.beam), "forces": None, "mu": slider.mu, "slope": slider.slope,
     }  # fmt: skip
     return {name: tuple(getattr(asked, name)) or (() if own[name] is None else (own[name],)) for name in LISTS}  # type: ignore[misc]
@@ -158,9 +158,10 @@ def readings_study(scene: "Scene", progress: Callable[[str], None] = lambda step
 def _on_the_chain(
     rows: "Sequence[tuple[Scene, Reading]]", claims: Sequence[Claim], progress: Callable[[str], None]
 ) -> tuple[Group, ...]:
-    """Those readings whose forces act at once, on the nonlinear chain of as many links."""
+    """Those readings of a massless slider whose forces act at once, on the nonlinear chain of as many links."""
     chains, drawn = Chains({}), dict[tuple[str, float], list[Reading]]()
-    at_once = [row for row in rows if not row[1].condition.soft_start_periods]
+    at_once = [row for row in rows
+               if not row[1].condition.soft_start_periods and row[1].condition.normal == "massless"]  # fmt: skip
     for number, (scene, linear) in enumerate(at_once):
         progress(f"reading {number + 1} of {len(at_once)} on the nonlinear chain")
         how = linear.condition
@@ -202,7 +203,13 @@ def read_as(scene: "Scene", asked: ReadingsAsk, values: "dict[str, float | str |
     mass = slider.mass
     if asked.saturation is not None:
         mass = (asked.saturation / float(mu or slider.mu) - slider.preload) / slider.gravity
-    own = {"kinematics": values["kinematics"], "position": values["positions"], "slope": values["slope"], "mu": mu}
+    own = {
+        "kinematics": values["kinematics"],
+        "normal": values["normal"],
+        "position": values["positions"],
+        "slope": values["slope"],
+        "mu": mu,
+    }
     forces = drive.force if force is None else tuple(replace(one, amplitude=float(force)) for one in drive.force)
     return replace(
         scene, readings=None, gate=(), drive=replace(drive, force=forces), slider=replace(slider, mass=mass, **own),

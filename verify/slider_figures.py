@@ -70,6 +70,8 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     """How a slider was run: what stands beside every figure of it."""
 
     kinematics: str
+    normal: str
+    """held: the beam carries the slider's weight and inertia where they are felt; massless: it does not."""
     start: str
     soft_start_periods: float
     forces: tuple[float, ...]
@@ -106,7 +108,7 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def run_words(self) -> str:
         """Kinematics, start and duration."""
-        return f"{self.kinematics} kinematics, {self.start_words}, {1e3 * self.duration:g} ms"
+        return f"{self.kinematics} kinematics, {self.normal} slider, {self.start_words}, {1e3 * self.duration:g} ms"
 
     @property
     def words(self) -> str:
@@ -122,7 +124,8 @@ def condition_of(scene: "Scene", model: str, count: int | None) -> Condition:
     assert slider is not None
     assert asked is not None
     return Condition(
-        kinematics=slider.kinematics, start=asked.start, soft_start_periods=asked.soft_start_periods,
-        forces=tuple(force.amplitude for force in scene.forces), law=slider.law, mu=slider.mu, slope=slider.slope,
-        position=slider.start_on(scene.beam), model=model, count=count, duration=asked.duration,
+        kinematics=slider.kinematics, normal="massless" if model == "chain" else slider.normal, start=asked.start,
+        soft_start_periods=asked.soft_start_periods, forces=tuple(force.amplitude for force in scene.forces),
+        law=slider.law, mu=slider.mu, slope=slider.slope, position=slider.start_on(scene.beam), model=model,
+        count=count, duration=asked.duration,
     )  # fmt: skip

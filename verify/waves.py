@@ -87,7 +87,7 @@ def drive_frequency(a: Any, scene: "Scene") -> float:
 
 
 def drive_forces(a: Any, scene: "Scene") -> tuple[PointForce, ...]:
-    """The scene's forces with the position and phase given instead of theirs. Raises InputError."""
+    """The scene's forces with the position, phase and amplitude given instead of theirs. Raises InputError."""
     forces = list(scene.forces)
     if not forces:
         raise InputError("the scene has no drive.force: add force = [{ position = ... }] to its [drive]")
@@ -101,6 +101,8 @@ def drive_forces(a: Any, scene: "Scene") -> tuple[PointForce, ...]:
         forces = [replace(forces[0], position=a.position), replace(forces[1], position=scene.beam.length - a.position)]
     if a.phase_deg is not None:
         forces[1] = replace(forces[1], phase_deg=a.phase_deg)
+    if getattr(a, "force", None) is not None:
+        forces = [replace(force, amplitude=a.force) for force in forces]
     return tuple(forces)
 
 
