@@ -150,7 +150,7 @@ def test_the_bracket_holds_for_every_mode_a_chain_has(titanium_strip, supports):
     [
         ({"supports": ("clamped", "free")}, (), "wall=half bounds it"),
         ({"supports": ("clamped", "free")}, (("wall", "five-joint"),), "wall = 'five-joint'"),
-        ({}, (("grading", 1.3),), "unequal links"),
+        ({}, (("grading", 1.3),), "with grading = 1.3"),
         ({"section": "steps"}, (), "stepped beam"),
     ],
 )

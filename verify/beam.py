@@ -16,7 +16,7 @@ FIGURE_DECADES = 80
 """Powers of ten within which a beam's derived figures lie, so that their squares and cubes are numbers too."""
 SHORTEST_SECTION = 1e-6
 """Of the beam's length."""
-CONTRAST = 1e12
+CONTRAST = 1e15
 """Of EI / l^3 between two sections: beyond it the softer one is lost in the rounding of the stiffer one."""
 MOST_WAVES = 1e6
 """Along a beam, from end to end: more take too many points, and their phase loses its digits."""
