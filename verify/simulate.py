@@ -91,6 +91,7 @@ def simulate(
     ledger: bool = True,
     continue_from: Motion | None = None,
     progress: Callable[[float], None] = lambda part: None,
+    patient: bool = True,
 ) -> Motion:
     """A driven beam from rest or in its steady state for `duration` seconds, with a slider or without.
 
@@ -99,7 +100,8 @@ def simulate(
     those given. Modes advance exactly by any step; `step` (default a 64th of a period) is the slider's alone. The
     exact beam keeps `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half
     the beam's loss factor unless given. `at` are metres where the deflection is kept. Returns what was reached
-    where the run was interrupted or the slider left the beam, and says so. Raises InputError.
+    where the run was interrupted or the slider left the beam, and says so. Without `patient` a slider's run longer than
+    is waited for (`patience`) is refused. Raises InputError.
     """
     began = perf_counter()
     request = _request(beam, tuple(forces), frequency_hz, duration, model, count, modes, start, soft_start_periods,
@@ -108,6 +110,9 @@ def simulate(
     if slider is None:
         return _closed_form(request, stages, basis, began)
     assert coupling is not None
+    if not patient:
+        seconds = slider_seconds(request.n_steps, len(basis.omegas) if basis else 0, coupling.two_way)
+        check_work("duration", duration, seconds, "shorten it or lengthen the step")
     return _with_slider(request, stages, basis, coupling, began, progress)
 
 
@@ -314,8 +319,6 @@ def _with_slider(
                             request.accounts and request.start == "rest")  # fmt: skip
     sliding.motion[1:] = speed, stuck
     z = _begin(request, stages[0])
-    check_work("duration", sum(stage.duration for stage in stages), slider_seconds(request.n_steps, z.shape[1],
-               coupling.two_way), "shorten it or lengthen the step")  # fmt: skip
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
     ready = perf_counter()
     stopped, q, rates = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / request.n_steps))

@@ -82,7 +82,7 @@ def run_once(scene: "Scene", model: str, count: int | None, ledger: bool = False
     per_period = scene.motion.steps_per_period if scene.motion else 64
     slider = replace(slider_of(a, scene), coupling="one-way") if not ledger else slider_of(a, scene)
     return simulate(scene.beam, slider=slider, step=1.0 / (per_period * asked["frequency_hz"]), samples=samples,
-                    ledger=ledger, **asked)  # fmt: skip
+                    ledger=ledger, patient=False, **asked)  # fmt: skip
 
 
 def _row(model: str, count: int, found: "list[Motion]", exact: float) -> WorkRow:
