@@ -54,7 +54,8 @@ def with_slider(a: Any, scene: "Scene", bench: "Workbench", samples: int = 2, le
     key = ("slider", scene.beam, slider, step, samples, ledger, *asked.values())
     if key not in bench.motions:
         bench.motions[key] = simulate(
-            scene.beam, slider=slider, step=step, samples=samples, ledger=ledger, progress=bench.tell, patient=False, **asked
+            scene.beam, slider=slider, step=step, samples=samples, ledger=ledger, progress=bench.tell, patient=False,
+            **asked,
         )  # fmt: skip
     found: Motion = bench.motions[key]
     if found.statistics.stopped == "interrupted":
