@@ -196,7 +196,7 @@ def test_an_error_relative_to_nothing_is_refused():
     for nothing in (0.0, 0j, math.inf, math.nan):
         with pytest.raises(NoFigureError, match="no error is relative to it"):
             relative_error(3.0, nothing)
-    with pytest.raises(InputError, match="no finite error"):
+    with pytest.raises(InputError, match="not finite is rounding, or of an infinite figure"):
         observed_order((10, 20, 40), (0.1, math.nan, 0.01))
 
 

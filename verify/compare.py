@@ -133,7 +133,10 @@ def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:
     if len(sizes) < 3 or len(set(counts)) != len(sizes):
         raise InputError(f"counts = {list(counts)}: an observed order needs three or more different sizes")
     if not np.isfinite(values).all():
-        raise InputError(f"counts = {list(counts)}: the figure has no finite error there, ask for another one")
+        raise InputError(
+            f"counts = {list(counts)}: an error that is not finite is rounding, or of an infinite figure: ask "
+            "for another one"
+        )
     if (abs(values) < ORDER_FLOOR).any():
         raise InputError(
             f"counts = {list(counts)}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "

@@ -86,6 +86,7 @@ def with_slider(
             ledger=ledger,
             at=at,
             progress=bench.tell,
+            patient=False,
             **asked,
         )
     found: Motion = bench.motions[key]

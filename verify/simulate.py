@@ -41,6 +41,7 @@ def simulate(
     ledger: bool = True,
     continue_from: Motion | None = None,
     progress: Callable[[float], None] = lambda part: None,
+    patient: bool = True,
 ) -> Motion:
     """A driven beam from rest or in its steady state for `duration` seconds, with a slider or without.
 
@@ -51,7 +52,8 @@ def simulate(
     `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half the beam's loss factor
     unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and in the steady
     state its mass is part of it. `at` are metres where the deflection is kept. Returns what was reached where the run
-    was interrupted or the slider left the beam, and says so. Raises InputError.
+    was interrupted or the slider left the beam, and says so. Without `patient` a slider's run longer than is waited
+    for (`patience`) is refused. Raises InputError.
     """
     began = perf_counter()
     request = requested(beam, tuple(forces), frequency_hz, duration, model, count, modes, start, soft_start_periods,
@@ -60,7 +62,7 @@ def simulate(
     stages, basis, coupling = _prepare(request)
     if slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
-    return slide(request, slider, stages, basis, coupling, began, _notes(request, basis), progress)
+    return slide(request, slider, stages, basis, coupling, began, _notes(request, basis), progress, patient)
 
 
 def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling | None]:

@@ -142,7 +142,7 @@ def run_once(
     asked = described(a, scene)
     per_period = scene.motion.steps_per_period if scene.motion else 64
     found = simulate(scene.beam, slider=slider_of(a, scene), steps_per_period=per_period, samples=samples,
-                     ledger=ledger, **asked)  # fmt: skip
+                     ledger=ledger, patient=False, **asked)  # fmt: skip
     if found.statistics.stopped == "interrupted":
         raise KeyboardInterrupt
     return found
