@@ -232,7 +232,7 @@ DEAD = [
     Dead("drive.quarter_wavelength", "beam.length beam.supports.* beam.loss_factor drive.force.* drive.kind slider.* motion.*",
          "of a wave on the beam's section, however long and held it is"),
     Dead("*", "drive.frequency_hz", "given instead", given("frequency_hz")),
-    Dead("mode.shape*", "arguments.reading", "nodal is the elements' one reading", lambda a: a.arguments["model"] == "fem"),
+    Dead("mode.shape*", "arguments.reading=nodal", "nodal is the elements' one reading", lambda a: a.arguments["model"] == "fem"),
     Dead("wave.*", "slider.* motion.*", "a steady field with nothing on it"),
     Dead("wave.standing_wave_ratio wave.reflection* wave.envelope wave.travelling_index wave.axis_ratio wave.signed_area_spread "
          "wave.power_imbalance wave.best_frequency wave.order", "beam.width", "a ratio of one field: EI and rho A share the width"),
@@ -424,10 +424,16 @@ def change(asked, base, turns):
     return max(abs(a - b) for a, b in zip(found, base, strict=True)) / scale
 
 
+def pending(asked, name, value):
+    """Whether an input is declared because it is still dropped, not because it ought to be."""
+    return any(entry.why.startswith("PENDING") for entry in DEAD if entry.covers(asked, name, value))
+
+
 def dead_ones_that_live(asked, base, turns):
     """Which of the inputs declared without effect have one; all at once, and by halves where something shows.
 
-    Two that are refused together only are tried apart; one that is refused alone is no worse for being declared.
+    Two that are refused together only are tried apart. One that is refused alone is no worse for being declared,
+    unless it was only pending.
     """
     if not turns:
         return []
@@ -435,9 +441,11 @@ def dead_ones_that_live(asked, base, turns):
     if isinstance(found, float) and found <= STILL_BELOW:
         return []
     if len(turns) == 1:
-        return (
-            [] if isinstance(found, InputError) else [f"{turns[0][0]} is declared without effect and moves {found:.1e}"]
-        )
+        name, turn = turns[0]
+        if isinstance(found, InputError) and not pending(asked, name, turn[2]):
+            return []
+        what = f"is refused, {str(found)[:160]!r}" if isinstance(found, InputError) else f"moves {found:.1e}"
+        return [f"{name} turned to {turn[2]!r} is declared without effect and {what}"]
     half = len(turns) // 2
     return dead_ones_that_live(asked, base, turns[:half]) + dead_ones_that_live(asked, base, turns[half:])
 
@@ -508,7 +516,8 @@ def test_a_declaration_that_is_not_true_is_found(monkeypatch):
         f"{__name__}.DEAD", [*DEAD, Dead("friction.creep_speed", "arguments.mu beam.*", "so it is said")]
     )
     (found,) = problems_of("friction.creep_speed")
-    assert "arguments.mu is declared without effect and moves" in found
+    assert "arguments.mu turned to" in found
+    assert "is declared without effect and moves" in found
 
 
 def rounds(turns):

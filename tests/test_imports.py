@@ -20,9 +20,9 @@ FLOORS = [
     {"point_loads", "motion", "validity"},
     {"chain_system", *MODELS}, {"segment_motion", "fem_motion", "analytic_motion", "chain_statics", "chain_elastic", "chain_modes", "chain_linear"}, {"moving_surface", "chain_dynamics"},
     {"slider_run", "energy", "chain_motion", "moving_mass", "excited", "request"}, {"margins"}, {"chain_modal", "chain_slider"}, {"chain_studies"}, {"compare", "intervals"}, {"travelling_wave"}, {"workbench"},
-    {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves"}, {"rigid_surface", "pure_wave", "carried"}, {"simulate"}, {"motion_arguments", "axial_study"}, {"motions"},
+    {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves", "unit_waves"}, {"rigid_surface", "pure_wave", "carried", "operating_point"}, {"simulate"}, {"motion_arguments", "axial_study"}, {"motions"},
     {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"}, {"work_precision"}, {"motion_study"}, {"chain_readings"}, {"readings"},
-    {"quantities", "scene", "unit_waves"}, {"design_map"}, {"gates", "operating_point", "claim_results", "claim_words"}, {"studies", "wave_study"},
+    {"quantities", "scene"}, {"design_map"}, {"gates", "claim_results", "claim_words"}, {"studies", "wave_study"},
     {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
 ]  # fmt: skip
 

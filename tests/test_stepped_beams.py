@@ -324,3 +324,27 @@ def test_the_patched_strips_gates_expect_what_matrices_written_out_give(gate, mo
     values = eigh(*written_out(model, counts, grading), eigvals_only=True)
     assert expected.expect == pytest.approx(np.sqrt(values[8]) / (2 * np.pi), abs=3e-7)
     assert expected.arguments["mode"] == 9
+
+
+@pytest.mark.parametrize(
+    ("count", "expected"), [(5, [1, 1, 1, 1, 1]), (6, [1, 1, 2, 1, 1]), (24, [1, 1, 20, 1, 1]), (96, [1, 3, 86, 5, 1])]
+)
+def test_five_sections_share_the_parts_by_largest_remainders(count, expected):
+    assert part_counts([piece.length for piece in PATCHED.pieces], count) == expected
+    parts = divide(PATCHED, count)
+    assert len(parts.lengths) == count
+    ends = np.cumsum([piece.length for piece in PATCHED.pieces])
+    assert parts.nodes[np.cumsum(expected)] * parts.unit == pytest.approx(ends, rel=1e-13)
+
+
+def test_a_division_that_cannot_be_is_refused_by_the_division_itself():
+    """Whoever asks for it; gradings from a thousandth to a thousand, both included."""
+    with pytest.raises(InputError, match="a beam of 5 sections needs at least as many parts"):
+        divide(PATCHED, 4)
+    for grading in (0.9995e-3, 1.0005e3, -1.0, float("nan")):
+        with pytest.raises(InputError, match="grading"):
+            divide(PATCHED, 24, grading)
+    for grading in (1e-3, 1e3):
+        lengths = divide(replace(PATCHED, section=()), 7, grading).lengths
+        assert lengths[-1] / lengths[0] == pytest.approx(grading, rel=1e-12)
+        assert lengths.sum() == pytest.approx(7.0, rel=1e-13)

@@ -73,7 +73,9 @@ def check_bracket(beam: Beam, settings: Settings) -> None:
     if beam.stepped or beam.section:
         reason = "on a stepped beam the chain may lie above the exact frequency"
     elif "grading" in dict(settings):
-        reason = f"with grading = {dict(settings)['grading']!r} the chain may lie above the exact frequency"
+        reason = (
+            f"with grading = {dict(settings)['grading']!r} a chain of unequal links may lie above the exact frequency"
+        )
     elif "clamped" in beam.supports and wall != "half":
         reason = (
             f"with wall = {wall!r} at a clamped end the chain may lie above the exact frequency; wall=half bounds it"
