@@ -63,7 +63,7 @@ def test_the_observed_order_of_an_exact_power_is_that_power(order):
         ((10, 20, 20), (1e-3, 1e-4, 1e-4), "three or more"),
         ((10, 20, 40), (1e-3, -1e-4, -1e-5), "changes sign"),
         ((10, 20, 40), (1e-9, 1e-11, 3e-13), "is rounding"),
-        ((10, 20, 40), (1e-3, float("nan"), 1e-5), "no finite error"),
+        ((10, 20, 40), (1e-3, float("nan"), 1e-5), "not finite"),
     ],
 )
 def test_an_order_is_refused_where_there_is_none(counts, errors, message):
