@@ -150,8 +150,8 @@ def test_sections_of_which_one_is_rounding_beside_the_other_are_refused():
     def beam(thickness):
         return Beam(**TITANIUM, section=(Section(length=0.4), Section(length=0.33, thickness=thickness)))
 
-    with pytest.raises(InputError, match=r"beam\.section\[0\] is .*e\+12 times as stiff .* as beam\.section\[1\]"):
-        beam(1e-7)
+    with pytest.raises(InputError, match=r"beam\.section\[0\] is .*e\+1[5-9] times as stiff .* as beam\.section\[1\]"):
+        beam(1e-8)
     assert beam(2.2e-6).stepped  # 1e9 times
 
 

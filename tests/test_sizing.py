@@ -115,6 +115,7 @@ def test_a_size_beyond_reach_is_refused_and_a_large_one_goes_by_the_law(titanium
     assert found.count > 2000
     assert "by the error law" in found.known_by
     assert "not looked through" in found.known_by
+    assert "not looked through" in sizing.enough_from(Workbench(half), "segment", 101, 0.04).known_by
     with pytest.raises(InputError, match="does not reach it up to count"):
         sizing._scanned(lambda count: False, 2, 3, "segment", 1e-9)
 

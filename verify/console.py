@@ -257,8 +257,9 @@ def print_motor(rows: "tuple[MotorRow, ...]") -> None:
         table.add_row(row.model, str(row.count or "–"), *_operation(row.drive), *best)
     console = Terminal()
     console.print(table)
-    console.print(f"[dim]window [L/4, 3L/4]; left at {rows[0].drive.frequency_hz:g} Hz, the drive's frequency, right "
-                  "at the model's own best[/]")  # fmt: skip
+    drive = f"{rows[0].drive.frequency_hz:g} Hz"
+    console.print(f"[dim]window [L/4, 3L/4], axis ratios over its whole half wavelengths; left at {drive}, the drive's "
+                  "frequency, right at the model's own best[/]")  # fmt: skip
     for row in rows:
         if row.note:
             console.print(Text(f"– {row.model}{f', N = {row.count}' if row.count else ''}: {row.note}", style="dim"))

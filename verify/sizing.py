@@ -65,8 +65,8 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
 
     Where the discrete dispersion is known, it proves it. Elsewhere an error may change its sign and dip under `error`
     before it stays there: sizes are gone through from the smallest to twice the last that fails, and what holds
-    beyond is the error law's word. A chain or mesh of more than 2000 parts by the law is looked for around it alone.
-    Raises InputError where no size up to 200 000 reaches the error.
+    beyond is the error law's word. Where the law asks for more than 2000 parts, and for modes beyond the hundredth,
+    its answer alone is looked around. Raises InputError where no size up to 200 000 reaches the error.
     """
 
     def reached(count: int) -> bool:
@@ -84,7 +84,7 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
         count = _around(reached, guess, smallest, model, error)
         return Enough(count=count, smaller=_dip(model, bench.beam, mode, error, count),
                       known_by="every larger N does, proven by the discrete dispersion")  # fmt: skip
-    if guess > _CLOSELY:
+    if guess > _CLOSELY or mode > _EVERY:
         known_by = "every larger N does by the error law; smaller ones were not looked through"
         return Enough(count=_around(reached, guess, smallest, model, error), known_by=known_by)
     count, smaller, end = _scanned(reached, smallest, guess, model, error)
