@@ -245,3 +245,13 @@ def test_the_choice_of_coupling_is_told_with_both_sizes():
     unmoved = replace(scene, drive=replace(scene.drive, force=(replace(scene.drive.force[0], amplitude=0.0),)))
     assert "inf" not in str(plan_scene(unmoved).chosen)
     assert workbench_for(scene) is not None
+
+
+def test_the_report_names_the_simplification_and_the_size_of_what_it_leaves_out():
+    from verify.report.html import page
+    from verify.run import run_scene
+
+    scene = load_scene("paper-slider", ("motion.counts=[9,18,27]", "motion.count=9", "motion.duration=5e-4"))
+    told = page(run_scene(replace(scene, gate=(), readings=None, claim=())), "verify run")
+    assert "massless slider" in told
+    assert "a simplification: held on the surface, its inertia would move the beam under it by 1.2" in told

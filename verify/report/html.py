@@ -35,6 +35,8 @@ def page(result: "RunResult", command: str) -> str:
     """The whole HTML page, plotly's script included."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
+    from verify.contact import FELT
+
     loader = PackageLoader("verify", "report")
     templates = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,
                             lstrip_blocks=True)  # fmt: skip
@@ -50,6 +52,7 @@ def page(result: "RunResult", command: str) -> str:
         charts=charts,
         model_names=NAMES,
         words=claim_words,
+        felt=FELT,
         notes=dict.fromkeys(note for row in result.convergence or () for note in row.notes),
         figures=_safe_json({chart["id"]: chart["figure"] for chart in charts}),
         plotly=_plotly_script() if charts else "",
