@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from verify import compare
-from verify.errors import InputError, NoBracketError, PairingError
+from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.modes import Modes
 from verify.workbench import Need, Workbench, merged
 
@@ -99,3 +99,9 @@ def test_wishes_of_others_do_not_fail_the_one_who_asks_for_less(titanium_strip):
 def test_an_unknown_reading_is_refused_with_those_there_are(titanium_strip):
     with pytest.raises(InputError, match="corrected, raw"):
         Workbench(titanium_strip).shape_error("segment", 8, 3, "spline")
+
+
+def test_a_shape_that_rests_at_every_node_has_no_error():
+    """Mode 2 of a pinned beam in one part: 0/0, said in a sentence."""
+    with pytest.raises(NoFigureError, match="at rest at every node"):
+        compare.shape_error(np.zeros(2), np.array([1e-9, 2e-9]), np.array([0.3, 0.3]))

@@ -463,3 +463,12 @@ def test_a_file_of_any_bytes_is_one_sentence(folder, data, command):
 )  # fmt: skip
 def test_any_order_of_words_is_a_command_or_one_refusal(folder, words):
     ends_well(words, folder)
+
+
+@pytest.mark.parametrize("layout", ["csv", "markdown"])
+def test_an_endless_ratio_is_a_word_in_every_layout(layout):
+    from verify.tables import rows_as_text
+
+    told = rows_as_text([{"ratio": float("inf"), "way": -float("inf"), "none": None, "size": 0.3}], layout)
+    cells = told.splitlines()[-1].strip("| ").replace(" ", "").replace("|", ",").split(",")
+    assert cells == ["infinity", "-infinity", "", "0.3"]

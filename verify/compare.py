@@ -100,9 +100,14 @@ def node_weights(nodes: Array) -> Array:
 
 
 def shape_error(exact: Array, computed: Array, weights: Array) -> float:
-    """Relative L2 distance of two mass-normalised shapes, free of sign; all (n_nodes,)."""
+    """Relative L2 distance of two mass-normalised shapes, free of sign; all (n_nodes,).
+
+    Raises NoFigureError where the exact shape is at rest at every node.
+    """
+    if not (size := float(weights @ exact**2)):
+        raise NoFigureError("count: the exact shape is at rest at every node of so few parts, give more")
     distances = [float(weights @ (computed * sign - exact) ** 2) for sign in (1.0, -1.0)]
-    return float(np.sqrt(min(distances) / (weights @ exact**2)))
+    return float(np.sqrt(min(distances) / size))
 
 
 def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:

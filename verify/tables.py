@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from math import isinf
 from typing import Any
 
 import msgspec
@@ -38,11 +39,17 @@ class Job(msgspec.Struct, frozen=True):
 def rows_as_text(rows: list[dict[str, Any]], layout: str) -> str:
     """Rows as csv or markdown; notes are left to JSON."""
     columns = [name for name in rows[0] if name != "notes"]
-    cells = [["" if row[name] is None else str(row[name]) for name in columns] for row in rows]
+    cells = [[_cell(row[name]) for name in columns] for row in rows]
     if layout == "csv":
         return "".join(",".join(line) + "\n" for line in [columns, *cells])
     rule = ["---:"] * len(columns)
     return "".join("| " + " | ".join(line) + " |\n" for line in [columns, rule, *cells])
+
+
+def _cell(value: Any) -> str:
+    """A figure with all its digits; nothing where there is none."""
+    endless = isinstance(value, float) and isinf(value)
+    return "" if value is None else f"{'-' * (value < 0)}infinity" if endless else str(value)
 
 
 def convergence(scene: Scene, modes: str | None, counts: str | None) -> Job:
