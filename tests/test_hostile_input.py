@@ -472,3 +472,24 @@ def test_an_endless_ratio_is_a_word_in_every_layout(layout):
     told = rows_as_text([{"ratio": float("inf"), "way": -float("inf"), "none": None, "size": 0.3}], layout)
     cells = told.splitlines()[-1].strip("| ").replace(" ", "").replace("|", ",").split(",")
     assert cells == ["infinity", "-infinity", "", "0.3"]
+
+
+def test_a_key_that_a_complex_expectation_has_not_is_named(verify):
+    said = refused(verify, "plan", "paper", "--set", "gate.exact-mode-22.expect={a=1}")
+    assert "expect.a is not a known key" in said
+    assert "re" in said
+
+
+def test_a_wave_that_throws_the_slider_to_infinity_is_refused(verify):
+    given = ("amplitude=0.021", "slope=0.0012", "mu=4.65", "kinematics=following", "frequency_hz=135752.2")
+    thin = (
+        "--set",
+        "beam.thickness=0.00021924",
+        "--set",
+        "beam.youngs_modulus=264380115293.2",
+        "--set",
+        "beam.density=9940.6",
+    )
+    assert "amplitude = 0.021 m" in refused(
+        verify, "measure", "slider.terminal_speed", *given, "--scene", "paper", *thin
+    )

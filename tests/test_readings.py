@@ -6,9 +6,13 @@ from bead_reference import ChainCurve, PinnedBeam, mean_speed
 from msgspec.structs import replace
 
 from verify import load_scene
+from verify.chain_elastic import simulate_elastic
 from verify.chain_readings import Chains
+from verify.chain_slider import half_steps, ride
+from verify.chain_system import build_system
 from verify.errors import InputError
 from verify.readings import chain_reading, reading, readings_study
+from verify.slider_figures import mean
 
 SCENE = load_scene("paper-slider")
 LENGTH, PLACES = 0.5, (0.0116, 0.5 - 0.0116)
@@ -103,6 +107,33 @@ def test_on_the_nonlinear_chain_one_reading_meets_every_claim(mu):
     assert found.speed == pytest.approx(speed, rel=0.01)
     assert found.figures["slider.mean_friction"] / scene.slider.mass == pytest.approx(push, rel=0.02)
     assert found.figures["slider.mean_surface_speed"] == pytest.approx(-4.52e-3, rel=0.01)
+
+
+def stretching(force, links, phase=90.0, **how):
+    """The scene's slider on links that stretch by EA/l, following, at once."""
+    scene = as_read(kinematics="following", force=force, **how)
+    forces = tuple(replace(one, phase_deg=phase * (one.phase_deg != 0)) for one in scene.forces)
+    system = build_system(scene.beam, links, forces, 4276.0, load="reciprocal")
+    chain = simulate_elastic(system, 70e9 * 0.02 * 0.001, half_steps(1e-3, 1 / (128 * 4276.0)))
+    return ride(chain, scene.beam, replace(scene.slider, coupling="one-way"))
+
+
+@pytest.mark.parametrize(
+    ("links", "speed", "force", "surface"), [(49, -1.559e-2, -2.97e-4, -3.05e-3), (99, -1.562e-2, -1.54e-4, -1.57e-3)]
+)
+def test_links_that_stretch_as_a_beam_does_keep_every_sign(links, speed, force, surface):
+    """Left, both means negative, reversed: the axial inertia of rigid links does not make it; -1.565 cm/s at 199."""
+    there, back = stretching(30.0, links), stretching(30.0, links, -90.0)
+    assert there.mean_speed == pytest.approx(speed, rel=2e-3)
+    assert mean(there.times, there.friction) == pytest.approx(force, rel=0.02)
+    assert mean(there.times, there.surface_speed) == pytest.approx(surface, rel=0.02)
+    assert back.displacement / there.displacement == pytest.approx(-0.95, abs=0.01)
+
+
+def test_a_slider_rides_on_stretching_links_as_on_rigid_ones_where_forces_are_small():
+    """At 0.3 N: the same surface by other unknowns, to the square of the slopes."""
+    rigid = on_the_chain(kinematics="following", force=0.3, slope=50.0)[0].figures["slider.displacement"]
+    assert stretching(0.3, 49, slope=50.0).displacement == pytest.approx(rigid, rel=2e-3)
 
 
 def test_a_chain_under_small_forces_reads_as_the_linear_one():

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from verify.beam import Beam, check_number
+from verify.chain_elastic import ElasticMotion
 from verify.chain_motion import ChainMotion
 from verify.contact import law_entries
 from verify.division import Array
@@ -23,7 +24,7 @@ from verify.slider_run import contact_space, fresh_motion
 class ChainRide:
     """What a slider did on a chain."""
 
-    chain: ChainMotion
+    chain: ChainMotion | ElasticMotion
     times: Array
     """(n + 1,), s."""
     travelled: Array
@@ -56,8 +57,8 @@ def half_steps(duration: float, step: float) -> Array:
     return np.linspace(0.0, duration, 2 * n + 1)
 
 
-def ride(chain: ChainMotion, beam: Beam, slider: Slider) -> ChainRide:
-    """A slider carried by a chain whose states stand at `half_steps`.
+def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> ChainRide:
+    """A slider carried by a chain, rigid or stretching, whose states stand at `half_steps`.
 
     Raises InputError where the times are not evenly spaced and odd in number, for two-way coupling, which the chain's
     own integrators do not know, for the links' edges as a contact line, and for a beam of unlike thicknesses.
@@ -88,20 +89,33 @@ def ride(chain: ChainMotion, beam: Beam, slider: Slider) -> ChainRide:
     )  # fmt: skip
 
 
-def _surface(chain: ChainMotion, x: float) -> tuple[Array, Array, Array]:
+def _surface(chain: ChainMotion | ElasticMotion, x: float) -> tuple[Array, Array, Array]:
     """(polynomials of deflection and velocity on the piece at x, speed of its middle along x, its ends).
 
     (n, 2, 4) in the local coordinate from 0 to 1, (n,) in m/s, (2,) metres.
     """
-    nodes, theta = chain.system.nodes, chain.directions()
-    spins = np.cumsum(chain.rates, axis=1)
+    nodes = chain.system.nodes
     piece = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, chain.system.n_links - 1))
-    lengths = chain.system.lengths
-    heights, rises = lengths * np.sin(theta), lengths * np.cos(theta) * spins
+    heights, rises, along = (
+        _of_stretching(chain, piece) if isinstance(chain, ElasticMotion) else _of_rigid(chain, piece)
+    )
     local = np.stack([_piece(nodes, steps, piece) for steps in (heights, rises)], axis=1)
-    back = np.cumsum(-lengths * np.sin(theta) * spins, axis=1)
-    along = back[:, piece] - 0.5 * (-lengths[piece] * np.sin(theta[:, piece]) * spins[:, piece])
     return np.ascontiguousarray(local), np.ascontiguousarray(along), nodes[piece : piece + 2]
+
+
+def _of_rigid(chain: ChainMotion, piece: int) -> tuple[Array, Array, Array]:
+    """From joint to joint the step across and its rate, (n, N) each, and the speed of a link's middle along x, (n,)."""
+    theta, lengths = chain.directions(), chain.system.lengths
+    spins = np.cumsum(chain.rates, axis=1)
+    back = -lengths * np.sin(theta) * spins
+    along = np.cumsum(back, axis=1)[:, piece] - 0.5 * back[:, piece]
+    return lengths * np.sin(theta), lengths * np.cos(theta) * spins, along
+
+
+def _of_stretching(chain: ElasticMotion, piece: int) -> tuple[Array, Array, Array]:
+    """The same of links that stretch evenly."""
+    heights, rises = (np.diff(parts[:, :, 1], axis=1) for parts in (chain.displacements, chain.velocities))
+    return heights, rises, chain.velocities[:, piece : piece + 2, 0].mean(axis=1)
 
 
 def _piece(nodes: Array, steps: Array, piece: int) -> Array:

@@ -1,5 +1,7 @@
 """A slider always in contact with a pure travelling wave: the speed it settles at, by stepping one period."""
 
+from math import isfinite
+
 import numpy as np
 
 from verify.beam import Beam, check_number
@@ -55,7 +57,10 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
         reach = 2.0 * k * stage.omega * amplitude * (0.5 * beam.thickness + amplitude)
 
         def gained(speed: float, stage: Stage = stage) -> float:
-            return _period(stage, law, start, speed)[1] - speed
+            after = _period(stage, law, start, speed)[1]
+            if not isfinite(after):
+                raise InputError(f"amplitude = {amplitude!r} m: a wave so steep throws the slider off, lower it")
+            return after - speed
 
         if not gained(-reach) > 0.0 > gained(reach):
             raise InputError(f"amplitude = {amplitude!r} m: friction is too weak to settle, raise mu or slope")
