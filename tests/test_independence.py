@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 from test_stepped_beams import written_out
 
 import verify
+from verify.contact_kernels import HALF
 from verify.gates import judge
 from verify.run import workbench_for
 from verify.scene import Complex, load_scene
@@ -245,8 +246,8 @@ SHARED = [
            lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ)),
     Shared("time_basis", "polynomials of the surface three per cent too large", ("moving_surface.taylor_table",),
            after(lambda table: 1.03 * table), "paper-slider", ("slider-against-the-wave",), drift_against_the_wave),
-    Shared("contact", "a lever of the whole thickness", ("simulate.law_entries",),
-           after(lambda law: law * np.array([1, 1, 1, 1, 1, 40, 1, 1.0])), "paper-slider", ("slider-against-the-wave",),
+    Shared("contact", "a lever forty times as long", ("carried.law_entries",),
+           after(lambda law: law * np.where(np.arange(len(law)) == HALF, 40.0, 1.0)), "paper-slider", ("slider-against-the-wave",),
            drift_against_the_wave),
 ]  # fmt: skip
 
@@ -325,10 +326,32 @@ def imported(module, found):
     return found
 
 
+def calls_of(tree, name):
+    return [n for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == name]
+
+
+def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
+    """Nothing comes out of `patience` but a refusal: one name is taken from it, and every call of it stands alone."""
+    assert imported("patience", set()) == {"patience", "errors"}
+    takers = set()
+    for path in Path(verify.__file__).parent.rglob("*.py"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module == "verify.patience":
+                assert [(alias.name, alias.asname) for alias in node.names] == [("check_work", None)], path.stem
+                takers.add(path.stem)
+            assert not (isinstance(node, ast.Import) and any(a.name == "verify.patience" for a in node.names)), (
+                path.stem
+            )
+        alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
+        assert all(call in alone for call in calls_of(tree, "check_work")), path.stem
+    assert "eigen" in takers
+
+
 def test_every_module_that_two_models_stand_on_is_in_the_table():
-    """`errors` carries sentences and no figures."""
+    """`errors` carries sentences and `patience` refusals: no figures, as the test above holds."""
     faces = (("analytic_modes", "analytic_motion"), ("fem_beam", "fem_motion"), ("segment_model", "segment_motion"))
     behind = [set().union(*(imported(face, set()) for face in pair)) for pair in faces]
     shared = (behind[0] & behind[1]) | (behind[0] & behind[2]) | (behind[1] & behind[2])
     assert shared >= {"modes", "fields", "division", "eigen", "harmonic_solvers", "time_basis"}
-    assert shared - {"errors"} <= {row.module for row in SHARED}
+    assert shared - {"errors", "patience"} <= {row.module for row in SHARED}

@@ -157,6 +157,15 @@ class CouplingSize(Steady, frozen=True, kw_only=True):
     mu: Friction | None = None
     preload: Annotated[float, Meta(ge=0, description="newton pressing it on beside its weight")] | None = None
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("mu", "preload", "phase_deg", "position"):
+            if self.of == "normal" and (value := getattr(self, name)) is not None:
+                raise InputError(
+                    f"{name} = {value!r} is for of = 'friction': inertia is sized by mass, place and frequency, "
+                    "leave it out"
+                )
+
 
 class SliderOrder(SliderInTime, frozen=True, kw_only=True):
     """Displacements over several sizes, or over several steps."""

@@ -43,8 +43,7 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
     time = a.time if a.time is not None else (motion.duration if motion else None)
     if time is None:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
-    if scene.drive is not None and scene.drive.kind != "force":
-        raise InputError(f"drive.kind = {scene.drive.kind!r}: motion in time takes imposed forces, give kind = 'force'")
+    _check_forced(scene, "motion in time")
     start = a.start or (motion.start if motion else "rest")
     soft = a.soft_start_periods
     if soft is None:
@@ -55,6 +54,12 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
         "count": a.count, "modes": a.modes or MODES, "start": start, "soft_start_periods": soft,
         "modal_damping": damping,
     }  # fmt: skip
+
+
+def _check_forced(scene: "Scene", what: str) -> None:
+    """Raise InputError for a drive by displacements where forces are taken."""
+    if scene.drive is not None and scene.drive.kind != "force":
+        raise InputError(f"drive.kind = {scene.drive.kind!r}: {what} takes imposed forces, give kind = 'force'")
 
 
 def turned(forces: "Sequence[PointForce]") -> "tuple[PointForce, ...]":
@@ -122,6 +127,7 @@ def coupling_size(a: Any, scene: "Scene") -> float:
     """The size of a slider's friction or of its inertia at its place, by one model. Raises InputError."""
     from verify.contact import coupling_of, surface_speed
 
+    _check_forced(scene, "a slider's beam")
     slider, frequency = slider_of(a, scene), drive_frequency(a, scene)
     x = slider.start_on(scene.beam)
     drive = solve_by_model(a.model, scene.beam, drive_forces(a, scene), frequency, a.count, {})
@@ -139,6 +145,7 @@ def loaded_deflection(a: Any, scene: "Scene") -> complex:
 
     W = W_0 + m omega^2 W(x_s) G(x, x_s), and W(x_s) = W_0(x_s) / (1 - m omega^2 G(x_s, x_s)).
     """
+    _check_forced(scene, "a slider's beam")
     slider, frequency = slider_of(a, scene), drive_frequency(a, scene)
     place = slider.start_on(scene.beam)
     drive = solve_by_model(a.model, scene.beam, drive_forces(a, scene), frequency, a.count, {})
