@@ -4,7 +4,7 @@ import math
 import string
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from verify import load_scene
@@ -238,6 +238,8 @@ def test_relative_errors_do_not_depend_on_size_or_material(length, width, thickn
     from verify.beam import Beam
     from verify.workbench import Workbench
 
+    assume(1e-12 < thickness / length < 1e12)  # femtometres beside kilometres leave floating point, and are refused
+    assume(1e-12 < thickness / (length * scale) < 1e12)
     mode = 1 + count // 3
     beam = Beam(length=length, width=width, thickness=thickness, youngs_modulus=modulus, density=density)
     other = Beam(length=length * scale, width=width, thickness=thickness, youngs_modulus=modulus, density=density)
