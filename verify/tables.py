@@ -36,9 +36,10 @@ class Job(msgspec.Struct, frozen=True):
 
 
 def rows_as_text(rows: list[dict[str, Any]], layout: str) -> str:
-    """Rows as csv or markdown; notes are left to JSON."""
+    """Rows as csv or markdown, cells without a finite figure empty as in JSON; notes are left to JSON."""
     columns = [name for name in rows[0] if name != "notes"]
-    cells = [["" if row[name] is None else str(row[name]) for name in columns] for row in rows]
+    given = [[finite(row[name]) for name in columns] for row in rows]
+    cells = [["" if value is None else str(value) for value in line] for line in given]
     if layout == "csv":
         return "".join(",".join(line) + "\n" for line in [columns, *cells])
     rule = ["---:"] * len(columns)
