@@ -190,6 +190,29 @@ def test_a_plan_says_a_surface_at_rest_and_not_an_infinite_share(verify):
     assert " inf " not in out
 
 
+@pytest.mark.parametrize(("given_as", "said"), [("nan", "not a number"), ("inf", "infinity"), ("-inf", "-infinity")])
+def test_a_plan_says_in_words_that_an_argument_is_no_number(verify, given_as, said):
+    status, out, _ = verify("plan", "paper", "--set", f"gate.segment-mode-22.arguments.count={given_as}")
+    assert status == 0
+    assert f"count = {said}: give a whole number" in " ".join(out.split())
+
+
+def test_a_table_of_figures_leaves_the_cell_of_an_infinite_one_empty(verify):
+    standing = ("--set", "drive.force.1.phase_deg=0", "--counts", "49")
+    for layout in ("--csv", "--markdown"):
+        status, out, _ = verify("table", "paper-wave", "--wave", layout, *standing)
+        assert status == 0
+        assert "inf" not in out
+        assert "nan" not in out
+
+
+def test_a_folder_with_a_strange_name_is_printed_as_it_is(verify, tmp_path):
+    status, out, _ = verify("run", "free-free-bar", "--reports", "a[/]b")
+    assert status == 0
+    assert f"report: {os.path.join('a[/]b', 'free-free-bar.html')}" in out
+    assert (tmp_path / "a[/]b" / "free-free-bar.html").exists()
+
+
 def test_an_error_relative_to_nothing_is_refused():
     assert relative_error(3.0, 2.0) == 0.5
     assert relative_error(1j, 2.0 + 0j) == pytest.approx(-1 + 0.5j)

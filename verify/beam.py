@@ -12,7 +12,7 @@ from verify.errors import InputError, near_name, shown
 Support = Literal["pinned", "clamped", "free", "guided"]
 SUPPORTS: tuple[str, ...] = get_args(Support)
 LARGEST = float_info.max
-FIGURE_DECADES = 80
+FIGURE_DECADES = 100
 """Powers of ten within which a beam's derived figures lie, so that their squares and cubes are numbers too."""
 SHORTEST_SECTION = 1e-6
 """Of the beam's length."""

@@ -1,6 +1,7 @@
 """Plain data checked against a type, with errors that name the field, its value and the remedy."""
 
 import re
+from math import isfinite, isnan
 from types import UnionType
 from typing import Any, TypeVar, Union, get_args, get_origin
 
@@ -50,7 +51,14 @@ def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
     if what.startswith("Invalid enum value"):
         words = tuple(str(word) for word in get_args(_bare(_type_at(kind, steps))))
         return f"{field} = {shown(value)} is not known: {near_name(str(value), words)}"
-    return f"{field} = {shown(value)}: {_humane(what)}"
+    return f"{field} = {_as_given(value)}: {_humane(what)}"
+
+
+def _as_given(value: Any) -> str:
+    """A value as a message shows it; floats that are none in words, for a plan prints them too."""
+    if isinstance(value, float) and not isfinite(value):
+        return "not a number" if isnan(value) else "infinity" if value > 0 else "-infinity"
+    return shown(value)
 
 
 def _humane(what: str) -> str:

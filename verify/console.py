@@ -95,7 +95,7 @@ def print_run(result: "RunResult", report: Path | None) -> None:
         _print_axial(console, result.axial_inertia)
     console.print(f"{verdict} in {seconds_in_words(result.seconds)}: {work_in_words(result)}")
     if report is not None:
-        console.print(f"report: {report}", soft_wrap=True)
+        console.print(f"report: {report}", soft_wrap=True, markup=False)
 
 
 def work_in_words(result: "RunResult") -> str:

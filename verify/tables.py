@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from math import isinf
+from math import isinf, isnan
 from typing import Any
 
 import msgspec
@@ -37,7 +37,7 @@ class Job(msgspec.Struct, frozen=True):
 
 
 def rows_as_text(rows: list[dict[str, Any]], layout: str) -> str:
-    """Rows as csv or markdown; notes are left to JSON."""
+    """Rows as csv or markdown, an infinite ratio in a word; notes are left to JSON."""
     columns = [name for name in rows[0] if name != "notes"]
     cells = [[_cell(row[name]) for name in columns] for row in rows]
     if layout == "csv":
@@ -48,8 +48,9 @@ def rows_as_text(rows: list[dict[str, Any]], layout: str) -> str:
 
 def _cell(value: Any) -> str:
     """A figure with all its digits; nothing where there is none."""
-    endless = isinstance(value, float) and isinf(value)
-    return "" if value is None else f"{'-' * (value < 0)}infinity" if endless else str(value)
+    if value is None or (isinstance(value, float) and isnan(value)):
+        return ""
+    return f"{'-' * (value < 0)}infinity" if isinstance(value, float) and isinf(value) else str(value)
 
 
 def convergence(scene: Scene, modes: str | None, counts: str | None) -> Job:
