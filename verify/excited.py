@@ -11,23 +11,32 @@ from verify.time_basis import Array
 
 UNSEEN = 1e-4
 """Of the surface's speed, rms: what the steps of a run may miss of it."""
-PLACES = 257
-"""Along the beam, for the speed of the driven part."""
+PLACES = 129
+"""Along the beam, for the slope of a steady field."""
 
 
 def speeds(stages: Sequence[Stage], z: Array, length: float) -> tuple[Array, Array, float]:
-    """(omega, w' amplitude times omega of the free modes, the same of the driven motion), (n,), (n,), rad/s.
+    """(omega, speed of the surface by every free mode, by the driven motion), (n,), (n,), but for a common factor.
 
-    Means over the beam, the largest of all stages. The slope of the nth mode is taken as n pi / L of its deflection,
-    whose mean square over a beam of uniform mass is 1/mass; only ratios matter.
+    Means over the beam, the largest of all stages: omega |q| n pi / L, the slope of the nth mode being taken as
+    n pi / L of its deflection, whose mean square over a beam of uniform mass is 1/mass.
     """
-    modal = stages[0].modal
-    free = np.max([np.hypot(*start) for start in _starts(stages, z)], axis=0)
+    free: Array = np.max([np.hypot(*start) for start in _starts(stages, z)], axis=0)
+    omegas, wavenumbers = stages[0].modal.omegas, np.pi / length * np.arange(1, len(free) + 1)
+    return (
+        omegas,
+        np.asarray(omegas * free * wavenumbers),
+        stages[-1].omega * _driven_slope(stages[-1], wavenumbers, length),
+    )
+
+
+def _driven_slope(stage: Stage, wavenumbers: Array, length: float) -> float:
+    """Of the driven motion, as large as the amplitudes of modes times their wavenumbers."""
+    if stage.forced is not None:
+        return float(np.linalg.norm(stage.forced.amplitudes[:, 0] * wavenumbers))
     x = np.linspace(0.0, length, PLACES)
-    rms = np.sqrt((stages[0].free_shapes(x, 0)[:1] ** 2).mean())
-    wavenumbers = np.pi / length * np.arange(1, len(free) + 1)
-    driven = stages[-1].omega * np.sqrt((stages[-1].drive_shapes(x, 1)[:2] ** 2).sum(axis=0).mean())
-    return modal.omegas, modal.omegas * free * wavenumbers * rms, float(driven)
+    first = np.sqrt((stage.free_shapes(x, 0)[0] ** 2).mean())
+    return float(np.sqrt((stage.drive_shapes(x, 1)[:2] ** 2).sum(axis=0).mean()) / first)
 
 
 def _starts(stages: Sequence[Stage], z: Array) -> Iterator[Array]:
