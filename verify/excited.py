@@ -22,7 +22,8 @@ def speeds(stages: Sequence[Stage], z: Array, length: float) -> tuple[Array, Arr
     n pi / L of its deflection, whose mean square over a beam of uniform mass is 1/mass.
     """
     free: Array = np.max([np.hypot(*start) for start in _starts(stages, z)], axis=0)
-    omegas, wavenumbers = stages[0].modal.omegas, np.pi / length * np.arange(1, len(free) + 1)
+    omegas = stages[0].modal.omegas
+    wavenumbers: Array = np.asarray(np.pi / length * np.arange(1.0, len(free) + 1.0), dtype=np.float64)
     return (
         omegas,
         np.asarray(omegas * free * wavenumbers),
