@@ -10,13 +10,13 @@ from verify import axial_study, load_scene, run_scene
 from verify.analytic_modes import solve_harmonic
 from verify.axial_study import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
 from verify.cli import status_of
-from verify.console import work_in_words
 from verify.errors import InputError
 from verify.plain import run_as_plain
 from verify.plan import plan_scene
 from verify.quantities import arguments_of, evaluate, quantity
 from verify.run import n_steps, workbench_for
 from verify.validity import NONLINEAR, axial_inertia_size
+from verify.words import work_in_words
 
 SMALL = ("axial_inertia.count=21", "axial_inertia.forces=[2.0, 6.0]", "axial_inertia.shown=6.0",
          "axial_inertia.duration=4e-4", "axial_inertia.x=0.13")  # fmt: skip

@@ -16,10 +16,10 @@ from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.checked import checked
 from verify.cli import status_of
 from verify.compare import observed_order, relative_error
-from verify.console import figure, number
 from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
 from verify.quantities import QUANTITIES, in_words
 from verify.scene import Gate, literal, load_scene
+from verify.words import figure, number
 from verify.workbench import Workbench
 
 TITANIUM = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}

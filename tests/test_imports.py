@@ -14,7 +14,7 @@ PACKAGE = Path(verify.__file__).parent
 MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
-    {"errors", "timing", "search"}, {"chain_work", "patience", "beam", "checked", "files", "contact_kernels", "chain_kernels", "elastic_kernels"},
+    {"errors", "timing", "search", "words"}, {"chain_work", "patience", "beam", "checked", "files", "contact_kernels", "chain_kernels", "elastic_kernels"},
     {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis", "slider_figures"},
     {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "section_minors", "drives", "forcing", "contact", "claims"},
     {"point_loads", "motion", "validity"},

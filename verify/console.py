@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import groupby
-from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,8 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from verify.words import figure, number, percent, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy
@@ -38,40 +39,6 @@ class Terminal(Console):
         raise BrokenPipeError
 
 
-def seconds_in_words(seconds: float | None) -> str:
-    """A duration with a unit that suits it."""
-    if seconds is None:
-        return "–"
-    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
-        if seconds < limit:
-            return f"{seconds * factor:.3g} {unit}"
-    return f"{seconds:.3g} s"
-
-
-def percent(value: float | None, *, sign: bool = True) -> str:
-    """A relative figure in per cent; small ones in powers of ten."""
-    if value is None:
-        return "–"
-    text = f"{100 * value:+.3g}" if abs(value) < 1e-5 else f"{100 * value:+.4f}"
-    return (text if sign else text.lstrip("+")) + " %"
-
-
-def figure(value: Any) -> str:
-    """A measured figure, short."""
-    if value is None:
-        return "–"
-    if isinstance(value, dict) and "re" in value:
-        return f"{value['re']:.6g} {value['im']:+.6g}i"
-    if isinstance(value, dict):
-        return " .. ".join(figure(part) for part in value.values())
-    return number(value, 7)
-
-
-def number(value: float, digits: int) -> str:
-    """A number to so many digits; a standing wave's ratio is infinity."""
-    return f"{value:.{digits}g}" if isfinite(value) else "–" if isnan(value) else "infinity"
-
-
 def print_run(result: "RunResult", report: Path | None) -> None:
     """Verdict, gates, where the report lies."""
     console = Terminal()
@@ -96,12 +63,6 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     console.print(f"{verdict} in {seconds_in_words(result.seconds)}: {work_in_words(result)}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True, markup=False)
-
-
-def work_in_words(result: "RunResult") -> str:
-    """What a run solved, by kind; kinds of which there is nothing are left out."""
-    kinds = {"modal solves": len(result.solves), "driven fields": result.n_fields, "motions in time": result.n_motions}
-    return ", ".join(f"{n} {name}" for name, n in kinds.items() if n) or "closed forms only"
 
 
 def _print_slider(console: Console, study: "MotionStudy") -> None:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verify import claim_words
-from verify.console import figure, percent, seconds_in_words, work_in_words
 from verify.errors import InputError
 from verify.files import write_whole
 from verify.plain import finite
@@ -19,6 +18,7 @@ from verify.report.charts import charts_of
 from verify.report.motion_charts import motion_charts
 from verify.report.reading_charts import reading_charts
 from verify.report.wave_charts import wave_charts
+from verify.words import figure, percent, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
     from verify.run import RunResult
