@@ -517,3 +517,8 @@ def test_a_wave_that_throws_the_slider_to_infinity_is_refused(verify):
     assert "amplitude = 0.021 m" in refused(
         verify, "measure", "slider.terminal_speed", *given, "--scene", "paper", *thin
     )
+
+
+def test_a_force_too_small_to_square_is_refused(verify):
+    given = ("segments=2", "force=1e-300", "--scene", "paper-wave")
+    assert "give a larger force" in refused(verify, "measure", "chain.axial_departure", *given)

@@ -231,6 +231,14 @@ def test_steps_follow_what_a_step_load_excites():
     assert way(392, soft_start_periods=2.0).statistics.step_s == pytest.approx(1 / (64 * 4276.0), rel=0.01)
 
 
+def test_a_beam_that_a_weight_bends_is_not_shaken_by_it():
+    """The sag stands still: a heavy slider on an undriven beam asks for no finer steps than a light one."""
+    at_rest = (PointForce(position=0.1, amplitude=0.0),)
+    steps = [simulate(PAPER, at_rest, 300.0, 0.01, count=98, slider=Slider(mass=mass, mu=0.2, coupling="two-way")).statistics
+             for mass in (1e-9, 0.7)]  # fmt: skip
+    assert steps[0].steps == steps[1].steps == pytest.approx(0.01 * 300 * 128, rel=0.6)
+
+
 def test_the_choice_of_coupling_is_told_with_both_sizes():
     scene = load_scene("paper-slider")
     from verify.plan import plan_scene

@@ -215,8 +215,13 @@ def along_the_beam(driven: Driven, motion: ChainMotion, force: float) -> tuple[f
 
 
 def departure_of(deflection: Array, linear: Array) -> Departure:
-    """The difference of two deflections (n,) at the end and in the rms, over the second's rms."""
+    """The difference of two deflections (n,) at the end and in the rms, over the second's rms.
+
+    Raises InputError where the second is nothing that squares can be made of.
+    """
     gap, scale = deflection - linear, rms(linear)
+    if not scale:
+        raise InputError("force: under it the linear chain does not move where it is read, give a larger force or x")
     return Departure(at_end=float(abs(gap[-1])) / scale, rms=rms(gap) / scale)
 
 

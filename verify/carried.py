@@ -86,8 +86,8 @@ def slide(
     notes: tuple[str, ...], progress: Callable[[float], None], patient: bool,
 ) -> Motion:  # fmt: skip
     """Step the slider through all stages. Raises InputError where that takes too many steps, or too long."""
+    stages, step_note = _in_steps(request, stages, begin(request, stages[0], basis, None), coupling)
     z = begin(request, stages[0], basis, coupling)
-    stages, step_note = _in_steps(request, stages, z, coupling)
     start, sliding = _fresh(request, slider, stages, coupling)
     n_steps = sum(stage.n_steps for stage in stages)
     if not patient:
