@@ -7,7 +7,7 @@ from verify.beam import PointForce
 from verify.chain_dynamics import at_rest
 from verify.chain_modal import modal_basis, simulate_linear
 from verify.chain_motion import simulate as simulate_chain
-from verify.chain_slider import _piece, half_steps, ride
+from verify.chain_slider import _reading, half_steps, ride
 from verify.chain_system import build_system
 from verify.errors import InputError
 from verify.simulate import simulate
@@ -111,6 +111,6 @@ def test_the_contact_line_of_unequal_links_goes_through_the_corrected_joints(pap
     heights[:, [0, -1]] = 0.0
     expected = corrected_reading(chain, heights)
     for piece in range(12):
-        line = _piece(system.nodes, np.diff(heights, axis=1), piece)
+        line = np.diff(heights, axis=1) @ _reading(system.nodes, piece)
         assert line[:, 0] == pytest.approx(expected[:, piece], rel=1e-12, abs=1e-20)
         assert line.sum(axis=1) == pytest.approx(expected[:, piece + 1], rel=1e-9, abs=1e-18)

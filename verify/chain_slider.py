@@ -99,7 +99,8 @@ def _surface(chain: ChainMotion | ElasticMotion, x: float) -> tuple[Array, Array
     heights, rises, along = (
         _of_stretching(chain, piece) if isinstance(chain, ElasticMotion) else _of_rigid(chain, piece)
     )
-    local = np.stack([_piece(nodes, steps, piece) for steps in (heights, rises)], axis=1)
+    reading = _reading(nodes, piece)
+    local = np.stack([steps @ reading for steps in (heights, rises)], axis=1)
     return np.ascontiguousarray(local), np.ascontiguousarray(along), nodes[piece : piece + 2]
 
 
@@ -118,12 +119,13 @@ def _of_stretching(chain: ElasticMotion, piece: int) -> tuple[Array, Array, Arra
     return heights, rises, chain.velocities[:, piece : piece + 2, 0].mean(axis=1)
 
 
-def _piece(nodes: Array, steps: Array, piece: int) -> Array:
-    """The spline through corrected joints on one piece, (n, 4) in xi; `steps` are (n, N), from joint to joint."""
+def _reading(nodes: Array, piece: int) -> Array:
+    """What every step from joint to joint gives to the spline through corrected joints on one piece, (N, 4) in xi."""
+    lengths = np.diff(nodes)
+    steps = np.eye(len(lengths))
     joints = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
     corrected = joints.copy()
-    lengths = np.diff(nodes)
     squares = (lengths[1:] ** 2 + lengths[:-1] ** 2) / 12.0
     corrected[:, 1:-1] += squares * np.diff(steps / lengths, axis=1) / (lengths[1:] + lengths[:-1])
     coefficients = CubicSpline(nodes, corrected, axis=1, bc_type="natural").c[::-1, piece]
-    return np.asarray((coefficients * (nodes[piece + 1] - nodes[piece]) ** np.arange(4)[:, None]).T)
+    return np.asarray((coefficients * lengths[piece] ** np.arange(4)[:, None]).T)
