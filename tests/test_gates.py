@@ -53,7 +53,7 @@ from verify.gates import expectation, judge
 from verify.plan import asks_of
 from verify.quantities import QUANTITIES, Quantity
 from verify.run import workbench_for
-from verify.scene import Gate, load_scene, packaged_scenes
+from verify.scene import Complex, Gate, load_scene, packaged_scenes
 
 PAPER = load_scene("paper")
 
@@ -1191,6 +1191,10 @@ def test_no_sentence_speaks_of_null_or_of_a_class():
                     assert "null" not in str(error), str(error)
                     assert "<class" not in str(error), str(error)
     assert "<class" not in str(described())
+
+
+def test_an_endless_figure_beside_a_complex_expectation_is_a_word(monkeypatch):
+    assert verdict(monkeypatch, inf, expect=Complex(1.0, 2.0), within=0.5).reason.startswith("measured infinity, and")
 
 
 def test_expectations_read_as_sentences():

@@ -97,7 +97,7 @@ def _verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
 def _disc_verdict(expect: Complex, within: float | None, value: Any) -> tuple[str, float | None]:
     """A complex figure has to lie within a distance of the expected one."""
     if not isinstance(value, complex) or within is None:
-        return f"measured {value!r}, and a complex expect with within judges complex figures", None
+        return f"measured {in_words(as_plain(value))}, and a complex expect with within judges complex figures", None
     distance = hypot(value.real - expect.re, value.imag - expect.im) / within
     return ("" if distance <= 1.0 else f"measured {value!r} lies outside the disc"), distance
 
