@@ -306,6 +306,24 @@ def test_the_motors_table_fits_into_eighty_columns_with_every_figure_whole(verif
     assert "the wave stands at every frequency" in rows[1]["notes"][0]
 
 
+def test_what_init_offers_in_comments_runs_when_it_is_taken(verify, tmp_path):
+    """[drive], [slider] and [motion] without their comment signs."""
+    assert verify("init", "my.toml")[0] == 0
+    lines = (tmp_path / "my.toml").read_text("utf-8").splitlines()
+    first, last = (
+        lines.index(next(x for x in lines if x.startswith("# [drive]"))),
+        lines.index("[spectrum]                        # errors of modes 1..modes at one size"),
+    )
+    taken = [line.removeprefix("# ") for line in lines[first:last]]
+    text = "\n".join([*lines[:first], *taken])
+    (tmp_path / "mine.toml").write_text(text, "utf-8")
+    status, out, _ = verify(
+        "run", "mine.toml", "--no-report", "--set", "motion.counts=[15,20,25]", "--set", "motion.count=20"
+    )
+    assert status == 0
+    assert "mean speed" in out
+
+
 def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
     assert verify("init", "my.toml")[0] == 0
     assert "# " in (tmp_path / "my.toml").read_text("utf-8")

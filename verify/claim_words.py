@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 UNITS = {"soft_start_periods": " periods", "positions": " m", "forces": " N", "slope": " s/m"}
 LEAST_SHOWN = 1e-4
-VERDICT = {True: "holds", False: "does not", None: "unknown"}
+VERDICT = {True: "holds", False: "fails", None: "unknown"}
 
 
 def letter(number: int) -> str:
@@ -94,8 +94,8 @@ def searched_words(study: ReadingsStudy) -> str:
 
 def bound_words(bound: "Bound") -> str:
     """What friction alone allows, and how far it is from being reached."""
-    reached = (f"of {bound.n_above} such readings with mu from there on the fastest that way has "
-               f"{cm_per_s(bound.fastest)} cm/s, {100 * bound.fastest / bound.claimed:.2g} % of it"
+    reached = (f"of {bound.n_above} such readings on all models and places with mu from there on the fastest that way "
+               f"has {cm_per_s(bound.fastest)} cm/s, {100 * bound.fastest / bound.claimed:.2g} % of it"
                if bound.fastest is not None else "no reading has such a mu")  # fmt: skip
     return (f"In the tangential kinematics, from rest, friction alone moves the slider: a mean speed of "
             f"{100 * bound.claimed:g} cm/s takes mu of at least {bound.least_mu:.3g} there, which need not be enough: "

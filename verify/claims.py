@@ -199,7 +199,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
         if "massless" not in (self.normal or (slider.normal,)):
             raise InputError(
                 "readings.chain: the nonlinear chain carries a slider that puts nothing on it, give slider.normal = "
-                "'massless' or leave it out"
+                "'massless', or readings.chain = false"
             )
         if (self.count or motion.count) > MOST_LINKS:
             raise InputError(

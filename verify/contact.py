@@ -53,7 +53,8 @@ class Coupling(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def note(self) -> str:
         """In words, for the notes of a run."""
-        carried = "; the beam carries its weight and inertia" if self.pushes_back else ""
+        carried = "; the beam carries its weight and inertia, and holds it where it would lift off" * self.pushes_back
+        carried += "; friction keeps mu (m g + preload)" * self.pushes_back
         return f"coupling: {'two' if self.two_way else 'one'}-way{carried}; {self.told}" + (
             f"; {self.simplified}" if self.simplified else ""
         )
@@ -61,22 +62,21 @@ class Coupling(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def told(self) -> str:
         """In words: both sizes, and what is left out."""
-        friction = (
-            "the drive does not move the surface under the slider"
-            if self.friction_size is None
-            else f"full friction moves the surface by {self.friction_size:.1e} of its own speed"
-        )
+        if self.friction_size is None:
+            return "the drive does not move the surface under the slider"
+        friction = f"full friction moves the surface by {self.friction_size:.1e} of its own speed"
         if self.normal == "massless":
             return friction
         return f"{friction}, the inertia of a slider held on it by {self.normal_size:.1e} of its motion"
 
     @property
     def simplified(self) -> str:
-        """What a slider without normal inertia leaves out, in words; empty for one that is held."""
-        if self.normal == "held":
+        """What a beam that does not carry its slider leaves out, in words; empty where it does or need not."""
+        if self.normal == "held" and (self.two_way or self.normal_size <= FELT):
             return ""
+        choice = "normal = 'massless'" if self.normal == "massless" else "coupling = 'one-way'"
         return (
-            "slider.normal = 'massless', a simplification: held on the surface, its inertia would move the beam under "
+            f"slider.{choice}, a simplification: held on the surface, its inertia would move the beam under "
             f"it by {self.normal_size:.2g} of its motion, and its weight would bend the beam"
         )
 

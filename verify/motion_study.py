@@ -107,7 +107,7 @@ def _findings(
     slider, chain, exact, how = scene.slider, runs["segment"], runs["analytic"], conditions["segment"]
     assert slider is not None
     limit = slider.mu * slider.normal_force
-    off = f", {100 * (chain.displacement / exact.displacement - 1):+.2g} % off it" if exact.displacement else ""
+    off = f", {100 * (chain.displacement / exact.displacement - 1):+.3g} % off it" if exact.displacement else ""
     return (
         Finding(what=f"mean speed ({how.run_words}, {how.force_words})",
                 found=f"{100 * chain.mean_speed:+.3g} cm/s on {chain.count} segments, "
@@ -117,8 +117,8 @@ def _findings(
                 f"nm on the exact beam{off}"),
         Finding(what="largest friction in that run",
                 found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of mu N = {1e3 * limit:.4g} mN"),
-        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, one-way, exact "
-                "beam); phases reversed",
+        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, one-way, its "
+                "inertia left out, exact beam); phases reversed",
                 found=f"{1e6 * drifts[0]:+.4g} µm/s; {1e6 * drifts[1]:+.4g} µm/s"),
         _bound(slider.kinematics, limit / slider.mass, how.duration, chain),
     )  # fmt: skip
@@ -130,7 +130,8 @@ def _bound(kinematics: str, pull: float, duration: float, chain: Motion) -> Find
     fastest = float(abs(chain.speed - chain.speed[0]).max())
     if kinematics == "tangential":
         found = (f"tangential: the mean speed changes by at most mu N t / 2m = {50 * pull * duration:.3g} cm/s; "
-                 f"largest change of speed {100 * fastest:.3g} cm/s of {100 * pull * duration:.3g} cm/s")  # fmt: skip
+                 f"largest change of speed {100 * fastest:.3g} cm/s of mu N t / m = {100 * pull * duration:.3g} "
+                 "cm/s")  # fmt: skip
     else:
         found = "following: no bound, the turning surface itself pushes the slider"
     return Finding(what=what, found=found)

@@ -198,7 +198,8 @@ def _axial_study(scene: "Scene", asked: "AxialInertia") -> str:
 
 def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
     """How a slider is coupled and whether the chain may be linear, by size."""
-    if not (scene.slider or scene.axial_inertia) or not scene.forces or scene.beam.stepped:
+    slider = scene.slider if _slides(scene) else None
+    if not (slider or scene.axial_inertia) or not scene.forces or scene.beam.stepped:
         return ()
     from verify.analytic_modes import solve_harmonic
 
@@ -207,8 +208,13 @@ def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
         field = solve_harmonic(scene.beam, scene.forces, scene.drive.frequency_hz)
     except InputError:
         return ()
-    chosen = () if scene.slider is None else (*_coupling(scene.slider, field), _linear(field))
+    chosen = () if slider is None else (*_coupling(slider, field), _linear(field))
     return chosen if scene.axial_inertia is None else (*chosen, _over_the_force(scene, scene.axial_inertia))
+
+
+def _slides(scene: "Scene") -> bool:
+    """Whether anything runs the scene's slider."""
+    return bool(scene.motion or scene.readings) or any(name.startswith("slider.") for _, name in _asked(scene))
 
 
 def _coupling(slider: "Slider", field: "HarmonicField") -> tuple[Skipped, ...]:
@@ -222,7 +228,7 @@ def _coupling(slider: "Slider", field: "HarmonicField") -> tuple[Skipped, ...]:
     found = coupling_of(slider, field.beam, field.frequency_hz, surface_speed(field, x), felt)
     chosen = Skipped(f"{'two' if found.two_way else 'one'}-way coupling", found.told
                      + (", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"))  # fmt: skip
-    return (chosen, Skipped("massless slider across the beam", found.simplified)) if found.simplified else (chosen,)
+    return (chosen, Skipped("slider that the beam does not carry", found.simplified)) if found.simplified else (chosen,)
 
 
 def _linear(field: "HarmonicField") -> Skipped:
@@ -298,6 +304,8 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:
         left += [] if compiled else [Skipped("numba", "nothing asked is stepped")]
     if scene.slider is None:
         left.append(Skipped("contact search", "the scene has no slider"))
+    elif not _slides(scene):
+        left.append(Skipped("slider", "nothing runs it: add [motion] with a duration"))
     left += [] if scene.claim else [Skipped("published claims", "the scene has no [[claim]]")]
     studies = {name: getattr(scene, name) for name in STUDIES}
     left += [Skipped(f"{name} study", f"the scene has no [{name}]") for name, asked in studies.items() if not asked]
