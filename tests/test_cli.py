@@ -43,6 +43,7 @@ def test_run_as_json_holds_the_gates_and_nothing_else_is_printed(verify):
     gate = next(g for g in data["gates"] if g["id"] == "segment-mode-22")
     assert gate["measured"] == pytest.approx(-0.00428024, abs=5e-9)
     assert gate["expected"] == "-0.00428024 ± 5e-09"
+    assert gate["band"] == {"expect": -0.00428024, "within": 5e-9, "at_least": None, "at_most": None}
 
 
 def test_a_failing_gate_exits_with_1_and_says_which_and_why(verify, tmp_path):

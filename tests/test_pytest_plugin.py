@@ -100,8 +100,8 @@ def test_junit_properties_carry_the_measurement(pytester, scene):
     properties = {c.get("name"): {p.get("name"): p.get("value") for p in c.iter("property")} for c in cases}
     good = properties["good"]
     assert float(good["measured"]) == pytest.approx(-3.609e-5, abs=1e-8)
-    assert float(good["expected"]) == -4.5e-5
-    assert good["band"] == "± 5e-06"
+    assert (float(good["expect"]), float(good["within"])) == (-4.5e-5, 5e-6)
+    assert good["band"] == "-4.5e-05 ± 5e-06"
     assert float(good["share_of_band_used"]) > 1
     assert float(good["seconds"]) > 0
     assert "lower" in properties["other"]["measured"]

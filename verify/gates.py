@@ -16,6 +16,15 @@ if TYPE_CHECKING:
     from verify.workbench import Need, Workbench
 
 
+class Band(msgspec.Struct, frozen=True, kw_only=True):
+    """What a gate allows, as it was given: `expect` with `within`, `at_least`, `at_most`; None where not given."""
+
+    expect: float | Complex | None
+    within: float | None
+    at_least: float | None
+    at_most: float | None
+
+
 class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     """One gate's verdict: the same object is a test item, a row in the terminal and a row of the report."""
 
@@ -26,6 +35,8 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     unit: str
     expected: str
     """The expectation in words: '-0.00428024 ± 5e-09', 'at most 0.01', 'contains 4469.94'."""
+    band: Band
+    """The same in numbers."""
     measured: Any
     """A number or {"lower", "upper"}; None where the gate could not be evaluated."""
     passed: bool
@@ -58,9 +69,14 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
         reason, share = _verdict(gate, value)
     return GateResult(
         id=gate.id, quantity=gate.quantity, arguments=gate.arguments, why=gate.why, unit=unit,
-        expected=expectation(gate), measured=as_plain(value), passed=not reason, share=share, reason=reason,
-        seconds=perf_counter() - start,
+        expected=expectation(gate), band=given_band(gate), measured=as_plain(value), passed=not reason, share=share,
+        reason=reason, seconds=perf_counter() - start,
     )  # fmt: skip
+
+
+def given_band(gate: "Gate") -> Band:
+    """The band in numbers."""
+    return Band(expect=gate.expect, within=gate.within, at_least=gate.at_least, at_most=gate.at_most)
 
 
 def _evaluated(found: Quantity, gate: "Gate", scene: "Scene", bench: "Workbench") -> Any:

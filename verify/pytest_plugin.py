@@ -94,11 +94,11 @@ class GateItem(pytest.Item):
 
 def properties(result: "GateResult") -> list[tuple[str, object]]:
     """What JUnit keeps of a gate."""
-    expected, _, within = result.expected.partition(" ± ")
+    given = [(name, getattr(result.band, name)) for name in result.band.__struct_fields__]
     return [
         ("measured", str(result.measured)),
-        ("expected", expected),
-        ("band", f"± {within}" if within else result.expected),
+        *((name, repr(value)) for name, value in given if isinstance(value, float | int)),
+        ("band", result.expected),
         ("unit", result.unit),
         ("share_of_band_used", "" if result.share is None else f"{result.share:.6g}"),
         ("seconds", f"{result.seconds:.6g}"),
