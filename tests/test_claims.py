@@ -298,3 +298,44 @@ def test_a_step_load_seen_too_coarsely_is_not_compared_and_a_soft_start_is():
     assert "longer soft start" in found.remedy
     soft = load_scene("paper-slider")
     assert isinstance(at_equal_error(work_of(soft, soft.motion.counts)), Comparison)
+
+
+def test_claims_without_a_run_are_found_with_nothing(tmp_path, capsys):
+    text = (
+        STRANGER.split("[motion]", maxsplit=1)[0]
+        + """
+[[claim]]
+id = "sense"
+source = "Nobody"
+quantity = "slider.mean_speed"
+value = "negative"
+read = "stated"
+"""
+    )
+    path = tmp_path / "mine.toml"
+    path.write_text(text, "utf-8")
+    status_of(["run", str(path), "--reports", str(tmp_path)])
+    shown = capsys.readouterr().out
+    assert "cannot be evaluated" in shown
+    assert "found with" not in shown
+    assert "Found with ." not in (tmp_path / "mine.html").read_text("utf-8")
+
+
+def test_friction_that_sticks_allows_what_mu_static_does(tmp_path):
+    from verify.motion_study import motion_study
+
+    path = stranger(tmp_path)
+    path.write_text(path.read_text("utf-8").replace("slope = 300", 'law = "coulomb"\nmu_static = 0.9'), "utf-8")
+    found = {finding.what: finding.found for finding in motion_study(load_scene(path)).findings}
+    assert "mu_static N = 17.66 mN" in found["largest friction in that run"]
+    assert "mu_static N t / 2m = 0.883 cm/s" in found["what friction alone allows"]
+
+
+def test_a_slider_that_leaves_the_steady_wave_has_no_mean_speed_there(tmp_path):
+    from verify.motion_study import motion_study
+
+    path = stranger(tmp_path)
+    path.write_text(path.read_text("utf-8").replace("slope = 300", "slope = 300\nspeed = 3.0"), "utf-8")
+    (found,) = (one.found for one in motion_study(load_scene(path)).findings if "steady wave" in one.what)
+    assert found.count("none, the slider left the beam after 0.07") == 2
+    assert "m/s" not in found

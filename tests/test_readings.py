@@ -273,3 +273,15 @@ def test_too_many_readings_are_counted_before_they_are_refused():
     many = ",".join(str(0.01 + 0.001 * i) for i in range(300))
     with pytest.raises(InputError, match="make 24000 readings"):
         load_scene("paper-slider", (f"readings.mu=[{many}]",))
+
+
+def test_a_steady_beam_has_no_start_among_what_is_searched():
+    from verify.claim_words import searched_words
+    from verify.readings import searched_of
+
+    scene = small(positions=(), mu=(), kinematics=(), soft_start_periods=(), forces=(), chain=False, shown=0)
+    steady = replace(scene, motion=replace(scene.motion, start="steady", soft_start_periods=0.0))
+    assert searched_of(steady)["soft_start_periods"] == ()
+    found = readings_study(steady)
+    assert "start 0 periods" not in searched_words(found)
+    assert found.readings[0].condition.start == "steady"

@@ -9,7 +9,7 @@ import numpy as np
 from verify.beam import PointForce
 from verify.contact import Coupling, coupling_of, law_entries
 from verify.errors import InputError
-from verify.excited import longest_step, missed, speeds, stepped
+from verify.excited import gripped_step, longest_step, missed, speeds, stepped
 from verify.margins import margins_of
 from verify.motion import EndState, Ledger, Motion, Statistics
 from verify.moving_mass import carried_along, receptance, weighed_down
@@ -126,7 +126,10 @@ def _in_steps(
     duration, dt = sum(stage.duration for stage in stages), max(stage.dt for stage in stages)
     coarsest = 0.5 * dt if coupling.pushes_back and request.step is None else dt  # its waves run within a step
     enough = longest_step(stages, z, request.beam.length, coarsest)
+    rate = _grip(request.slider) if request.slider and coupling.two_way else 0.0
+    said = _sticking_note(stages, rate, dt) if request.step is not None else ()
     if request.step is None:
+        enough = gripped_step(stages, rate, enough)
         if duration / enough > MOST_STEPS:
             raise InputError(
                 f"duration = {duration!r} s: what the start excites takes steps of {enough:.2g} s, more than "
@@ -134,12 +137,29 @@ def _in_steps(
             )
         return stepped(stages, enough), ()
     if enough >= dt:
-        return stages, ()
+        return stages, said
     share = missed(*speeds(stages, z, request.beam.length), dt)
     return stages, (
+        *said,
         f"step: {dt:.3g} s is {dt / enough:.3g} times too long for what the start excites and misses "
         f"{100 * share:.2g} % of the surface's speed; give at most {enough:.2g} s",
     )
+
+
+def _sticking_note(stages: list[Stage], rate: float, dt: float) -> tuple[str, ...]:
+    """Of given steps, that a stick may gain energy in them."""
+    enough = gripped_step(stages, rate, dt)
+    if enough >= dt:
+        return ()
+    return (
+        f"step: {dt:.3g} s is longer than half a turn of the fastest mode, in which a slider that sticks to the beam "
+        f"can gain energy from friction; give at most {enough:.2g} s",
+    )
+
+
+def _grip(slider: Slider) -> float:
+    """K mu N / m, how fast friction takes the slider to the surface's speed, 1/s; endless for Coulomb's law."""
+    return float("inf") if slider.law == "coulomb" else slider.slope * slider.mu * slider.normal_force / slider.mass
 
 
 def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> tuple[float, Sliding]:

@@ -82,7 +82,7 @@ def _print_claims(console: Console, claims: "tuple[ClaimResult, ...]") -> None:
     from verify.claim_words import VERDICT, claimed_words, found_words
 
     for condition, group in groupby(claims, key=lambda claim: claim.condition):
-        console.print(Text.assemble(("published claims", "bold"), f", found with {condition}"))
+        console.print(Text.assemble(("published claims", "bold"), f", found with {condition}" if condition else ""))
         for claim in group:
             found = Text(f"{claim.id}: {claimed_words(claim)}; found {found_words(claim)}")
             source = Text(f"{claim.source} ({claim.read})", style="dim")
@@ -116,10 +116,12 @@ def _print_readings(console: Console, study: "ReadingsStudy") -> None:
         met.add_row(*group_cells(group), *(cm_per_s(v) for v in group.speeds or (None, None)), *counts)
         best.add_row(*group_cells(group), *best_cells(group))
     each = len(study.groups[0].readings)
-    console.print(f"mean speeds from and to, cm/s, and how many of {each} readings each claim holds in:")
+    counted = f", and how many of {each} readings each claim holds in:" if study.claims else f" of {each} readings:"
+    console.print(f"mean speeds from and to, cm/s{counted}")
     console.print(Text(legend(study)))
     console.print(met)
-    console.print("the first of those that meet most claims, and the same on the exact beam")
+    chosen = "the first of those that meet most claims" if study.claims else "the first of each row"
+    console.print(f"{chosen}, and the same on the exact beam")
     console.print(best)
     if study.turns:
         console.print("what a verdict turns with: share of neighbouring linear readings, one thing apart, that differ")

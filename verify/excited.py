@@ -11,6 +11,9 @@ from verify.time_basis import Array
 
 UNSEEN = 1e-4
 """Of the surface's speed, rms: what the steps of a run may miss of it."""
+STICKY = 0.1
+"""Of friction's own rate K mu N / m times a step: from there on a slider all but sticks to the beam it pushes back on.
+"""
 PLACES = 129
 """Along the beam, for the slope of a steady field."""
 
@@ -66,6 +69,19 @@ def longest_step(stages: Sequence[Stage], z: Array, length: float, longest: floa
     found = speeds(stages, z, length)
     step = longest
     while missed(*found, step) > UNSEEN:
+        step *= 0.5
+    return step
+
+
+def gripped_step(stages: Sequence[Stage], rate: float, longest: float) -> float:
+    """The longest of `longest`, its half, ... in which a slider that pushes back may stick to the beam, seconds.
+
+    `rate` is K mu N / m, endless for Coulomb's law. A stick matches speeds at the end of a step, which feeds modes that
+    make more than half a turn in it, and friction gains energy; a soft grip does not.
+    """
+    step, omegas = longest, stages[0].modal.omegas
+    fastest = float(omegas.max()) if len(omegas) else 0.0
+    while fastest * step > np.pi and rate * step > STICKY:
         step *= 0.5
     return step
 

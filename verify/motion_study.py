@@ -93,20 +93,25 @@ def drift_seconds(scene: "Scene") -> float:
     return min(DRIFT_S, DRIFT_PERIODS / scene.drive.frequency_hz)
 
 
-def _drift(scene: "Scene") -> float:
-    """Mean speed on the exact beam's steady wave over `drift_seconds`, whose beam feels no slider, m/s."""
+def _drift(scene: "Scene") -> str:
+    """Mean speed over `drift_seconds` of the exact beam's steady wave, which feels no slider; or why there is none."""
     asked = scene.motion
     assert asked is not None
     steady = replace(asked, start="steady", soft_start_periods=0.0, duration=drift_seconds(scene))
-    return run_once(replace(scene, motion=steady, readings=None), "analytic", None, coupling="one-way").mean_speed
+    run = run_once(replace(scene, motion=steady, readings=None), "analytic", None, coupling="one-way")
+    if run.statistics.stopped != "end":
+        return f"none, the slider {run.statistics.stopped} after {run.end.time:.3g} s"
+    return f"{1e6 * run.mean_speed:+.4g} µm/s"
 
 
 def _findings(
-    scene: "Scene", runs: dict[str, Motion], conditions: dict[str, Condition], drifts: list[float]
+    scene: "Scene", runs: dict[str, Motion], conditions: dict[str, Condition], drifts: list[str]
 ) -> tuple[Finding, ...]:
     slider, chain, exact, how = scene.slider, runs["segment"], runs["analytic"], conditions["segment"]
     assert slider is not None
-    limit = slider.mu * slider.normal_force
+    coefficient = slider.mu if slider.mu_static is None else slider.mu_static
+    limit = coefficient * slider.normal_force
+    named = "mu N" if slider.mu_static is None else "mu_static N"
     off = f", {100 * (chain.displacement / exact.displacement - 1):+.3g} % off it" if exact.displacement else ""
     return (
         Finding(what=f"mean speed ({how.run_words}, {how.force_words})",
@@ -116,21 +121,21 @@ def _findings(
                 found=f"{1e9 * chain.displacement:+.4g} nm on {chain.count} segments, {1e9 * exact.displacement:+.4g} "
                 f"nm on the exact beam{off}"),
         Finding(what="largest friction in that run",
-                found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of mu N = {1e3 * limit:.4g} mN"),
+                found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of {named} = {1e3 * limit:.4g} mN"),
         Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, one-way, its "
                 "inertia left out, exact beam); phases reversed",
-                found=f"{1e6 * drifts[0]:+.4g} µm/s; {1e6 * drifts[1]:+.4g} µm/s"),
-        _bound(slider.kinematics, limit / slider.mass, how.duration, chain),
+                found="; ".join(drifts)),
+        _bound(slider.kinematics, named, limit / slider.mass, how.duration, chain),
     )  # fmt: skip
 
 
-def _bound(kinematics: str, pull: float, duration: float, chain: Motion) -> Finding:
-    """What the law alone says of the speed: `pull` is mu N / m, m/s^2."""
+def _bound(kinematics: str, named: str, pull: float, duration: float, chain: Motion) -> Finding:
+    """What the law alone says of the speed: `pull` is the limit of friction, `named`, over m, m/s^2."""
     what = "what friction alone allows"
     fastest = float(abs(chain.speed - chain.speed[0]).max())
     if kinematics == "tangential":
-        found = (f"tangential: the mean speed changes by at most mu N t / 2m = {50 * pull * duration:.3g} cm/s; "
-                 f"largest change of speed {100 * fastest:.3g} cm/s of mu N t / m = {100 * pull * duration:.3g} "
+        found = (f"tangential: the mean speed changes by at most {named} t / 2m = {50 * pull * duration:.3g} cm/s; "
+                 f"largest change of speed {100 * fastest:.3g} cm/s of {named} t / m = {100 * pull * duration:.3g} "
                  "cm/s")  # fmt: skip
     else:
         found = "following: no bound, the turning surface itself pushes the slider"

@@ -118,8 +118,9 @@ def searched_of(scene: "Scene") -> dict[str, tuple[float | str, ...]]:
     assert asked is not None
     assert slider is not None
     assert motion is not None
+    soft = motion.soft_start_periods if motion.start == "rest" else None
     own: dict[str, float | str | None] = {
-        "kinematics": slider.kinematics, "normal": slider.normal, "soft_start_periods": motion.soft_start_periods,
+        "kinematics": slider.kinematics, "normal": slider.normal, "soft_start_periods": soft,
         "positions": slider.start_on(scene.beam), "forces": None, "mu": slider.mu, "slope": slider.slope,
     }  # fmt: skip
     return {name: tuple(getattr(asked, name)) or (() if own[name] is None else (own[name],)) for name in LISTS}  # type: ignore[misc]
@@ -213,8 +214,8 @@ def read_as(scene: "Scene", asked: ReadingsAsk, values: "dict[str, float | str |
     forces = drive.force if force is None else tuple(replace(one, amplitude=float(force)) for one in drive.force)
     return replace(
         scene, readings=None, gate=(), drive=replace(drive, force=forces), slider=replace(slider, mass=mass, **own),
-        motion=replace(motion, soft_start_periods=values["soft_start_periods"], count=asked.count or motion.count,
-                       duration=asked.duration or motion.duration),
+        motion=replace(motion, soft_start_periods=values["soft_start_periods"] or 0.0,
+                       count=asked.count or motion.count, duration=asked.duration or motion.duration),
     )  # fmt: skip
 
 
