@@ -234,7 +234,7 @@ def test_steps_follow_what_a_step_load_excites():
 def test_a_beam_that_a_weight_bends_is_not_shaken_by_it():
     """The sag stands still: a heavy slider on an undriven beam asks for no finer steps than a light one."""
     at_rest = (PointForce(position=0.1, amplitude=0.0),)
-    steps = [simulate(PAPER, at_rest, 300.0, 0.01, count=98, slider=Slider(mass=mass, mu=0.2, coupling="two-way")).statistics
+    steps = [simulate(PAPER, at_rest, 300.0, 0.01, count=98, slider=Slider(mass=mass, mu=0.2, slope=1.0, coupling="two-way")).statistics
              for mass in (1e-9, 0.7)]  # fmt: skip
     assert steps[0].steps == steps[1].steps == pytest.approx(0.01 * 300 * 128, rel=0.6)
 
