@@ -308,6 +308,7 @@ def test_claims_without_a_run_are_found_with_nothing(tmp_path, capsys):
 id = "sense"
 source = "Nobody"
 quantity = "slider.mean_speed"
+arguments = { count = 20 }
 value = "negative"
 read = "stated"
 """
@@ -339,3 +340,20 @@ def test_a_slider_that_leaves_the_steady_wave_has_no_mean_speed_there(tmp_path):
     (found,) = (one.found for one in motion_study(load_scene(path)).findings if "steady wave" in one.what)
     assert found.count("none, the slider left the beam after 0.07") == 2
     assert "m/s" not in found
+
+
+@pytest.mark.parametrize(("left_out", "named"), [("slider", "slider"), ("motion", "motion")])
+def test_a_claim_about_a_run_that_the_scene_has_not_names_what_is_missing(left_out, named):
+    whole = load_scene("paper-slider")
+    with pytest.raises(
+        InputError, match=rf"claim.to-the-left is about the run of a slider and the scene has no \[{named}\]"
+    ):
+        replace(whole, readings=None, gate=(), **{left_out: None})
+
+
+def test_the_plan_sizes_a_coupling_with_the_damping_of_the_motion():
+    """Strong damping leaves the surface slower: full friction is more of its speed."""
+    bare = replace(load_scene("paper-slider"), readings=None, claim=(), gate=())
+    damped = replace(bare, motion=replace(bare.motion, modal_damping=0.05))
+    one, other = (plan_scene(scene).chosen[0].why for scene in (bare, damped))
+    assert one != other

@@ -8,6 +8,7 @@ from verify.errors import InputError
 from verify.workbench import Key, Need, Settings, merged, model_module
 
 if TYPE_CHECKING:
+    from verify.beam import Beam
     from verify.fields import HarmonicField
     from verify.scene import AxialInertia, Scene, Wave
     from verify.slider import Slider
@@ -205,11 +206,19 @@ def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
 
     assert scene.drive is not None
     try:
-        field = solve_harmonic(scene.beam, scene.forces, scene.drive.frequency_hz)
+        field = solve_harmonic(_damped(scene), scene.forces, scene.drive.frequency_hz)
     except InputError:
         return ()
     chosen = () if slider is None else (*_coupling(slider, field), _linear(field))
     return chosen if scene.axial_inertia is None else (*chosen, _over_the_force(scene, scene.axial_inertia))
+
+
+def _damped(scene: "Scene") -> "Beam":
+    """The beam with what stands in for its loss factor in time: twice the ratio of every mode."""
+    from msgspec.structs import replace
+
+    ratio = scene.motion.modal_damping if scene.motion else None
+    return scene.beam if ratio is None else replace(scene.beam, loss_factor=2.0 * ratio)
 
 
 def _slides(scene: "Scene") -> bool:

@@ -244,6 +244,13 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def __post_init__(self) -> None:
         _check_ids("gate", [gate.id for gate in self.gate])
         _check_ids("claim", [claim.id for claim in self.claim])
+        for claim in self.claim:
+            if claim.of_run and (self.slider is None or self.motion is None):
+                missing = "slider" if self.slider is None else "motion"
+                raise InputError(
+                    f"claim.{claim.id} is about the run of a slider and the scene has no [{missing}]: add it, or give "
+                    "the claim arguments of its own"
+                )
         if self.drive is not None:
             check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
         forces = self.forces  # built here, so that one off the beam is refused with the scene
