@@ -300,7 +300,7 @@ def test_a_step_load_seen_too_coarsely_is_not_compared_and_a_soft_start_is():
     assert isinstance(at_equal_error(work_of(soft, soft.motion.counts)), Comparison)
 
 
-def test_claims_without_a_run_are_found_with_nothing(tmp_path, capsys):
+def test_a_claim_with_arguments_of_its_own_is_found_with_them(tmp_path, capsys):
     text = (
         STRANGER.split("[motion]", maxsplit=1)[0]
         + """
@@ -318,7 +318,7 @@ read = "stated"
     status_of(["run", str(path), "--reports", str(tmp_path)])
     shown = capsys.readouterr().out
     assert "cannot be evaluated" in shown
-    assert "found with" not in shown
+    assert "found with count = 20" in " ".join(shown.split())
     assert "Found with ." not in (tmp_path / "mine.html").read_text("utf-8")
 
 
