@@ -522,3 +522,11 @@ def test_a_wave_that_throws_the_slider_to_infinity_is_refused(verify):
 def test_a_force_too_small_to_square_is_refused(verify):
     given = ("segments=2", "force=1e-300", "--scene", "paper-wave")
     assert "give a larger force" in refused(verify, "measure", "chain.axial_departure", *given)
+
+
+def test_a_short_chain_over_a_long_time_is_refused_for_its_work(verify):
+    """Three links for two days: an evaluation costs more than its links."""
+    given = ("segments=3", "time=156903.0", "x=4.5", "inertia=transverse", "--scene", "paper-wave")
+    beam = ("--set", "beam.length=8.565", "--set", "beam.width=1.995", "--set", "beam.thickness=0.0425")
+    drive = ("--set", "drive.frequency_hz=3.2e-6")
+    assert "accelerations of links" in refused(verify, "measure", "chain.transient_deflection", *given, *beam, *drive)

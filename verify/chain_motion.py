@@ -20,7 +20,7 @@ from verify.chain_dynamics import (
 )
 from verify.chain_linear import choose_pivots
 from verify.chain_system import ChainState, ChainSystem, link_at
-from verify.chain_work import fixed_steps, refuse_work
+from verify.chain_work import fixed_steps, per_evaluation, refuse_work
 from verify.division import Array
 from verify.errors import InputError, near_name
 
@@ -184,7 +184,7 @@ def simulate(
         refuse_unstable(step, step_limit(system, begin) if limit is None else limit)
     if step is not None:
         seconds = float(samples[-1] - start.time)
-        refuse_work(4.0 * fixed_steps(seconds, step) * system.n_links, most, seconds)
+        refuse_work(4.0 * fixed_steps(seconds, step) * per_evaluation(system.n_links), most, seconds)
     run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
     clock = perf_counter()
     stopped = run.march(most, progress)
@@ -297,7 +297,7 @@ class _Pace:
 
     def part(self) -> float:
         """How much of the time is done. Raises InputError where the rest would be too much work."""
-        time, work = float(self.run.m.clock[0]), float(self.run.m.counts[2]) * self.run.system.n_links
+        time, work = float(self.run.m.clock[0]), float(self.run.m.counts[2]) * per_evaluation(self.run.system.n_links)
         (then, spent), self.before = self.before, (time, work)
         gone, last = time - self.begun, time - then
         rest = min(work / gone if gone > 0.0 else inf, (work - spent) / last if last > 0.0 else inf)

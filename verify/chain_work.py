@@ -10,6 +10,8 @@ from verify.errors import InputError
 
 MOST = 4e8
 """Accelerations of links in one motion."""
+OVERHEAD = 12
+"""Links as whose accelerations the rest of an evaluation counts: short chains are not as cheap as they are short."""
 DENSE_LINKS = 1000
 """Links of a chain whose modes are found by dense matrices: a second or two and 0.1 GiB."""
 STATIC_LINKS = 20_000
@@ -50,6 +52,11 @@ def refuse_work(work: float, most: float, seconds: float) -> None:
             f"time = {seconds:.6g} s takes about {work:.2g} accelerations of links and {most:.2g} are the most: give a "
             "shorter time, fewer segments, or a longer step or a larger tolerance"
         )
+
+
+def per_evaluation(links: int) -> int:
+    """Accelerations of links that one evaluation of a chain takes, by time."""
+    return links + OVERHEAD
 
 
 def fixed_steps(seconds: float, step: float) -> int:
