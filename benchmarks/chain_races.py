@@ -39,8 +39,15 @@ def case_of(n: int, amplitude: float) -> Case:
     """The paper's beam as a chain."""
     link, mass = BEAM.length / n, BEAM.mass_per_length * BEAM.length / n
     forces = ((0.0116, amplitude, -90.0), (BEAM.length - 0.0116, amplitude, 0.0))
-    return Case(n=n, length=BEAM.length, mass=mass, inertia=mass * link**2 / 12, spring=BEAM.bending_stiffness / link,
-                frequency_hz=FREQUENCY, forces=forces)  # fmt: skip
+    return Case(
+        n=n,
+        length=BEAM.length,
+        mass=mass,
+        inertia=mass * link**2 / 12,
+        spring=BEAM.bending_stiffness / link,
+        frequency_hz=FREQUENCY,
+        forces=forces,
+    )
 
 
 def system_of(case: Case) -> ChainSystem:

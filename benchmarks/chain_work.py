@@ -70,8 +70,11 @@ def system(s: Links, h: float, q0: Array, q1: Array, a: Array) -> None:
         r = 5 * i
         for axis in range(2):
             row, x, theta = r + axis, r + 2 + axis, r + 4
-            before, now = (-half * np.sin(q0[i, 2]), -half * np.sin(q1[i, 2])) if axis == 0 else (
-                half * np.cos(q0[i, 2]), half * np.cos(q1[i, 2]))  # fmt: skip
+            before, now = (
+                (-half * np.sin(q0[i, 2]), -half * np.sin(q1[i, 2]))
+                if axis == 0
+                else (half * np.cos(q0[i, 2]), half * np.cos(q1[i, 2]))
+            )
             a[row, x - row + BAND], a[row, theta - row + BAND] = -1.0, now
             a[x, row - x + BAND], a[theta, row - theta + BAND] = -1.0, before
             a[x, BAND] = s.mass / h
@@ -286,8 +289,10 @@ def _trap(case: Case, scale: float, errors: list[float]) -> None:
     """What the step load leaves ringing, and what that does to an implicit method of order 4."""
     basis = modal_basis(system_of(case))
     held = {khz: ringing(basis, case.length / 2, 1e3 * khz) / scale for khz in (6, 10, 20, 40, 80)}
-    print("  the step load leaves ringing, over the mid-span rms: "
-          + ", ".join(f"{share:.1e} above {khz} kHz" for khz, share in held.items() if share))  # fmt: skip
+    print(
+        "  the step load leaves ringing, over the mid-span rms: "
+        + ", ".join(f"{share:.1e} above {khz} kHz" for khz, share in held.items() if share)
+    )
     falls = ", ".join(f"{a / b:.3g}" for a, b in pairwise(errors))
     print(f"  over halved steps the implicit error falls by {falls}, where order 4 says 16")
 

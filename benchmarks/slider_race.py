@@ -30,14 +30,17 @@ STEPS = (20e-6, 15e-6, 12.5e-6, 10e-6, 7e-6, 5e-6, 3.5e-6, 2.5e-6, 1.7e-6, 1.2e-
 
 def own_run(n: int, model: str = "segment") -> Run:
     """The chain or the elements of this suite."""
-    forces = [PointForce(position=0.0116, amplitude=0.1, phase_deg=-90.0),
-              PointForce(position=BEAM.length - 0.0116, amplitude=0.1)]  # fmt: skip
+    forces = [
+        PointForce(position=0.0116, amplitude=0.1, phase_deg=-90.0),
+        PointForce(position=BEAM.length - 0.0116, amplitude=0.1),
+    ]
     sled = Sled()
     slider = Slider(mass=sled.mass, mu=sled.mu, slope=sled.slope, coupling="one-way")
 
     def run(step: float, end: float) -> tuple[float, float, float]:
-        found = simulate(BEAM, forces, FREQUENCY, end, model=model, count=n, slider=slider, step=step, samples=2,
-                         ledger=False)  # fmt: skip
+        found = simulate(
+            BEAM, forces, FREQUENCY, end, model=model, count=n, slider=slider, step=step, samples=2, ledger=False
+        )
         return found.displacement, float(found.speed[-1]), found.statistics.wall_s
 
     return run
@@ -139,8 +142,10 @@ def loading() -> None:
     """Seconds to import and to load the compiled loop from its cache, in a process of its own."""
     from subprocess import check_output
 
-    code = ("from time import perf_counter as t; b = t(); from verify import contact_kernels as k; i = t();"
-            "k.tanh_speed_change(0.1, 0.2, 1.0, 1.0, 0.1); print(i - b, t() - i)")  # fmt: skip
+    code = (
+        "from time import perf_counter as t; b = t(); from verify import contact_kernels as k; i = t();"
+        "k.tanh_speed_change(0.1, 0.2, 1.0, 1.0, 0.1); print(i - b, t() - i)"
+    )
     found = [[float(v) for v in check_output([sys.executable, "-c", code], text=True).split()] for _ in range(5)]
     imported, loaded = (median(column) for column in zip(*found, strict=True))
     print(f"numba imported in {imported:.2f} s, one kernel loaded from its cache in {loaded:.3f} s")

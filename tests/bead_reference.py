@@ -73,8 +73,13 @@ class ChainCurve:
         """w_x, w_xx, w_t, w_xt at a place, and the speed of the curve along x."""
         _, a, b, c, rise, d, e, f, along = self.known(t)
         s = x - self.x0
-        return (a + 2 * b * s + 3 * c * s**2, 2 * b + 6 * c * s, rise + d * s + e * s**2 + f * s**3,
-                d + 2 * e * s + 3 * f * s**2, along)  # fmt: skip
+        return (
+            a + 2 * b * s + 3 * c * s**2,
+            2 * b + 6 * c * s,
+            rise + d * s + e * s**2 + f * s**3,
+            d + 2 * e * s + 3 * f * s**2,
+            along,
+        )
 
 
 def mean_speed(curve, start, mu, slope, duration, gravity=9.81, max_step=2e-6):

@@ -8,8 +8,10 @@ from verify.beam import Beam, PointForce
 
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
 FREQUENCY = 1310.0
-FORCES = (PointForce(position=0.037, amplitude=1.3, phase_deg=17.0),
-          PointForce(position=0.402, amplitude=0.8, phase_deg=101.0))  # fmt: skip
+FORCES = (
+    PointForce(position=0.037, amplitude=1.3, phase_deg=17.0),
+    PointForce(position=0.402, amplitude=0.8, phase_deg=101.0),
+)
 
 
 def grown(t, soft_s):
@@ -58,9 +60,9 @@ def coupled_motion(basis, slider, duration, damping, soft_s=0.0, two_way=True):
         pull, drift = 0.0, 0.0
         if slider.kinematics == "following":
             pull, drift = rise * (turn + bend * v) - slider.gravity * slope, -slope * rise
-        return np.concatenate([
-            qd, bent - two_way * friction * along, [v + drift, pull + friction / slider.mass, friction]
-        ])  # fmt: skip
+        return np.concatenate(
+            [qd, bent - two_way * friction * along, [v + drift, pull + friction / slider.mass, friction]]
+        )
 
     y0 = np.zeros(2 * n + 3)
     y0[2 * n + 1] = slider.speed
@@ -103,9 +105,13 @@ def held_motion(basis, slider, duration, damping, soft_s=0.0):
         push = sum(f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in loads)
         bent = grown(t, soft_s) * push - 2 * damping * basis.omegas * qd - basis.omegas**2 * q
         pull = rise * (qd @ shape(material, 1) + q @ shape(material, 2) * v) - slider.gravity * slope
-        return np.concatenate([
-            qd, bent - friction * along - reaction * shape(material, 0), [along_x(y), pull * follows + friction / slider.mass]
-        ])  # fmt: skip
+        return np.concatenate(
+            [
+                qd,
+                bent - friction * along - reaction * shape(material, 0),
+                [along_x(y), pull * follows + friction / slider.mass],
+            ]
+        )
 
     def held(t, y):
         lifts = []

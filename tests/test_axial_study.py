@@ -18,8 +18,13 @@ from verify.run import n_steps, workbench_for
 from verify.validity import NONLINEAR, axial_inertia_size
 from verify.words import work_in_words
 
-SMALL = ("axial_inertia.count=21", "axial_inertia.forces=[2.0, 6.0]", "axial_inertia.shown=6.0",
-         "axial_inertia.duration=4e-4", "axial_inertia.x=0.13")  # fmt: skip
+SMALL = (
+    "axial_inertia.count=21",
+    "axial_inertia.forces=[2.0, 6.0]",
+    "axial_inertia.shown=6.0",
+    "axial_inertia.duration=4e-4",
+    "axial_inertia.x=0.13",
+)
 
 
 def small(*more):

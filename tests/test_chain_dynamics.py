@@ -43,16 +43,22 @@ def odd_chain(seed, n, **more):
     lengths = rng.uniform(0.02, 0.07, n)
     masses = rng.uniform(0.01, 0.04, n)
     link = 1 + n // 2
-    return ChainSystem(**{
-        "lengths": lengths, "masses": masses, "inertias": masses * lengths**2 * rng.uniform(0.05, 0.2, n),
-        "stiffness": rng.uniform(0.5, 4.0, n), "dashpots": rng.uniform(0.0, 2e-3, n), "gravity": (0.7, -9.81),
-        "rotation": Rotation(offset=0.1, rate=0.3, amplitude=0.2, frequency_hz=7.0, phase_deg=20.0),
-        "loads": (
-            LinkLoad(link=n, at=0.3 * lengths[-1], force=(0.2, -0.4), moment=0.013),
-            LinkLoad(link=link, at=0.9 * lengths[link - 1], force=(-0.1, 0.5), frequency_hz=31.0, phase_deg=40.0),
-        ),
-        **more,
-    })  # fmt: skip
+    return ChainSystem(
+        **{
+            "lengths": lengths,
+            "masses": masses,
+            "inertias": masses * lengths**2 * rng.uniform(0.05, 0.2, n),
+            "stiffness": rng.uniform(0.5, 4.0, n),
+            "dashpots": rng.uniform(0.0, 2e-3, n),
+            "gravity": (0.7, -9.81),
+            "rotation": Rotation(offset=0.1, rate=0.3, amplitude=0.2, frequency_hz=7.0, phase_deg=20.0),
+            "loads": (
+                LinkLoad(link=n, at=0.3 * lengths[-1], force=(0.2, -0.4), moment=0.013),
+                LinkLoad(link=link, at=0.9 * lengths[link - 1], force=(-0.1, 0.5), frequency_hz=31.0, phase_deg=40.0),
+            ),
+            **more,
+        }
+    )
 
 
 HELD = {
@@ -199,8 +205,13 @@ def test_at_rest_the_linearisation_is_the_segment_model(supports):
 
 def test_the_linearisation_is_the_derivative_of_the_accelerations_at_a_bent_equilibrium():
     system = odd_chain(
-        11, 6, tip="roller", axial_spring=40.0, rotation=Rotation(offset=0.2), loads=(LinkLoad(link=3, at=0.01, force=(0.3, 2.0), moment=0.02),)
-    )  # fmt: skip
+        11,
+        6,
+        tip="roller",
+        axial_spring=40.0,
+        rotation=Rotation(offset=0.2),
+        loads=(LinkLoad(link=3, at=0.01, force=(0.3, 2.0), moment=0.02),),
+    )
     rest = solve_static(system)
     assert abs(np.cumsum(rest.angles)).max() > 0.1
     linear = linearise(system, rest)
@@ -359,9 +370,12 @@ def test_elastic_and_gravitational_energy_are_those_of_the_links():
 )
 def test_bad_chains_are_refused_with_the_field_and_the_remedy(change, message):
     good = {
-        "lengths": [0.1, 0.1, 0.1], "masses": [0.1, 0.2, 0.1], "inertias": [1e-5] * 3, "stiffness": [0.0, 1.0, 1.0],
+        "lengths": [0.1, 0.1, 0.1],
+        "masses": [0.1, 0.2, 0.1],
+        "inertias": [1e-5] * 3,
+        "stiffness": [0.0, 1.0, 1.0],
         "dashpots": [0.0] * 3,
-    }  # fmt: skip
+    }
     arrays = {k: np.array(v, dtype=float) if isinstance(v, list) else v for k, v in {**good, **change}.items()}
     with pytest.raises(InputError, match=message):
         ChainSystem(**arrays)

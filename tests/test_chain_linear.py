@@ -38,9 +38,14 @@ def odd_turning(rate, moment=0.3, n=6):
     lengths, masses = rng.uniform(0.02, 0.07, n), rng.uniform(0.01, 0.04, n)
     loads = (LinkLoad(link=3, at=0.01, moment=moment), LinkLoad(link=n, at=0.01, moment=0.4 * moment))
     return ChainSystem(
-        lengths=lengths, masses=masses, inertias=masses * lengths**2 / 9, stiffness=np.linspace(0.5, 4.0, n),
-        dashpots=np.full(n, 2e-3), rotation=Rotation(offset=0.2, rate=rate), loads=loads,
-    )  # fmt: skip
+        lengths=lengths,
+        masses=masses,
+        inertias=masses * lengths**2 / 9,
+        stiffness=np.linspace(0.5, 4.0, n),
+        dashpots=np.full(n, 2e-3),
+        rotation=Rotation(offset=0.2, rate=rate),
+        loads=loads,
+    )
 
 
 @pytest.mark.parametrize("speed", FLAPPING)
@@ -86,8 +91,9 @@ def test_a_bent_turning_equilibrium_has_the_derivatives_of_its_accelerations():
     linear, h, still = linearise(system, rest), 1e-5, np.zeros(6)
 
     def slope(make):
-        return np.array([(accelerations(system, make(h * e)) - accelerations(system, make(-h * e))) / (2 * h)
-                         for e in np.eye(6)]).T  # fmt: skip
+        return np.array(
+            [(accelerations(system, make(h * e)) - accelerations(system, make(-h * e))) / (2 * h) for e in np.eye(6)]
+        ).T
 
     by_angles = slope(lambda step: ChainState(rest.angles + step, still))
     by_rates = slope(lambda step: ChainState(rest.angles, step))
@@ -153,8 +159,14 @@ def test_motions_without_a_spring_are_zero_and_not_unstable():
 
 def test_a_hanging_chain_upside_down_falls_and_one_link_under_a_roller_has_no_motion():
     n, still = 7, np.zeros(7)
-    up = ChainSystem(lengths=np.full(n, 0.1), masses=np.full(n, 0.02), inertias=np.full(n, 2e-5), stiffness=still,
-                     dashpots=still, gravity=(-9.81, 0.0))  # fmt: skip
+    up = ChainSystem(
+        lengths=np.full(n, 0.1),
+        masses=np.full(n, 0.02),
+        inertias=np.full(n, 2e-5),
+        stiffness=still,
+        dashpots=still,
+        gravity=(-9.81, 0.0),
+    )
     assert (linearise(up, at_rest(up)).squares() < 0.0).all()
     with pytest.raises(InputError, match="modes 1 to 7 grow"):
         linearise(up, at_rest(up)).frequencies()
@@ -167,8 +179,13 @@ def test_a_gyroscope_may_hold_what_springs_let_go_or_flutter():
 
     def spun(g):
         turn = g * np.array([[0.0, 1.0], [-1.0, 0.0]])
-        return Linearisation(mass=np.eye(2), damping=np.zeros((2, 2)), stiffness=-np.diag([1.0, 2.0]),
-                             constraint=np.zeros((0, 2)), gyroscopic=turn)  # fmt: skip
+        return Linearisation(
+            mass=np.eye(2),
+            damping=np.zeros((2, 2)),
+            stiffness=-np.diag([1.0, 2.0]),
+            constraint=np.zeros((0, 2)),
+            gyroscopic=turn,
+        )
 
     assert spun(3.0).squares() == pytest.approx([3 - np.sqrt(7), 3 + np.sqrt(7)], rel=1e-12)
     with pytest.raises(InputError, match=r"it flutters at .* rad/s and grows with .* 1/s"):

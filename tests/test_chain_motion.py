@@ -31,9 +31,15 @@ def energy_of(system, state):
 
 @pytest.mark.parametrize(
     "kind",
-    [{}, {"tip": "roller"}, {"tip": "roller", "axial_spring": 300.0}, {"axial_inertia": False}, {"gravity": (2.0, -9.81)}],
+    [
+        {},
+        {"tip": "roller"},
+        {"tip": "roller", "axial_spring": 300.0},
+        {"axial_inertia": False},
+        {"gravity": (2.0, -9.81)},
+    ],
     ids=lambda kind: " ".join(kind) or "free tip",
-)  # fmt: skip
+)
 def test_an_undamped_chain_keeps_its_energy_and_falls_short_with_the_tolerance(kind):
     system = free_chain(**kind)
     start = project(system, ChainState(0.3 * some_state(system, 1).angles, 0.5 * some_state(system, 2).rates))[0]
@@ -105,7 +111,17 @@ def test_a_turning_hub_drives_one_link_as_its_spring_says():
     assert abs(motion.residual()).max() < 1e-7 * motion.work_in.max()
 
 
-@pytest.mark.parametrize("extra", [{}, {"tip": "roller", "axial_spring": 50.0}, {"tip": "roller", "actuators": (Actuator(link=4, at=0.01, amplitude=2e-3, frequency_hz=30.0, phase_deg=-90.0),)}])  # fmt: skip
+@pytest.mark.parametrize(
+    "extra",
+    [
+        {},
+        {"tip": "roller", "axial_spring": 50.0},
+        {
+            "tip": "roller",
+            "actuators": (Actuator(link=4, at=0.01, amplitude=2e-3, frequency_hz=30.0, phase_deg=-90.0),),
+        },
+    ],
+)
 def test_the_energy_ledger_closes_with_loads_dashpots_hub_and_actuators(extra):
     system = odd_chain(6, 6, **extra)
     start = project(system, ChainState(np.zeros(6), np.zeros(6)))[0]

@@ -82,7 +82,11 @@ def test_the_linear_transient_is_in_proportion_to_the_force():
 @pytest.mark.parametrize(
     ("name", "arguments", "message"),
     [
-        ("transient_deflection", {"time": 1e-3, "x": 0.1, "segments": 49, "step": 3e-5}, "above the stability limit 2.898e-05 s of rk4"),
+        (
+            "transient_deflection",
+            {"time": 1e-3, "x": 0.1, "segments": 49, "step": 3e-5},
+            "above the stability limit 2.898e-05 s of rk4",
+        ),
         ("transient_deflection", {"time": 1e-3, "x": 0.1, "segments": 9, "method": "modal"}, "step is missing"),
         ("transient_deflection", {"time": 1e-3, "x": 0.6, "segments": 9}, "lies off the chain"),
         ("transient_deflection", {"time": -1e-3, "x": 0.1, "segments": 9}, "time = -0.001"),
@@ -90,7 +94,7 @@ def test_the_linear_transient_is_in_proportion_to_the_force():
         ("large_amplitude_frequency", {"amplitude": 1e5, "segments": 9}, "up to L / 10"),
         ("cantilever_tip", {"load": 1.0, "segments": 9, "component": "slope"}, "component = 'slope' is not known"),
     ],
-)  # fmt: skip
+)
 def test_bad_questions_are_refused(name, arguments, message):
     with pytest.raises(InputError, match=message):
         figure(name, **arguments)
@@ -145,9 +149,11 @@ def test_links_that_stretch_feel_where_the_soft_section_lies():
 
 
 IN_TIME = {
-    "large_amplitude_frequency": {"amplitude": 1.3}, "energy_drift": {"step": 2e-4},
-    "transient_deflection": {"time": 2e-4, "x": 0.1}, "axial_departure": {"force": 2.0, "time": 2e-4},
-}  # fmt: skip
+    "large_amplitude_frequency": {"amplitude": 1.3},
+    "energy_drift": {"step": 2e-4},
+    "transient_deflection": {"time": 2e-4, "x": 0.1},
+    "axial_departure": {"force": 2.0, "time": 2e-4},
+}
 
 
 @pytest.mark.parametrize("name", IN_TIME)
@@ -225,17 +231,52 @@ def test_one_link_between_held_ends_is_refused_in_words_and_in_a_gates_verdict(n
         ("rollup_gap", {"segments": 10**12}, (), "segments = 1000000000000: an equilibrium"),
         ("energy_drift", {"segments": 10**5}, (), "segments = 100000: the modes"),
         ("large_amplitude_frequency", {"segments": 10**5, "amplitude": 1.0}, (), "segments = 100000: the modes"),
-        ("transient_deflection", {"segments": 10**12, "time": 1e-3, "x": 0.1}, (), "segments = 1000000000000: a motion"),
-        ("transient_deflection", {"segments": 49, "time": 1e3, "x": 0.1}, (), r"time = 1000 s takes about .* accelerations of links and 4e\+08 are the most"),
-        ("transient_deflection", {"segments": 49, "time": 1e3, "x": 0.1, "step": 1e-6}, (), r"time = 1000 s takes about 2.4e\+11"),
-        ("transient_deflection", {"segments": 49, "time": 1e3, "x": 0.1, "step": 1e-9, "method": "modal"}, (), "time = 1000 s takes about"),
+        (
+            "transient_deflection",
+            {"segments": 10**12, "time": 1e-3, "x": 0.1},
+            (),
+            "segments = 1000000000000: a motion",
+        ),
+        (
+            "transient_deflection",
+            {"segments": 49, "time": 1e3, "x": 0.1},
+            (),
+            r"time = 1000 s takes about .* accelerations of links and 4e\+08 are the most",
+        ),
+        (
+            "transient_deflection",
+            {"segments": 49, "time": 1e3, "x": 0.1, "step": 1e-6},
+            (),
+            r"time = 1000 s takes about 2.4e\+11",
+        ),
+        (
+            "transient_deflection",
+            {"segments": 49, "time": 1e3, "x": 0.1, "step": 1e-9, "method": "modal"},
+            (),
+            "time = 1000 s takes about",
+        ),
         ("energy_drift", {"segments": 60, "periods": 1000.0}, (), "takes about .* accelerations of links"),
         ("energy_drift", {"segments": 9, "step": 1e-300}, (), "takes about .* accelerations of links"),
-        ("axial_departure", {"segments": 49, "force": 1.0}, ("drive.frequency_hz=1e12",), r"time = 0.001 s at drive.frequency_hz = 1000000000000.0 would keep 4e\+10 states"),
-        ("axial_departure", {"segments": 49, "force": 1.0, "time": 0.09}, ("beam.youngs_modulus=70e15",), "takes about .* accelerations"),
-        ("axial_departure", {"segments": 49, "force": 1.0, "inertia": "elastic"}, ("beam.youngs_modulus=70e18",), "takes about .* accelerations"),
+        (
+            "axial_departure",
+            {"segments": 49, "force": 1.0},
+            ("drive.frequency_hz=1e12",),
+            r"time = 0.001 s at drive.frequency_hz = 1000000000000.0 would keep 4e\+10 states",
+        ),
+        (
+            "axial_departure",
+            {"segments": 49, "force": 1.0, "time": 0.09},
+            ("beam.youngs_modulus=70e15",),
+            "takes about .* accelerations",
+        ),
+        (
+            "axial_departure",
+            {"segments": 49, "force": 1.0, "inertia": "elastic"},
+            ("beam.youngs_modulus=70e18",),
+            "takes about .* accelerations",
+        ),
     ],
-)  # fmt: skip
+)
 def test_work_and_memory_are_counted_before_they_are_spent(name, arguments, scene, message):
     with pytest.raises(InputError, match=message) as refused:
         figure(name, load_scene("chain", ("axial_inertia={}", *scene)), **arguments)

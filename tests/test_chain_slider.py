@@ -18,8 +18,10 @@ SLIDER = Slider(mass=1e-3, mu=0.23, slope=120.0, position=0.231, coupling="one-w
 
 
 def forces(amplitude):
-    return [PointForce(position=0.0116, amplitude=amplitude, phase_deg=-90.0),
-            PointForce(position=0.4871, amplitude=1.3 * amplitude)]  # fmt: skip
+    return [
+        PointForce(position=0.0116, amplitude=amplitude, phase_deg=-90.0),
+        PointForce(position=0.4871, amplitude=1.3 * amplitude),
+    ]
 
 
 def ridden(beam, amplitude, n=25, slider=SLIDER, nonlinear=True, duration=0.8e-3):

@@ -101,17 +101,27 @@ def test_a_claim_may_not_stand_twice():
 
 @pytest.fixture(scope="module")
 def result():
-    few = ("readings.forces=[30]", "readings.mu=[0.2]", "readings.slope=[1e4]", "readings.positions=[0.25]",
-           'readings.kinematics=["following"]', "motion.counts=[49,98,196]")  # fmt: skip
+    few = (
+        "readings.forces=[30]",
+        "readings.mu=[0.2]",
+        "readings.slope=[1e4]",
+        "readings.positions=[0.25]",
+        'readings.kinematics=["following"]',
+        "motion.counts=[49,98,196]",
+    )
     return run_scene(replace(load_scene("paper-slider", few), gate=()))
 
 
 def test_each_claim_stands_beside_what_is_found_under_a_condition_that_is_named(result):
     by_id = {claim.id: claim for claim in result.claims}
     assert {name: claim.holds for name, claim in by_id.items()} == {
-        "to-the-left": True, "mean-speed": False, "saturation": True, "mean-force": False, "surface-speed": False,
+        "to-the-left": True,
+        "mean-speed": False,
+        "saturation": True,
+        "mean-force": False,
+        "surface-speed": False,
         "reversal": True,
-    }  # fmt: skip
+    }
     speed = by_id["mean-speed"]
     assert speed.found == pytest.approx(-1.3834e-6, rel=1e-3)
     assert speed.exact == pytest.approx(-9.107e-7, rel=1e-3)
@@ -235,8 +245,18 @@ def rows(segment, fem, times=(1.0, 2.0, 4.0)):
             from math import log2
 
             order = log2(before / error) if before and before * error > 0 else None
-            made.append(WorkRow(model=model, count=n, rows=n, displacement=1 + error, error=error, order=order,
-                                run_ms_per_ms=factor * time, set_up_ms=5 * factor**3.3219280948873626))  # fmt: skip
+            made.append(
+                WorkRow(
+                    model=model,
+                    count=n,
+                    rows=n,
+                    displacement=1 + error,
+                    error=error,
+                    order=order,
+                    run_ms_per_ms=factor * time,
+                    set_up_ms=5 * factor**3.3219280948873626,
+                )
+            )
             before = error
     return Work(rows=tuple(made), step_floor=1e-7, duration=2e-3)
 

@@ -340,16 +340,26 @@ def test_init_writes_a_scene_that_runs_and_does_not_overwrite(verify, tmp_path):
 
 
 BAD = [
-    ("run", "papr"), ("run", "none.toml"), ("run", "."), ("table", "paper", "--modes", "0"), ("table", "paper", "--counts", "x"),
-    ("table", "paper", "--counts", "1e3"), ("table", "paper", "--counts", "10000000000000"), ("table", "paper", "--modes", ""),
-    ("table", "paper", "--counts", "1,2"), ("measure", "mode.frequncy"), ("measure", "mode.frequency", "model=segmnt", "mode=1"),
+    ("run", "papr"),
+    ("run", "none.toml"),
+    ("run", "."),
+    ("table", "paper", "--modes", "0"),
+    ("table", "paper", "--counts", "x"),
+    ("table", "paper", "--counts", "1e3"),
+    ("table", "paper", "--counts", "10000000000000"),
+    ("table", "paper", "--modes", ""),
+    ("table", "paper", "--counts", "1,2"),
+    ("measure", "mode.frequncy"),
+    ("measure", "mode.frequency", "model=segmnt", "mode=1"),
     ("measure", "mode.frequency", "model=segment", "mode=0", "count=9"),
     ("measure", "mode.frequency", "model=segment", "mode=9", "count=9"),
     ("measure", "mode.frequency", "model=fem", "mode=19", "count=9"),
     ("measure", "mode.frequency", "model=segment", "mode=1", "count=10000000000000"),
     ("measure", "mode.frequency", "model=segment", "mode=1", "count=-4"),
     ("measure", "mode.frequency", "model=segment", "mode=nan", "count=9"),
-    ("measure", "mode.frequency", "mode"), ("measure", "mode.frequency"), ("measure", "mode.frequency", "model=analytic", "mode=1", "extra=2"),
+    ("measure", "mode.frequency", "mode"),
+    ("measure", "mode.frequency"),
+    ("measure", "mode.frequency", "model=analytic", "mode=1", "extra=2"),
     ("measure", "mode.frequency", "model=analytic", "mode=1", "--scene", "nowhere"),
     ("measure", "mode.frequency", "model=analytic", "mode=1", "--set", "beam.length=nan"),
     ("measure", "mode.frequency", "model=analytic", "mode=1", "--set", "beam.thickness=0"),
@@ -358,7 +368,8 @@ BAD = [
     ("measure", "mode.bracket", "mode=3", "count=9", "--set", "beam.supports=clamped,free"),
     ("measure", "mode.count_needed", "model=segment", "mode=3", "error=0"),
     ("measure", "mode.count_needed", "model=segment", "mode=3", "error=1e-30"),
-    ("measure", "drive.quarter_wavelength", "frequency_hz=0"), ("measure", "drive.rule_frequency", "mode=1"),
+    ("measure", "drive.quarter_wavelength", "frequency_hz=0"),
+    ("measure", "drive.rule_frequency", "mode=1"),
     ("choose", "--mode", "0", "--error", "1%"),
     ("choose", "--mode", "x", "--error", "1%"),
     ("choose", "--mode", "3", "--error", "0"),
@@ -405,8 +416,12 @@ BAD = [
     ("table", "steel-cantilever", "--wave"),
     ("run", "paper-wave", "--set", "drive.force.0.position=0.6"),
     ("run", "paper-wave", "--set", "wave.counts=0,2"),
-    ("plan", "papr"), ("nosuch",), ("run",), ("init", "no/such/folder/my.toml"), ("run", "paper", "--set", "beam"),
-]  # fmt: skip
+    ("plan", "papr"),
+    ("nosuch",),
+    ("run",),
+    ("init", "no/such/folder/my.toml"),
+    ("run", "paper", "--set", "beam"),
+]
 
 
 @pytest.mark.parametrize("words", BAD, ids=" ".join)
@@ -481,10 +496,15 @@ def test_the_installed_command_is_the_module():
 
 @pytest.mark.parametrize(
     "words",
-    [("table", "paper", "--counts", "30,40"), ("table", "paper", "--wave", "--counts", "49"), ("quantities",),
-     ("table", "paper", "--sweep", "frequency_hz=4000:4600:241", "--csv"), ("plan", "paper")],
+    [
+        ("table", "paper", "--counts", "30,40"),
+        ("table", "paper", "--wave", "--counts", "49"),
+        ("quantities",),
+        ("table", "paper", "--sweep", "frequency_hz=4000:4600:241", "--csv"),
+        ("plan", "paper"),
+    ],
     ids=" ".join,
-)  # fmt: skip
+)
 def test_a_reader_that_leaves_ends_the_command_without_a_word(words):
     """The reader has gone before the first line is written."""
     read, write = os.pipe()
@@ -497,14 +517,17 @@ def test_a_reader_that_leaves_ends_the_command_without_a_word(words):
 
 
 @pytest.mark.parametrize(
-    "words", [("table", "paper", "--counts", "30,40"), ("plan", "steel-cantilever"), ("choose", "--mode", "3", "--error", "1%")],
+    "words",
+    [("table", "paper", "--counts", "30,40"), ("plan", "steel-cantilever"), ("choose", "--mode", "3", "--error", "1%")],
     ids=" ".join,
-)  # fmt: skip
+)
 def test_a_terminal_that_knows_ascii_alone_is_written_to(words):
     done = subprocess.run(
-        [sys.executable, "-m", "verify", *words], capture_output=True, check=False,
+        [sys.executable, "-m", "verify", *words],
+        capture_output=True,
+        check=False,
         env=os.environ | {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},
-    )  # fmt: skip
+    )
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout.isascii()
 

@@ -13,9 +13,18 @@ SINES = np.array([np.sin(n * np.pi * X) for n in (1, 2, 3, 4)])
 
 
 def fake_modes(shapes):
-    return Modes(model="segment", count=40, length=1.0, frequencies_hz=np.arange(1.0, len(shapes) + 1), nodes=X,
-                 shapes=lambda x, k: shapes, points=X, sampled=lambda: shapes,
-                 curvature_points=X, curvatures=lambda: shapes)  # fmt: skip
+    return Modes(
+        model="segment",
+        count=40,
+        length=1.0,
+        frequencies_hz=np.arange(1.0, len(shapes) + 1),
+        nodes=X,
+        shapes=lambda x, k: shapes,
+        points=X,
+        sampled=lambda: shapes,
+        curvature_points=X,
+        curvatures=lambda: shapes,
+    )
 
 
 def test_mac_is_one_for_a_scaled_turned_shape_and_zero_for_an_orthogonal_one():

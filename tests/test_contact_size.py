@@ -27,9 +27,13 @@ def friction_size(slider, beam, frequency_hz, speed):
 def wave(beam, amplitude, k, frequency_hz=HERTZ):
     """The field amplitude e^{-ikx} on a beam, whatever drives it."""
     return HarmonicField(
-        model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=(),
+        model="analytic",
+        count=None,
+        beam=beam,
+        frequency_hz=frequency_hz,
+        forces=(),
         shapes=lambda x, derivative: amplitude * (-1j * k) ** derivative * np.exp(-1j * k * x),
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("x", [0.0, 0.0317, 0.41, 0.73])
@@ -119,8 +123,18 @@ def test_a_run_sizes_its_coupling_by_the_steady_surface_where_the_slider_starts(
     """At 0.25 m a slope of both phases, of which neither part is the whole."""
     slider = Slider(mass=1e-9, mu=0.23, preload=0.031, position=0.25)
     drives = (PointForce(position=0.05, amplitude=30.0), PointForce(position=0.66, amplitude=22.0, phase_deg=71.0))
-    found = simulate(titanium_strip, drives, HERTZ, 2e-5, model=model, count=count, start=start, slider=slider,
-                     samples=2, ledger=False).coupling  # fmt: skip
+    found = simulate(
+        titanium_strip,
+        drives,
+        HERTZ,
+        2e-5,
+        model=model,
+        count=count,
+        start=start,
+        slider=slider,
+        samples=2,
+        ledger=False,
+    ).coupling
     field = analytic_modes.solve_harmonic(titanium_strip, drives, HERTZ)
     slope = field.slope([0.25])[0]
     assert min(abs(slope.real), abs(slope.imag)) > 0.5 * abs(slope)
@@ -180,8 +194,18 @@ def test_a_run_sizes_inertia_by_what_the_beam_gives_way_where_the_slider_starts(
     drives = (PointForce(position=0.05, amplitude=30.0), PointForce(position=0.66, amplitude=22.0, phase_deg=71.0))
     for share, two_way in ((0.99, False), (1.01, True)):
         slider = Slider(mass=share * felt, mu=1e-4, position=a)
-        found = simulate(titanium_strip, drives, HERTZ, 2e-5, model=model, count=count, start=start, slider=slider,
-                         samples=2, ledger=False).coupling  # fmt: skip
+        found = simulate(
+            titanium_strip,
+            drives,
+            HERTZ,
+            2e-5,
+            model=model,
+            count=count,
+            start=start,
+            slider=slider,
+            samples=2,
+            ledger=False,
+        ).coupling
         assert found.normal_size == pytest.approx(share * FELT, rel=5e-3)
         assert found.relative_size == found.normal_size > found.friction_size
         assert found.two_way == two_way

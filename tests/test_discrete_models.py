@@ -278,10 +278,16 @@ def test_the_memory_guard_counts_more_than_a_driven_field_takes(titanium_strip, 
 @pytest.mark.parametrize("count", [3, 12, 31, 47])
 @pytest.mark.parametrize(
     "supports",
-    [("pinned", "pinned"), ("guided", "guided"), ("guided", "pinned"), ("free", "free"), ("free", "guided"),
-     ("pinned", "free")],
+    [
+        ("pinned", "pinned"),
+        ("guided", "guided"),
+        ("guided", "pinned"),
+        ("free", "free"),
+        ("free", "guided"),
+        ("pinned", "free"),
+    ],
     ids="-".join,
-)  # fmt: skip
+)
 def test_the_mean_of_both_is_nearer_than_elements_up_to_seven_tenths_of_the_modes(titanium_strip, supports, count):
     """Every mode that both have: exactly where it is said on pinned and guided ends, at most a mode later on free ones."""
     beam = replace(titanium_strip, supports=supports)

@@ -26,26 +26,53 @@ FORCES = [
 BASE: dict[str, Any] = {
     "name": "every-input",
     "beam": {
-        "length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0,
-        "supports": ["pinned", "pinned"], "loss_factor": 0.021,
+        "length": 0.73,
+        "width": 0.031,
+        "thickness": 0.0023,
+        "youngs_modulus": 113e9,
+        "density": 4470.0,
+        "supports": ["pinned", "pinned"],
+        "loss_factor": 0.021,
     },
     "drive": {"frequency_hz": 731.0, "kind": "force", "force": FORCES},
-    "spectrum": {}, "convergence": {}, "sensitivity": {"mode": 3}, "wave": {},
+    "spectrum": {},
+    "convergence": {},
+    "sensitivity": {"mode": 3},
+    "wave": {},
     "slider": {"mass": 3e-6, "mu": 0.23, "slope": 310.0, "position": 0.271, "speed": 0.004, "preload": 0.003},
     "motion": {"duration": 1.1e-3, "soft_start_periods": 0.3, "modal_damping": 0.013, "steps_per_period": 40},
     "claim": [
-        {"id": "a", "source": "Rossi 1987, page 3", "quantity": "slider.displacement", "value": "negative",
-         "read": "stated"},
-        {"id": "b", "source": "Rossi 1987, Figure 7", "quantity": "mode.frequency",
-         "arguments": {"model": "analytic", "mode": 3}, "value": 211.0, "tolerance": 0.5, "read": "figure"},
+        {
+            "id": "a",
+            "source": "Rossi 1987, page 3",
+            "quantity": "slider.displacement",
+            "value": "negative",
+            "read": "stated",
+        },
+        {
+            "id": "b",
+            "source": "Rossi 1987, Figure 7",
+            "quantity": "mode.frequency",
+            "arguments": {"model": "analytic", "mode": 3},
+            "value": 211.0,
+            "tolerance": 0.5,
+            "read": "figure",
+        },
     ],
     "gate": [{"id": "g", "quantity": "mode.frequency", "at_least": 1.0, "why": "it asks"}],
-}  # fmt: skip
+}
 READINGS = {
-    "kinematics": ["tangential"], "normal": ["held"], "soft_start_periods": [0.3, 0.0], "forces": [1.3, 2.9],
-    "mu": [0.23, 0.41], "slope": [310.0, 470.0], "positions": [0.271, 0.313],
-    "saturation": 0.023, "count": 11, "duration": 9e-4,
-}  # fmt: skip
+    "kinematics": ["tangential"],
+    "normal": ["held"],
+    "soft_start_periods": [0.3, 0.0],
+    "forces": [1.3, 2.9],
+    "mu": [0.23, 0.41],
+    "slope": [310.0, 470.0],
+    "positions": [0.271, 0.313],
+    "saturation": 0.023,
+    "count": 11,
+    "duration": 9e-4,
+}
 """Not in BASE: they want forces that are imposed, and would refuse the other kind for everybody."""
 STEP = [{"length": 0.31}, {"length": 0.42, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 97e9, "density": 5e3}]
 
@@ -83,8 +110,9 @@ STILL = {"beam": {"loss_factor": 0.0}}
 AT_ONCE = {**STILL, "motion": {"soft_start_periods": 0.0, "modal_damping": None}}
 SHAKEN = {
     "drive": {"force": [{**force, "amplitude": 90.0 * force["amplitude"]} for force in FORCES]},
-    "slider": {"speed": 3e-4, "slope": 2100.0, "mu": 0.003, "preload": 0.03, "mass": 1e-5}, "motion": {"duration": 2.3e-3},
-}  # fmt: skip
+    "slider": {"speed": 3e-4, "slope": 2100.0, "mu": 0.003, "preload": 0.03, "mass": 1e-5},
+    "motion": {"duration": 2.3e-3},
+}
 COULOMB = {
     **SHAKEN,
     "slider": {"preload": 0.03, "mass": 1e-5, "law": "coulomb", "mu": 0.0004, "mu_static": 0.0007, "speed": 0.0},
@@ -101,7 +129,10 @@ FIELDS = ("standing_wave_ratio", "reflection", "envelope", "travelling_index", "
 CASES: dict[str, list[Case]] = {
     "mode.frequency": [
         Case({"model": "analytic", "mode": 3}, on("clamped", "free")),
-        Case({"model": "analytic", "mode": 3, "theory": "timoshenko"}, {**AT_ONCE, "axial_inertia": {}, "readings": READINGS}),
+        Case(
+            {"model": "analytic", "mode": 3, "theory": "timoshenko"},
+            {**AT_ONCE, "axial_inertia": {}, "readings": READINGS},
+        ),
         Case({**FEM, "mode": 3}, stepped("clamped", "free")),
         Case({**SEGMENT, "mode": 3, **SETTINGS}, stepped("clamped", "free")),
         Case({"model": "mean", "count": 9, "mode": 3}),
@@ -127,7 +158,9 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "segment", "mode": 5, "counts": [12, 16, 24], "wall": "half"}, on("clamped", "pinned")),
         Case({"model": "fem", "mode": 3, "counts": [8, 16, 32]}, stepped("clamped", "free")),
     ],
-    "mode.shape_order": [Case({"model": "segment", "mode": 2, "counts": [8, 16, 32], "reading": "raw"}, on("clamped", "pinned"))],
+    "mode.shape_order": [
+        Case({"model": "segment", "mode": 2, "counts": [8, 16, 32], "reading": "raw"}, on("clamped", "pinned"))
+    ],
     "mode.bracket": [Case({"mode": 3, "count": 9, "wall": "half"}, on("clamped", "free"))],
     "mode.count_needed": [
         Case({"model": "segment", "mode": 3, "error": 4e-3, "wall": "half"}, on("clamped", "free")),
@@ -139,8 +172,20 @@ CASES: dict[str, list[Case]] = {
     "wave.deflection": [
         Case({"x": 0.31}),
         Case({"model": "fem", "count": 24, "x": 0.323, "modal_damping": 0.011}, stepped("clamped", "pinned")),
-        Case({"model": "segment", "count": 24, "x": 0.323, "joint_dashpot": 0.01, "load": "lever", "reading": "raw"}, stepped("clamped", "pinned")),
-        Case({"x": 0.31, "phase_deg": 33.0, "position": 0.05, "frequency_hz": 700.0, "loss_factor": 0.03, "drive": "displacement"}),
+        Case(
+            {"model": "segment", "count": 24, "x": 0.323, "joint_dashpot": 0.01, "load": "lever", "reading": "raw"},
+            stepped("clamped", "pinned"),
+        ),
+        Case(
+            {
+                "x": 0.31,
+                "phase_deg": 33.0,
+                "position": 0.05,
+                "frequency_hz": 700.0,
+                "loss_factor": 0.03,
+                "drive": "displacement",
+            }
+        ),
     ],
     **{f"wave.{name}": [Case({}), Case({"model": "segment", "count": 40, "window": [0.2, 0.5]})] for name in FIELDS},
     "wave.axis_ratio": [Case({"x": 0.33}), Case({"model": "fem", "count": 40, "window": [0.2, 0.5]})],
@@ -183,9 +228,13 @@ CASES: dict[str, list[Case]] = {
     "slider.reversal": [Case({"model": "segment", "count": 12}, {**SHAKEN, "readings": READINGS})],
     "slider.deflection": [
         Case({"model": "segment", "count": 12, "x": 0.31, "mass": 0.02}, COARSE),
-        Case({"model": "analytic", "modes": 9, "x": 0.31}, {**HEAVY, "motion": {**STEADY["motion"], **COARSE["motion"]}}),
-        Case({"model": "fem", "count": 12, "x": 0.31, "normal": "massless", "coupling": "two-way", "mass": 0.003},
-             {**COARSE, "drive": SHAKEN["drive"]}),
+        Case(
+            {"model": "analytic", "modes": 9, "x": 0.31}, {**HEAVY, "motion": {**STEADY["motion"], **COARSE["motion"]}}
+        ),
+        Case(
+            {"model": "fem", "count": 12, "x": 0.31, "normal": "massless", "coupling": "two-way", "mass": 0.003},
+            {**COARSE, "drive": SHAKEN["drive"]},
+        ),
     ],
     "slider.coupling_size": [
         Case({"of": "friction"}),
@@ -202,18 +251,27 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "analytic", "modes": 9, "x": 0.31}),
         Case({"model": "fem", "count": 12, "x": 0.31}, {"motion": {**STEADY["motion"], "modal_damping": None}}),
     ],
-    "chain.cantilever_tip": [Case({"load": 2.3, "segments": 5}), Case({"load": 2.3, "segments": 5, "component": "shortening"})],
+    "chain.cantilever_tip": [
+        Case({"load": 2.3, "segments": 5}),
+        Case({"load": 2.3, "segments": 5, "component": "shortening"}),
+    ],
     "chain.rollup_gap": [Case({"segments": 7, "wall": "gregory"})],
     "chain.hanging_frequency": [Case({"mode": 2, "segments": 4})],
     "chain.large_amplitude_frequency": [Case({"amplitude": 21.0, "segments": 4}, STILL)],
-    "chain.energy_drift": [Case({"segments": 3, "step": 2e-4, "periods": 0.3}, STILL), Case({"segments": 3, "periods": 0.3}, STILL)],
+    "chain.energy_drift": [
+        Case({"segments": 3, "step": 2e-4, "periods": 0.3}, STILL),
+        Case({"segments": 3, "periods": 0.3}, STILL),
+    ],
     "chain.transient_deflection": [
         Case({"time": 9e-4, "x": 0.31, "segments": 5, "force": 300.0}, AT_ONCE),
-        Case({"time": 9e-4, "x": 0.31, "segments": 5, "step": 3e-5, "inertia": "transverse"}, {**AT_ONCE, "drive": SHAKEN["drive"]}),
+        Case(
+            {"time": 9e-4, "x": 0.31, "segments": 5, "step": 3e-5, "inertia": "transverse"},
+            {**AT_ONCE, "drive": SHAKEN["drive"]},
+        ),
     ],
     "chain.axial_departure": [Case({"segments": 4, "force": 90.0, "time": 9e-4}, AT_ONCE)],
     "chain.turning_frequency": [Case({"mode": 2, "segments": 4, "speed": 3.7})],
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -275,102 +333,230 @@ def euler(asked):
 RELATIVE = "mode.frequency_error mode.law_ratio mode.shape_error mode.curvature_error mode.*order mode.count_needed"
 MATERIAL = "beam.width beam.thickness beam.youngs_modulus beam.density"
 DEAD = [
-    Dead("*", "name title description gate spectrum.* convergence.* sensitivity.* wave.* axial_inertia.*",
-         "what a scene asks for beside the figure"),
+    Dead(
+        "*",
+        "name title description gate spectrum.* convergence.* sensitivity.* wave.* axial_inertia.*",
+        "what a scene asks for beside the figure",
+    ),
     Dead("*", "claim readings.*", "a published claim and what is tried of it move no figure"),
     Dead("*", "motion.count motion.counts motion.samples", "sizes and samples of the scene's own study"),
-    Dead("mode.* drive.rule_frequency", "drive.* slider.* motion.* beam.loss_factor",
-         "free vibration without losses: nothing drives, nothing lies on it"),
+    Dead(
+        "mode.* drive.rule_frequency",
+        "drive.* slider.* motion.* beam.loss_factor",
+        "free vibration without losses: nothing drives, nothing lies on it",
+    ),
     Dead("*", "beam.poissons_ratio beam.shear_coefficient", "of Timoshenko's theory alone", euler),
     Dead("mode.frequency mode.node_position mode.bracket drive.*", "beam.width", "EI / rho A has no width", uniform),
-    Dead(RELATIVE, f"{MATERIAL} beam.length", "a relative error of a uniform beam knows mode, size and supports",
-         lambda a: uniform(a) and euler(a)),
-    Dead("mode.frequency_error", "beam.width beam.youngs_modulus beam.density",
-         "Timoshenko against Euler-Bernoulli: slenderness and Poisson's ratio alone", lambda a: not euler(a)),
+    Dead(
+        RELATIVE,
+        f"{MATERIAL} beam.length",
+        "a relative error of a uniform beam knows mode, size and supports",
+        lambda a: uniform(a) and euler(a),
+    ),
+    Dead(
+        "mode.frequency_error",
+        "beam.width beam.youngs_modulus beam.density",
+        "Timoshenko against Euler-Bernoulli: slenderness and Poisson's ratio alone",
+        lambda a: not euler(a),
+    ),
     Dead("mode.node_position", "beam.thickness beam.youngs_modulus beam.density", "a shape is geometry", uniform),
     Dead("mode.dispersion_error", "*", "rounding, whatever the beam and the size: that is what it says"),
     Dead("mode.*", "arguments.wall", "no clamped end has a joint", unclamped),
     Dead("mode.*", "arguments.joints", "both forms of Eq. (1) are one where E and I do not change", uniform),
-    Dead("drive.quarter_wavelength", "beam.length beam.supports.* beam.loss_factor drive.force.* drive.kind slider.* motion.*",
-         "of a wave on the beam's section, however long and held it is"),
+    Dead(
+        "drive.quarter_wavelength",
+        "beam.length beam.supports.* beam.loss_factor drive.force.* drive.kind slider.* motion.*",
+        "of a wave on the beam's section, however long and held it is",
+    ),
     Dead("*", "drive.frequency_hz", "given instead", given("frequency_hz")),
-    Dead("mode.count_needed", "arguments.of=least", "no smaller number happens to do",
-         lambda a: a.arguments["error"] > 1e-3),
-    Dead("mode.shape*", "arguments.reading=nodal", "nodal is the elements' one reading", lambda a: a.arguments["model"] == "fem"),
+    Dead(
+        "mode.count_needed",
+        "arguments.of=least",
+        "no smaller number happens to do",
+        lambda a: a.arguments["error"] > 1e-3,
+    ),
+    Dead(
+        "mode.shape*",
+        "arguments.reading=nodal",
+        "nodal is the elements' one reading",
+        lambda a: a.arguments["model"] == "fem",
+    ),
     Dead("wave.*", "slider.* motion.*", "a steady field with nothing on it"),
-    Dead("wave.standing_wave_ratio wave.reflection* wave.envelope wave.travelling_index wave.axis_ratio wave.signed_area_spread "
-         "wave.power_imbalance wave.best_frequency wave.order", "beam.width", "a ratio of one field: EI and rho A share the width"),
+    Dead(
+        "wave.standing_wave_ratio wave.reflection* wave.envelope wave.travelling_index wave.axis_ratio wave.signed_area_spread "
+        "wave.power_imbalance wave.best_frequency wave.order",
+        "beam.width",
+        "a ratio of one field: EI and rho A share the width",
+    ),
     Dead("wave.deflection", "beam.width", "imposed, not forced", lambda a: a.arguments["drive"] == "displacement"),
-    Dead("slider.coupling_size", "beam.width", "full friction and the drive move a beam in one ratio",
-         lambda a: uniform(a) and a.arguments["of"] == "friction"),
+    Dead(
+        "slider.coupling_size",
+        "beam.width",
+        "full friction and the drive move a beam in one ratio",
+        lambda a: uniform(a) and a.arguments["of"] == "friction",
+    ),
     Dead("*", "beam.loss_factor", "given instead", given("loss_factor")),
     Dead("*", "drive.kind", "given instead", given("drive")),
-    Dead("wave.* slider.* motion.*", "drive.force.*.position drive.force.*.measured_from", "given instead", given("position")),
+    Dead(
+        "wave.* slider.* motion.*",
+        "drive.force.*.position drive.force.*.measured_from",
+        "given instead",
+        given("position"),
+    ),
     Dead("wave.* slider.* motion.*", "drive.force.1.phase_deg", "given instead", given("phase_deg")),
     Dead("wave.receptance", "drive.kind drive.force.*", "one newton at `position` instead"),
     Dead("friction.belt_stick_time", "arguments.mass", "2 (F_s - F_k)/(k V): what rides has no inertia to show"),
     Dead("friction.coulomb_decrement", "arguments.mass", "4 F/k"),
     Dead("friction.*", "beam.* drive.* slider.* motion.*", "a rigid surface of its own"),
-    Dead("slider.terminal_speed", "beam.length beam.width beam.supports.* beam.loss_factor drive.kind drive.force.* slider.* motion.*",
-         "a pure wave on the beam's section under a slider of its own"),
-    Dead("slider.* motion.*", "beam.loss_factor", "a modal ratio is given instead",
-         by_a_ratio),
-    Dead("slider.*", "slider.coupling=one-way arguments.coupling=one-way", "auto chooses it for a slider so light", light),
-    Dead("slider.*", "slider.normal=massless arguments.normal=massless", "one way nothing of it presses on the beam", light),
-    Dead("slider.*", "slider.coupling=two-way arguments.coupling=two-way", "auto chooses it for a slider so heavy", heavy),
+    Dead(
+        "slider.terminal_speed",
+        "beam.length beam.width beam.supports.* beam.loss_factor drive.kind drive.force.* slider.* motion.*",
+        "a pure wave on the beam's section under a slider of its own",
+    ),
+    Dead("slider.* motion.*", "beam.loss_factor", "a modal ratio is given instead", by_a_ratio),
+    Dead(
+        "slider.*", "slider.coupling=one-way arguments.coupling=one-way", "auto chooses it for a slider so light", light
+    ),
+    Dead(
+        "slider.*",
+        "slider.normal=massless arguments.normal=massless",
+        "one way nothing of it presses on the beam",
+        light,
+    ),
+    Dead(
+        "slider.*", "slider.coupling=two-way arguments.coupling=two-way", "auto chooses it for a slider so heavy", heavy
+    ),
     Dead("slider.*", "slider.coupling", "given instead", given("coupling")),
     Dead("slider.*", "slider.normal", "given instead", given("normal")),
-    Dead("slider.coupling_size slider.loaded_deflection",
-         "motion.* slider.slope slider.law slider.speed slider.coupling slider.line slider.kinematics slider.normal",
-         "a steady field: sizes before a run, of a slider that is held still"),
+    Dead(
+        "slider.coupling_size slider.loaded_deflection",
+        "motion.* slider.slope slider.law slider.speed slider.coupling slider.line slider.kinematics slider.normal",
+        "a steady field: sizes before a run, of a slider that is held still",
+    ),
     Dead("slider.loaded_deflection", "slider.mu slider.preload slider.gravity", "of a mass alone"),
-    Dead("slider.coupling_size", "slider.mu slider.preload slider.gravity drive.force.*", "m omega^2 |G|, whatever drives",
-         lambda a: a.arguments["of"] == "normal"),
+    Dead(
+        "slider.coupling_size",
+        "slider.mu slider.preload slider.gravity drive.force.*",
+        "m omega^2 |G|, whatever drives",
+        lambda a: a.arguments["of"] == "normal",
+    ),
     Dead("slider.*", "slider.mass", "given instead", given("mass")),
     Dead("slider.*", "slider.kinematics", "given instead", given("kinematics")),
-    Dead("slider.*", "slider.slope arguments.slope", "Coulomb's law has none", lambda a: a.scene["slider"]["law"] == "coulomb"),
-    Dead("slider.*", "motion.steps_per_period", "given instead", lambda a: any(a.arguments.get(k) for k in ("step", "steps"))),
+    Dead(
+        "slider.*",
+        "slider.slope arguments.slope",
+        "Coulomb's law has none",
+        lambda a: a.scene["slider"]["law"] == "coulomb",
+    ),
+    Dead(
+        "slider.*",
+        "motion.steps_per_period",
+        "given instead",
+        lambda a: any(a.arguments.get(k) for k in ("step", "steps")),
+    ),
     Dead("motion.deflection", "motion.steps_per_period", "closed form in time: no step"),
     Dead("motion.deflection", "slider.*", "the beam alone"),
-    Dead("chain.cantilever_tip chain.rollup_gap chain.hanging_frequency chain.turning_frequency", "beam.* drive.*",
-         "a chain of unit length of its own"),
-    Dead("chain.large_amplitude_frequency", "beam.width beam.youngs_modulus beam.density", "a ratio of two frequencies", uniform),
-    Dead("chain.large_amplitude_frequency chain.energy_drift", "beam.supports.* drive.*", "between hinges of its own, let go"),
+    Dead(
+        "chain.cantilever_tip chain.rollup_gap chain.hanging_frequency chain.turning_frequency",
+        "beam.* drive.*",
+        "a chain of unit length of its own",
+    ),
+    Dead(
+        "chain.large_amplitude_frequency",
+        "beam.width beam.youngs_modulus beam.density",
+        "a ratio of two frequencies",
+        uniform,
+    ),
+    Dead(
+        "chain.large_amplitude_frequency chain.energy_drift",
+        "beam.supports.* drive.*",
+        "between hinges of its own, let go",
+    ),
     Dead("chain.*", "slider.*", "the beam alone"),
     Dead("chain.*", "motion.duration motion.steps_per_period", "the chain's runs have arguments of their own"),
-    Dead("chain.cantilever_tip chain.rollup_gap chain.*_frequency chain.energy_drift", "motion.*",
-         "at rest, or let go without a drive that could set in"),
+    Dead(
+        "chain.cantilever_tip chain.rollup_gap chain.*_frequency chain.energy_drift",
+        "motion.*",
+        "at rest, or let go without a drive that could set in",
+    ),
     Dead("chain.transient_deflection", "drive.force.*.amplitude", "given instead", given("force")),
-    Dead("chain.transient_deflection", "arguments.method=adaptive", "so without a step", lambda a: a.arguments["step"] is None),
+    Dead(
+        "chain.transient_deflection",
+        "arguments.method=adaptive",
+        "so without a step",
+        lambda a: a.arguments["step"] is None,
+    ),
     Dead("chain.transient_deflection", "arguments.method=rk4", "so with a step", given("step")),
-    Dead("wave.best_frequency", "arguments.span arguments.frequency_hz", "a wider search, or one about another middle, finds the same"),
+    Dead(
+        "wave.best_frequency",
+        "arguments.span arguments.frequency_hz",
+        "a wider search, or one about another middle, finds the same",
+    ),
     Dead("chain.axial_departure", "drive.force.*.amplitude", "given instead"),
-]  # fmt: skip
+]
 
 OFF: dict[str, Any] = {
-    "loss_factor": 0.017, "modal_damping": 0.019, "joint_dashpot": 0.013, "preload": 0.0041, "speed": 0.0037,
-    "phase_deg": 61.0, "soft_start_periods": 0.37, "position": 0.083, "frequency_hz": 761.0, "x": 0.283, "mu_static": 0.31,
-    "window": [0.21, 0.51], "count": 7, "published_hz": 1e3, "time": 9e-4, "step": 1.7e-5, "mu": 0.31, "slope": 270.0, "mass": 0.0019,
-    "slider_position": 0.313, "slider_speed": 0.0061, "force": 23.0, "counts": [9, 13, 19], "steps": [3e-5, 2e-5, 1e-5], "section": STEP,
-    "width": 0.028, "thickness": 0.0021, "youngs_modulus": 99e9, "density": 4800.0, "gate": [], "modes": 7, "title": "t", "description": "d",
-    "claim": [], "chain": True, "tolerance": 1e-6,
-}  # fmt: skip
+    "loss_factor": 0.017,
+    "modal_damping": 0.019,
+    "joint_dashpot": 0.013,
+    "preload": 0.0041,
+    "speed": 0.0037,
+    "phase_deg": 61.0,
+    "soft_start_periods": 0.37,
+    "position": 0.083,
+    "frequency_hz": 761.0,
+    "x": 0.283,
+    "mu_static": 0.31,
+    "window": [0.21, 0.51],
+    "count": 7,
+    "published_hz": 1e3,
+    "time": 9e-4,
+    "step": 1.7e-5,
+    "mu": 0.31,
+    "slope": 270.0,
+    "mass": 0.0019,
+    "slider_position": 0.313,
+    "slider_speed": 0.0061,
+    "force": 23.0,
+    "counts": [9, 13, 19],
+    "steps": [3e-5, 2e-5, 1e-5],
+    "section": STEP,
+    "width": 0.028,
+    "thickness": 0.0021,
+    "youngs_modulus": 99e9,
+    "density": 4800.0,
+    "gate": [],
+    "modes": 7,
+    "title": "t",
+    "description": "d",
+    "claim": [],
+    "chain": True,
+    "tolerance": 1e-6,
+}
 """What an input is turned to that is nothing or not given."""
 WHOLE = ("gate", "claim")
 """Tables that judge figures and make none: turned as a whole."""
 FACTORS = {"error": 2.0, "grading": 2.0}
 """Where a seventh more is too little to show."""
 WORDS = {
-    "reading": ["raw", "nodal", "corrected"], "name": ["another"], "title": ["t"], "description": ["d"],
+    "reading": ["raw", "nodal", "corrected"],
+    "name": ["another"],
+    "title": ["t"],
+    "description": ["d"],
     "quantity": ["wave.crest_speed"],
-}  # fmt: skip
+}
 """What words without a list of their own are turned to."""
 
 
 OF_SCENE = {
-    "drive": ("drive", "kind"), "start": ("motion", "start"), "law": ("slider", "law"), "coupling": ("slider", "coupling"),
-    "line": ("slider", "line"), "kinematics": ("slider", "kinematics"), "normal": ("slider", "normal"),
-}  # fmt: skip
+    "drive": ("drive", "kind"),
+    "start": ("motion", "start"),
+    "law": ("slider", "law"),
+    "coupling": ("slider", "coupling"),
+    "line": ("slider", "line"),
+    "kinematics": ("slider", "kinematics"),
+    "normal": ("slider", "normal"),
+}
 """Whose word counts where an argument is left out: it is not turned to that."""
 
 

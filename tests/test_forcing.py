@@ -39,14 +39,24 @@ def test_a_soft_start_keeps_its_digits_next_to_a_resonance_and_however_short(off
 
 
 def one_mode(omega, zeta, load=1.7 - 0.6j):
-    return Modal(sigmas=np.array([zeta * omega]), omegas=np.array([omega * np.sqrt(1 - zeta**2)]),
-                 squares=np.array([omega**2]), loads=np.array([load]))  # fmt: skip
+    return Modal(
+        sigmas=np.array([zeta * omega]),
+        omegas=np.array([omega * np.sqrt(1 - zeta**2)]),
+        squares=np.array([omega**2]),
+        loads=np.array([load]),
+    )
 
 
 @settings(max_examples=80, deadline=None)
-@given(own=frequencies, zeta=ratios, drive=st.one_of(st.just(0.0), frequencies), part=st.floats(0.0, 1.0),
-       unit=st.floats(1e-5, 3.0), origin=st.floats(0.0, 2.0),
-       growth=st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=5))  # fmt: skip
+@given(
+    own=frequencies,
+    zeta=ratios,
+    drive=st.one_of(st.just(0.0), frequencies),
+    part=st.floats(0.0, 1.0),
+    unit=st.floats(1e-5, 3.0),
+    origin=st.floats(0.0, 2.0),
+    growth=st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=5),
+)
 def test_the_forced_part_satisfies_its_equation_for_any_polynomial_times_a_harmonic(
     own, zeta, drive, part, unit, origin, growth
 ):
@@ -111,8 +121,18 @@ def test_motion_from_rest_is_that_of_the_assembled_matrices_by_dop853(model, sof
     values, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
     root = (vectors * np.sqrt(values)) @ np.linalg.inv(vectors)
     nodes = np.arange(1, n) * STRIP.length / n
-    found = simulate(STRIP, FORCES, FREQUENCY, 2.9e-3, model=model, count=n, soft_start_periods=soft,
-                     modal_damping=zeta, at=nodes, samples=41)  # fmt: skip
+    found = simulate(
+        STRIP,
+        FORCES,
+        FREQUENCY,
+        2.9e-3,
+        model=model,
+        count=n,
+        soft_start_periods=soft,
+        modal_damping=zeta,
+        at=nodes,
+        samples=41,
+    )
     free = linear_motion(mass, stiffness, 2 * zeta * mass @ root, loads, found.times, soft / FREQUENCY)
     expected = free @ reading.T
     assert found.deflection == pytest.approx(expected, abs=1e-8 * abs(expected).max())
@@ -124,25 +144,53 @@ def matrices(model, n):
     length, ei, line = STRIP.length / n, STRIP.bending_stiffness, STRIP.mass_per_length
     if model == "fem":
         h = length
-        k = ei / h**3 * np.array([[12, 6*h, -12, 6*h], [6*h, 4*h*h, -6*h, 2*h*h], [-12, -6*h, 12, -6*h], [6*h, 2*h*h, -6*h, 4*h*h]])  # fmt: skip
-        m = line * h / 420 * np.array([[156, 22*h, 54, -13*h], [22*h, 4*h*h, 13*h, -3*h*h], [54, 13*h, 156, -22*h], [-13*h, -3*h*h, -22*h, 4*h*h]])  # fmt: skip
+        k = (
+            ei
+            / h**3
+            * np.array(
+                [
+                    [12, 6 * h, -12, 6 * h],
+                    [6 * h, 4 * h * h, -6 * h, 2 * h * h],
+                    [-12, -6 * h, 12, -6 * h],
+                    [6 * h, 2 * h * h, -6 * h, 4 * h * h],
+                ]
+            )
+        )
+        m = (
+            line
+            * h
+            / 420
+            * np.array(
+                [
+                    [156, 22 * h, 54, -13 * h],
+                    [22 * h, 4 * h * h, 13 * h, -3 * h * h],
+                    [54, 13 * h, 156, -22 * h],
+                    [-13 * h, -3 * h * h, -22 * h, 4 * h * h],
+                ]
+            )
+        )
         size = 2 * n + 2
         mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
         for e in range(n):
-            mass[2*e:2*e+4, 2*e:2*e+4] += m  # fmt: skip
-            stiffness[2*e:2*e+4, 2*e:2*e+4] += k  # fmt: skip
+            mass[2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += m
+            stiffness[2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += k
         free = [i for i in range(size) if i not in (0, size - 2)]
         loads = []
         for f in FORCES:
             e = int(f.position / h)
             s, row = f.position / h - e, np.zeros(size)
-            row[2*e:2*e+4] = [1-3*s**2+2*s**3, h*(s-2*s**2+s**3), 3*s**2-2*s**3, h*(s**3-s**2)]  # fmt: skip
+            row[2 * e : 2 * e + 4] = [
+                1 - 3 * s**2 + 2 * s**3,
+                h * (s - 2 * s**2 + s**3),
+                3 * s**2 - 2 * s**3,
+                h * (s**3 - s**2),
+            ]
             loads.append(row[free])
         reading = np.eye(size)[2:-2:2][:, free]
         return mass[np.ix_(free, free)], stiffness[np.ix_(free, free)], np.array(loads), reading
     mass, stiffness = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
     for j in range(n):  # a rigid link: mass m, inertia m l^2/12
-        mass[j:j+2, j:j+2] += line * length * np.array([[2, 1], [1, 2]]) / 6  # fmt: skip
+        mass[j : j + 2, j : j + 2] += line * length * np.array([[2, 1], [1, 2]]) / 6
     for j in range(1, n):
         turn = np.zeros(n + 1)
         turn[j - 1 : j + 2] = np.array([1, -2, 1]) / length
@@ -176,8 +224,10 @@ def test_damped_motion_from_rest_ends_in_the_steady_state(model):
     late = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, continue_from=begun, samples=50, **asked)
     exact = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, start="steady", samples=50, **asked)
     phases = 2 * np.pi * FREQUENCY * np.array([late.times, exact.times])
-    fits = [np.linalg.lstsq(np.array([np.cos(p), np.sin(p)]).T, m.deflection[:, 0], rcond=None)[0]
-            for p, m in zip(phases, (late, exact), strict=True)]  # fmt: skip
+    fits = [
+        np.linalg.lstsq(np.array([np.cos(p), np.sin(p)]).T, m.deflection[:, 0], rcond=None)[0]
+        for p, m in zip(phases, (late, exact), strict=True)
+    ]
     band = 1e-9 if model == "segment" else 1e-2  # structural for viscous off resonance in the exact field
     assert fits[0] == pytest.approx(fits[1], abs=band * abs(np.array(fits)).max())
 
@@ -187,8 +237,18 @@ def test_damping_acts_in_every_steady_field():
 
     def amplitude(model, zeta):
         count = None if model == "analytic" else 60
-        found = simulate(STRIP, FORCES, FREQUENCY, 1 / FREQUENCY, model=model, count=count, start="steady", at=[0.171],
-                         modal_damping=zeta, samples=400)  # fmt: skip
+        found = simulate(
+            STRIP,
+            FORCES,
+            FREQUENCY,
+            1 / FREQUENCY,
+            model=model,
+            count=count,
+            start="steady",
+            at=[0.171],
+            modal_damping=zeta,
+            samples=400,
+        )
         return abs(found.deflection).max(), found.notes
 
     bare = {model: amplitude(model, 0.0) for model in ("analytic", "segment", "fem")}

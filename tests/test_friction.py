@@ -23,20 +23,40 @@ signs = st.sampled_from([-1.0, 1.0])
 
 
 @settings(max_examples=60, deadline=None)
-@given(rho=power_of_ten(-3, 2.5), sign=signs, alpha=st.floats(-4, 4), slope=power_of_ten(0, 6), b=power_of_ten(-2, 2),
-       tau=power_of_ten(-4, 2))  # fmt: skip
+@given(
+    rho=power_of_ten(-3, 2.5),
+    sign=signs,
+    alpha=st.floats(-4, 4),
+    slope=power_of_ten(0, 6),
+    b=power_of_ten(-2, 2),
+    tau=power_of_ten(-4, 2),
+)
 def test_a_step_of_eq_3_is_scipys_radau(rho, sign, alpha, slope, b, tau):
     """R' = -b tanh(K r) - a over a step of tau = K b dt, in units of K."""
     dt = tau / (slope * b)
     found = tanh_speed_change(sign * rho / slope, alpha * b, b, slope, dt)
-    run = solve_ivp(lambda t, y: [-np.tanh(y[0]) - alpha, np.tanh(y[0])], (0, tau), [sign * rho, 0.0], method="Radau",
-                    rtol=1e-9, atol=1e-12, jac=lambda t, y: [[-1 / np.cosh(min(abs(y[0]), 300)) ** 2, 0], [1 / np.cosh(min(abs(y[0]), 300)) ** 2, 0]])  # fmt: skip
+    run = solve_ivp(
+        lambda t, y: [-np.tanh(y[0]) - alpha, np.tanh(y[0])],
+        (0, tau),
+        [sign * rho, 0.0],
+        method="Radau",
+        rtol=1e-9,
+        atol=1e-12,
+        jac=lambda t, y: [[-1 / np.cosh(min(abs(y[0]), 300)) ** 2, 0], [1 / np.cosh(min(abs(y[0]), 300)) ** 2, 0]],
+    )
     assert found * slope == pytest.approx(-run.y[1, -1], abs=2e-7 * tau + 1e-10)
 
 
 @settings(max_examples=100, deadline=None)
-@given(rho=power_of_ten(-3, 3), sign=signs, off=power_of_ten(-9, 4), beyond=signs, slope=power_of_ten(0, 7),
-       b=power_of_ten(-2, 2), tau=power_of_ten(-6, 6))  # fmt: skip
+@given(
+    rho=power_of_ten(-3, 3),
+    sign=signs,
+    off=power_of_ten(-9, 4),
+    beyond=signs,
+    slope=power_of_ten(0, 7),
+    b=power_of_ten(-2, 2),
+    tau=power_of_ten(-6, 6),
+)
 def test_a_step_is_exact_at_any_stiffness_and_next_to_the_limit_of_friction(rho, sign, off, beyond, slope, b, tau):
     """Against forty digits; alpha = 1 -+ off, where the surface accelerates as fast as friction can follow."""
     alpha = abs(1.0 + beyond * off)
@@ -99,8 +119,14 @@ def test_friction_alone_takes_energy_and_never_reverses(r, b, slope, dt):
 
 
 @settings(max_examples=200, deadline=None)
-@given(r=st.floats(-1, 1), a0=st.floats(-9, 9), a1=st.floats(-9, 9), kinetic=st.floats(0.01, 5), extra=st.floats(0, 2),
-       stuck=st.booleans())  # fmt: skip
+@given(
+    r=st.floats(-1, 1),
+    a0=st.floats(-9, 9),
+    a1=st.floats(-9, 9),
+    kinetic=st.floats(0.01, 5),
+    extra=st.floats(0, 2),
+    stuck=st.booleans(),
+)
 def test_coulomb_spans_end_where_the_relative_speed_does(r, a0, a1, kinetic, extra, stuck):
     """R' = -F sign(r) - a, a linear: the span ends at the first zero, at the first |a| = static, or at dt."""
     dt, static = 0.83, kinetic + extra
@@ -200,7 +226,13 @@ def test_a_spring_held_slider_converges_at_order_two_or_better_in_the_step():
         slide_on_belt(n, 0.3 / n, law, 0.05, stiffness / mass, 0.4, state, np.zeros((0, 3)))
         return state[1]
 
-    exact = solve_ivp(lambda t, y: [y[1], 0.4 - stiffness / mass * y[0] - 2.1 * np.tanh(40 * (y[1] - 0.05))], (0, 0.3),
-                      [0.02, 0.0], method="DOP853", rtol=1e-12, atol=1e-15).y[1, -1]  # fmt: skip
+    exact = solve_ivp(
+        lambda t, y: [y[1], 0.4 - stiffness / mass * y[0] - 2.1 * np.tanh(40 * (y[1] - 0.05))],
+        (0, 0.3),
+        [0.02, 0.0],
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-15,
+    ).y[1, -1]
     assert min(orders([tanh_end(n) for n in (40, 80, 160, 320)], exact)) > 1.8
     assert tanh_end(640) == pytest.approx(exact, rel=1e-4)

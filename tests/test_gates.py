@@ -156,9 +156,12 @@ def mean_instead_of_root_mean_square_of_mode_numbers_one_too_high(patch):
 def bracket_of_one_model_alone(patch):
     true = workbench.Workbench.frequency_hz
     patch.setattr(
-        workbench.Workbench, "frequency_hz",
-        lambda self, model, count, mode, settings=(): true(self, "fem", count, mode) * (1 - 1e-4 * (model == "segment")),
-    )  # fmt: skip
+        workbench.Workbench,
+        "frequency_hz",
+        lambda self, model, count, mode, settings=(): (
+            true(self, "fem", count, mode) * (1 - 1e-4 * (model == "segment"))
+        ),
+    )
 
 
 def order_from_the_wrong_logarithm(patch):
@@ -840,15 +843,32 @@ FAULTS_ELSEWHERE = {
         phases_left_as_they_are_where_they_were_to_turn: {"slider-turned-round"},
         ends_for_the_largest: {"slider-largest-friction", "slider-mean-friction", "slider-mean-surface-speed"},
         surface_lever_forgotten: {
-            "terminal-speed-steep", "slider-elements", "slider-segments", "slider-against-the-wave", "slider-reversed",
-            "slider-steady", "slider-felt",
+            "terminal-speed-steep",
+            "slider-elements",
+            "slider-segments",
+            "slider-against-the-wave",
+            "slider-reversed",
+            "slider-steady",
+            "slider-felt",
         },
         surface_lever_doubled: {"terminal-speed-flat", "terminal-speed-quarter", "terminal-speed-following"},
         friction_that_pushes: {
-            "free-decay", "creep", "belt-stick-time", "belt-slip-time", "coulomb-decrement", "slider-segments",
-            "slider-elements", "slider-steady",
+            "free-decay",
+            "creep",
+            "belt-stick-time",
+            "belt-slip-time",
+            "coulomb-decrement",
+            "slider-segments",
+            "slider-elements",
+            "slider-steady",
         },
-        friction_under_another_gravity: {"free-decay", "creep", "coulomb-decrement", "belt-stick-time", "belt-slip-time"},
+        friction_under_another_gravity: {
+            "free-decay",
+            "creep",
+            "coulomb-decrement",
+            "belt-stick-time",
+            "belt-slip-time",
+        },
         static_friction_for_kinetic: {"belt-stick-time", "belt-slip-time"},
         friction_of_half_the_slope: {"free-decay", "creep"},
         one_way_for_two_way: {"slider-felt", "held-from-rest"},
@@ -859,26 +879,60 @@ FAULTS_ELSEWHERE = {
         friction_at_the_mid_line: {"friction-size"},
         driving_point_read_a_node_off: {"normal-size", "loaded-exact"},
         raw_line_for_the_spline: {"slider-segments", "slider-order-segment", "slider-felt", "beam-segments"},
-        step_load_for_the_soft_start: {"slider-segments", "slider-elements", "slider-order-segment", "slider-order-fem", "beam-segments", "beam-elements", "slider-felt"},
+        step_load_for_the_soft_start: {
+            "slider-segments",
+            "slider-elements",
+            "slider-order-segment",
+            "slider-order-fem",
+            "beam-segments",
+            "beam-elements",
+            "slider-felt",
+        },
         load_in_time_on_the_next_joint: {"slider-segments", "slider-order-segment", "slider-felt", "beam-segments"},
         load_in_time_on_the_next_node: {"slider-elements", "slider-order-fem", "beam-elements"},
         lumped_element_mass_in_time: {"slider-elements", "slider-order-fem", "beam-elements"},
-        link_inertia_left_out_in_time: {"slider-segments", "slider-order-segment", "slider-steady", "beam-segments", "slider-felt"},
+        link_inertia_left_out_in_time: {
+            "slider-segments",
+            "slider-order-segment",
+            "slider-steady",
+            "beam-segments",
+            "slider-felt",
+        },
         drift_of_second_order_dropped: {"terminal-speed-flat", "terminal-speed-quarter"},
         following_taken_for_tangential: {"terminal-speed-following"},
-        standing_wave_for_a_travelling_one: {"terminal-speed-flat", "terminal-speed-quarter", "terminal-speed-steep", "terminal-speed-following"},
-        phases_in_time_of_the_wrong_sign: {"slider-against-the-wave", "slider-reversed", "slider-steady", "slider-segments", "beam-segments"},
+        standing_wave_for_a_travelling_one: {
+            "terminal-speed-flat",
+            "terminal-speed-quarter",
+            "terminal-speed-steep",
+            "terminal-speed-following",
+        },
+        phases_in_time_of_the_wrong_sign: {
+            "slider-against-the-wave",
+            "slider-reversed",
+            "slider-steady",
+            "slider-segments",
+            "beam-segments",
+        },
         surface_seen_half_a_step_late: {"slider-order-step", "slider-step-steep"},
     },
     "moving-load": {
         held_slider_without_inertia: {
-            "largest-deflection", "largest-deflection-segments", "largest-deflection-elements", "on-the-way",
+            "largest-deflection",
+            "largest-deflection-segments",
+            "largest-deflection-elements",
+            "on-the-way",
         },
         weight_of_another_load: {"largest-deflection", "on-the-way"},
     },
     "chain": {
         wall_joint_as_stiff_as_any_other: {"elastica-deflection", "elastica-shortening", "rollup-gap-of-gregory"},
-        joint_stiffness_doubled: {"elastica-deflection", "elastica-shortening", "rollup-closes", "rollup-gap-of-gregory", "small-force"},
+        joint_stiffness_doubled: {
+            "elastica-deflection",
+            "elastica-shortening",
+            "rollup-closes",
+            "rollup-gap-of-gregory",
+            "small-force",
+        },
         links_that_feel_no_inertia_of_the_links_beyond: {"hanging-two-links", "hanging-limit"},
         hanging_links_with_inertia_about_their_ends: {"hanging-one-link", "hanging-two-links"},
         axial_spring_of_half_the_section: {"large-amplitude"},
@@ -886,33 +940,65 @@ FAULTS_ELSEWHERE = {
         links_pulled_straight_as_if_they_flapped: {"turning-slow", "turning-fast", "turning-third-mode"},
         departures_at_mid_span_wherever_they_are_asked_for: {"departure-at-two-fifths", "departure-at-seven-tenths"},
         recursion_with_another_inertia_than_the_energy: {"energy-is-kept", "small-force", "ten-newton"},
-        forces_that_lag_instead_of_lead: {"small-force", "ten-newton", "ten-newton-by-kicks", "ten-newton-without-axial-inertia"},
+        forces_that_lag_instead_of_lead: {
+            "small-force",
+            "ten-newton",
+            "ten-newton-by-kicks",
+            "ten-newton-without-axial-inertia",
+        },
         kicks_of_no_strength: {"ten-newton-by-kicks"},
         axial_inertia_forgotten: {
-            "ten-newton", "ten-newton-by-kicks", "departure-at-a-tenth-of-a-newton", "departure-at-one-newton",
-            "departure-at-ten-newton", "departure-at-ten-newton-in-the-rms",
+            "ten-newton",
+            "ten-newton-by-kicks",
+            "departure-at-a-tenth-of-a-newton",
+            "departure-at-one-newton",
+            "departure-at-ten-newton",
+            "departure-at-ten-newton-in-the-rms",
         },
         axial_inertia_kept_where_it_was_to_go: {"ten-newton-without-axial-inertia", "departure-without-axial-inertia"},
         linear_chain_under_a_tenth_of_a_per_cent_more: {
-            "departure-at-a-tenth-of-a-newton", "departure-at-one-newton", "departure-at-ten-newton",
-            "departure-without-axial-inertia", "departure-of-links-that-stretch",
+            "departure-at-a-tenth-of-a-newton",
+            "departure-at-one-newton",
+            "departure-at-ten-newton",
+            "departure-without-axial-inertia",
+            "departure-of-links-that-stretch",
         },
         departures_of_the_whole_run_for_those_at_its_end: {
-            "departure-at-one-newton", "departure-at-ten-newton", "departure-at-ten-newton-in-the-rms",
-            "departure-without-axial-inertia", "departure-of-links-that-stretch",
+            "departure-at-one-newton",
+            "departure-at-ten-newton",
+            "departure-at-ten-newton-in-the-rms",
+            "departure-without-axial-inertia",
+            "departure-of-links-that-stretch",
         },
         links_that_stretch_a_tenth_less: {"departure-of-links-that-stretch"},
         links_that_do_not_shorten_where_they_turn: {"departure-of-links-that-stretch"},
     },
     "paper-wave": {
         phase_of_the_wrong_sign: {"reversal-turns-the-wave", "surface-ellipse", "flux", "mid-span"},
-        second_force_a_tenth_nearer: {"distance-sets-the-amplitude", "pure-wave", "reversal-turns-the-wave", "mid-span"},
-        load_on_the_next_joint: {"segment-49-ratio", "segment-ratio-order", "segment-deflection-order", "lever-rule-order"},
+        second_force_a_tenth_nearer: {
+            "distance-sets-the-amplitude",
+            "pure-wave",
+            "reversal-turns-the-wave",
+            "mid-span",
+        },
+        load_on_the_next_joint: {
+            "segment-49-ratio",
+            "segment-ratio-order",
+            "segment-deflection-order",
+            "lever-rule-order",
+        },
         load_on_the_next_node: {"mid-span"},
         mid_line_instead_of_surface: {"surface-ellipse", "segment-ellipse-order", "fem-ellipse-order"},
         lower_surface_for_the_upper: {"surface-ellipse"},
         waves_fitted_with_the_wrong_sign_of_time: {"reversal-turns-the-wave", "distance-sets-the-amplitude", "flux"},
-        wavenumber_two_per_cent_off: {"swr-law", "distance-sets-no-ratio", "pure-wave", "best-frequency", "segment-best-frequency", "fem-best-frequency"},
+        wavenumber_two_per_cent_off: {
+            "swr-law",
+            "distance-sets-no-ratio",
+            "pure-wave",
+            "best-frequency",
+            "segment-best-frequency",
+            "fem-best-frequency",
+        },
         stiffness_without_its_loss: {"energy-flux", "reversal-keeps-the-ratio"},
         displacement_taken_for_force: {"imposed-displacement"},
         near_field_forgotten: {"signed-area", "signed-area-beside-the-forces"},
@@ -926,12 +1012,18 @@ FAULTS_ELSEWHERE = {
         ratio_twice_as_large: {"ratio-on-elements", "three-dampings-on-segments"},
         modes_of_the_driven_pencil_without_their_losses: {"ratio-on-elements", "three-dampings-on-segments"},
         losses_that_feed: {
-            "loss-on-elements", "ratio-on-elements", "dashpots-on-segments", "three-dampings-on-segments",
+            "loss-on-elements",
+            "ratio-on-elements",
+            "dashpots-on-segments",
+            "three-dampings-on-segments",
             "receptance-of-elements",
         },
         modes_summed_with_their_sign_lost: {"receptance-of-elements", "receptance-of-segments"},
         modes_summed_at_frequencies_a_thousandth_higher: {
-            "ratio-on-elements", "three-dampings-on-segments", "receptance-of-elements", "receptance-of-segments",
+            "ratio-on-elements",
+            "three-dampings-on-segments",
+            "receptance-of-elements",
+            "receptance-of-segments",
             "reflection-per-hertz",
         },
         sensitivities_exchanged: {"reflection-per-hertz", "reflection-per-degree"},
@@ -939,7 +1031,11 @@ FAULTS_ELSEWHERE = {
     },
     "patched-strip": {
         parts_taken_from_the_first_section_that_has_them: {
-            "elements-at-24", "segments-at-24", "graded-elements-at-24", "graded-segments-at-24", "elements-at-96",
+            "elements-at-24",
+            "segments-at-24",
+            "graded-elements-at-24",
+            "graded-segments-at-24",
+            "elements-at-96",
             "graded-segments-at-96",
         },
         grading_over_one_part_too_many: {"graded-elements-at-24", "graded-segments-at-24", "graded-segments-at-96"},
@@ -952,8 +1048,13 @@ FAULTS_ELSEWHERE = {
         link_inertia_left_out: {"gregory-mode-10", "gregory-law", "gregory-law-after-the-sign-change"},
         count_one_too_high: {"segments-for-a-tenth-of-a-per-cent"},
         wall_joint_as_stiff_as_any_other: {
-            "gregory-mode-1", "gregory-mode-5", "gregory-law", "half-wall-order", "third-order-wall-order",
-            "five-joint-error", "curvature-order-of-size",
+            "gregory-mode-1",
+            "gregory-mode-5",
+            "gregory-law",
+            "half-wall-order",
+            "third-order-wall-order",
+            "five-joint-error",
+            "curvature-order-of-size",
         },
         gregorys_weights_turned_round: {"gregory-mode-1", "gregory-mode-5", "gregory-law"},
         sizes_sought_from_below: {"segments-for-nine-ten-millionths"},
@@ -970,39 +1071,76 @@ FAULTS_ELSEWHERE = {
     "free-free-bar": {
         link_inertia_left_out: {"segment-order", "segment-law", "mean-order", "bracket-mode-7", "shape-order"},
         lumped_element_mass: {"fem-order", "mean-order"},
-        one_rigid_motion_too_few: {"segment-order", "fem-order", "bracket-mode-7", "node-by-segments", "node-by-elements"},
+        one_rigid_motion_too_few: {
+            "segment-order",
+            "fem-order",
+            "bracket-mode-7",
+            "node-by-segments",
+            "node-by-elements",
+        },
         joints_read_raw: {"shape-order"},
         shapes_with_unit_amplitude_instead_of_unit_mass: {"raw-shape-order", "shape-order"},
-        nodes_counted_from_the_other_end_of_the_shape: {"node-of-the-first-mode", "node-by-segments", "node-by-elements"},
+        nodes_counted_from_the_other_end_of_the_shape: {
+            "node-of-the-first-mode",
+            "node-by-segments",
+            "node-by-elements",
+        },
         section_turned_on_its_side: {"exact-mode-1", "bracket-mode-7"},
     },
     "stepped-beam": {
         sections_carried_in_the_wrong_order: {"exact-mode-1", "exact-mode-6", "fem-error", "series-error"},
         minors_without_their_rest: {"exact-mode-1", "exact-mode-6"},
-        section_order_reversed: {"series-order", "fem-order", "fem-error", "series-error", "graded-elements", "graded-segments"},
+        section_order_reversed: {
+            "series-order",
+            "fem-order",
+            "fem-error",
+            "series-error",
+            "graded-elements",
+            "graded-segments",
+        },
         printed_equation_for_the_series_form: {"series-order", "series-error", "graded-segments"},
         series_form_for_the_printed_equation: {"printed-order"},
         elements_that_ignore_the_step: {"fem-order", "fem-error", "graded-elements"},
         lumped_element_mass: {"fem-order", "fem-error", "graded-elements"},
         clamped_end_on_the_wrong_side: {"series-order", "series-error", "fem-error", "printed-order"},
     },
-}  # fmt: skip
+}
 
 
 FAULTS = {
     link_inertia_left_out: {
-        "segment-dispersion", "segment-mode-22", "first-under-one-percent", "segment-order", "bracket-mode-22",
-        "bracket-mode-5", "mean-mode-22", "mean-order", "segment-raw-shape-22", "segment-shape-22",
+        "segment-dispersion",
+        "segment-mode-22",
+        "first-under-one-percent",
+        "segment-order",
+        "bracket-mode-22",
+        "bracket-mode-5",
+        "mean-mode-22",
+        "mean-order",
+        "segment-raw-shape-22",
+        "segment-shape-22",
     },
     joint_stiffness_doubled: {"segment-dispersion", "segment-mode-22", "first-under-one-percent", "bracket-mode-22"},
-    lumped_element_mass: {"fem-dispersion", "fem-mode-22", "fem-order", "bracket-mode-22", "mean-order", "fem-shape-22"},
+    lumped_element_mass: {
+        "fem-dispersion",
+        "fem-mode-22",
+        "fem-order",
+        "bracket-mode-22",
+        "mean-order",
+        "fem-shape-22",
+    },
     slope_polynomials_without_their_element_length: {"fem-dispersion", "fem-mode-22", "fem-order", "mean-mode-22"},
     modes_21_and_22_exchanged: {"segment-mode-22", "fem-mode-22"},
     joints_read_raw: {"segment-shape-22"},
     shapes_with_unit_amplitude_instead_of_unit_mass: {"segment-shape-22", "segment-raw-shape-22", "fem-shape-22"},
     section_turned_on_its_side: {"exact-mode-22", "rayleigh-mode-22", "paper-mode-22", "drive-rule", "drive-distance"},
     roots_of_a_beam_with_one_half_wave_too_many: {
-        "exact-mode-22", "rayleigh-mode-22", "timoshenko-mode-22", "paper-mode-22", "drive-rule", "segment-mode-22",
+        "exact-mode-22",
+        "rayleigh-mode-22",
+        "timoshenko-mode-22",
+        "paper-mode-22",
+        "drive-rule",
+        "segment-mode-22",
     },
     rotary_inertia_without_the_twelfth: {"rayleigh-mode-22", "timoshenko-mode-22"},
     shear_coefficient_of_one: {"timoshenko-mode-22"},
@@ -1012,7 +1150,7 @@ FAULTS = {
     order_from_the_wrong_logarithm: {"segment-order", "fem-order", "mean-order"},
     error_relative_to_the_computed_frequency_with_its_sign_lost: {"segment-mode-22", "fem-mode-22", "mean-mode-22"},
     count_one_too_high: {"first-under-one-percent"},
-}  # fmt: skip
+}
 
 
 def test_the_papers_gates_are_green():
@@ -1057,10 +1195,12 @@ def test_every_wave_gate_says_its_damping_and_its_window():
         dampings = [
             f"{word} {given[name]:{form}}"
             for word, name, form in (
-                ("loss factor", "loss_factor", "g"), ("ratio", "modal_damping", "g"), ("dashpots", "joint_dashpot", ".0e"),
+                ("loss factor", "loss_factor", "g"),
+                ("ratio", "modal_damping", "g"),
+                ("dashpots", "joint_dashpot", ".0e"),
             )
             if given.get(name)
-        ]  # fmt: skip
+        ]
         damping = ", ".join(dampings).replace("e-0", "e-") + " N m s" * ("joint_dashpot" in given) + ", "
         at_a_point = gate.quantity in ("wave.deflection", "wave.receptance") or given.get("of") == "deflection"
         window = "[{} m, {} m]".format(*given["window"]) if "window" in given else "[L/4, 3L/4]"

@@ -297,8 +297,13 @@ def test_a_gate_shows_no_exception_of_the_suites_own(monkeypatch):
 
     for model in (segment_model, fem_beam):
         monkeypatch.setattr(model, "lowest", broken)
-    gate = Gate(id="g", quantity="mode.order", arguments={"model": "fem", "mode": 2, "counts": [9, 12, 17]},
-                at_least=1.0, why="test")  # fmt: skip
+    gate = Gate(
+        id="g",
+        quantity="mode.order",
+        arguments={"model": "fem", "mode": 2, "counts": [9, 12, 17]},
+        at_least=1.0,
+        why="test",
+    )
     found = gates.judge(gate, scene, Workbench(scene.beam))
     assert not found.passed
     assert "IndexError" not in found.reason
@@ -308,8 +313,13 @@ def test_a_gate_shows_no_exception_of_the_suites_own(monkeypatch):
 
 def test_a_gate_on_an_infinite_figure_fails_in_words():
     scene = load_scene("paper-wave")
-    gate = Gate(id="g", quantity="wave.standing_wave_ratio", arguments={"model": "analytic", "phase_deg": 0.0},
-                at_least=1.0, why="test")  # fmt: skip
+    gate = Gate(
+        id="g",
+        quantity="wave.standing_wave_ratio",
+        arguments={"model": "analytic", "phase_deg": 0.0},
+        at_least=1.0,
+        why="test",
+    )
     found = gates.judge(gate, scene, Workbench(scene.beam))
     assert not found.passed
     assert found.reason == "measured infinity, which is not a finite real number"
@@ -331,8 +341,13 @@ legitimate = st.fixed_dictionaries(
 def beam_of(sizes):
     """A beam from its length and two ratios."""
     length = sizes["length"]
-    return Beam(length=length, width=length * sizes["wide"], thickness=length * sizes["slender"],
-                youngs_modulus=sizes["youngs_modulus"], density=sizes["density"])  # fmt: skip
+    return Beam(
+        length=length,
+        width=length * sizes["wide"],
+        thickness=length * sizes["slender"],
+        youngs_modulus=sizes["youngs_modulus"],
+        density=sizes["density"],
+    )
 
 
 @settings(max_examples=60, deadline=None)
@@ -387,13 +402,43 @@ strange = st.one_of(
     st.text(max_size=12),
 )
 ADDRESSES = [
-    "name", "title", "beam", "beam.length", "beam.width", "beam.thickness", "beam.youngs_modulus", "beam.density",
-    "beam.supports", "beam.loss_factor", "beam.section", "drive.frequency_hz", "drive.force.0.position",
-    "drive.force.1.amplitude", "drive.force.1.phase_deg", "drive.kind", "spectrum.modes", "spectrum.count",
-    "convergence.counts", "sensitivity.mode", "wave.counts", "wave.frequency_hz", "slider.mass", "slider.mu",
-    "slider.position", "motion.duration", "motion.samples", "motion.steps_per_period", "gate.0.expect", "gate.0.within",
-    "gate.²", "gate", "nonsense", "a..b", "", "beam.length.x",
-]  # fmt: skip
+    "name",
+    "title",
+    "beam",
+    "beam.length",
+    "beam.width",
+    "beam.thickness",
+    "beam.youngs_modulus",
+    "beam.density",
+    "beam.supports",
+    "beam.loss_factor",
+    "beam.section",
+    "drive.frequency_hz",
+    "drive.force.0.position",
+    "drive.force.1.amplitude",
+    "drive.force.1.phase_deg",
+    "drive.kind",
+    "spectrum.modes",
+    "spectrum.count",
+    "convergence.counts",
+    "sensitivity.mode",
+    "wave.counts",
+    "wave.frequency_hz",
+    "slider.mass",
+    "slider.mu",
+    "slider.position",
+    "motion.duration",
+    "motion.samples",
+    "motion.steps_per_period",
+    "gate.0.expect",
+    "gate.0.within",
+    "gate.²",
+    "gate",
+    "nonsense",
+    "a..b",
+    "",
+    "beam.length.x",
+]
 
 
 def as_toml(value):
@@ -451,11 +496,18 @@ def questions(draw):
     """A quantity with some of its arguments, most of them of a likely kind."""
     name = draw(st.sampled_from([name for name in QUANTITIES if not name.startswith("chain.")]))
     likely = {
-        "mode": st.integers(1, 9), "modes": st.integers(1, 30), "count": st.integers(1, 40), "node": st.integers(1, 3),
-        "counts": st.just((7, 12, 19)), "model": st.sampled_from(["analytic", "fem", "segment"]),
-        "error": st.floats(1e-6, 0.5), "frequency_hz": st.floats(1.0, 9e3), "time": st.floats(1e-5, 2e-3),
-        "window": st.just((0.11, 0.37)), "x": st.floats(0.0, 0.5),
-    }  # fmt: skip
+        "mode": st.integers(1, 9),
+        "modes": st.integers(1, 30),
+        "count": st.integers(1, 40),
+        "node": st.integers(1, 3),
+        "counts": st.just((7, 12, 19)),
+        "model": st.sampled_from(["analytic", "fem", "segment"]),
+        "error": st.floats(1e-6, 0.5),
+        "frequency_hz": st.floats(1.0, 9e3),
+        "time": st.floats(1e-5, 2e-3),
+        "window": st.just((0.11, 0.37)),
+        "x": st.floats(0.0, 0.5),
+    }
     given = {}
     for argument in QUANTITIES[name].arguments.__struct_fields__:
         if argument in ("model", "mode", "count") or draw(st.booleans()):
@@ -481,10 +533,36 @@ def test_a_file_of_any_bytes_is_one_sentence(folder, data, command):
 
 @settings(max_examples=80, deadline=None, derandomize=True)
 @given(
-    st.lists(st.sampled_from(["plan", "measure", "choose", "table", "init", "paper", "--set", "--sweep", "--mode", "2",
-                              "--counts", "1,2", "x=1", "", "=", "²", "a\0b", "z" * 400, "--json", "--error", "1%"]),
-             min_size=1, max_size=6),
-)  # fmt: skip
+    st.lists(
+        st.sampled_from(
+            [
+                "plan",
+                "measure",
+                "choose",
+                "table",
+                "init",
+                "paper",
+                "--set",
+                "--sweep",
+                "--mode",
+                "2",
+                "--counts",
+                "1,2",
+                "x=1",
+                "",
+                "=",
+                "²",
+                "a\0b",
+                "z" * 400,
+                "--json",
+                "--error",
+                "1%",
+            ]
+        ),
+        min_size=1,
+        max_size=6,
+    ),
+)
 def test_any_order_of_words_is_a_command_or_one_refusal(folder, words):
     ends_well(words, folder)
 

@@ -14,17 +14,63 @@ PACKAGE = Path(verify.__file__).parent
 MODELS = ("analytic_modes", "fem_beam", "segment_model")
 # the house, from the ground up: a module imports only from floors below its own
 FLOORS = [
-    {"errors", "timing", "search", "words"}, {"chain_work", "patience", "beam", "checked", "files", "contact_kernels", "chain_kernels", "elastic_kernels"},
+    {"errors", "timing", "search", "words"},
+    {"chain_work", "patience", "beam", "checked", "files", "contact_kernels", "chain_kernels", "elastic_kernels"},
     {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis", "slider_figures"},
-    {"error_laws", "extended_precision", "chain", "harmonic_solvers", "analytic_harmonic", "section_minors", "drives", "forcing", "contact", "claims"},
+    {
+        "error_laws",
+        "extended_precision",
+        "chain",
+        "harmonic_solvers",
+        "analytic_harmonic",
+        "section_minors",
+        "drives",
+        "forcing",
+        "contact",
+        "claims",
+    },
     {"point_loads", "motion", "validity"},
-    {"chain_system", *MODELS}, {"segment_motion", "fem_motion", "analytic_motion", "chain_statics", "chain_elastic", "chain_modes", "chain_linear"}, {"moving_surface", "chain_dynamics"},
-    {"slider_run", "energy", "chain_motion", "moving_mass", "excited", "request"}, {"margins"}, {"chain_modal", "chain_slider"}, {"chain_studies"}, {"compare", "intervals"}, {"travelling_wave"}, {"workbench"},
-    {"quantity_types", "sizing"}, {"wave_arguments"}, {"waves", "unit_waves"}, {"rigid_surface", "pure_wave", "carried", "operating_point"}, {"simulate"}, {"motion_arguments", "axial_study"}, {"motions"},
-    {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"}, {"work_precision"}, {"motion_study"}, {"chain_readings"}, {"readings"},
-    {"quantities", "scene"}, {"design_map"}, {"gates", "claim_results", "claim_words"}, {"studies", "wave_study"},
-    {"plan"}, {"run"}, {"plain", "console"}, {"tables", "report"}, {"pytest_plugin", "cli"}, {"__main__", "__init__"},
-]  # fmt: skip
+    {"chain_system", *MODELS},
+    {
+        "segment_motion",
+        "fem_motion",
+        "analytic_motion",
+        "chain_statics",
+        "chain_elastic",
+        "chain_modes",
+        "chain_linear",
+    },
+    {"moving_surface", "chain_dynamics"},
+    {"slider_run", "energy", "chain_motion", "moving_mass", "excited", "request"},
+    {"margins"},
+    {"chain_modal", "chain_slider"},
+    {"chain_studies"},
+    {"compare", "intervals"},
+    {"travelling_wave"},
+    {"workbench"},
+    {"quantity_types", "sizing"},
+    {"wave_arguments"},
+    {"waves", "unit_waves"},
+    {"rigid_surface", "pure_wave", "carried", "operating_point"},
+    {"simulate"},
+    {"motion_arguments", "axial_study"},
+    {"motions"},
+    {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"},
+    {"work_precision"},
+    {"motion_study"},
+    {"chain_readings"},
+    {"readings"},
+    {"quantities", "scene"},
+    {"design_map"},
+    {"gates", "claim_results", "claim_words"},
+    {"studies", "wave_study"},
+    {"plan"},
+    {"run"},
+    {"plain", "console"},
+    {"tables", "report"},
+    {"pytest_plugin", "cli"},
+    {"__main__", "__init__"},
+]
 
 
 def imports_of(path, *, typing_too=False):
@@ -66,8 +112,12 @@ def test_a_model_imports_no_other_model_and_no_judge(model):
 def test_what_a_model_is_made_of_knows_no_other_model_either():
     shared = {"beam", "division", "modes", "fields", "errors", "eigen"}
     parts = {
-        "analytic_harmonic": {"closed_forms"}, "section_minors": set(), "chain": {"chain_walls"}, "point_loads": {"chain"}, "harmonic_solvers": set(),
-    }  # fmt: skip
+        "analytic_harmonic": {"closed_forms"},
+        "section_minors": set(),
+        "chain": {"chain_walls"},
+        "point_loads": {"chain"},
+        "harmonic_solvers": set(),
+    }
     for part, own in parts.items():
         assert imports_of(PACKAGE / f"{part}.py", typing_too=True) <= shared | own, part
 

@@ -21,14 +21,25 @@ PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, densi
 
 
 def paper_forces(amplitude=1.0):
-    return (PointForce(position=0.0116, amplitude=amplitude),
-            PointForce(position=0.5 - 0.0116, amplitude=amplitude, phase_deg=90.0))  # fmt: skip
+    return (
+        PointForce(position=0.0116, amplitude=amplitude),
+        PointForce(position=0.5 - 0.0116, amplitude=amplitude, phase_deg=90.0),
+    )
 
 
 def slid(slider=HELD, steps=240, model="segment", count=6, **asked):
     given = {"soft_start_periods": 2.0, "modal_damping": 0.003, "samples": 11, "at": [0.123], **asked}
-    return simulate(STRIP, FORCES, FREQUENCY, DURATION, model=model, count=count, slider=slider,
-                    step=1 / (FREQUENCY * steps), **given)  # fmt: skip
+    return simulate(
+        STRIP,
+        FORCES,
+        FREQUENCY,
+        DURATION,
+        model=model,
+        count=count,
+        slider=slider,
+        step=1 / (FREQUENCY * steps),
+        **given,
+    )
 
 
 @pytest.mark.parametrize(
@@ -57,8 +68,19 @@ def test_a_mass_at_rest_stays_in_the_steady_state_of_the_beam_that_carries_it(mo
     """W = W_0 / (1 - m omega^2 G) on the sag of its weight, in every model by its own field."""
     place, x, omega = 0.25, 0.31, 2 * np.pi * 4276
     slider = Slider(mass=1.3e-3, mu=1e-9, position=place, coupling="two-way")
-    m = simulate(PAPER, paper_forces(), 4276.0, 0.9e-3, model=model, count=count, start="steady", slider=slider, at=[x],
-                 samples=51, steps_per_period=400)  # fmt: skip
+    m = simulate(
+        PAPER,
+        paper_forces(),
+        4276.0,
+        0.9e-3,
+        model=model,
+        count=count,
+        start="steady",
+        slider=slider,
+        at=[x],
+        samples=51,
+        steps_per_period=400,
+    )
     drive = solve_by_model(model, PAPER, paper_forces(), 4276.0, count, {})
     unit = solve_by_model(model, PAPER, (PointForce(position=place),), 4276.0, count, {})
     inertia = 1.3e-3 * omega**2
@@ -112,8 +134,9 @@ def test_a_moving_mass_bends_the_beam_as_its_equations_say():
     """The reaction m (g + w_tt + 2 v w_xt + v^2 w_xx) on six modes by DOP853, half the critical speed, 0.3 of the beam."""
     from scipy.integrate import solve_ivp
 
-    beam, critical, m = moving(0.3 * 0.83 * 0.024 * 0.0021 * 4430, 0.0, 0.7, model="analytic", modes=6, at=[0.415], samples=2,
-                               step=2e-5)  # fmt: skip
+    beam, critical, m = moving(
+        0.3 * 0.83 * 0.024 * 0.0021 * 4430, 0.0, 0.7, model="analytic", modes=6, at=[0.415], samples=2, step=2e-5
+    )
     mass, v, n = m.slider.mass, 0.5 * critical, np.arange(1, 7)
     k = n * np.pi / 0.83
     scale = np.sqrt(2 / (0.83 * 0.024 * 0.0021 * 4430))
@@ -149,8 +172,17 @@ def test_no_step_makes_a_held_slider_unstable():
     """Heavy, on a fine chain, at steps that no mode of its upper half resolves: the energy stays the work."""
     for mass in (1e-4, 1e-2, 1.0):
         slider = Slider(mass=mass, mu=1e-9, position=0.2137, coupling="two-way")
-        m = simulate(PAPER, paper_forces(), 4276.0, 20e-3, count=196, slider=slider, soft_start_periods=3.0,
-                     step=1 / (16 * 4276.0), samples=2)  # fmt: skip
+        m = simulate(
+            PAPER,
+            paper_forces(),
+            4276.0,
+            20e-3,
+            count=196,
+            slider=slider,
+            soft_start_periods=3.0,
+            step=1 / (16 * 4276.0),
+            samples=2,
+        )
         assert abs(m.ledger.residual) < 0.05 * (m.ledger.kinetic + m.ledger.elastic)
 
 
@@ -234,8 +266,12 @@ def test_steps_follow_what_a_step_load_excites():
 def test_a_beam_that_a_weight_bends_is_not_shaken_by_it():
     """The sag stands still: a heavy slider on an undriven beam asks for no finer steps than a light one."""
     at_rest = (PointForce(position=0.1, amplitude=0.0),)
-    steps = [simulate(PAPER, at_rest, 300.0, 0.01, count=98, slider=Slider(mass=mass, mu=0.2, slope=1.0, coupling="two-way")).statistics
-             for mass in (1e-9, 0.7)]  # fmt: skip
+    steps = [
+        simulate(
+            PAPER, at_rest, 300.0, 0.01, count=98, slider=Slider(mass=mass, mu=0.2, slope=1.0, coupling="two-way")
+        ).statistics
+        for mass in (1e-9, 0.7)
+    ]
     assert steps[0].steps == steps[1].steps == pytest.approx(0.01 * 300 * 128, rel=0.6)
 
 

@@ -116,12 +116,33 @@ def test_elements_lie_above_the_exact_stepped_frequencies_and_come_down_to_them(
 
 @settings(max_examples=80, deadline=None)
 @given(
-    st.dictionaries(st.sampled_from(["model", "mode", "count", "counts", "wall", "joints", "grading", "theory", "error", "modes", "node", "x"]),
-                    st.one_of(st.integers(-2, 30), st.floats(), st.sampled_from(["segment", "fem", "analytic", "mean", "half", "printed", "rayleigh", "nan", ""]),
-                              st.lists(st.integers(0, 30), max_size=4)), max_size=5),
-    st.sampled_from(["mode.frequency", "mode.frequency_error", "mode.order", "mode.bracket", "mode.shape_error", "mode.law_ratio", "mode.node_position", "mode.count_needed", "mode.curvature_error"]),
+    st.dictionaries(
+        st.sampled_from(
+            ["model", "mode", "count", "counts", "wall", "joints", "grading", "theory", "error", "modes", "node", "x"]
+        ),
+        st.one_of(
+            st.integers(-2, 30),
+            st.floats(),
+            st.sampled_from(["segment", "fem", "analytic", "mean", "half", "printed", "rayleigh", "nan", ""]),
+            st.lists(st.integers(0, 30), max_size=4),
+        ),
+        max_size=5,
+    ),
+    st.sampled_from(
+        [
+            "mode.frequency",
+            "mode.frequency_error",
+            "mode.order",
+            "mode.bracket",
+            "mode.shape_error",
+            "mode.law_ratio",
+            "mode.node_position",
+            "mode.count_needed",
+            "mode.curvature_error",
+        ]
+    ),
     stepped_beams() | supports.map(lambda ends: replace(BASE, supports=ends)),
-)  # fmt: skip
+)
 def test_any_arguments_give_a_figure_or_a_sentence(arguments, name, beam):
     from verify.quantities import arguments_of, evaluate, quantity
     from verify.scene import Scene
@@ -146,8 +167,24 @@ FIGURES = st.one_of(
     ),
     st.lists(st.floats(-0.1, 0.8), max_size=3),
 )
-WAVE_ARGUMENTS = ["model", "count", "counts", "frequency_hz", "phase_deg", "position", "loss_factor", "modal_damping",
-                  "joint_dashpot", "drive", "load", "reading", "window", "x", "of", "span"]  # fmt: skip
+WAVE_ARGUMENTS = [
+    "model",
+    "count",
+    "counts",
+    "frequency_hz",
+    "phase_deg",
+    "position",
+    "loss_factor",
+    "modal_damping",
+    "joint_dashpot",
+    "drive",
+    "load",
+    "reading",
+    "window",
+    "x",
+    "of",
+    "span",
+]
 PLACES = st.one_of(st.sampled_from([0.0, 0.01, 0.1, 0.3, 0.73]), st.floats(0.0, 0.73))
 WAVE_FIGURES = st.sampled_from(sorted(name for name in QUANTITIES if name.startswith("wave.")))
 
@@ -159,8 +196,12 @@ def wave_figure(name, arguments, beam, forces):
     from verify.workbench import Workbench
 
     found = quantity(name)
-    drive = Drive(frequency_hz=433.0, force=tuple(SceneForce(position=p * beam.length, amplitude=a, phase_deg=70.0 * i)
-                                                  for i, (p, a) in enumerate(forces)))  # fmt: skip
+    drive = Drive(
+        frequency_hz=433.0,
+        force=tuple(
+            SceneForce(position=p * beam.length, amplitude=a, phase_deg=70.0 * i) for i, (p, a) in enumerate(forces)
+        ),
+    )
     try:
         scene = Scene(name="s", beam=beam, drive=drive)
         return evaluate(found, arguments_of(found, arguments), scene, Workbench(beam))
@@ -188,8 +229,13 @@ def sensible_waves(draw):
     name, model = draw(WAVE_FIGURES), draw(st.sampled_from(["analytic", "segment", "fem"]))
     given = {"model": model, "frequency_hz": draw(st.floats(1.0, 3e4))}
     given |= {"count": draw(st.integers(1, 120))} if model != "analytic" else {}
-    optional = {"phase_deg": st.floats(-200, 200), "position": st.floats(0.0, 0.2), "loss_factor": st.floats(0, 1),
-                "drive": st.sampled_from(["force", "displacement"]), "window": st.tuples(PLACES, PLACES).map(list)}  # fmt: skip
+    optional = {
+        "phase_deg": st.floats(-200, 200),
+        "position": st.floats(0.0, 0.2),
+        "loss_factor": st.floats(0, 1),
+        "drive": st.sampled_from(["force", "displacement"]),
+        "window": st.tuples(PLACES, PLACES).map(list),
+    }
     for argument in draw(st.lists(st.sampled_from(sorted(optional)), max_size=3, unique=True)):
         given[argument] = draw(optional[argument])
     given |= {"x": draw(PLACES)} if name == "wave.deflection" else {}
@@ -209,9 +255,20 @@ def test_any_sensible_wave_is_a_figure_or_a_sentence(asked, ends):
 @given(
     sensible_waves(),
     supports,
-    st.lists(st.sampled_from(["frequency_hz=300:5000:3", "phase_deg=-90:180:3", "position=0:0.3:3", "loss_factor=0:0.5:2",
-                              "count=2:60:3"]), min_size=1, max_size=2),
-)  # fmt: skip
+    st.lists(
+        st.sampled_from(
+            [
+                "frequency_hz=300:5000:3",
+                "phase_deg=-90:180:3",
+                "position=0:0.3:3",
+                "loss_factor=0:0.5:2",
+                "count=2:60:3",
+            ]
+        ),
+        min_size=1,
+        max_size=2,
+    ),
+)
 def test_any_sweep_gives_a_map_or_a_sentence(asked, ends, sweeps):
     from verify.design_map import design_map, parse_axis
     from verify.scene import Drive, Scene, SceneForce

@@ -36,9 +36,15 @@ def met(one):
 
 def bead(force, mu, slope, place, modes=160):
     beam = PinnedBeam(
-        LENGTH, 0.02, 0.001, 70e9, 2700.0,
-        [(x, force, phase) for x, phase in zip(PLACES, (0.0, np.pi / 2), strict=True)], 4276.0, modes,
-    )  # fmt: skip
+        LENGTH,
+        0.02,
+        0.001,
+        70e9,
+        2700.0,
+        [(x, force, phase) for x, phase in zip(PLACES, (0.0, np.pi / 2), strict=True)],
+        4276.0,
+        modes,
+    )
     return mean_speed(beam, place, mu, slope, 1e-3)
 
 
@@ -166,8 +172,14 @@ def test_means_are_the_balances_of_the_run():
 
 # --- The study ---------------------------------------------------------------------------------------------------
 
-SMALL = {"kinematics": ("tangential", "following"), "soft_start_periods": (2.0, 0.0), "positions": (0.25, 0.24),
-         "forces": (30.0,), "mu": (0.2, 0.31), "slope": ()}  # fmt: skip
+SMALL = {
+    "kinematics": ("tangential", "following"),
+    "soft_start_periods": (2.0, 0.0),
+    "positions": (0.25, 0.24),
+    "forces": (30.0,),
+    "mu": (0.2, 0.31),
+    "slope": (),
+}
 
 
 def small(**asked):

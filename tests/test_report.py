@@ -11,8 +11,16 @@ from verify import run_scene
 from verify.report.html import environment, page, write_report
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-QUIET = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
-         "--disable-background-networking", "--disable-component-update"]  # fmt: skip
+QUIET = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-sync",
+    "--disable-background-networking",
+    "--disable-component-update",
+]
 
 
 @pytest.fixture(scope="module")
@@ -139,8 +147,13 @@ def test_the_map_speaks_of_a_pure_phase_only_where_there_is_one(overrides, pure)
 
 def test_the_operating_points_lie_on_the_map_they_are_drawn_on():
     """Same model, same damping, same phase axis: the point's reflection is the map's at that place."""
-    study = small_study("drive.force.0.phase_deg=30", "drive.force.1.phase_deg=120", "wave.phase_deg=60,210,61",
-                        "wave.frequency_hz=4240,4260,81", "wave.quantity=wave.reflection")  # fmt: skip
+    study = small_study(
+        "drive.force.0.phase_deg=30",
+        "drive.force.1.phase_deg=120",
+        "wave.phase_deg=60,210,61",
+        "wave.frequency_hz=4240,4260,81",
+        "wave.quantity=wave.reflection",
+    )
     _, axis, (heat, *points) = wave_map(study)
     assert "relative to the first" in axis["title"]["text"]
     quiet = points[0]
@@ -180,8 +193,16 @@ def test_the_report_of_a_chain_shows_all_models_side_by_side_and_departures_over
     rigid, *_, scale = figures["axial-departures"]["data"]
     assert rigid["x"] == scale["x"] == [0.1, 1.0, 10.0, 30.0]
     assert rigid["y"][2] == pytest.approx(3.896397e-2, rel=1e-4)
-    for words in ("How linear the chain of rigid links is", "3.90e-02", "3.93e-06", "7.86e-03", "side by side",
-                  "links that stretch by EA/l", "<td>linear</td>", "<td>nonlinear</td>"):  # fmt: skip
+    for words in (
+        "How linear the chain of rigid links is",
+        "3.90e-02",
+        "3.93e-06",
+        "7.86e-03",
+        "side by side",
+        "links that stretch by EA/l",
+        "<td>linear</td>",
+        "<td>nonlinear</td>",
+    ):
         assert words in text, words
 
 
@@ -195,8 +216,11 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
     profile = f"--user-data-dir={tmp_path / 'profile'}"
     done = subprocess.run(
         [CHROMIUM, *QUIET, profile, "--virtual-time-budget=20000", "--dump-dom", path.as_uri()],
-        capture_output=True, text=True, timeout=180, check=True,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=180,
+        check=True,
+    )
     assert f'data-drawn="{charts}"' in done.stdout
     assert done.stdout.count('class="main-svg"') >= charts
     assert done.stdout.count("scatterlayer") >= traces

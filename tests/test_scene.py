@@ -146,10 +146,19 @@ def test_files_that_cannot_be_read_are_one_sentence(tmp_path):
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("22", 22), ("-0.5", -0.5), ("1e-3", 1e-3), ("true", True), ("segment", "segment"), ("20,40,80", [20, 40, 80]),
-        ("[1, 2]", [1, 2]), ('"a,b"', "a,b"), ("0.125, 0.375", [0.125, 0.375]), ("a b", "a b"), ("pinned,free", ["pinned", "free"]),
+        ("22", 22),
+        ("-0.5", -0.5),
+        ("1e-3", 1e-3),
+        ("true", True),
+        ("segment", "segment"),
+        ("20,40,80", [20, 40, 80]),
+        ("[1, 2]", [1, 2]),
+        ('"a,b"', "a,b"),
+        ("0.125, 0.375", [0.125, 0.375]),
+        ("a b", "a b"),
+        ("pinned,free", ["pinned", "free"]),
     ],
-)  # fmt: skip
+)
 def test_values_are_toml_literals_bare_words_or_lists(text, value):
     assert literal(text) == value
     assert split_assignment(f"key={text}") == ("key", value)
@@ -162,8 +171,28 @@ def test_a_force_measured_from_the_right_end_follows_the_length():
         assert (far.position, far.phase_deg) == (pytest.approx(length - 0.0116, rel=1e-15), 90.0)
 
 
-KEYS = st.sampled_from(["beam", "gate", "drive", "spectrum", "convergence", "length", "mode", "x", "wave", "count", "counts",
-                        "model", "quantity", "frequency_hz", "phase_deg", "force", "kind", "reflection_limit"])  # fmt: skip
+KEYS = st.sampled_from(
+    [
+        "beam",
+        "gate",
+        "drive",
+        "spectrum",
+        "convergence",
+        "length",
+        "mode",
+        "x",
+        "wave",
+        "count",
+        "counts",
+        "model",
+        "quantity",
+        "frequency_hz",
+        "phase_deg",
+        "force",
+        "kind",
+        "reflection_limit",
+    ]
+)
 LEAVES = st.one_of(
     st.none().map(lambda _: "x"),
     st.booleans(),
@@ -231,8 +260,14 @@ SIZES = st.floats(1e-9, 1e3)
 
 @settings(max_examples=150, deadline=None)
 @given(
-    SIZES, SIZES, SIZES, st.floats(1.0, 1e13), st.floats(1e-3, 1e6), st.integers(2, 30), st.floats(1e-6, 1e6),
-)  # fmt: skip
+    SIZES,
+    SIZES,
+    SIZES,
+    st.floats(1.0, 1e13),
+    st.floats(1e-3, 1e6),
+    st.integers(2, 30),
+    st.floats(1e-6, 1e6),
+)
 def test_relative_errors_do_not_depend_on_size_or_material(length, width, thickness, modulus, density, count, scale):
     """Dimensional analysis: the error of a mode is a function of n and N alone, to rounding."""
     from verify.beam import Beam

@@ -19,15 +19,26 @@ DURATION = 2.5e-3
 
 
 def paper_forces(phase=90.0, amplitude=1.0):
-    return (PointForce(position=0.0116, amplitude=amplitude),
-            PointForce(position=0.5 - 0.0116, amplitude=amplitude, phase_deg=phase))  # fmt: skip
+    return (
+        PointForce(position=0.0116, amplitude=amplitude),
+        PointForce(position=0.5 - 0.0116, amplitude=amplitude, phase_deg=phase),
+    )
 
 
 def slid(slider=HEAVY, steps=240, model="segment", count=6, **asked):
     """`steps` of a period; samples at tenths of the run, so that steps divide it alike."""
     given = {"soft_start_periods": 2.0, "modal_damping": 0.003, "samples": 11, **asked}
-    return simulate(STRIP, FORCES, FREQUENCY, DURATION, model=model, count=count, slider=slider, step=1 / (FREQUENCY * steps),
-                    **given)  # fmt: skip
+    return simulate(
+        STRIP,
+        FORCES,
+        FREQUENCY,
+        DURATION,
+        model=model,
+        count=count,
+        slider=slider,
+        step=1 / (FREQUENCY * steps),
+        **given,
+    )
 
 
 @pytest.mark.parametrize("kinematics", ["tangential", "following"])
@@ -140,16 +151,26 @@ def test_exchanged_forces_mirror_the_slider(model, count, coupling):
     slider = replace(HEAVY, coupling=coupling, kinematics="following", speed=0.003)
     other = replace(slider, position=STRIP.length - 0.19, speed=-0.003)
     asked = {"model": model, "count": count, "modes": 30, "soft_start_periods": 2.0, "samples": 51}
-    one, two = (simulate(STRIP, forces, FREQUENCY, DURATION, slider=s, **asked)
-                for forces, s in ((FORCES, slider), (mirrored, other)))  # fmt: skip
+    one, two = (
+        simulate(STRIP, forces, FREQUENCY, DURATION, slider=s, **asked)
+        for forces, s in ((FORCES, slider), (mirrored, other))
+    )
     assert one.travelled == pytest.approx(-two.travelled, abs=1e-10 * abs(one.travelled).max())
     assert one.friction == pytest.approx(-two.friction, abs=1e-7 * abs(one.friction).max())
 
 
 def drift(phase, amplitude, x, periods=500):
     """Mean speed over the second half of a steady run, when what the start added once has gone."""
-    m = simulate(PAPER, paper_forces(phase, amplitude), 4276.0, periods / 4276.0, model="analytic", start="steady",
-                 slider=Slider(mass=1e-3, mu=0.2, slope=1e3, position=x, normal="massless"), samples=3)  # fmt: skip
+    m = simulate(
+        PAPER,
+        paper_forces(phase, amplitude),
+        4276.0,
+        periods / 4276.0,
+        model="analytic",
+        start="steady",
+        slider=Slider(mass=1e-3, mu=0.2, slope=1e3, position=x, normal="massless"),
+        samples=3,
+    )
     return (m.travelled[2] - m.travelled[1]) / (m.times[2] - m.times[1])
 
 
@@ -188,8 +209,17 @@ def test_displacements_converge_with_order_four_in_count():
 
     def way(model, count):
         slider = Slider(mass=1e-3, mu=0.2, slope=100.0, normal="massless")
-        return simulate(PAPER, paper_forces(), 4276.0, 1e-3, model=model, count=count, soft_start_periods=2.0, slider=slider,
-                        ledger=False).displacement  # fmt: skip
+        return simulate(
+            PAPER,
+            paper_forces(),
+            4276.0,
+            1e-3,
+            model=model,
+            count=count,
+            soft_start_periods=2.0,
+            slider=slider,
+            ledger=False,
+        ).displacement
 
     exact = way("analytic", None)
     for model, sign in (("segment", -1), ("fem", 1)):
@@ -250,7 +280,17 @@ def test_a_steady_beam_that_feels_its_slider_changes_little_under_a_light_one(mo
     ways = []
     for coupling in ("one-way", "two-way"):
         slider = Slider(mass=0.05, mu=0.2, slope=100.0, coupling=coupling, normal="massless")
-        m = simulate(PAPER, paper_forces(), 4276.0, 2e-3, model=model, count=count, start="steady", slider=slider,
-                     modal_damping=1e-3, modes=60)  # fmt: skip
+        m = simulate(
+            PAPER,
+            paper_forces(),
+            4276.0,
+            2e-3,
+            model=model,
+            count=count,
+            start="steady",
+            slider=slider,
+            modal_damping=1e-3,
+            modes=60,
+        )
         ways.append(m.displacement)
     assert 1e-6 < abs(ways[1] / ways[0] - 1) < 5 * m.coupling.relative_size

@@ -13,9 +13,14 @@ from verify.errors import InputError
 from verify.scene import load_scene
 
 STEPPED = Beam(
-    length=0.6, width=0.02, thickness=0.004, youngs_modulus=70e9, density=2700.0, supports=("clamped", "pinned"),
+    length=0.6,
+    width=0.02,
+    thickness=0.004,
+    youngs_modulus=70e9,
+    density=2700.0,
+    supports=("clamped", "pinned"),
     section=(Section(length=0.25), Section(length=0.35, thickness=0.002, youngs_modulus=210e9, density=7850.0)),
-)  # fmt: skip
+)
 PATCHED = load_scene("patched-strip").beam
 CONDITIONS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 
@@ -30,12 +35,14 @@ def transfer_determinant(beam, omega):
         ch, sh, c, s = mpmath.cosh(y), mpmath.sinh(y), mpmath.cos(y), mpmath.sin(y)
         a0, a1, a2, a3 = (ch + c) / 2, (sh + s) / (2 * b), (ch - c) / (2 * b**2), (sh - s) / (2 * b**3)
         b4 = b**4
-        step = mpmath.matrix([
-            [a0, a1, a2 / ei, a3 / ei],
-            [b4 * a3, a0, a1 / ei, a2 / ei],
-            [ei * b4 * a2, ei * b4 * a3, a0, a1],
-            [ei * b4 * a1, ei * b4 * a2, b4 * a3, a0],
-        ])  # fmt: skip
+        step = mpmath.matrix(
+            [
+                [a0, a1, a2 / ei, a3 / ei],
+                [b4 * a3, a0, a1 / ei, a2 / ei],
+                [ei * b4 * a2, ei * b4 * a3, a0, a1],
+                [ei * b4 * a1, ei * b4 * a2, b4 * a3, a0],
+            ]
+        )
         transfer = step * transfer
     free = [k for k in range(4) if k not in CONDITIONS[beam.supports[0]]]
     held = CONDITIONS[beam.supports[1]]
@@ -72,12 +79,23 @@ def near_root(beam, found):
 def many_sections(supports, lengths):
     """Sections of six materials and thicknesses in turn, no two neighbours alike."""
     pieces = [
-        Section(length=part, thickness=1e-3 * (1 + (3 * i) % 5), youngs_modulus=1e9 * (60 + (37 * i) % 211),
-                density=900.0 + (1300 * i) % 7700)
+        Section(
+            length=part,
+            thickness=1e-3 * (1 + (3 * i) % 5),
+            youngs_modulus=1e9 * (60 + (37 * i) % 211),
+            density=900.0 + (1300 * i) % 7700,
+        )
         for i, part in enumerate(lengths)
-    ]  # fmt: skip
-    return Beam(length=sum(lengths), width=0.03, thickness=0.002, youngs_modulus=90e9, density=4100.0,
-                supports=supports, section=tuple(pieces))  # fmt: skip
+    ]
+    return Beam(
+        length=sum(lengths),
+        width=0.03,
+        thickness=0.002,
+        youngs_modulus=90e9,
+        density=4100.0,
+        supports=supports,
+        section=tuple(pieces),
+    )
 
 
 @pytest.mark.parametrize(
@@ -114,8 +132,15 @@ def test_sections_beyond_what_counting_can_tell_are_refused():
 def test_two_frequencies_that_nearly_coincide_are_told_apart():
     """Two thin strips held by a block too heavy to move: a pair 2.4e-7 apart, each exact and none twice."""
     strip, block = Section(length=0.2), Section(length=0.3, thickness=0.3, density=1e8)
-    beam = Beam(length=0.7, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0,
-                supports=("clamped", "clamped"), section=(strip, block, strip))  # fmt: skip
+    beam = Beam(
+        length=0.7,
+        width=0.02,
+        thickness=0.001,
+        youngs_modulus=70e9,
+        density=2700.0,
+        supports=("clamped", "clamped"),
+        section=(strip, block, strip),
+    )
     pair = [analytic_modes.stepped_frequency_hz(beam, mode) for mode in (4, 5)]
     assert pair[1] / pair[0] - 1 == pytest.approx(2.364e-7, rel=1e-3)
     for found in pair:
@@ -236,8 +261,10 @@ def test_the_series_and_the_functions_of_a_section_are_its_dynamic_stiffness(y):
     with mpmath.workdps(50):
         z = mpmath.mpf(y)
         ends = [[f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)] for t in (0, z) for d in (0, 1)]
-        shears = [[s * f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)]
-                  for t, d, s in ((0, 3, 1), (0, 2, -1), (z, 3, -1), (z, 2, 1))]  # fmt: skip
+        shears = [
+            [s * f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)]
+            for t, d, s in ((0, 3, 1), (0, 2, -1), (z, 3, -1), (z, 2, 1))
+        ]
         exact = mpmath.matrix(shears) * mpmath.matrix(ends) ** -1
     functions = (exact[0, 0], exact[0, 1], exact[1, 1], exact[0, 2], exact[0, 3], exact[1, 3])
     expected = [float(v) for v in functions]

@@ -14,8 +14,18 @@ FASTEST = 2.7626e-6
 
 def ride(count=60, duration=8e-3, step=None, **given):
     slider = Slider(mass=2e-3, mu=0.3, kinematics="following", **given)
-    return simulate(BEAM, FORCES, 310.0, duration, model="fem", count=count, soft_start_periods=2.0, slider=slider,
-                    step=step, samples=2)  # fmt: skip
+    return simulate(
+        BEAM,
+        FORCES,
+        310.0,
+        duration,
+        model="fem",
+        count=count,
+        soft_start_periods=2.0,
+        slider=slider,
+        step=step,
+        samples=2,
+    )
 
 
 def words(run):

@@ -223,10 +223,15 @@ def test_settings_that_do_not_exist_are_refused(titanium_strip):
         segment_model.solve_modes(titanium_strip, 2, 9, wall="welded", grading=2.0)
 
 
-@pytest.mark.parametrize(("supports", "halves"), [
-    (("clamped", "pinned"), (1, 0)), (("guided", "clamped"), (0, 1)), (("clamped", "clamped"), (1, 1)),
-    (("free", "pinned"), (0, 0)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("supports", "halves"),
+    [
+        (("clamped", "pinned"), (1, 0)),
+        (("guided", "clamped"), (0, 1)),
+        (("clamped", "clamped"), (1, 1)),
+        (("free", "pinned"), (0, 0)),
+    ],
+)
 def test_a_welded_half_lies_at_its_clamped_wall(titanium_strip, supports, halves):
     """Nine links and half a link at each clamped end fill the beam; a wall's first joint is half a link off it."""
     from verify.chain import build_chain

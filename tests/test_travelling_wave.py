@@ -51,8 +51,14 @@ def two_waves(forward, backward, k=135.2):
             1j * k * s
         )
 
-    return HarmonicField(model="analytic", count=None, beam=BEAM, frequency_hz=4276.0, shapes=shapes,
-                         forces=(PointForce(position=0.01), PointForce(position=0.49)))  # fmt: skip
+    return HarmonicField(
+        model="analytic",
+        count=None,
+        beam=BEAM,
+        frequency_hz=4276.0,
+        shapes=shapes,
+        forces=(PointForce(position=0.01), PointForce(position=0.49)),
+    )
 
 
 def driven(phase=90.0, d=0.0116, eta=0.0, frequency=4276.0):
@@ -164,8 +170,9 @@ def test_the_mean_axis_ratio_is_that_of_a_pure_wave_on_a_thin_beam(gamma, backwa
 
 
 def index_figures(found):
-    return np.array([found.reflection, found.envelope, found.travelling_index, found.mean_axis_ratio,
-                     found.signed_area_spread])  # fmt: skip
+    return np.array(
+        [found.reflection, found.envelope, found.travelling_index, found.mean_axis_ratio, found.signed_area_spread]
+    )
 
 
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 49), ("segment", 196), ("fem", 49)])
@@ -458,9 +465,10 @@ def test_an_undamped_resonance_in_a_sweep_is_a_gap_with_its_reason(name, model):
     """Point by point and superposed alike; the other points are what they are without it."""
     count = {} if model == "analytic" else {"count": 60}
     f = (
-        closed_forms.frequency_hz(BEAM, 21) if model == "analytic"
+        closed_forms.frequency_hz(BEAM, 21)
+        if model == "analytic"
         else float({"segment": segment_model, "fem": fem_beam}[model].solve_modes(BEAM, 21, 60).frequencies_hz[20])
-    )  # fmt: skip
+    )
     axes = (Axis("frequency_hz", (f, f + 10.0, f + 20.0)), Axis("phase_deg", (60.0, 110.0)))
     found = design_map(name, {"model": model} | count, axes, PAPER, Workbench(BEAM))
     assert np.isnan(found.values[0]).all()
@@ -468,8 +476,9 @@ def test_an_undamped_resonance_in_a_sweep_is_a_gap_with_its_reason(name, model):
     assert len(found.reasons) == 1
     assert found.reasons[0].startswith("2 of 6 points have no figure: frequency_hz = ")
     assert "resonance" in found.reasons[0]
-    clean = design_map(name, {"model": model} | count, (Axis("frequency_hz", (f + 10.0, f + 20.0)), axes[1]), PAPER,
-                       Workbench(BEAM))  # fmt: skip
+    clean = design_map(
+        name, {"model": model} | count, (Axis("frequency_hz", (f + 10.0, f + 20.0)), axes[1]), PAPER, Workbench(BEAM)
+    )
     assert found.values[1:] == pytest.approx(clean.values, rel=1e-9)
 
 
@@ -478,7 +487,10 @@ def test_gaps_are_counted_by_their_reason_and_each_is_said_once():
     found = design_map("wave.standing_wave_ratio", {"model": "segment"}, axes, PAPER, Workbench(BEAM))
     assert np.isfinite(found.values).tolist() == [[False] * 3, [False] * 3, [False, True, False]]
     assert [reason.split(":")[0] for reason in found.reasons] == [
-        "6 of 9 points have no figure", "1 of 9 points have no figure", "1 of 9 points have no figure"]  # fmt: skip
+        "6 of 9 points have no figure",
+        "1 of 9 points have no figure",
+        "1 of 9 points have no figure",
+    ]
     assert all(word in " ".join(found.reasons) for word in ("give count = 26", "field is zero", "leaves the span"))
 
 
@@ -532,11 +544,13 @@ def test_imposed_displacements_have_operating_points():
         for field in (
             driven_field(
                 lambda forces, f: analytic_modes.solve_harmonic(replace(BEAM, loss_factor=1e-3), forces, f),
-                scene.forces, quiet.frequency_hz + step, "displacement",
+                scene.forces,
+                quiet.frequency_hz + step,
+                "displacement",
             )
             for step in (-1.0, 0.0, 1.0)
         )
-    ]  # fmt: skip
+    ]
     assert around[1] == pytest.approx(quiet.reflection, rel=1e-6)
     assert quiet.note == ""
     assert around[1] < min(around[0], around[2])

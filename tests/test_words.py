@@ -22,11 +22,21 @@ GIVEN = {
 def words_of_the_report():
     """(where, text) of every sentence that is printed: constants of the code, docstrings apart, and the template."""
     package = Path(verify.__file__).parent
-    for path in [*(package / "report").glob("*.py"), *package.glob("*_study.py"), package / "console.py", package / "words.py",
-                 package / "work_precision.py", package / "studies.py"]:  # fmt: skip
+    for path in [
+        *(package / "report").glob("*.py"),
+        *package.glob("*_study.py"),
+        package / "console.py",
+        package / "words.py",
+        package / "work_precision.py",
+        package / "studies.py",
+    ]:
         tree = ast.parse(path.read_text("utf-8"))
-        specs = {id(part) for node in ast.walk(tree) if isinstance(node, ast.FormattedValue) and node.format_spec
-                 for part in ast.walk(node.format_spec)}  # fmt: skip
+        specs = {
+            id(part)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.FormattedValue) and node.format_spec
+            for part in ast.walk(node.format_spec)
+        }
         docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
         for node in ast.walk(tree):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in specs | docstrings:
@@ -49,9 +59,15 @@ def test_no_sentence_of_the_report_holds_a_figure_that_a_run_did_not_give():
 
 @pytest.mark.parametrize(
     "sentence",
-    ["elements take 0.59 times as long", "an error of 3.9 % at mid-span", "-0.00014 cm/s on segments", "about 147.2 here",
-     "at 4276 Hz", "moves by 36 nm"],
-)  # fmt: skip
+    [
+        "elements take 0.59 times as long",
+        "an error of 3.9 % at mid-span",
+        "-0.00014 cm/s on segments",
+        "about 147.2 here",
+        "at 4276 Hz",
+        "moves by 36 nm",
+    ],
+)
 def test_a_figure_written_into_a_sentence_is_seen(sentence):
     assert FIGURE.findall(sentence)
     assert not FIGURE.findall("of order 6, (kL)^2, Eq. (3), [L/4, 3L/4], 2EI/l, N = 49, 10⁻¹²")

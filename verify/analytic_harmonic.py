@@ -38,8 +38,14 @@ def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float
     k = wavenumber(beam, frequency_hz)
     slow, pinned = abs(k) * beam.length < 1.0, beam.supports == ("pinned", "pinned")
     solve = slow_shapes if slow else pinned_shapes if pinned else spliced_shapes
-    return HarmonicField(model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces),
-                         shapes=solve(beam, forces, k))  # fmt: skip
+    return HarmonicField(
+        model="analytic",
+        count=None,
+        beam=beam,
+        frequency_hz=frequency_hz,
+        forces=tuple(forces),
+        shapes=solve(beam, forces, k),
+    )
 
 
 def _nearest_mode(beam: Beam, frequency_hz: float) -> int:

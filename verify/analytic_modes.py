@@ -25,8 +25,14 @@ __all__ = [
     "unit_responses",
 ]
 
-_MIRRORED = {("pinned", "clamped"), ("pinned", "free"), ("free", "clamped"), ("guided", "clamped"),
-             ("guided", "free"), ("pinned", "guided")}  # fmt: skip
+_MIRRORED = {
+    ("pinned", "clamped"),
+    ("pinned", "free"),
+    ("free", "clamped"),
+    ("guided", "clamped"),
+    ("guided", "free"),
+    ("pinned", "guided"),
+}
 
 
 _LEAST = 1e-9
@@ -49,8 +55,18 @@ def solve_modes(beam: Beam, n_modes: int) -> Modes:
         return np.empty((n_modes, 0))
 
     empty = np.empty(0)
-    return Modes(model="analytic", count=None, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
-                 nodes=empty, points=empty, sampled=nowhere, curvature_points=empty, curvatures=nowhere)  # fmt: skip
+    return Modes(
+        model="analytic",
+        count=None,
+        length=beam.length,
+        frequencies_hz=frequencies,
+        shapes=shapes,
+        nodes=empty,
+        points=empty,
+        sampled=nowhere,
+        curvature_points=empty,
+        curvatures=nowhere,
+    )
 
 
 def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0) -> Array:

@@ -43,18 +43,28 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
         return np.asarray(known[key] * fourth[:, None] ** turns)
 
     cells = int(np.ceil(beam.length * float(fourth[-1]) ** 0.25 / 0.4)) + 1
-    return TimeBasis(model="analytic", count=None, beam=beam, omegas=omegas, shapes=shapes,
-                     loads=lambda position: shapes(np.array([position]), 0)[:, 0],
-                     edges=np.linspace(0.0, beam.length, cells + 1), degree=DEGREE,
-                     method=f"the first {n_modes} exact modes, the rest following at once",
-                     tail=lambda forces, frequency, damping: _tail(beam, omegas, shapes, forces, frequency, damping),
-                     )  # fmt: skip
+    return TimeBasis(
+        model="analytic",
+        count=None,
+        beam=beam,
+        omegas=omegas,
+        shapes=shapes,
+        loads=lambda position: shapes(np.array([position]), 0)[:, 0],
+        edges=np.linspace(0.0, beam.length, cells + 1),
+        degree=DEGREE,
+        method=f"the first {n_modes} exact modes, the rest following at once",
+        tail=lambda forces, frequency, damping: _tail(beam, omegas, shapes, forces, frequency, damping),
+    )
 
 
 def _tail(
-    beam: Beam, omegas: Array, shapes: Callable[[Array, int], Array], forces: Sequence[PointForce], frequency_hz: float,
+    beam: Beam,
+    omegas: Array,
+    shapes: Callable[[Array, int], Array],
+    forces: Sequence[PointForce],
+    frequency_hz: float,
     damping: float,
-) -> Callable[[Array, int], ComplexArray]:  # fmt: skip
+) -> Callable[[Array, int], ComplexArray]:
     """The exact field less the part of the modes that are kept: what far faster modes answer without delay."""
     lossy = replace(beam, loss_factor=2.0 * damping)
     field = solve_harmonic(lossy, forces, frequency_hz)

@@ -147,8 +147,14 @@ def driven_chain(scene: "Scene", who: str, count: int, duration: float, x: float
     place = 0.5 * scene.beam.length if x is None else x
     if place > scene.beam.length:
         raise InputError(f"x = {x!r} lies off the beam: give a place between 0 and {scene.beam.length!r} m")
-    return Driven(beam=scene.beam, forces=forces, frequency_hz=frequency, count=count, x=place,
-                  times=np.linspace(0.0, duration, n))  # fmt: skip
+    return Driven(
+        beam=scene.beam,
+        forces=forces,
+        frequency_hz=frequency,
+        count=count,
+        x=place,
+        times=np.linspace(0.0, duration, n),
+    )
 
 
 def linear_chain(driven: Driven) -> Array:
@@ -170,8 +176,16 @@ def rigid_chain(
     driven: Driven, force: float, *, axial_inertia: bool = True, progress: Progress = unheard
 ) -> ChainMotion:
     """The nonlinear chain of rigid links, converged in time. Raises InputError."""
-    motion = transient(driven.beam, driven.under(force), driven.frequency_hz, driven.times.tolist(), driven.count,
-                       axial_inertia=axial_inertia, tolerance=TOLERANCE, progress=progress)  # fmt: skip
+    motion = transient(
+        driven.beam,
+        driven.under(force),
+        driven.frequency_hz,
+        driven.times.tolist(),
+        driven.count,
+        axial_inertia=axial_inertia,
+        tolerance=TOLERANCE,
+        progress=progress,
+    )
     turned = rms(motion.directions())
     if turned > TURNED:
         raise InputError(f"under {force!r} N the links turn by {turned:.2g} rad in the rms: give a smaller force")
@@ -231,10 +245,15 @@ def force_row(driven: Driven, force: float, unit: Array) -> ForceRow:
     size = axial_inertia_size(driven.beam, driven.frequency_hz, rms(motion.directions()) ** 2)
     rigid = np.asarray(motion.deflection([driven.x])[:, 0])
     return ForceRow(
-        force=force, deflection_rms=rms(rigid), size=size, linear=size <= NONLINEAR, full=departure_of(rigid, linear),
+        force=force,
+        deflection_rms=rms(rigid),
+        size=size,
+        linear=size <= NONLINEAR,
+        full=departure_of(rigid, linear),
         transverse=departure_of(chain_deflection(driven, force, "transverse"), linear),
-        elastic=departure_of(elastic_chain(driven, force), linear), along=along_the_beam(driven, motion, force),
-    )  # fmt: skip
+        elastic=departure_of(elastic_chain(driven, force), linear),
+        along=along_the_beam(driven, motion, force),
+    )
 
 
 def side_by_side(driven: Driven, force: float, unit: Array) -> dict[str, Array]:
@@ -248,10 +267,17 @@ def side_by_side(driven: Driven, force: float, unit: Array) -> dict[str, Array]:
 def _linear_beam(driven: Driven, force: float, model: str) -> Array:
     """Of the exact beam or of as many Hermite elements as links, undamped, exact in time."""
     motion = simulate(
-        driven.beam, driven.under(force), driven.frequency_hz, float(driven.times[-1]), model=model,  # type: ignore[arg-type]
-        count=driven.count if model == "fem" else None, modal_damping=0.0, at=[driven.x], samples=len(driven.times),
+        driven.beam,
+        driven.under(force),
+        driven.frequency_hz,
+        float(driven.times[-1]),
+        model=model,  # type: ignore[arg-type]
+        count=driven.count if model == "fem" else None,
+        modal_damping=0.0,
+        at=[driven.x],
+        samples=len(driven.times),
         ledger=False,
-    )  # fmt: skip
+    )
     return np.asarray(motion.deflection[:, 0])
 
 
@@ -272,9 +298,15 @@ def axial_study(scene: "Scene", progress: Callable[[str], None] = lambda step: N
         for model, line in lines.items()
     )
     return AxialStudy(
-        rows=tuple(rows), beside=beside, times=tuple(driven.times.tolist()), shown=asked.shown, count=asked.count,
-        lines={model: tuple(line.tolist()) for model, line in lines.items()}, duration=asked.duration, x=driven.x,
-    )  # fmt: skip
+        rows=tuple(rows),
+        beside=beside,
+        times=tuple(driven.times.tolist()),
+        shown=asked.shown,
+        count=asked.count,
+        lines={model: tuple(line.tolist()) for model, line in lines.items()},
+        duration=asked.duration,
+        x=driven.x,
+    )
 
 
 def rms(values: Array) -> float:

@@ -158,10 +158,15 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         b, h, e, rho = (log10(value) for value in self._sizes(section))
         length = log10(self.length)
         decades = {
-            "width": b, "thickness": h, "youngs_modulus": e, "density": rho, "length": length,
-            "youngs_modulus * width * thickness^3": e + b + 3 * h, "density * width * thickness": rho + b + h,
+            "width": b,
+            "thickness": h,
+            "youngs_modulus": e,
+            "density": rho,
+            "length": length,
+            "youngs_modulus * width * thickness^3": e + b + 3 * h,
+            "density * width * thickness": rho + b + h,
             "youngs_modulus * thickness^2 / (density * length^4)": e - rho + 2 * h - 4 * length,
-        }  # fmt: skip
+        }
         for figure, power in decades.items():
             if abs(power) > FIGURE_DECADES:
                 raise InputError(
@@ -191,8 +196,13 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     def _piece(self, section: Section) -> Piece:
         width, thickness, modulus, density = self._sizes(section)
-        return Piece(length=section.length, youngs_modulus=modulus, second_moment=width * thickness**3 / 12.0,
-                     mass_per_length=density * (width * thickness), area=width * thickness)  # fmt: skip
+        return Piece(
+            length=section.length,
+            youngs_modulus=modulus,
+            second_moment=width * thickness**3 / 12.0,
+            mass_per_length=density * (width * thickness),
+            area=width * thickness,
+        )
 
     @property
     def rigid_motions(self) -> int:

@@ -26,9 +26,11 @@ def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis
     x, omega = put_on(request, slider)[0], request.omega
     slope = abs(stage.drive_shapes(np.array([x]), 1))[:2]
     speed = 0.5 * request.beam.thickness * omega * float(np.hypot(*slope[:, 0]))
-    felt = receptance(basis, x, omega, request.damping) if basis else complex(
-        steady_field(request, (PointForce(position=x),)).deflection([x])[0]
-    )  # fmt: skip
+    felt = (
+        receptance(basis, x, omega, request.damping)
+        if basis
+        else complex(steady_field(request, (PointForce(position=x),)).deflection([x])[0])
+    )
     return coupling_of(slider, request.beam, request.frequency_hz, speed, felt)
 
 
@@ -82,9 +84,16 @@ def put_on(request: Request, slider: Slider) -> tuple[float, float, bool]:
 
 
 def slide(
-    request: Request, slider: Slider, stages: list[Stage], basis: TimeBasis | None, coupling: Coupling, began: float,
-    notes: tuple[str, ...], progress: Callable[[float], None], patient: bool,
-) -> Motion:  # fmt: skip
+    request: Request,
+    slider: Slider,
+    stages: list[Stage],
+    basis: TimeBasis | None,
+    coupling: Coupling,
+    began: float,
+    notes: tuple[str, ...],
+    progress: Callable[[float], None],
+    patient: bool,
+) -> Motion:
     """Step the slider through all stages. Raises InputError where that takes too many steps, or too long."""
     stages, step_note = _in_steps(request, stages, begin(request, stages[0], basis, None), coupling)
     z = begin(request, stages[0], basis, coupling)
@@ -97,21 +106,38 @@ def slide(
     ready = perf_counter()
     stopped, q, rates = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / n_steps))
     wall = perf_counter() - ready - sliding.set_up_s
-    statistics = Statistics(steps=sliding.steps, evaluations=2 * sliding.steps + 1, step_s=stages[-1].dt,
-                            set_up_s=ready - began + sliding.set_up_s, wall_s=wall, stopped=stopped)  # fmt: skip
+    statistics = Statistics(
+        steps=sliding.steps,
+        evaluations=2 * sliding.steps + 1,
+        step_s=stages[-1].dt,
+        set_up_s=ready - began + sliding.set_up_s,
+        wall_s=wall,
+        stopped=stopped,
+    )
     n = sliding.n_kept
     columns = np.concatenate([sliding.first[None], sliding.kept[:n]])
     lost = (f"events: the first {sliding.n_events} of {sliding.n_events + sliding.n_lost}",) if sliding.n_lost else ()
     return Motion(
-        model=request.model, count=request.count, times=times_of(request, stages)[: n + 1], points=request.points,
-        deflection=np.concatenate([sliding.first_deflection[None], sliding.deflections[:n]]), slider=slider,
-        start=start, travelled=columns[:, 0], speed=columns[:, 1], friction=slider.mass * columns[:, 2],
-        surface_speed=columns[:, 3], normal_force=columns[:, 4], events=sliding.events[: sliding.n_events],
-        coupling=coupling, margins=margins_of(request, stages[-1], sliding.fall),
+        model=request.model,
+        count=request.count,
+        times=times_of(request, stages)[: n + 1],
+        points=request.points,
+        deflection=np.concatenate([sliding.first_deflection[None], sliding.deflections[:n]]),
+        slider=slider,
+        start=start,
+        travelled=columns[:, 0],
+        speed=columns[:, 1],
+        friction=slider.mass * columns[:, 2],
+        surface_speed=columns[:, 3],
+        normal_force=columns[:, 4],
+        events=sliding.events[: sliding.n_events],
+        coupling=coupling,
+        margins=margins_of(request, stages[-1], sliding.fall),
         ledger=_ledger(basis, sliding, energy, q, rates) if sliding.accounts else None,
-        notes=(*notes, coupling.note, *step_note, *lost), statistics=statistics,
+        notes=(*notes, coupling.note, *step_note, *lost),
+        statistics=statistics,
         end=_end(request, stages, sliding, q, rates, coupling),
-    )  # fmt: skip
+    )
 
 
 def times_of(request: Request, stages: list[Stage]) -> Array:
@@ -165,9 +191,14 @@ def _grip(slider: Slider) -> float:
 def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> tuple[float, Sliding]:
     """Where the slider starts, and room for its run."""
     start, speed, stuck = put_on(request, slider)
-    sliding = Sliding.fresh(start, sum(stage.n_steps // stage.every for stage in stages), request.points,
-                            law_entries(slider, request.beam), coupling.two_way,
-                            request.accounts and request.start == "rest")  # fmt: skip
+    sliding = Sliding.fresh(
+        start,
+        sum(stage.n_steps // stage.every for stage in stages),
+        request.points,
+        law_entries(slider, request.beam),
+        coupling.two_way,
+        request.accounts and request.start == "rest",
+    )
     sliding.motion[1:3] = speed, stuck
     if request.before is not None and request.before.height is not None:
         sliding.on_its_way = request.before.height, request.before.climb
@@ -178,9 +209,16 @@ def _end(
     request: Request, stages: list[Stage], sliding: Sliding, q: Array, rates: Array, coupling: Coupling
 ) -> EndState:
     height, climb = sliding.held if coupling.pushes_back else (None, 0.0)
-    return EndState(time=_reached(stages, sliding.steps), q=q, rates=rates,
-                    position=sliding.start + float(sliding.motion[0]), speed=float(sliding.motion[1]),
-                    stuck=bool(sliding.motion[2] > 0.0), height=height, climb=climb)  # fmt: skip
+    return EndState(
+        time=_reached(stages, sliding.steps),
+        q=q,
+        rates=rates,
+        position=sliding.start + float(sliding.motion[0]),
+        speed=float(sliding.motion[1]),
+        stuck=bool(sliding.motion[2] > 0.0),
+        height=height,
+        climb=climb,
+    )
 
 
 def _reached(stages: list[Stage], steps: int) -> float:
@@ -206,6 +244,14 @@ def _ledger(
     kinetic, elastic = _beam_energy(basis, q, rates)
     gained = kinetic + elastic - sum(before)
     charged = on_beam + lifted if sliding.two_way else 0.0
-    return Ledger(kinetic=kinetic, elastic=elastic, slider=on_slider, work_in=driven, damped=damped, rubbed=rubbed,
-                  contact_on_beam=on_beam, normal_on_beam=lifted,
-                  residual=driven + charged - damped - gained)  # fmt: skip
+    return Ledger(
+        kinetic=kinetic,
+        elastic=elastic,
+        slider=on_slider,
+        work_in=driven,
+        damped=damped,
+        rubbed=rubbed,
+        contact_on_beam=on_beam,
+        normal_on_beam=lifted,
+        residual=driven + charged - damped - gained,
+    )

@@ -38,8 +38,10 @@ def flatten(system: ChainSystem, *, ledger: bool = True) -> kernels.Flat:
         held=np.array(held, dtype=float).reshape(len(held), 5),
         small=np.zeros((len(held), len(held) + 1)),
         tip=kernels.ROLLER if system.tip == "roller" else kernels.FREE,
-        tip_spring=float(system.axial_spring), axial=bool(system.axial_inertia), ledger=ledger,
-    )  # fmt: skip
+        tip_spring=float(system.axial_spring),
+        axial=bool(system.axial_inertia),
+        ledger=ledger,
+    )
 
 
 def _cycle(one: Any) -> tuple[float, float]:

@@ -58,9 +58,15 @@ def elastic_step_limit(system: ChainSystem, axial_stiffness: float | Array) -> f
 
 
 def simulate_elastic(
-    system: ChainSystem, axial_stiffness: float | Array, times: Sequence[float] | Array, *, step: float | None = None,
-    immovable: bool = False, deflected: Array | None = None, most: float = inf,
-) -> ElasticMotion:  # fmt: skip
+    system: ChainSystem,
+    axial_stiffness: float | Array,
+    times: Sequence[float] | Array,
+    *,
+    step: float | None = None,
+    immovable: bool = False,
+    deflected: Array | None = None,
+    most: float = inf,
+) -> ElasticMotion:
     """The motion from rest, straight or from joint deflections `deflected` (N + 1,), kept at even `times` from 0.
 
     `axial_stiffness` is EA in newton, of all links or of each (N,); `step` is at most `elastic_step_limit`, half of
@@ -135,7 +141,9 @@ def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -
     ]
     links = np.stack([lengths, system.masses, stiffness / lengths, system.stiffness, system.dashpots], axis=1)
     flat = kernels.Elastic(
-        links=links, loads=np.array(loads, dtype=float).reshape(len(loads), 7),
-        gravity=np.array(system.gravity, dtype=float), factors=factors,
-    )  # fmt: skip
+        links=links,
+        loads=np.array(loads, dtype=float).reshape(len(loads), 7),
+        gravity=np.array(system.gravity, dtype=float),
+        factors=factors,
+    )
     return flat, diagonal, coupling

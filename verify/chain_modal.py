@@ -69,8 +69,9 @@ def modal_basis(system: ChainSystem, rest: ChainState | None = None, n_modes: in
     rest = at_rest(system) if rest is None else rest
     omega, modes, duals, tilt = _all_modes(system, rest) if n_modes is None else lowest_modes(system, n_modes)
     drives, shares = _steady(system, rest, omega, duals)
-    return ModalBasis(system=system, rest=rest, omega=omega, modes=modes, duals=duals, drives=drives, shares=shares,
-                      tilt=tilt)  # fmt: skip
+    return ModalBasis(
+        system=system, rest=rest, omega=omega, modes=modes, duals=duals, drives=drives, shares=shares, tilt=tilt
+    )
 
 
 def _all_modes(system: ChainSystem, rest: ChainState) -> tuple[Array, Array, Array, float]:
@@ -160,12 +161,24 @@ def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float]
     state = linear_states(basis, _free(basis, start), samples - start.time, samples, every)
     angles, rates = state[:, :, 0] @ basis.modes + basis.rest.angles, state[:, :, 1] @ basis.modes
     statistics = Statistics(
-        method="linear, exact", steps=0, rejected=0, evaluations=0, seconds=perf_counter() - clock, stopped="finished",
+        method="linear, exact",
+        steps=0,
+        rejected=0,
+        evaluations=0,
+        seconds=perf_counter() - clock,
+        stopped="finished",
         started="consistent",
-    )  # fmt: skip
+    )
     none = np.zeros(len(samples))
-    return ChainMotion(system=basis.system, times=samples, angles=angles, rates=rates, dissipated=none, work_in=none,
-                       statistics=statistics)  # fmt: skip
+    return ChainMotion(
+        system=basis.system,
+        times=samples,
+        angles=angles,
+        rates=rates,
+        dissipated=none,
+        work_in=none,
+        statistics=statistics,
+    )
 
 
 def linear_deflection(basis: ModalBasis, start: ChainState, times: Array, x: float) -> Array:
@@ -242,14 +255,23 @@ def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kick
     gaps = np.diff(samples)
     even = len(gaps) > 1 and np.ptp(gaps) < 1e-9 * gaps[0]
     return kernels.Modal(
-        kicks=np.array(weights), shares_of_step=np.array(flows), omega=omega,
+        kicks=np.array(weights),
+        shares_of_step=np.array(flows),
+        omega=omega,
         flows=_turns(omega, step * np.array([*flows, 1.0])),
         spacing=_turns(omega, gaps[:1])[0] if even else np.zeros((0, 3)),
-        modes=np.ascontiguousarray(basis.modes[chosen]), duals=np.ascontiguousarray(basis.duals[chosen]),
-        rest=basis.rest.angles, drives=basis.drives, shares=np.ascontiguousarray(basis.shares[:, chosen]),
-        tilt=basis.tilt, start=np.zeros((m, 2)), steady=np.zeros((m, 2)), trial=np.zeros((m, 2)),
-        vectors=np.zeros((3, n)), force=np.zeros(m),
-    )  # fmt: skip
+        modes=np.ascontiguousarray(basis.modes[chosen]),
+        duals=np.ascontiguousarray(basis.duals[chosen]),
+        rest=basis.rest.angles,
+        drives=basis.drives,
+        shares=np.ascontiguousarray(basis.shares[:, chosen]),
+        tilt=basis.tilt,
+        start=np.zeros((m, 2)),
+        steady=np.zeros((m, 2)),
+        trial=np.zeros((m, 2)),
+        vectors=np.zeros((3, n)),
+        force=np.zeros(m),
+    )
 
 
 class _Modal:
@@ -297,10 +319,20 @@ class _Modal:
             rates += state[:, :, 1] @ basis.modes[self.others]
         none = np.zeros(kept)
         statistics = Statistics(
-            method=f"modal, {kicks} kicks", steps=int(self.counts[0]), rejected=0, evaluations=int(self.counts[2]),
-            seconds=seconds, stopped=stopped, started=started,
-        )  # fmt: skip
+            method=f"modal, {kicks} kicks",
+            steps=int(self.counts[0]),
+            rejected=0,
+            evaluations=int(self.counts[2]),
+            seconds=seconds,
+            stopped=stopped,
+            started=started,
+        )
         return ChainMotion(
-            system=basis.system, times=times, angles=angles, rates=rates, dissipated=none, work_in=none,
+            system=basis.system,
+            times=times,
+            angles=angles,
+            rates=rates,
+            dissipated=none,
+            work_in=none,
             statistics=statistics,
-        )  # fmt: skip
+        )

@@ -20,11 +20,17 @@ def lowest_modes(system: ChainSystem, n_modes: int) -> tuple[Array, Array, Array
     unit, spring, mass = system.lengths.mean(), system.stiffness.max(), system.masses.mean()
     chain = Chain(
         supports=("clamped" if system.stiffness[0] > 0.0 else "pinned", "pinned" if system.tip == "roller" else "free"),
-        rigid_motions=int(system.stiffness[0] == 0.0 and system.tip == "free"), unit=float(unit), start=0.0,
-        lengths=system.lengths / unit, masses=system.masses / mass, inertias=system.inertias / (mass * unit**2),
-        compliances=np.append(np.divide(spring, system.stiffness, out=np.full(system.n_links, np.inf),
-                                        where=system.stiffness > 0.0), np.inf),
-    )  # fmt: skip
+        rigid_motions=int(system.stiffness[0] == 0.0 and system.tip == "free"),
+        unit=float(unit),
+        start=0.0,
+        lengths=system.lengths / unit,
+        masses=system.masses / mass,
+        inertias=system.inertias / (mass * unit**2),
+        compliances=np.append(
+            np.divide(spring, system.stiffness, out=np.full(system.n_links, np.inf), where=system.stiffness > 0.0),
+            np.inf,
+        ),
+    )
     pairs = lowest(chain_pencil(chain), n_modes)
     omega = np.sqrt(pairs.values * spring / mass) / unit
     places, tilt = with_ends(chain, pairs.vectors)[1:].T / np.sqrt(mass), 0.0

@@ -222,9 +222,16 @@ class _Run:
     """Arrays of one run."""
 
     def __init__(
-        self, system: ChainSystem, start: ChainState, samples: Array, table: Tableau, step: float | None,
-        tolerance: float, dependent: Sequence[int] | None, ledger: bool,
-    ) -> None:  # fmt: skip
+        self,
+        system: ChainSystem,
+        start: ChainState,
+        samples: Array,
+        table: Tableau,
+        step: float | None,
+        tolerance: float,
+        dependent: Sequence[int] | None,
+        ledger: bool,
+    ) -> None:
         size = 2 * system.n_links + 2
         self.system = system
         self.flat, self.work = flatten(system, ledger=ledger), workspace(system)
@@ -233,13 +240,20 @@ class _Run:
         first = step or min(0.1 / max(fastest, 1e-12), max(samples[-1] - start.time, 1e-12))
         floor = 1e-3 * tolerance**1.5
         self.m = kernels.March(
-            a=table.a, c=table.c, weights=table.weights, order=table.order,
-            y=np.concatenate([start.angles, start.rates, [0.0, 0.0]]), new=np.zeros(size),
-            k=np.zeros((len(table.c) + 1, size)), samples=samples, kept=np.zeros((len(samples), size)),
-            clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]), counts=np.zeros(5, dtype=np.int64),
+            a=table.a,
+            c=table.c,
+            weights=table.weights,
+            order=table.order,
+            y=np.concatenate([start.angles, start.rates, [0.0, 0.0]]),
+            new=np.zeros(size),
+            k=np.zeros((len(table.c) + 1, size)),
+            samples=samples,
+            kept=np.zeros((len(samples), size)),
+            clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]),
+            counts=np.zeros(5, dtype=np.int64),
             scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0]),
             pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
-        )  # fmt: skip
+        )
         kernels.derivative(self.flat, start.time, self.m.y, self.work, self.m.k[0])
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
@@ -280,11 +294,23 @@ class _Run:
         steps, rejected, evaluations, _, changes = (int(c) for c in self.m.counts)
         rows = self.m.kept[:kept]
         return ChainMotion(
-            system=self.system, times=self.m.samples[:kept], angles=rows[:, :n], rates=rows[:, n : 2 * n],
-            dissipated=rows[:, 2 * n], work_in=rows[:, 2 * n + 1],
-            statistics=Statistics(method=method, steps=steps, rejected=rejected, evaluations=evaluations,
-                                  seconds=seconds, stopped=stopped, started=started, pivot_changes=changes),
-        )  # fmt: skip
+            system=self.system,
+            times=self.m.samples[:kept],
+            angles=rows[:, :n],
+            rates=rows[:, n : 2 * n],
+            dissipated=rows[:, 2 * n],
+            work_in=rows[:, 2 * n + 1],
+            statistics=Statistics(
+                method=method,
+                steps=steps,
+                rejected=rejected,
+                evaluations=evaluations,
+                seconds=seconds,
+                stopped=stopped,
+                started=started,
+                pivot_changes=changes,
+            ),
+        )
 
 
 class _Pace:

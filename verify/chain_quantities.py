@@ -168,9 +168,17 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
         forces = tuple(replace(force, amplitude=a.force) for force in forces)
     method = a.method or ("rk4" if a.step is not None else "adaptive")
     motion = chain_studies.transient(
-        scene.beam, forces, scene.drive.frequency_hz, [a.time], a.links, step=a.step, method=method,
-        axial_inertia=a.inertia == "full", tolerance=a.tolerance, progress=bench.tell,
-    )  # fmt: skip
+        scene.beam,
+        forces,
+        scene.drive.frequency_hz,
+        [a.time],
+        a.links,
+        step=a.step,
+        method=method,
+        axial_inertia=a.inertia == "full",
+        tolerance=a.tolerance,
+        progress=bench.tell,
+    )
     return float(motion.deflection([a.x])[0, 0])
 
 
@@ -196,20 +204,68 @@ def _no_modes(a: Any, scene: "Scene") -> tuple[()]:
 
 
 CHAIN_QUANTITIES = (
-    Quantity("chain.cantilever_tip", "1", "Tip of a cantilever under a dead transverse force: w/L or 1 - x/L.",
-             TipUnderLoad, _nothing, _cantilever_tip),
-    Quantity("chain.rollup_gap", "1", "Distance of the ends over L under an end moment 2 pi EI/L.",
-             RolledUp, _nothing, _rollup_gap),
-    Quantity("chain.hanging_frequency", "1", "Omega sqrt(L/g) of a hanging chain of uniform links.",
-             Hanging, _nothing, _hanging_frequency),
-    Quantity("chain.turning_frequency", "1", "Omega sqrt(rho A L^4/EI), lead-lag, of a cantilever whose clamp turns.",
-             Turning, _nothing, _turning_frequency),
-    Quantity("chain.large_amplitude_frequency", "1", "First frequency between immovable hinges over the linear one.",
-             LargeAmplitude, _no_modes, _large_amplitude_frequency),
-    Quantity("chain.energy_drift", "1", "Largest change of energy of an undamped chain over its energy.",
-             FreeMotion, _no_modes, _energy_drift),
-    Quantity("chain.transient_deflection", "m", "Deflection of the chain from rest under the scene's forces.",
-             FromRest, _no_modes, _transient_deflection),
-    Quantity("chain.axial_departure", "1", "Nonlinear chain less the linear one, from rest, over the linear one's rms.",
-             Departing, _no_modes, _axial_departure),
-)  # fmt: skip
+    Quantity(
+        "chain.cantilever_tip",
+        "1",
+        "Tip of a cantilever under a dead transverse force: w/L or 1 - x/L.",
+        TipUnderLoad,
+        _nothing,
+        _cantilever_tip,
+    ),
+    Quantity(
+        "chain.rollup_gap",
+        "1",
+        "Distance of the ends over L under an end moment 2 pi EI/L.",
+        RolledUp,
+        _nothing,
+        _rollup_gap,
+    ),
+    Quantity(
+        "chain.hanging_frequency",
+        "1",
+        "Omega sqrt(L/g) of a hanging chain of uniform links.",
+        Hanging,
+        _nothing,
+        _hanging_frequency,
+    ),
+    Quantity(
+        "chain.turning_frequency",
+        "1",
+        "Omega sqrt(rho A L^4/EI), lead-lag, of a cantilever whose clamp turns.",
+        Turning,
+        _nothing,
+        _turning_frequency,
+    ),
+    Quantity(
+        "chain.large_amplitude_frequency",
+        "1",
+        "First frequency between immovable hinges over the linear one.",
+        LargeAmplitude,
+        _no_modes,
+        _large_amplitude_frequency,
+    ),
+    Quantity(
+        "chain.energy_drift",
+        "1",
+        "Largest change of energy of an undamped chain over its energy.",
+        FreeMotion,
+        _no_modes,
+        _energy_drift,
+    ),
+    Quantity(
+        "chain.transient_deflection",
+        "m",
+        "Deflection of the chain from rest under the scene's forces.",
+        FromRest,
+        _no_modes,
+        _transient_deflection,
+    ),
+    Quantity(
+        "chain.axial_departure",
+        "1",
+        "Nonlinear chain less the linear one, from rest, over the linear one's rms.",
+        Departing,
+        _no_modes,
+        _axial_departure,
+    ),
+)

@@ -83,10 +83,14 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
         n_steps, dt, local, along, edges - start, motion, law_entries(slider, beam), kept, *contact_space()
     )
     return ChainRide(
-        chain=chain, times=times[: 2 * done + 1 : 2], travelled=kept[: done + 1, 0], speed=kept[: done + 1, 1],
-        friction=slider.mass * kept[: done + 1, 2], surface_speed=kept[: done + 1, 3],
+        chain=chain,
+        times=times[: 2 * done + 1 : 2],
+        travelled=kept[: done + 1, 0],
+        speed=kept[: done + 1, 1],
+        friction=slider.mass * kept[: done + 1, 2],
+        surface_speed=kept[: done + 1, 3],
         stopped="end" if done == n_steps else "left the piece of the chain it began on",
-    )  # fmt: skip
+    )
 
 
 def _surface(chain: ChainMotion | ElasticMotion, x: float) -> tuple[Array, Array, Array]:

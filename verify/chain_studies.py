@@ -70,8 +70,9 @@ def _tip(system: ChainSystem) -> tuple[float, float]:
     return float(x), float(y)
 
 
-UNIT_CANTILEVER = Beam(length=1.0, width=1.2, thickness=0.01, youngs_modulus=1e7, density=1000.0,
-                       supports=("clamped", "free"))  # fmt: skip
+UNIT_CANTILEVER = Beam(
+    length=1.0, width=1.2, thickness=0.01, youngs_modulus=1e7, density=1000.0, supports=("clamped", "free")
+)
 UNIT_STIFFNESS = UNIT_CANTILEVER.bending_stiffness
 
 
@@ -85,8 +86,14 @@ def hanging_frequency(mode: int, n_segments: int) -> float:
     if mode > n_segments:
         raise InputError(f"mode = {mode!r}: a hanging chain of {n_segments} segments has as many modes")
     lengths, masses, still = (np.full(n_segments, value) for value in (1.0 / n_segments, 1.0 / n_segments, 0.0))
-    system = ChainSystem(lengths=lengths, masses=masses, inertias=link_inertia(masses, lengths), stiffness=still,
-                         dashpots=still, gravity=(1.0, 0.0))  # fmt: skip
+    system = ChainSystem(
+        lengths=lengths,
+        masses=masses,
+        inertias=link_inertia(masses, lengths),
+        stiffness=still,
+        dashpots=still,
+        gravity=(1.0, 0.0),
+    )
     return float(linearise(system, at_rest(system)).frequencies()[mode - 1])
 
 
@@ -168,9 +175,14 @@ def _check_height(height: float, system: ChainSystem) -> None:
 
 
 def energy_drift(
-    beam: Beam, n_segments: int, amplitude: float, periods: float, step: float | None, tolerance: float,
+    beam: Beam,
+    n_segments: int,
+    amplitude: float,
+    periods: float,
+    step: float | None,
+    tolerance: float,
     progress: Progress = unheard,
-) -> float:  # fmt: skip
+) -> float:
     """Largest change of the energy of an undamped roller-ended chain, over what it was let go with.
 
     Let go at rest from amplitude L sin(pi x / L); `periods` are the linear first mode's. Raises InputError, also for
@@ -193,10 +205,19 @@ def energy_drift(
 
 
 def transient(
-    beam: Beam, forces: Sequence[PointForce], frequency_hz: float, times: Sequence[float], n_segments: int, *,
-    step: float | None = None, method: str = "adaptive", axial_inertia: bool = True, tolerance: float | None = None,
-    most: float = MOST, progress: Progress = unheard,
-) -> ChainMotion:  # fmt: skip
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    times: Sequence[float],
+    n_segments: int,
+    *,
+    step: float | None = None,
+    method: str = "adaptive",
+    axial_inertia: bool = True,
+    tolerance: float | None = None,
+    most: float = MOST,
+    progress: Progress = unheard,
+) -> ChainMotion:
     """The chain from rest under harmonic forces A cos(2 pi f t + phase) on its links.
 
     `method` is "adaptive" with a tolerance (default 1e-9), "rk4" or "modal" (two kicks) with a step, or "linear" for

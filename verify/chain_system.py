@@ -164,8 +164,13 @@ def _check_arrays(system: ChainSystem) -> None:
     n = len(system.lengths)
     if n == 0:
         raise InputError("chain.lengths is empty: give at least one link")
-    limits = {"lengths": "above 0", "masses": "above 0", "inertias": "above 0", "stiffness": "at least 0",
-              "dashpots": "at least 0"}  # fmt: skip
+    limits = {
+        "lengths": "above 0",
+        "masses": "above 0",
+        "inertias": "above 0",
+        "stiffness": "at least 0",
+        "dashpots": "at least 0",
+    }
     for field, limit in limits.items():
         values = np.asarray(getattr(system, field), dtype=float)
         if values.shape != (n,):
@@ -211,11 +216,15 @@ def build_system(
     unit, mass = chain.unit, beam.mass_per_length
     stiffness = beam.bending_stiffness / unit / chain.compliances[:-1]
     system = ChainSystem(
-        lengths=chain.lengths * unit, masses=chain.masses * mass * unit, inertias=chain.inertias * mass * unit**3,
-        stiffness=stiffness, dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0), axial_inertia=axial_inertia,
+        lengths=chain.lengths * unit,
+        masses=chain.masses * mass * unit,
+        inertias=chain.inertias * mass * unit**3,
+        stiffness=stiffness,
+        dashpots=np.where(stiffness > 0.0, joint_dashpot, 0.0),
+        axial_inertia=axial_inertia,
         tip="roller" if beam.supports[1] == "pinned" else "free",
         axial_spring=1.0 / sum(p.length / p.axial_stiffness for p in beam.pieces) if immovable else 0.0,
-    )  # fmt: skip
+    )
     return replace(system, loads=transverse_loads(chain, system, forces, frequency_hz, load))
 
 
@@ -253,9 +262,14 @@ def transverse_loads(
             )
         for link, at, share in _shares(chain, system, force.position, rule):
             found.append(
-                LinkLoad(link=link, at=at, force=(0.0, share * force.amplitude), frequency_hz=frequency_hz,
-                         phase_deg=force.phase_deg)
-            )  # fmt: skip
+                LinkLoad(
+                    link=link,
+                    at=at,
+                    force=(0.0, share * force.amplitude),
+                    frequency_hz=frequency_hz,
+                    phase_deg=force.phase_deg,
+                )
+            )
     return tuple(found)
 
 

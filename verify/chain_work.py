@@ -32,8 +32,14 @@ def check_links(segments: int, least: int, most: int, why: str) -> None:
 
 def check_modes_of(segments: int, least: int = 1) -> None:
     """Raise InputError for more links than dense matrices are for, or fewer than can move."""
-    check_links(segments, least, DENSE_LINKS, "the modes of such a chain are found by dense matrices" if segments > 1
-                else "a single link between two held ends cannot move")  # fmt: skip
+    check_links(
+        segments,
+        least,
+        DENSE_LINKS,
+        "the modes of such a chain are found by dense matrices"
+        if segments > 1
+        else "a single link between two held ends cannot move",
+    )
 
 
 def check_kept(samples: float, links: int, field: str) -> None:

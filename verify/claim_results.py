@@ -71,8 +71,14 @@ def _on_the_run(claim: Claim, study: "MotionStudy") -> ClaimResult:
     """On the scene's own slider: the chain's figure, the exact beam's beside it."""
     chain, exact = (study.figures[model].get(claim.quantity) for model in ("segment", "analytic"))
     ended = chain is not None
-    return _result(claim, quantity(claim.quantity).unit, chain, exact, study.conditions["segment"].words,
-                   "" if ended else "the slider did not reach the end of the run")  # fmt: skip
+    return _result(
+        claim,
+        quantity(claim.quantity).unit,
+        chain,
+        exact,
+        study.conditions["segment"].words,
+        "" if ended else "the slider did not reach the end of the run",
+    )
 
 
 def _alone(claim: Claim, scene: "Scene", bench: "Workbench") -> ClaimResult:
@@ -96,7 +102,16 @@ def _result(
     claim: Claim, unit: str, found: float | None, exact: float | None, condition: str, reason: str
 ) -> ClaimResult:
     return ClaimResult(
-        id=claim.id, source=claim.source, quantity=claim.quantity, unit=unit, claimed=claim.in_words,
-        read=READ[claim.read], found=found, exact=exact, holds=None if found is None else claim.holds(found),
-        exact_holds=None if exact is None else claim.holds(exact), condition=condition, reason=reason,
-    )  # fmt: skip
+        id=claim.id,
+        source=claim.source,
+        quantity=claim.quantity,
+        unit=unit,
+        claimed=claim.in_words,
+        read=READ[claim.read],
+        found=found,
+        exact=exact,
+        holds=None if found is None else claim.holds(found),
+        exact_holds=None if exact is None else claim.holds(exact),
+        condition=condition,
+        reason=reason,
+    )

@@ -83,24 +83,32 @@ def searched_words(study: ReadingsStudy) -> str:
     """What was searched: all lists, how many readings and runs, on what."""
     lists = "; ".join(
         f"{NAMES[name]} {', '.join(v if isinstance(v, str) else f'{v:g}' for v in values)}{UNITS.get(name, '')}"
-        for name, values in study.searched.items() if values
-    )  # fmt: skip
+        for name, values in study.searched.items()
+        if values
+    )
     how, n = study.readings[0].condition, sum(one.condition.model != "chain" for one in study.readings)
     chain = len(study.readings) - n
     also = f"; those at once also on the nonlinear chain of {how.count} rigid links ({chain})" if chain else ""
-    return (f"{n} readings, every combination of {lists} and no other; {how.model_words}, {1e3 * how.duration:g} ms "
-            f"from the start{also}; {study.n_runs} runs in all. Nothing is fitted.")  # fmt: skip
+    return (
+        f"{n} readings, every combination of {lists} and no other; {how.model_words}, {1e3 * how.duration:g} ms "
+        f"from the start{also}; {study.n_runs} runs in all. Nothing is fitted."
+    )
 
 
 def bound_words(bound: "Bound") -> str:
     """What friction alone allows, and how far it is from being reached."""
-    reached = (f"of {bound.n_above} such readings on all models and places with mu from there on the fastest that way "
-               f"has {cm_per_s(bound.fastest)} cm/s, {100 * bound.fastest / bound.claimed:.2g} % of it"
-               if bound.fastest is not None else "no reading has such a mu")  # fmt: skip
-    return (f"In the tangential kinematics, from rest, friction alone moves the slider: a mean speed of "
-            f"{100 * bound.claimed:g} cm/s takes mu of at least {bound.least_mu:.3g} there, which need not be enough: "
-            f"{reached}. In the following kinematics the turning surface pushes the slider too, and mu sets no such "
-            "bound.")  # fmt: skip
+    reached = (
+        f"of {bound.n_above} such readings on all models and places with mu from there on the fastest that way "
+        f"has {cm_per_s(bound.fastest)} cm/s, {100 * bound.fastest / bound.claimed:.2g} % of it"
+        if bound.fastest is not None
+        else "no reading has such a mu"
+    )
+    return (
+        f"In the tangential kinematics, from rest, friction alone moves the slider: a mean speed of "
+        f"{100 * bound.claimed:g} cm/s takes mu of at least {bound.least_mu:.3g} there, which need not be enough: "
+        f"{reached}. In the following kinematics the turning surface pushes the slider too, and mu sets no such "
+        "bound."
+    )
 
 
 def legend(study: ReadingsStudy) -> str:
@@ -131,8 +139,15 @@ def best_cells(group: "Group") -> list[str]:
     best, exact = group.best, group.exact
     how = best.condition
     slope = "–" if how.law == "coulomb" else f"{how.slope:g}"
-    return [how.force_words.removesuffix(" N"), f"{how.mu:g}", slope, cm_per_s(best.speed), met_words(best),
-            cm_per_s(exact.speed) if exact else "–", met_words(exact)]  # fmt: skip
+    return [
+        how.force_words.removesuffix(" N"),
+        f"{how.mu:g}",
+        slope,
+        cm_per_s(best.speed),
+        met_words(best),
+        cm_per_s(exact.speed) if exact else "–",
+        met_words(exact),
+    ]
 
 
 def answer_in_words(answer: "Comparison | NotCompared") -> str:

@@ -123,10 +123,12 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     def __post_init__(self) -> None:
         for name, unit, bound in (
-            ("soft_start_periods", "periods", {"at_least": 0}), ("forces", "newton", {"above": 0}),
-            ("mu", "coefficient of friction", {"above": 0}), ("slope", "s/m", {"above": 0}),
+            ("soft_start_periods", "periods", {"at_least": 0}),
+            ("forces", "newton", {"above": 0}),
+            ("mu", "coefficient of friction", {"above": 0}),
+            ("slope", "s/m", {"above": 0}),
             ("positions", "metres", {"at_least": 0}),
-        ):  # fmt: skip
+        ):
             for i, value in enumerate(getattr(self, name)):
                 check_number(f"readings.{name}[{i}]", value, unit, **bound)
         for name in ("kinematics", "normal", "soft_start_periods", "forces", "mu", "slope", "positions"):

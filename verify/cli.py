@@ -56,8 +56,9 @@ def cli() -> None:
 @cli.command()
 @_scene
 @_overrides
-@click.option("--reports", "folder", default="reports", show_default=True, metavar="PATH",
-              help="Folder for the HTML report.")  # fmt: skip
+@click.option(
+    "--reports", "folder", default="reports", show_default=True, metavar="PATH", help="Folder for the HTML report."
+)
 @click.option("--no-report", is_flag=True, help="Judge only; write nothing.")
 @_as_json
 def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as_json: bool) -> None:

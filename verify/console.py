@@ -49,9 +49,11 @@ def print_run(result: "RunResult", report: Path | None) -> None:
         if not gate.passed:
             console.print(Text(f"gate {gate.id}: {gate.reason}", style="red"))
     n_failed = sum(not gate.passed for gate in result.gates)
-    verdict = f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]" if n_failed else (
-        f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates"
-    )  # fmt: skip
+    verdict = (
+        f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]"
+        if n_failed
+        else (f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates")
+    )
     if result.motion:
         _print_slider(console, result.motion)
     if result.claims:
@@ -72,8 +74,12 @@ def _print_slider(console: Console, study: "MotionStudy") -> None:
     for finding in study.findings:
         console.print(Text(f"{finding.what}: {finding.found}"))
     margins = study.runs["segment"].margins
-    console.print(Text(f"margins of the run: acceleration over what presses the slider on {margins.lift_off:.3g}, "
-                       f"(kL)^2 <theta^2> {margins.nonlinearity:.1e}"))  # fmt: skip
+    console.print(
+        Text(
+            f"margins of the run: acceleration over what presses the slider on {margins.lift_off:.3g}, "
+            f"(kL)^2 <theta^2> {margins.nonlinearity:.1e}"
+        )
+    )
     console.print(Text(answer_in_words(study.answer)))
 
 
@@ -144,9 +150,13 @@ def _print_axial(console: Console, study: "AxialStudy") -> None:
     for row in study.rows:
         verdict = "linear" if row.linear else "nonlinear"
         low, high = row.along
-        console.print(Text(f"{row.force:g} N: {verdict}, (kL)^2 <theta^2> {row.size:.1e}; rigid links lie "
-                           f"{row.full.at_end:.1e} off after {1e3 * study.duration:g} ms at x = {study.x:g} m, "
-                           f"{low:.1e} to {high:.1e} at the tenths of the beam"))  # fmt: skip
+        console.print(
+            Text(
+                f"{row.force:g} N: {verdict}, (kL)^2 <theta^2> {row.size:.1e}; rigid links lie "
+                f"{row.full.at_end:.1e} off after {1e3 * study.duration:g} ms at x = {study.x:g} m, "
+                f"{low:.1e} to {high:.1e} at the tenths of the beam"
+            )
+        )
 
 
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
@@ -221,8 +231,10 @@ def print_motor(rows: "tuple[MotorRow, ...]") -> None:
     console = Terminal()
     console.print(table)
     drive = f"{rows[0].drive.frequency_hz:g} Hz"
-    console.print(f"[dim]window [L/4, 3L/4], axis ratios over its whole half wavelengths; left at {drive}, the drive's "
-                  "frequency, right at the model's own best[/]")  # fmt: skip
+    console.print(
+        f"[dim]window [L/4, 3L/4], axis ratios over its whole half wavelengths; left at {drive}, the drive's "
+        "frequency, right at the model's own best[/]"
+    )
     for row in rows:
         if row.note:
             console.print(Text(f"– {row.model}{f', N = {row.count}' if row.count else ''}: {row.note}", style="dim"))
@@ -244,13 +256,23 @@ def print_work(work: "Work") -> None:
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
     for row in work.rows:
         order = "–" if row.order is None else f"{row.order:.2f}"
-        table.add_row(row.model, str(row.count), str(row.rows), f"{1e9 * row.displacement:+.6f}",
-                      _bare_percent(row.error), order, f"{row.run_ms_per_ms:.3g}", f"{row.set_up_ms:.3g}")  # fmt: skip
+        table.add_row(
+            row.model,
+            str(row.count),
+            str(row.rows),
+            f"{1e9 * row.displacement:+.6f}",
+            _bare_percent(row.error),
+            order,
+            f"{row.run_ms_per_ms:.3g}",
+            f"{row.set_up_ms:.3g}",
+        )
     console = Terminal()
     console.print(table)
-    console.print(f"[dim]errors against the exact beam at the same step, half of which changes it by "
-                  f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond and set-up, "
-                  "medians of interleaved rounds[/]")  # fmt: skip
+    console.print(
+        f"[dim]errors against the exact beam at the same step, half of which changes it by "
+        f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond and set-up, "
+        "medians of interleaved rounds[/]"
+    )
     console.print(Text(answer_in_words(at_equal_error(work))))
 
 
@@ -304,8 +326,14 @@ def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choic
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
     names = {"segment": "segments", "fem": "Hermite elements"}
     for one in choices:
-        table.add_row(names[one.model], str(one.count), str(one.unknowns), percent(one.error),
-                      percent(one.expected_error), seconds_in_words(one.run_time_s))  # fmt: skip
+        table.add_row(
+            names[one.model],
+            str(one.count),
+            str(one.unknowns),
+            percent(one.error),
+            percent(one.expected_error),
+            seconds_in_words(one.run_time_s),
+        )
     console.print(table)
     for one in choices:
         console.print(Text(f"{names[one.model]}: N = {one.count - 1} does not; {one.known_by}"))

@@ -20,11 +20,20 @@ def law_entries(slider: Slider, beam: Beam) -> Array:
     """The numbers the compiled loop sees (`contact_kernels.KIND` and so on), (10,)."""
     pressing = slider.normal_force / slider.mass
     static = slider.mu if slider.mu_static is None else slider.mu_static
-    return np.array([
-        float(slider.law == "coulomb"), slider.mu * pressing, static * pressing, slider.slope, slider.mass,
-        0.5 * beam.thickness, slider.gravity, float(slider.kinematics == "following"), float(slider.normal == "held"),
-        slider.normal_force,
-    ])  # fmt: skip
+    return np.array(
+        [
+            float(slider.law == "coulomb"),
+            slider.mu * pressing,
+            static * pressing,
+            slider.slope,
+            slider.mass,
+            0.5 * beam.thickness,
+            slider.gravity,
+            float(slider.kinematics == "following"),
+            float(slider.normal == "held"),
+            slider.normal_force,
+        ]
+    )
 
 
 class Coupling(msgspec.Struct, frozen=True, kw_only=True):
@@ -121,5 +130,6 @@ def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: 
     normal_size = float(slider.mass * omega**2 * abs(receptance))
     forced, size = slider.coupling != "auto", larger(friction_size, normal_size * (slider.normal == "held"))
     two_way = slider.coupling == "two-way" if forced else size is None or size > FELT
-    return Coupling(two_way=two_way, friction_size=friction_size, normal_size=normal_size, normal=slider.normal,
-                    forced=forced)  # fmt: skip
+    return Coupling(
+        two_way=two_way, friction_size=friction_size, normal_size=normal_size, normal=slider.normal, forced=forced
+    )

@@ -530,9 +530,25 @@ def _balance(v: float, stuck: bool, half: float, full: float, law: Any, dt: floa
 
 @_compiled(cache=True, inline="always")
 def _see(
-    row: int, time: float, x: float, speed: float, piece: int, modes: Any, drive: Any, table: Any, edges: Any, law: Any,
-    loads: Any, forces: Any, answers: Any, accounts: bool, factors: Any, local: Any, seen: Any, fresh: bool,
-) -> None:  # fmt: skip
+    row: int,
+    time: float,
+    x: float,
+    speed: float,
+    piece: int,
+    modes: Any,
+    drive: Any,
+    table: Any,
+    edges: Any,
+    law: Any,
+    loads: Any,
+    forces: Any,
+    answers: Any,
+    accounts: bool,
+    factors: Any,
+    local: Any,
+    seen: Any,
+    fresh: bool,
+) -> None:
     """Fill one row of `seen`: the surface at x and, with accounts, the powers of drive and damping."""
     if fresh:
         _set_factors(time, modes, drive, factors)
@@ -560,9 +576,20 @@ def _held(dt: float, modes: Any, motion: Any, law: Any, seen: Any) -> Any:
 
 @_compiled(cache=True)
 def _push_back(
-    v: float, stuck: bool, dt: float, at: float, slope: float, piece: int, modes: Any, edges: Any, local: Any,
-    motion: Any, law: Any, seen: Any, slip: Any,
-) -> Any:  # fmt: skip
+    v: float,
+    stuck: bool,
+    dt: float,
+    at: float,
+    slope: float,
+    piece: int,
+    modes: Any,
+    edges: Any,
+    local: Any,
+    motion: Any,
+    law: Any,
+    seen: Any,
+    slip: Any,
+) -> Any:
     """Let slider and beam agree on the contact forces of a step and give them to the modes; their work on the beam.
 
     (Of friction, of the normal reaction), joules. The levers are those of mid-step, so that the forces are off by the
@@ -664,14 +691,49 @@ def _advance(dt: float, rate: float, motion: Any, law: Any, seen: Any, slip: Any
 
 @_compiled(cache=True, error_model="numpy", inline="always")
 def _step(
-    number: int, dt: float, piece: int, fresh: bool, modes: Any, drive: Any, table: Any, edges: Any, motion: Any,
-    law: Any, two_way: bool, loads: Any, forces: Any, answers: Any, accounts: bool, ledger: Any, factors: Any,
-    local: Any, seen: Any, slip: Any,
-) -> None:  # fmt: skip
+    number: int,
+    dt: float,
+    piece: int,
+    fresh: bool,
+    modes: Any,
+    drive: Any,
+    table: Any,
+    edges: Any,
+    motion: Any,
+    law: Any,
+    two_way: bool,
+    loads: Any,
+    forces: Any,
+    answers: Any,
+    accounts: bool,
+    ledger: Any,
+    factors: Any,
+    local: Any,
+    seen: Any,
+    slip: Any,
+) -> None:
     """One step of beam and slider."""
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
-    _see(0, number * dt, x, v, piece, modes, drive, table, edges, law, loads, forces, answers, accounts, factors, local,
-         seen, fresh)  # fmt: skip
+    _see(
+        0,
+        number * dt,
+        x,
+        v,
+        piece,
+        modes,
+        drive,
+        table,
+        edges,
+        law,
+        loads,
+        forces,
+        answers,
+        accounts,
+        factors,
+        local,
+        seen,
+        fresh,
+    )
     rate = seen[0, PULL] + (0.0 if stuck else _friction(v - seen[0, SURFACE], law))
     along = v + seen[0, DRIFT]
     at, slope, pressed, lifted, x1, v1 = 0.0, 0.0, 0.0, 0.0, x, v
@@ -683,8 +745,26 @@ def _step(
         _rotate_half(modes)
         t = 0.5 * row * dt
         x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
-        _see(row, (number + 0.5 * row) * dt, x1, v1, piece, modes, drive, table, edges, law, loads, forces, answers,
-             accounts, factors, local, seen, True)  # fmt: skip
+        _see(
+            row,
+            (number + 0.5 * row) * dt,
+            x1,
+            v1,
+            piece,
+            modes,
+            drive,
+            table,
+            edges,
+            law,
+            loads,
+            forces,
+            answers,
+            accounts,
+            factors,
+            local,
+            seen,
+            True,
+        )
         if two_way and row == 1:
             at, slope = _set_levers(table, piece, edges, local, x1, law[HALF], modes)
     _give(dt, seen, slip)
@@ -712,10 +792,31 @@ def _step(
 
 @_compiled(cache=True)
 def slide(
-    n_steps: int, dt: float, modes: Any, drive: Any, table: Any, edges: Any, motion: Any, law: Any, two_way: bool,
-    loads: Any, forces: Any, answers: Any, accounts: bool, ledger: Any, every: int, kept: Any, points: Any,
-    deflections: Any, events: Any, tally: Any, factors: Any, local: Any, seen: Any, slip: Any,
-) -> int:  # fmt: skip
+    n_steps: int,
+    dt: float,
+    modes: Any,
+    drive: Any,
+    table: Any,
+    edges: Any,
+    motion: Any,
+    law: Any,
+    two_way: bool,
+    loads: Any,
+    forces: Any,
+    answers: Any,
+    accounts: bool,
+    ledger: Any,
+    every: int,
+    kept: Any,
+    points: Any,
+    deflections: Any,
+    events: Any,
+    tally: Any,
+    factors: Any,
+    local: Any,
+    seen: Any,
+    slip: Any,
+) -> int:
     """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
     Time is the step's number times dt. `modes`, `motion`, `ledger` and `tally` are advanced in place, together, so
@@ -729,8 +830,28 @@ def slide(
             return OFF_PIECES
         fresh = fresh or here != piece or two_way
         piece, number = here, tally[STEP]
-        _step(number, dt, piece, fresh, modes, drive, table, edges, motion, law, two_way, loads, forces, answers,
-              accounts, ledger, factors, local, seen, slip)  # fmt: skip
+        _step(
+            number,
+            dt,
+            piece,
+            fresh,
+            modes,
+            drive,
+            table,
+            edges,
+            motion,
+            law,
+            two_way,
+            loads,
+            forces,
+            answers,
+            accounts,
+            ledger,
+            factors,
+            local,
+            seen,
+            slip,
+        )
         fresh = False
         tally[STEP] += 1
         if not np.isfinite(motion[V] + factors[STILL, 0]):
@@ -755,9 +876,16 @@ def _note_events(time: float, x: float, slip: Any, events: Any, tally: Any) -> N
 
 @_compiled(cache=True)
 def _keep(
-    motion: Any, law: Any, mean_friction: float, seen: Any, factors: Any, points: Any, kept: Any, deflections: Any,
+    motion: Any,
+    law: Any,
+    mean_friction: float,
+    seen: Any,
+    factors: Any,
+    points: Any,
+    kept: Any,
+    deflections: Any,
     row: int,
-) -> None:  # fmt: skip
+) -> None:
     """Write one sample."""
     surface = seen[2, SURFACE]
     kept[row, KEPT_X], kept[row, KEPT_V], kept[row, KEPT_SURFACE] = motion[X], motion[V], surface

@@ -24,8 +24,13 @@ if TYPE_CHECKING:
     from verify.scene import Scene
     from verify.workbench import Workbench
 
-AXES = {"frequency_hz": "4000:4600:241", "phase_deg": "0:180:121", "position": "0.005:0.03:26",
-        "loss_factor": "0:0.01:11", "count": "49:98:50"}  # fmt: skip
+AXES = {
+    "frequency_hz": "4000:4600:241",
+    "phase_deg": "0:180:121",
+    "position": "0.005:0.03:26",
+    "loss_factor": "0:0.01:11",
+    "count": "49:98:50",
+}
 """What a map can run over, each with an example."""
 MOST_STEPS, MOST_POINTS = 10_000, 4_000_000
 """Of an axis, and of a map: 64 MB of figures."""
@@ -122,8 +127,14 @@ def _superposed(found: Any, asked: Any, axes: tuple[Axis, ...], scene: "Scene") 
     spans = {axis.name: np.array(axis.values) for axis in axes}
     frequencies = spans.get("frequency_hz", np.array([drive_frequency(asked, scene)]))
     phases = np.deg2rad(spans.get("phase_deg", np.array([forces[1].phase_deg])))
-    drive = UnitDrive(beam=beam, model=asked.model, count=asked.count, kind=drive_kind(asked, scene),
-                      places=tuple(f.position for f in forces), window=asked.window or middle_half(beam))  # fmt: skip
+    drive = UnitDrive(
+        beam=beam,
+        model=asked.model,
+        count=asked.count,
+        kind=drive_kind(asked, scene),
+        places=tuple(f.position for f in forces),
+        window=asked.window or middle_half(beam),
+    )
     first = forces[0].amplitude * np.exp(1j * np.deg2rad(forces[0].phase_deg))
     gaps = Gaps()
     (values,) = superposed(drive, (found.name,), frequencies, first, forces[1].amplitude * np.exp(1j * phases), gaps)
@@ -131,8 +142,15 @@ def _superposed(found: Any, asked: Any, axes: tuple[Axis, ...], scene: "Scene") 
     if axes[0].name == "phase_deg":
         values = values.T
     shape = [len(axis.values) for axis in axes]
-    return DesignMap(quantity=found.name, unit=found.unit, axes=axes, method="superposed", reasons=reasons,
-                     values=values.reshape(shape), of=_whose(asked, axes, scene))  # fmt: skip
+    return DesignMap(
+        quantity=found.name,
+        unit=found.unit,
+        axes=axes,
+        method="superposed",
+        reasons=reasons,
+        values=values.reshape(shape),
+        of=_whose(asked, axes, scene),
+    )
 
 
 def _check_points(asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> None:
@@ -168,5 +186,12 @@ def _pointwise(
             raise InputError(f"quantity = {found.name!r} is complex: map a real figure")
         values[index] = value
         bench.fields.clear()
-    return DesignMap(quantity=found.name, unit=found.unit, axes=axes, values=values, method="point by point",
-                     reasons=gaps.reasons(values.size), of=_whose(asked, axes, scene))  # fmt: skip
+    return DesignMap(
+        quantity=found.name,
+        unit=found.unit,
+        axes=axes,
+        values=values,
+        method="point by point",
+        reasons=gaps.reasons(values.size),
+        of=_whose(asked, axes, scene),
+    )

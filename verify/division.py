@@ -51,15 +51,23 @@ def divide(beam: Beam, count: int, grading: float = 1.0) -> Parts:
     unit = beam.length / count
     if len(pieces) == 1 and not beam.stepped and grading == 1.0:
         one = np.ones(count)
-        return Parts(unit=unit, lengths=one, moduli=one, second_moments=one, masses_per_length=one, areas=one,
-                     equal=True)  # fmt: skip
+        return Parts(
+            unit=unit, lengths=one, moduli=one, second_moments=one, masses_per_length=one, areas=one, equal=True
+        )
     shares = part_counts([piece.length for piece in pieces], count)
     lengths = [_graded(piece.length / unit, n, grading) for piece, n in zip(pieces, shares, strict=True)]
     base = np.array([beam.youngs_modulus, beam.second_moment, beam.mass_per_length, beam.area])
     ratios = [(p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) / base for p in pieces]
     moduli, moments, masses, areas = np.repeat(np.array(ratios), shares, axis=0).T
-    return Parts(unit=unit, lengths=np.concatenate(lengths), moduli=moduli, second_moments=moments,
-                 masses_per_length=masses, areas=areas, equal=False)  # fmt: skip
+    return Parts(
+        unit=unit,
+        lengths=np.concatenate(lengths),
+        moduli=moduli,
+        second_moments=moments,
+        masses_per_length=masses,
+        areas=areas,
+        equal=False,
+    )
 
 
 def check_division(beam: Beam, count: int, grading: float = 1.0) -> None:

@@ -83,8 +83,9 @@ def _combined(
         PointForce(position=drive.position, amplitude=float(abs(f)), phase_deg=float(np.rad2deg(np.angle(f))))
         for drive, f in zip(drives, acting, strict=True)
     )
-    return HarmonicField(model=first.model, count=first.count, beam=first.beam, frequency_hz=frequency_hz,
-                         forces=forces, shapes=shapes)  # fmt: skip
+    return HarmonicField(
+        model=first.model, count=first.count, beam=first.beam, frequency_hz=frequency_hz, forces=forces, shapes=shapes
+    )
 
 
 def _least(receptance: ComplexArray) -> Array:
@@ -128,9 +129,10 @@ def held_units(units: Units, places: Array, beam: Beam, frequencies_hz: Array, x
         around = [(weight, frequencies_hz[poles] * (1.0 + steps * STEP)) for steps, weight in _AROUND]
         found[poles] = sum(weight * _solved_units(units, places, f, x)[0] for weight, f in around)
     suspects = [
-        i for i, f in enumerate(frequencies_hz)
+        i
+        for i, f in enumerate(frequencies_hz)
         if i not in poles and _least(receptance[i]) < _SUSPECT * unit_response(beam, float(f))
-    ]  # fmt: skip
+    ]
     if suspects:
         beside = units(frequencies_hz[suspects] * (1.0 + STEP), places)
         for i, other in zip(suspects, beside, strict=True):

@@ -23,8 +23,17 @@ def driven_ledger(stages: Sequence[Stage], basis: TimeBasis, z: Array) -> Ledger
         work, damped = work + here[0], damped + here[1]
         q, rates = stage.state(free_at(stage, z, stage.duration), stage.duration)
     kinetic, elastic = 0.5 * float(rates @ rates), 0.5 * float((basis.omegas**2 * q) @ q)
-    return Ledger(kinetic=kinetic, elastic=elastic, slider=0.0, work_in=work, damped=damped, rubbed=0.0,
-                  contact_on_beam=0.0, normal_on_beam=0.0, residual=work - damped - kinetic - elastic)  # fmt: skip
+    return Ledger(
+        kinetic=kinetic,
+        elastic=elastic,
+        slider=0.0,
+        work_in=work,
+        damped=damped,
+        rubbed=0.0,
+        contact_on_beam=0.0,
+        normal_on_beam=0.0,
+        residual=work - damped - kinetic - elastic,
+    )
 
 
 def _integrals(stage: Stage, z0: Array) -> tuple[float, float]:

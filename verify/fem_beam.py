@@ -151,11 +151,19 @@ def _modes(beam: Beam, parts: Parts, nodal: Array, pairs: Eigenpairs) -> Modes:
     points = np.append(quarters, parts.nodes[-1])
     gauss = _inside(parts, np.array([0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0)]))
     return Modes(
-        model="fem", count=len(parts.lengths), length=beam.length, frequencies_hz=frequencies, shapes=shapes,
-        nodes=parts.nodes * unit, readings={"nodal": lambda: nodal[:, ::2]}, points=points * unit,
-        sampled=lambda: interpolate(parts.lengths, nodal, points), curvature_points=gauss * unit,
-        curvatures=lambda: interpolate(parts.lengths, nodal, gauss, 2) / unit**2, method=pairs.method,
-    )  # fmt: skip
+        model="fem",
+        count=len(parts.lengths),
+        length=beam.length,
+        frequencies_hz=frequencies,
+        shapes=shapes,
+        nodes=parts.nodes * unit,
+        readings={"nodal": lambda: nodal[:, ::2]},
+        points=points * unit,
+        sampled=lambda: interpolate(parts.lengths, nodal, points),
+        curvature_points=gauss * unit,
+        curvatures=lambda: interpolate(parts.lengths, nodal, gauss, 2) / unit**2,
+        method=pairs.method,
+    )
 
 
 def _inside(parts: Parts, xi: Array) -> Array:
@@ -272,8 +280,9 @@ def solve_harmonic(
         values: ComplexArray = interpolate(parts.lengths, nodal, x / parts.unit, derivative)[0]
         return values / parts.unit**derivative
 
-    return HarmonicField(model="fem", count=n_elements, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces),
-                         shapes=shapes)  # fmt: skip
+    return HarmonicField(
+        model="fem", count=n_elements, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces), shapes=shapes
+    )
 
 
 def nodal_weights(parts: Parts, x: float) -> Array:

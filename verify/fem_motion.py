@@ -44,8 +44,17 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
         (w0, s0), (w1, s1) = nodal(element), nodal(element + 1)
         return np.asarray(w0 * weights[0] + s0 * h * weights[1] + w1 * weights[2] + s1 * h * weights[3])
 
-    return TimeBasis(model="fem", count=n_elements, beam=beam, omegas=omegas, shapes=shapes, loads=loads,
-                     edges=nodes * parts.unit, degree=3, method=method)  # fmt: skip
+    return TimeBasis(
+        model="fem",
+        count=n_elements,
+        beam=beam,
+        omegas=omegas,
+        shapes=shapes,
+        loads=loads,
+        edges=nodes * parts.unit,
+        degree=3,
+        method=method,
+    )
 
 
 def _dense(beam: Beam, n_elements: int) -> tuple[Array, Nodal, str]:

@@ -57,8 +57,12 @@ class Answer(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def modal(basis: TimeBasis, forces: Sequence[PointForce], damping: float) -> Modal:
     """A basis with the ratio `damping` in every mode, under the forces."""
     loads = sum((phasor(f) * basis.loads(f.position) for f in forces), np.zeros(len(basis.omegas), dtype=complex))
-    return Modal(sigmas=damping * basis.omegas, omegas=basis.omegas * np.sqrt(1.0 - damping**2),
-                 squares=basis.omegas**2, loads=np.asarray(loads, dtype=complex))  # fmt: skip
+    return Modal(
+        sigmas=damping * basis.omegas,
+        omegas=basis.omegas * np.sqrt(1.0 - damping**2),
+        squares=basis.omegas**2,
+        loads=np.asarray(loads, dtype=complex),
+    )
 
 
 def answer(modes: Modal, omega: float, growth: Array, unit_s: float, origin: float = 0.0) -> Answer:

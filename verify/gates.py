@@ -68,10 +68,19 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
     if not reason:
         reason, share = _verdict(gate, value)
     return GateResult(
-        id=gate.id, quantity=gate.quantity, arguments=gate.arguments, why=gate.why, unit=unit,
-        expected=expectation(gate), band=given_band(gate), measured=as_plain(value), passed=not reason, share=share,
-        reason=reason, seconds=perf_counter() - start,
-    )  # fmt: skip
+        id=gate.id,
+        quantity=gate.quantity,
+        arguments=gate.arguments,
+        why=gate.why,
+        unit=unit,
+        expected=expectation(gate),
+        band=given_band(gate),
+        measured=as_plain(value),
+        passed=not reason,
+        share=share,
+        reason=reason,
+        seconds=perf_counter() - start,
+    )
 
 
 def given_band(gate: "Gate") -> Band:

@@ -61,9 +61,14 @@ def motion_study(scene: "Scene", progress: Callable[[str], None] = lambda step: 
     drifts = [_drift(one) for one in (scene, reversed_scene(scene))]
     work = work_of(scene, asked.counts, progress)
     return MotionStudy(
-        runs=runs, conditions=conditions, figures=figures, findings=_findings(scene, runs, conditions, drifts),
-        work=work, answer=at_equal_error(work), count=asked.count,
-    )  # fmt: skip
+        runs=runs,
+        conditions=conditions,
+        figures=figures,
+        findings=_findings(scene, runs, conditions, drifts),
+        work=work,
+        answer=at_equal_error(work),
+        count=asked.count,
+    )
 
 
 def figures_of(run: "Motion | ChainRide", back: "Motion | ChainRide | None") -> dict[str, float]:
@@ -114,19 +119,27 @@ def _findings(
     named = "mu N" if slider.mu_static is None else "mu_static N"
     off = f", {100 * (chain.displacement / exact.displacement - 1):+.3g} % off it" if exact.displacement else ""
     return (
-        Finding(what=f"mean speed ({how.run_words}, {how.force_words})",
-                found=f"{100 * chain.mean_speed:+.3g} cm/s on {chain.count} segments, "
-                f"{100 * exact.mean_speed:+.3g} cm/s on the exact beam"),
-        Finding(what="displacement in that run",
-                found=f"{1e9 * chain.displacement:+.4g} nm on {chain.count} segments, {1e9 * exact.displacement:+.4g} "
-                f"nm on the exact beam{off}"),
-        Finding(what="largest friction in that run",
-                found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of {named} = {1e3 * limit:.4g} mN"),
-        Finding(what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, one-way, its "
-                "inertia left out, exact beam); phases reversed",
-                found="; ".join(drifts)),
+        Finding(
+            what=f"mean speed ({how.run_words}, {how.force_words})",
+            found=f"{100 * chain.mean_speed:+.3g} cm/s on {chain.count} segments, "
+            f"{100 * exact.mean_speed:+.3g} cm/s on the exact beam",
+        ),
+        Finding(
+            what="displacement in that run",
+            found=f"{1e9 * chain.displacement:+.4g} nm on {chain.count} segments, {1e9 * exact.displacement:+.4g} "
+            f"nm on the exact beam{off}",
+        ),
+        Finding(
+            what="largest friction in that run",
+            found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of {named} = {1e3 * limit:.4g} mN",
+        ),
+        Finding(
+            what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, one-way, its "
+            "inertia left out, exact beam); phases reversed",
+            found="; ".join(drifts),
+        ),
         _bound(slider.kinematics, named, limit / slider.mass, how.duration, chain),
-    )  # fmt: skip
+    )
 
 
 def _bound(kinematics: str, named: str, pull: float, duration: float, chain: Motion) -> Finding:
@@ -134,9 +147,11 @@ def _bound(kinematics: str, named: str, pull: float, duration: float, chain: Mot
     what = "what friction alone allows"
     fastest = float(abs(chain.speed - chain.speed[0]).max())
     if kinematics == "tangential":
-        found = (f"tangential: the mean speed changes by at most {named} t / 2m = {50 * pull * duration:.3g} cm/s; "
-                 f"largest change of speed {100 * fastest:.3g} cm/s of {named} t / m = {100 * pull * duration:.3g} "
-                 "cm/s")  # fmt: skip
+        found = (
+            f"tangential: the mean speed changes by at most {named} t / 2m = {50 * pull * duration:.3g} cm/s; "
+            f"largest change of speed {100 * fastest:.3g} cm/s of {named} t / m = {100 * pull * duration:.3g} "
+            "cm/s"
+        )
     else:
         found = "following: no bound, the turning surface itself pushes the slider"
     return Finding(what=what, found=found)

@@ -23,9 +23,19 @@ if TYPE_CHECKING:
 
 MODES = 400
 """Of the exact beam from rest, unless asked for otherwise."""
-_OWN = {"mu": "mu", "slope": "slope", "mass": "mass", "law": "law", "coupling": "coupling", "line": "line",
-        "kinematics": "kinematics", "normal": "normal", "preload": "preload", "slider_position": "position",
-        "slider_speed": "speed"}  # fmt: skip
+_OWN = {
+    "mu": "mu",
+    "slope": "slope",
+    "mass": "mass",
+    "law": "law",
+    "coupling": "coupling",
+    "line": "line",
+    "kinematics": "kinematics",
+    "normal": "normal",
+    "preload": "preload",
+    "slider_position": "position",
+    "slider_speed": "speed",
+}
 MOST_SAMPLES = 1_000_000
 
 
@@ -50,10 +60,16 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
         soft = motion.soft_start_periods if motion and start == "rest" else 0.0
     damping = a.modal_damping if a.modal_damping is not None else (motion.modal_damping if motion else None)
     return {
-        "forces": drive_forces(a, scene), "frequency_hz": drive_frequency(a, scene), "duration": time, "model": a.model,
-        "count": a.count, "modes": a.modes or MODES, "start": start, "soft_start_periods": soft,
+        "forces": drive_forces(a, scene),
+        "frequency_hz": drive_frequency(a, scene),
+        "duration": time,
+        "model": a.model,
+        "count": a.count,
+        "modes": a.modes or MODES,
+        "start": start,
+        "soft_start_periods": soft,
         "modal_damping": damping,
-    }  # fmt: skip
+    }
 
 
 def _check_forced(scene: "Scene", what: str) -> None:
@@ -68,9 +84,15 @@ def turned(forces: "Sequence[PointForce]") -> "tuple[PointForce, ...]":
 
 
 def with_slider(
-    a: Any, scene: "Scene", bench: "Workbench", ledger: bool = False, *, sampled: bool = False, back: bool = False,
+    a: Any,
+    scene: "Scene",
+    bench: "Workbench",
+    ledger: bool = False,
+    *,
+    sampled: bool = False,
+    back: bool = False,
     at: tuple[float, ...] = (),
-) -> Motion:  # fmt: skip
+) -> Motion:
     """The slider's run, solved once; `sampled` at every step, `back` with all phases turned round.
 
     Raises InputError where it does not reach its end.

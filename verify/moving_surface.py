@@ -48,8 +48,12 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def rows(self, x: Array, derivative: int = 0) -> Array:
         """All shapes at x, (rows, len(x))."""
         free = self.free_shapes(x, derivative)
-        return np.concatenate([free, self.drive_shapes(x, derivative) if self.from_modes is None else
-                               self.from_modes(free, x, derivative)])  # fmt: skip
+        return np.concatenate(
+            [
+                free,
+                self.drive_shapes(x, derivative) if self.from_modes is None else self.from_modes(free, x, derivative),
+            ]
+        )
 
     def table(self, first: int, last: int) -> Array:
         """Polynomials of pieces first..last-1, (pieces, degree + 1, rows)."""
@@ -201,10 +205,22 @@ def _stage(
         return np.concatenate([loads, np.stack([parts.real, parts.imag], axis=1).ravel()])
 
     return Stage(
-        modal=modes, forced=forced, free_shapes=basis.shapes, drive_shapes=drive, from_modes=from_modes,
-        load_rows=load_rows, edges=to_the_end(basis.edges, basis.beam), degree=basis.degree, omega=forced.omega,
-        origin=forced.origin, unit_s=forced.unit_s, growth=growth, n_steps=steps.n, dt=steps.dt, every=steps.every,
-    )  # fmt: skip
+        modal=modes,
+        forced=forced,
+        free_shapes=basis.shapes,
+        drive_shapes=drive,
+        from_modes=from_modes,
+        load_rows=load_rows,
+        edges=to_the_end(basis.edges, basis.beam),
+        degree=basis.degree,
+        omega=forced.omega,
+        origin=forced.origin,
+        unit_s=forced.unit_s,
+        growth=growth,
+        n_steps=steps.n,
+        dt=steps.dt,
+        every=steps.every,
+    )
 
 
 def to_the_end(edges: Array, beam: Beam) -> Array:
@@ -234,10 +250,23 @@ def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: Tim
         return np.concatenate([own, drive(np.array([position]), 0)[:, 0]])
 
     modes = modal(basis, (), damping) if basis else NO_MODES
-    return Stage(modal=modes, forced=None, free_shapes=basis.shapes if basis else nothing, drive_shapes=drive,
-                 from_modes=None, load_rows=load_rows, edges=to_the_end(edges, field.beam), degree=degree,
-                 omega=field.omega, origin=origin, unit_s=1.0, growth=CONSTANT, n_steps=steps.n, dt=steps.dt,
-                 every=steps.every)  # fmt: skip
+    return Stage(
+        modal=modes,
+        forced=None,
+        free_shapes=basis.shapes if basis else nothing,
+        drive_shapes=drive,
+        from_modes=None,
+        load_rows=load_rows,
+        edges=to_the_end(edges, field.beam),
+        degree=degree,
+        omega=field.omega,
+        origin=origin,
+        unit_s=1.0,
+        growth=CONSTANT,
+        n_steps=steps.n,
+        dt=steps.dt,
+        every=steps.every,
+    )
 
 
 def steady_edges(field: "HarmonicField") -> tuple[Array, int]:

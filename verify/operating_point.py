@@ -47,8 +47,14 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
     def over(self, frequencies: Array, phases_deg: Array) -> tuple[Array, Array]:
         """(reflection, crest speed in m/s) on a grid, (n_frequencies, n_phases) each; window [L/4, 3L/4]."""
         first, second = self.forces
-        drive = UnitDrive(beam=self.beam, model=self.model, count=self.count, kind=self.kind,
-                          places=(first.position, second.position), window=middle_half(self.beam))  # fmt: skip
+        drive = UnitDrive(
+            beam=self.beam,
+            model=self.model,
+            count=self.count,
+            kind=self.kind,
+            places=(first.position, second.position),
+            window=middle_half(self.beam),
+        )
         turned = np.asarray(second.amplitude * np.exp(1j * np.deg2rad(phases_deg)), dtype=complex)
         gaps, figures = Gaps(), ("wave.reflection", "wave.crest_speed")
         reflection, speed = superposed(drive, figures, frequencies, complex(first.amplitude), turned, gaps)
@@ -68,9 +74,16 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
             sides = [self.at(frequency + s * hertz, phase_deg + s * degrees)[0] for s in (1.0, -1.0)]
             return 0.5 * sum(abs(side - gamma) for side in sides) / (hertz + degrees)
 
-        return OperatingPoint(frequency_hz=frequency, phase_deg=phase_deg, reflection=gamma, crest_speed=speed,
-                              per_hertz=change(0.5, 0.0), per_degree=change(0.0, 0.5),
-                              what=what, note=note)  # fmt: skip
+        return OperatingPoint(
+            frequency_hz=frequency,
+            phase_deg=phase_deg,
+            reflection=gamma,
+            crest_speed=speed,
+            per_hertz=change(0.5, 0.0),
+            per_degree=change(0.0, 0.5),
+            what=what,
+            note=note,
+        )
 
     def quiet_point(self, frequencies: Array, phase_deg: float) -> OperatingPoint:
         """Least reflection at one phase. Raises InputError where the wave stands at every frequency."""
@@ -91,8 +104,13 @@ def driven_point(a: Any, scene: "Scene") -> OperatingPoint:
     forces = drive_forces(a, scene)
     if len(forces) != 2:
         raise InputError(f"the reflection has a phase between two forces, the scene has {len(forces)}: give it two")
-    land = Landscape(beam=driven_beam(a, scene), forces=(forces[0], forces[1]), model=a.model, count=a.count,
-                     kind=drive_kind(a, scene))  # fmt: skip
+    land = Landscape(
+        beam=driven_beam(a, scene),
+        forces=(forces[0], forces[1]),
+        model=a.model,
+        count=a.count,
+        kind=drive_kind(a, scene),
+    )
     return land.point(drive_frequency(a, scene), forces[1].phase_deg - forces[0].phase_deg, "as driven")
 
 
@@ -157,8 +175,11 @@ def fastest(land: Landscape, frequencies: Array, phase_deg: float, limit: float)
 
     ends = (frequencies[[0, -1]] - start[0]) / scale[0]
     found = minimize(
-        lambda u: -abs(there(u)[1]) / top, [0.0, 0.0], method="SLSQP", bounds=[tuple(ends), (-30.0, 30.0)],
+        lambda u: -abs(there(u)[1]) / top,
+        [0.0, 0.0],
+        method="SLSQP",
+        bounds=[tuple(ends), (-30.0, 30.0)],
         constraints={"type": "ineq", "fun": lambda u: limit - there(u)[0]},
-    )  # fmt: skip
+    )
     frequency, phase = start + found.x * scale if found.success else start
     return float(frequency), float(phase)

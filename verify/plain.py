@@ -44,20 +44,30 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
 
 def wave_as_plain(study: "WaveStudy") -> dict[str, Any]:
     """A wave study: the motor's rows and operating points."""
-    return {"rows": msgspec.to_builtins(study.rows), "points": msgspec.to_builtins(study.points),
-            "notes": list(study.notes)}  # fmt: skip
+    return {
+        "rows": msgspec.to_builtins(study.rows),
+        "points": msgspec.to_builtins(study.points),
+        "notes": list(study.notes),
+    }
 
 
 def motion_as_plain(study: "MotionStudy") -> dict[str, Any]:
     """A slider study: displacements and margins by model, findings, work against error."""
     runs = {
-        model: {"displacement": run.displacement, "mean_speed": run.mean_speed, "largest_friction": largest(run),
-                "condition": msgspec.to_builtins(study.conditions[model]), "figures": study.figures[model],
-                "coupling": msgspec.to_builtins(run.coupling), "margins": msgspec.to_builtins(run.margins),
-                "ledger": msgspec.to_builtins(run.ledger), "statistics": msgspec.to_builtins(run.statistics),
-                "notes": list(run.notes)}
+        model: {
+            "displacement": run.displacement,
+            "mean_speed": run.mean_speed,
+            "largest_friction": largest(run),
+            "condition": msgspec.to_builtins(study.conditions[model]),
+            "figures": study.figures[model],
+            "coupling": msgspec.to_builtins(run.coupling),
+            "margins": msgspec.to_builtins(run.margins),
+            "ledger": msgspec.to_builtins(run.ledger),
+            "statistics": msgspec.to_builtins(run.statistics),
+            "notes": list(run.notes),
+        }
         for model, run in study.runs.items()
-    }  # fmt: skip
+    }
     return {"runs": runs, "findings": msgspec.to_builtins(study.findings)} | work_as_plain(study.work)
 
 
@@ -80,16 +90,30 @@ def readings_as_plain(study: "ReadingsStudy") -> dict[str, Any]:
         found: dict[str, Any] | None = msgspec.to_builtins(reading)
         return found and found | {"met": dict(zip(claims, found["met"], strict=True))}
 
-    groups = [{"readings": [plain(one) for one in group.readings], "best": plain(group.best),
-               "exact": plain(group.exact)} for group in study.groups]  # fmt: skip
-    return {"claims": claims, "searched": study.searched, "n_runs": study.n_runs, "groups": groups,
-            "turns": msgspec.to_builtins(study.turns), "bounds": msgspec.to_builtins(study.bounds)}  # fmt: skip
+    groups = [
+        {"readings": [plain(one) for one in group.readings], "best": plain(group.best), "exact": plain(group.exact)}
+        for group in study.groups
+    ]
+    return {
+        "claims": claims,
+        "searched": study.searched,
+        "n_runs": study.n_runs,
+        "groups": groups,
+        "turns": msgspec.to_builtins(study.turns),
+        "bounds": msgspec.to_builtins(study.bounds),
+    }
 
 
 def axial_as_plain(study: "AxialStudy") -> dict[str, Any]:
     """A study of a chain's axial inertia: departures over the force, models side by side at one of them."""
-    return {"count": study.count, "duration": study.duration, "x": study.x, "rows": msgspec.to_builtins(study.rows),
-            "shown": study.shown, "beside": msgspec.to_builtins(study.beside)}  # fmt: skip
+    return {
+        "count": study.count,
+        "duration": study.duration,
+        "x": study.x,
+        "rows": msgspec.to_builtins(study.rows),
+        "shown": study.shown,
+        "beside": msgspec.to_builtins(study.beside),
+    }
 
 
 def largest(run: "Motion") -> float:

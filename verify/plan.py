@@ -13,8 +13,12 @@ if TYPE_CHECKING:
     from verify.scene import AxialInertia, Scene, Wave
     from verify.slider import Slider
 
-CHAIN_IN_TIME = ("chain.energy_drift", "chain.large_amplitude_frequency", "chain.transient_deflection",
-                 "chain.axial_departure")  # fmt: skip
+CHAIN_IN_TIME = (
+    "chain.energy_drift",
+    "chain.large_amplitude_frequency",
+    "chain.transient_deflection",
+    "chain.axial_departure",
+)
 """Quantities of the nonlinear chain that are stepped; its others are equilibria and modes."""
 STEPS_PER_RADIAN = 15
 """Of a chain's fastest mode, which the tolerance of the study of axial inertia takes."""
@@ -134,11 +138,17 @@ def plan_scene(scene: "Scene") -> Plan:
             problems += [(one, str(error)) for one in who]
     driven, timed, compiled = _driven(scene), _timed(scene), _compiled(scene)
     closed = tuple(a.who for a in asks if not a.needs and not a.problem and a.who not in driven | timed | compiled)
-    return Plan(scene=scene.name, solves=tuple(solves), closed_forms=closed, skipped=_skipped(scene, asks),
-                harmonic=tuple(ask.who for ask in asks if ask.who in driven and not ask.problem),
-                stepped=tuple(ask.who for ask in asks if ask.who in timed and not ask.problem), chosen=_chosen(scene),
-                compiled=tuple(ask.who for ask in asks if ask.who in compiled and not ask.problem),
-                problems=tuple(Problem(*pair) for pair in problems))  # fmt: skip
+    return Plan(
+        scene=scene.name,
+        solves=tuple(solves),
+        closed_forms=closed,
+        skipped=_skipped(scene, asks),
+        harmonic=tuple(ask.who for ask in asks if ask.who in driven and not ask.problem),
+        stepped=tuple(ask.who for ask in asks if ask.who in timed and not ask.problem),
+        chosen=_chosen(scene),
+        compiled=tuple(ask.who for ask in asks if ask.who in compiled and not ask.problem),
+        problems=tuple(Problem(*pair) for pair in problems),
+    )
 
 
 def _driven(scene: "Scene") -> set[str]:
@@ -168,8 +178,11 @@ def _compiled(scene: "Scene") -> set[str]:
 
 def _asked(scene: "Scene") -> list[tuple[str, str]]:
     """(who, quantity) of every gate and every claim."""
-    return [(f"{table} {one.id}", one.quantity)
-            for table, ones in (("gate", scene.gate), ("claim", scene.claim)) for one in ones]  # fmt: skip
+    return [
+        (f"{table} {one.id}", one.quantity)
+        for table, ones in (("gate", scene.gate), ("claim", scene.claim))
+        for one in ones
+    ]
 
 
 def _readings_study(scene: "Scene") -> str:
@@ -177,9 +190,11 @@ def _readings_study(scene: "Scene") -> str:
     assert asked is not None
     assert scene.motion is not None
     chain = f" and {asked.n_chain(scene)} on the nonlinear chain" if asked.chain else ""
-    return (f"readings ({asked.n_readings} readings of the slider{chain}, {asked.n_runs(scene)} runs of {asked.model} "
-            f"at N = {asked.count or scene.motion.count} of about {asked.n_steps(scene):.3g} steps, "
-            f"{min(asked.shown, asked.n_groups)} on the exact beam beside)")  # fmt: skip
+    return (
+        f"readings ({asked.n_readings} readings of the slider{chain}, {asked.n_runs(scene)} runs of {asked.model} "
+        f"at N = {asked.count or scene.motion.count} of about {asked.n_steps(scene):.3g} steps, "
+        f"{min(asked.shown, asked.n_groups)} on the exact beam beside)"
+    )
 
 
 def _motion_study(scene: "Scene") -> str:
@@ -193,8 +208,10 @@ def _axial_study(scene: "Scene", asked: "AxialInertia") -> str:
     forces = ", ".join(f"{force:g}" for force in asked.forces)
     runs = 3 * len(asked.forces) + 3
     steps = max(STEPS_PER_RADIAN * fastest * asked.duration, 1.0)
-    return (f"axial_inertia (rigid, massless along x and stretching links at {forces} N, all models at "
-            f"{asked.shown:g} N: {runs} runs of N = {asked.count}, about {steps:.2g} steps each)")  # fmt: skip
+    return (
+        f"axial_inertia (rigid, massless along x and stretching links at {forces} N, all models at "
+        f"{asked.shown:g} N: {runs} runs of N = {asked.count}, about {steps:.2g} steps each)"
+    )
 
 
 def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
@@ -235,8 +252,10 @@ def _coupling(slider: "Slider", field: "HarmonicField") -> tuple[Skipped, ...]:
     x = slider.start_on(field.beam)
     felt = solve_harmonic(field.beam, (PointForce(position=x),), field.frequency_hz).deflection([x])[0]
     found = coupling_of(slider, field.beam, field.frequency_hz, surface_speed(field, x), felt)
-    chosen = Skipped(f"{'two' if found.two_way else 'one'}-way coupling", found.told
-                     + (", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"))  # fmt: skip
+    chosen = Skipped(
+        f"{'two' if found.two_way else 'one'}-way coupling",
+        found.told + (", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"),
+    )
     return (chosen, Skipped("slider that the beam does not carry", found.simplified)) if found.simplified else (chosen,)
 
 
@@ -246,8 +265,11 @@ def _linear(field: "HarmonicField") -> Skipped:
 
     size = _size(field)
     linear = "linear chain with an exact step" if size <= NONLINEAR else "linear chain, although"
-    return Skipped(linear, f"axial inertia of a roller-ended chain, (kL)^2 <theta^2> = {size:.1e} of the motion "
-                   f"(felt from {NONLINEAR:g} on)")  # fmt: skip
+    return Skipped(
+        linear,
+        f"axial inertia of a roller-ended chain, (kL)^2 <theta^2> = {size:.1e} of the motion "
+        f"(felt from {NONLINEAR:g} on)",
+    )
 
 
 def _over_the_force(scene: "Scene", asked: "AxialInertia") -> Skipped:
@@ -262,9 +284,10 @@ def _over_the_force(scene: "Scene", asked: "AxialInertia") -> Skipped:
     size = _size(solve_harmonic(scene.beam, forces, scene.drive.frequency_hz))
     sizes = ", ".join(f"{size * force**2:.1e} at {force:g} N" for force in asked.forces)
     limit = f"up to {(NONLINEAR / size) ** 0.5:.2g} N, nonlinear above" if size else "at any force"
-    return Skipped(f"linear chain {limit}",
-                   f"decided by the axial inertia, (kL)^2 <theta^2> of the steady field: {sizes} (felt from "
-                   f"{NONLINEAR:g} on)")  # fmt: skip
+    return Skipped(
+        f"linear chain {limit}",
+        f"decided by the axial inertia, (kL)^2 <theta^2> of the steady field: {sizes} (felt from {NONLINEAR:g} on)",
+    )
 
 
 def _size(field: "HarmonicField") -> float:
@@ -290,9 +313,15 @@ def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> P
     module = model_module(model)
     n_modes = max(min(n_wanted, module.n_elastic(scene.beam, count)), 1)
     module.check(scene.beam, n_modes, count, **dict(settings))
-    return PlannedSolve(model=model, count=count, settings=settings, n_modes=n_modes,
-                        unknowns=module.unknowns(scene.beam, count), asked_by=who,
-                        method=module.method(scene.beam, n_modes, count))  # fmt: skip
+    return PlannedSolve(
+        model=model,
+        count=count,
+        settings=settings,
+        n_modes=n_modes,
+        unknowns=module.unknowns(scene.beam, count),
+        asked_by=who,
+        method=module.method(scene.beam, n_modes, count),
+    )
 
 
 def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Skipped, ...]:

@@ -40,12 +40,14 @@ def joint_weights(chain: Chain, position: float, rule: str) -> Array:
 
 def four_weights(s: float) -> Array:
     """L_j(s) + L_j''(s)/12 of the cubic Lagrange polynomials on 0, 1, 2, 3, (4,)."""
-    values = np.array([
-        -(s - 1) * (s - 2) * (s - 3) / 6,
-        s * (s - 2) * (s - 3) / 2,
-        -s * (s - 1) * (s - 3) / 2,
-        s * (s - 1) * (s - 2) / 6,
-    ])  # fmt: skip
+    values = np.array(
+        [
+            -(s - 1) * (s - 2) * (s - 3) / 6,
+            s * (s - 2) * (s - 3) / 2,
+            -s * (s - 1) * (s - 3) / 2,
+            s * (s - 1) * (s - 2) / 6,
+        ]
+    )
     bends = np.array([2.0 - s, 3.0 * s - 5.0, 4.0 - 3.0 * s, s - 1.0])
     return np.asarray(values + bends / 12.0)
 

@@ -32,13 +32,22 @@ def wave_stage(beam: Beam, amplitude: float, frequency_hz: float, mean: float = 
         return np.array([values.real, values.imag])
 
     return Stage(
-        modal=NO_MODES, forced=None, free_shapes=lambda x, derivative: np.empty((0, len(x))), drive_shapes=drive,
+        modal=NO_MODES,
+        forced=None,
+        free_shapes=lambda x, derivative: np.empty((0, len(x))),
+        drive_shapes=drive,
         from_modes=None,
         load_rows=lambda position: drive(np.array([position]), 0)[:, 0],
-        edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2), degree=ANALYTIC_DEGREE, omega=omega,
-        origin=0.0, unit_s=1.0, growth=CONSTANT, n_steps=STEPS, every=STEPS,
+        edges=np.linspace(0.0, beam.length, int(beam.length * k / 0.3) + 2),
+        degree=ANALYTIC_DEGREE,
+        omega=omega,
+        origin=0.0,
+        unit_s=1.0,
+        growth=CONSTANT,
+        n_steps=STEPS,
+        every=STEPS,
         dt=2.0 * np.pi / (omega - k * mean) / STEPS,
-    )  # fmt: skip
+    )
 
 
 def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: float) -> float:

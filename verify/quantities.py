@@ -104,8 +104,13 @@ def _described_argument(field: Any) -> dict[str, Any]:
     for part in (kind, *getattr(kind, "__args__", ())):
         meaning = next((m.description for m in getattr(part, "__metadata__", ()) if m.description), meaning)
     default = None if field.required else field.default
-    return {"name": field.name, "type": _type_words(kind), "required": field.required,
-            "default": default if default is not None or field.required else "none", "meaning": meaning}  # fmt: skip
+    return {
+        "name": field.name,
+        "type": _type_words(kind),
+        "required": field.required,
+        "default": default if default is not None or field.required else "none",
+        "meaning": meaning,
+    }
 
 
 def _type_words(kind: Any) -> str:

@@ -21,8 +21,15 @@ LISTS = ("kinematics", "normal", "soft_start_periods", "positions", "forces", "m
 """What is varied, the slowest first."""
 GROUPED_BY = LISTS[:4]
 """A row of the table is one of each of these."""
-NAMES = {"kinematics": "kinematics", "normal": "normal", "soft_start_periods": "start", "positions": "place",
-         "forces": "force", "mu": "mu", "slope": "slope K"}  # fmt: skip
+NAMES = {
+    "kinematics": "kinematics",
+    "normal": "normal",
+    "soft_start_periods": "start",
+    "positions": "place",
+    "forces": "force",
+    "mu": "mu",
+    "slope": "slope K",
+}
 
 
 class Reading(msgspec.Struct, frozen=True, kw_only=True):
@@ -120,9 +127,14 @@ def searched_of(scene: "Scene") -> dict[str, tuple[float | str, ...]]:
     assert motion is not None
     soft = motion.soft_start_periods if motion.start == "rest" else None
     own: dict[str, float | str | None] = {
-        "kinematics": slider.kinematics, "normal": slider.normal, "soft_start_periods": soft,
-        "positions": slider.start_on(scene.beam), "forces": None, "mu": slider.mu, "slope": slider.slope,
-    }  # fmt: skip
+        "kinematics": slider.kinematics,
+        "normal": slider.normal,
+        "soft_start_periods": soft,
+        "positions": slider.start_on(scene.beam),
+        "forces": None,
+        "mu": slider.mu,
+        "slope": slider.slope,
+    }
     return {name: tuple(getattr(asked, name)) or (() if own[name] is None else (own[name],)) for name in LISTS}  # type: ignore[misc]
 
 
@@ -144,16 +156,22 @@ def readings_study(scene: "Scene", progress: Callable[[str], None] = lambda step
     for number, key in enumerate(shown):
         progress(f"exact beam beside the best readings, {number + 1}")
         exact[key] = reading(best[key][0], claims, "analytic", None)
-    groups = tuple(Group(readings=tuple(one for _, one in rows), best=best[key][1], exact=exact.get(key))
-                   for key, rows in drawn.items())  # fmt: skip
+    groups = tuple(
+        Group(readings=tuple(one for _, one in rows), best=best[key][1], exact=exact.get(key))
+        for key, rows in drawn.items()
+    )
     every = [one for group in groups for one in group.readings]
     chained = _on_the_chain([row for rows in drawn.values() for row in rows], claims, progress) if asked.chain else ()
     riding = [one for group in chained for one in group.readings]
     runs = (2 if asks_for_turned(claims) else 1) * (len(every) + len(exact) + len(riding))
     return ReadingsStudy(
-        claims=claims, groups=(*groups, *chained), turns=tuple(_turns(claims, every, searched)),
-        bounds=tuple(_bounds(scene, claims, every + riding)), searched=searched, n_runs=runs,
-    )  # fmt: skip
+        claims=claims,
+        groups=(*groups, *chained),
+        turns=tuple(_turns(claims, every, searched)),
+        bounds=tuple(_bounds(scene, claims, every + riding)),
+        searched=searched,
+        n_runs=runs,
+    )
 
 
 def _on_the_chain(
@@ -161,14 +179,14 @@ def _on_the_chain(
 ) -> tuple[Group, ...]:
     """Those readings of a massless slider whose forces act at once, on the nonlinear chain of as many links."""
     chains, drawn = Chains({}), dict[tuple[str, float], list[Reading]]()
-    at_once = [row for row in rows
-               if not row[1].condition.soft_start_periods and row[1].condition.normal == "massless"]  # fmt: skip
+    at_once = [row for row in rows if not row[1].condition.soft_start_periods and row[1].condition.normal == "massless"]
     for number, (scene, linear) in enumerate(at_once):
         progress(f"reading {number + 1} of {len(at_once)} on the nonlinear chain")
         how = linear.condition
         drawn.setdefault((how.kinematics, how.position), []).append(chain_reading(scene, claims, chains))
-    return tuple(Group(readings=tuple(found), best=max(found, key=lambda one: one.n_met), exact=None)
-                 for found in drawn.values())  # fmt: skip
+    return tuple(
+        Group(readings=tuple(found), best=max(found, key=lambda one: one.n_met), exact=None) for found in drawn.values()
+    )
 
 
 def chain_reading(scene: "Scene", claims: Sequence[Claim], chains: Chains) -> Reading:
@@ -185,9 +203,14 @@ def chain_reading(scene: "Scene", claims: Sequence[Claim], chains: Chains) -> Re
     except InputError as error:
         stopped = str(error)
     return Reading(
-        condition=condition_of(scene, "chain", motion.count), mass=slider.mass, figures=figures,
-        met=_verdicts(claims, figures), lift_off=None, nonlinearity=None, stopped=stopped,
-    )  # fmt: skip
+        condition=condition_of(scene, "chain", motion.count),
+        mass=slider.mass,
+        figures=figures,
+        met=_verdicts(claims, figures),
+        lift_off=None,
+        nonlinearity=None,
+        stopped=stopped,
+    )
 
 
 def _verdicts(claims: Sequence[Claim], figures: dict[str, float]) -> tuple[bool, ...]:
@@ -213,10 +236,18 @@ def read_as(scene: "Scene", asked: ReadingsAsk, values: "dict[str, float | str |
     }
     forces = drive.force if force is None else tuple(replace(one, amplitude=float(force)) for one in drive.force)
     return replace(
-        scene, readings=None, gate=(), drive=replace(drive, force=forces), slider=replace(slider, mass=mass, **own),
-        motion=replace(motion, soft_start_periods=values["soft_start_periods"] or 0.0,
-                       count=asked.count or motion.count, duration=asked.duration or motion.duration),
-    )  # fmt: skip
+        scene,
+        readings=None,
+        gate=(),
+        drive=replace(drive, force=forces),
+        slider=replace(slider, mass=mass, **own),
+        motion=replace(
+            motion,
+            soft_start_periods=values["soft_start_periods"] or 0.0,
+            count=asked.count or motion.count,
+            duration=asked.duration or motion.duration,
+        ),
+    )
 
 
 def reading(scene: "Scene", claims: Sequence[Claim], model: str, count: int | None) -> Reading:
@@ -227,10 +258,14 @@ def reading(scene: "Scene", claims: Sequence[Claim], model: str, count: int | No
     ends = {one.statistics.stopped for one in (run, back) if one is not None} - {"end"}
     figures = {} if ends else figures_of(run, back)
     return Reading(
-        condition=condition_of(scene, model, count), mass=scene.slider.mass, figures=figures,
-        met=_verdicts(claims, figures), lift_off=run.margins.lift_off, nonlinearity=run.margins.nonlinearity,
+        condition=condition_of(scene, model, count),
+        mass=scene.slider.mass,
+        figures=figures,
+        met=_verdicts(claims, figures),
+        lift_off=run.margins.lift_off,
+        nonlinearity=run.margins.nonlinearity,
         stopped=" and ".join(sorted(ends)) or "end",
-    )  # fmt: skip
+    )
 
 
 def _turns(
@@ -261,5 +296,6 @@ def _bounds(scene: "Scene", claims: Sequence[Claim], readings: Sequence[Reading]
         least = 2.0 * abs(claim.number) / (slider.gravity * tangential[0].condition.duration)
         side = 1.0 if claim.number > 0 else -1.0
         above = [side * one.speed for one in tangential if one.speed is not None and one.condition.mu >= least]
-        yield Bound(claimed=claim.number, least_mu=least, n_above=len(above),
-                    fastest=side * max(above) if above else None)  # fmt: skip
+        yield Bound(
+            claimed=claim.number, least_mu=least, n_above=len(above), fastest=side * max(above) if above else None
+        )

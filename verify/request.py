@@ -65,10 +65,25 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def requested(
-    beam: Beam, forces: tuple[PointForce, ...], frequency_hz: float, duration: float, model: str, count: int | None,
-    modes: int, start: str, soft: float, envelope: Envelope, damping: float | None, slider: Slider | None,
-    at: Sequence[float], samples: int, step: float | None, steps_per_period: int, ledger: bool, before: Motion | None,
-) -> Request:  # fmt: skip
+    beam: Beam,
+    forces: tuple[PointForce, ...],
+    frequency_hz: float,
+    duration: float,
+    model: str,
+    count: int | None,
+    modes: int,
+    start: str,
+    soft: float,
+    envelope: Envelope,
+    damping: float | None,
+    slider: Slider | None,
+    at: Sequence[float],
+    samples: int,
+    step: float | None,
+    steps_per_period: int,
+    ledger: bool,
+    before: Motion | None,
+) -> Request:
     """A checked request. Raises InputError."""
     check_drive(beam, forces, frequency_hz)
     check_number("duration", duration, "seconds", above=0)
@@ -86,10 +101,22 @@ def requested(
     grown = (
         ((soft / frequency_hz, SMOOTH_STEP),) if soft else tuple((s, np.asarray(c, dtype=float)) for s, c in envelope)
     )
-    return Request(beam=beam, forces=forces, frequency_hz=frequency_hz, model=model, count=count, modes=modes,
-                   start=start, damping=zeta, slider=slider, points=points, accounts=ledger, step=step,
-                   before=before.end if before else None,
-                   pieces=laid_out(duration, grown, longest, samples - 1))  # fmt: skip
+    return Request(
+        beam=beam,
+        forces=forces,
+        frequency_hz=frequency_hz,
+        model=model,
+        count=count,
+        modes=modes,
+        start=start,
+        damping=zeta,
+        slider=slider,
+        points=points,
+        accounts=ledger,
+        step=step,
+        before=before.end if before else None,
+        pieces=laid_out(duration, grown, longest, samples - 1),
+    )
 
 
 def _check_start(model: str, start: str, soft: float, envelope: Envelope, before: Motion | None) -> None:

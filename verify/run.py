@@ -72,9 +72,15 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
 
         claims = claim_results(found, bench, studied["motion"], progress)
     return RunResult(
-        scene=found, gates=tuple(gates), **studied, claims=claims, solves=tuple(bench.solves), n_fields=bench.n_fields,
-        n_motions=_n_motions(found, bench, **studied), seconds=perf_counter() - start,
-    )  # fmt: skip
+        scene=found,
+        gates=tuple(gates),
+        **studied,
+        claims=claims,
+        solves=tuple(bench.solves),
+        n_fields=bench.n_fields,
+        n_motions=_n_motions(found, bench, **studied),
+        seconds=perf_counter() - start,
+    )
 
 
 def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) -> dict[str, Any]:
@@ -109,9 +115,7 @@ def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) ->
     return done
 
 
-def _n_motions(
-    scene: Scene, bench: Workbench, motion: Any, readings: Any, axial_inertia: Any, **others: Any
-) -> int:  # fmt: skip
+def _n_motions(scene: Scene, bench: Workbench, motion: Any, readings: Any, axial_inertia: Any, **others: Any) -> int:
     """Simulations of a beam or a chain behind gates and studies."""
     chains = sum(gate.quantity in CHAIN_IN_TIME for gate in scene.gate)
     axial = 3 * len(axial_inertia.rows) + len(axial_inertia.lines) if axial_inertia else 0

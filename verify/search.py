@@ -25,8 +25,9 @@ def least_over(figure: Callable[[Array], Array], grid: Array, tolerance: float) 
     values = figure(grid)
     least = int(np.argmin(values))
     around = grid[max(least - 1, 0)], grid[min(least + 1, len(grid) - 1)]
-    found = minimize_scalar(lambda x: float(figure(np.array([x]))[0]), bounds=around, method="bounded",
-                            options={"xatol": tolerance})  # fmt: skip
+    found = minimize_scalar(
+        lambda x: float(figure(np.array([x]))[0]), bounds=around, method="bounded", options={"xatol": tolerance}
+    )
     x, value = (found.x, found.fun) if found.fun <= values[least] else (grid[least], values[least])
     distance = min(x - grid[0], grid[-1] - x)
     return Least(x=float(x), value=float(value), at_edge=bool(distance < 0.01 * (grid[1] - grid[0])))

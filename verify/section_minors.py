@@ -62,8 +62,14 @@ def _waves(y: float) -> tuple[float, ...]:
         sums = [_series(y, first) * tail for first in range(5)]
         return (*sums, tail - 2.0 * sums[4])
     ch, sh = 0.5 * (1.0 + tail * tail), 0.5 * (1.0 - tail * tail)
-    return (c * ch, 0.5 * (s * ch + c * sh), 0.5 * s * sh, 0.25 * (s * ch - c * sh), 0.25 * (tail - c * ch),
-            0.5 * (tail + c * ch))  # fmt: skip
+    return (
+        c * ch,
+        0.5 * (s * ch + c * sh),
+        0.5 * s * sh,
+        0.25 * (s * ch - c * sh),
+        0.25 * (tail - c * ch),
+        0.5 * (tail + c * ch),
+    )
 
 
 def _series(y: float, first: int) -> float:

@@ -102,9 +102,20 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
         return joint_curvatures(chain, raw)
 
     nodes = chain.nodes
-    return Modes(model="segment", count=chain.n_segments, length=beam.length, frequencies_hz=frequencies, shapes=shapes,
-                 nodes=nodes, readings={"corrected": corrected, "raw": lambda: raw}, points=nodes, sampled=corrected,
-                 curvature_points=nodes, curvatures=curvatures, method=pairs.method)  # fmt: skip
+    return Modes(
+        model="segment",
+        count=chain.n_segments,
+        length=beam.length,
+        frequencies_hz=frequencies,
+        shapes=shapes,
+        nodes=nodes,
+        readings={"corrected": corrected, "raw": lambda: raw},
+        points=nodes,
+        sampled=corrected,
+        curvature_points=nodes,
+        curvatures=curvatures,
+        method=pairs.method,
+    )
 
 
 def _spline(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
@@ -157,8 +168,14 @@ def solve_harmonic(
     stiffness: ComplexArray = np.asarray(damped, dtype=complex)
     free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
     raw = with_ends(chain, free).T
-    return HarmonicField(model="segment", count=n_segments, beam=beam, frequency_hz=frequency_hz,
-                         forces=tuple(forces), shapes=_field_shapes(chain, raw, reading))  # fmt: skip
+    return HarmonicField(
+        model="segment",
+        count=n_segments,
+        beam=beam,
+        frequency_hz=frequency_hz,
+        forces=tuple(forces),
+        shapes=_field_shapes(chain, raw, reading),
+    )
 
 
 def _check_harmonic(

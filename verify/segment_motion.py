@@ -44,8 +44,17 @@ def time_basis(
         return np.asarray(weights[near] @ joints(near).T)
 
     shapes = _straight(chain, joints) if line == "raw" else _splined(beam, chain, joints, uniform)
-    return TimeBasis(model="segment", count=n_segments, beam=beam, omegas=omegas, shapes=shapes, loads=loads,
-                     edges=chain.nodes, degree=1 if line == "raw" else 3, method=method)  # fmt: skip
+    return TimeBasis(
+        model="segment",
+        count=n_segments,
+        beam=beam,
+        omegas=omegas,
+        shapes=shapes,
+        loads=loads,
+        edges=chain.nodes,
+        degree=1 if line == "raw" else 3,
+        method=method,
+    )
 
 
 Joints = Callable[[Any], Array]

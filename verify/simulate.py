@@ -56,9 +56,26 @@ def simulate(
     for (`patience`) is refused. Raises InputError.
     """
     began = perf_counter()
-    request = requested(beam, tuple(forces), frequency_hz, duration, model, count, modes, start, soft_start_periods,
-                        envelope, modal_damping, slider, at, samples, step, steps_per_period, ledger,
-                        continue_from)  # fmt: skip
+    request = requested(
+        beam,
+        tuple(forces),
+        frequency_hz,
+        duration,
+        model,
+        count,
+        modes,
+        start,
+        soft_start_periods,
+        envelope,
+        modal_damping,
+        slider,
+        at,
+        samples,
+        step,
+        steps_per_period,
+        ledger,
+        continue_from,
+    )
     stages, basis, coupling = _prepare(request)
     if slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
@@ -124,15 +141,28 @@ def _closed_form(request: Request, stages: list[Stage], basis: TimeBasis | None,
     times = times_of(request, stages)
     wall = perf_counter() - ready
     return Motion(
-        model=request.model, count=request.count, times=times, points=request.points,
-        deflection=np.concatenate(parts), slider=None, start=None, travelled=np.empty(0), speed=np.empty(0),
-        friction=np.empty(0), normal_force=np.empty(0), surface_speed=np.empty(0),
-        events=np.empty((0, 3)), coupling=None, margins=margins_of(request, stages[-1]),
-        ledger=_closed_ledger(request, stages, basis, start), notes=_notes(request, basis),
-        statistics=Statistics(steps=0, evaluations=len(times), step_s=0.0, set_up_s=ready - began, wall_s=wall,
-                              stopped="end"),
+        model=request.model,
+        count=request.count,
+        times=times,
+        points=request.points,
+        deflection=np.concatenate(parts),
+        slider=None,
+        start=None,
+        travelled=np.empty(0),
+        speed=np.empty(0),
+        friction=np.empty(0),
+        normal_force=np.empty(0),
+        surface_speed=np.empty(0),
+        events=np.empty((0, 3)),
+        coupling=None,
+        margins=margins_of(request, stages[-1]),
+        ledger=_closed_ledger(request, stages, basis, start),
+        notes=_notes(request, basis),
+        statistics=Statistics(
+            steps=0, evaluations=len(times), step_s=0.0, set_up_s=ready - began, wall_s=wall, stopped="end"
+        ),
         end=EndState(time=float(times[-1]), q=state[0], rates=state[1]),
-    )  # fmt: skip
+    )
 
 
 def _closed_ledger(request: Request, stages: list[Stage], basis: TimeBasis | None, z: Array) -> Ledger | None:

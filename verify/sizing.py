@@ -82,8 +82,11 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
     uniform = not (bench.beam.section or settings)
     if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:
         count = _around(reached, guess, smallest, model, error)
-        return Enough(count=count, smaller=_dip(model, bench.beam, mode, error, count),
-                      known_by="every larger N does, proven by the discrete dispersion")  # fmt: skip
+        return Enough(
+            count=count,
+            smaller=_dip(model, bench.beam, mode, error, count),
+            known_by="every larger N does, proven by the discrete dispersion",
+        )
     if guess > _CLOSELY or mode > _EVERY:
         known_by = "every larger N does by the error law; smaller ones were not looked through"
         return Enough(count=_around(reached, guess, smallest, model, error), known_by=known_by)
@@ -159,14 +162,18 @@ def choose(bench: Workbench, mode: int, error: float, models: tuple[str, ...] = 
     jobs = [_solver(bench, model, one.count, mode) for model, one in found.items()]
     return [
         Choice(
-            model=model, count=one.count, unknowns=model_module(model).unknowns(bench.beam, one.count),
-            error=bench.frequency_error(model, one.count, mode), run_time_s=seconds,
+            model=model,
+            count=one.count,
+            unknowns=model_module(model).unknowns(bench.beam, one.count),
+            error=bench.frequency_error(model, one.count, mode),
+            run_time_s=seconds,
             expected_error=None if bench.beam.stepped else expected_error(model, bench.beam, mode, one.count),
-            smaller=one.smaller, known_by=one.known_by,
+            smaller=one.smaller,
+            known_by=one.known_by,
             smaller_error=None if one.smaller is None else bench.frequency_error(model, one.smaller, mode),
         )
         for (model, one), seconds in zip(found.items(), interleaved_medians(jobs), strict=True)
-    ]  # fmt: skip
+    ]
 
 
 def _solver(bench: Workbench, model: str, count: int, mode: int) -> Callable[[], object]:

@@ -42,7 +42,9 @@ def _reversal(run: "Motion | ChainRide", turned: "Motion | ChainRide | None") ->
 
 RUN_FIGURES = {
     "slider.displacement": RunFigure(
-        unit="m", summary="Of the scene's slider along +x after a time.", of=lambda run, _: run.displacement,
+        unit="m",
+        summary="Of the scene's slider along +x after a time.",
+        of=lambda run, _: run.displacement,
         sampled=False,
     ),
     "slider.mean_speed": RunFigure(
@@ -52,18 +54,23 @@ RUN_FIGURES = {
         unit="N", summary="Largest friction force on the slider.", of=lambda run, _: float(abs(run.friction).max())
     ),
     "slider.mean_friction": RunFigure(
-        unit="N", summary="Friction on the slider along +x, mean over time.",
+        unit="N",
+        summary="Friction on the slider along +x, mean over time.",
         of=lambda run, _: mean(run.times, run.friction),
     ),
     "slider.mean_surface_speed": RunFigure(
-        unit="m/s", summary="Tangential velocity of the surface under the slider, mean over time.",
+        unit="m/s",
+        summary="Tangential velocity of the surface under the slider, mean over time.",
         of=lambda run, _: mean(run.times, run.surface_speed),
     ),
     "slider.reversal": RunFigure(
-        unit="1", summary="Displacement with all phases turned round over the displacement; below 0 it reverses.",
-        of=_reversal, turned=True, sampled=False,
+        unit="1",
+        summary="Displacement with all phases turned round over the displacement; below 0 it reverses.",
+        of=_reversal,
+        turned=True,
+        sampled=False,
     ),
-}  # fmt: skip
+}
 """By the name of the quantity."""
 
 
@@ -115,8 +122,10 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     def words(self) -> str:
         """All of it."""
         slope = "" if self.law == "coulomb" else f", K = {self.slope:g} s/m"
-        return (f"{self.run_words}, {self.force_words}, mu = {self.mu:g}{slope}, from x = {self.position:g} m, "
-                f"{self.model_words}")  # fmt: skip
+        return (
+            f"{self.run_words}, {self.force_words}, mu = {self.mu:g}{slope}, from x = {self.position:g} m, "
+            f"{self.model_words}"
+        )
 
 
 def _normal_in(model: str, slider: "Slider") -> str:
@@ -132,8 +141,16 @@ def condition_of(scene: "Scene", model: str, count: int | None) -> Condition:
     assert slider is not None
     assert asked is not None
     return Condition(
-        kinematics=slider.kinematics, normal=_normal_in(model, slider), start=asked.start,
-        soft_start_periods=asked.soft_start_periods, forces=tuple(force.amplitude for force in scene.forces),
-        law=slider.law, mu=slider.mu, slope=slider.slope, position=slider.start_on(scene.beam), model=model,
-        count=count, duration=asked.duration,
-    )  # fmt: skip
+        kinematics=slider.kinematics,
+        normal=_normal_in(model, slider),
+        start=asked.start,
+        soft_start_periods=asked.soft_start_periods,
+        forces=tuple(force.amplitude for force in scene.forces),
+        law=slider.law,
+        mu=slider.mu,
+        slope=slider.slope,
+        position=slider.start_on(scene.beam),
+        model=model,
+        count=count,
+        duration=asked.duration,
+    )

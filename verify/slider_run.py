@@ -50,10 +50,21 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     @classmethod
     def fresh(cls, start: float, samples: int, points: Array, law: Array, two_way: bool, accounts: bool) -> "Sliding":
         """Room for a run."""
-        return cls(start=start, motion=fresh_motion(), law=law, two_way=two_way, points=points,
-                   kept=np.zeros((samples, 5)), deflections=np.zeros((samples, len(points))),
-                   events=np.zeros((EVENTS, 3)), accounts=accounts, ledger=np.zeros(6), first=np.zeros(5),
-                   first_deflection=np.zeros(len(points)), tally=np.zeros(3, dtype=np.int64))  # fmt: skip
+        return cls(
+            start=start,
+            motion=fresh_motion(),
+            law=law,
+            two_way=two_way,
+            points=points,
+            kept=np.zeros((samples, 5)),
+            deflections=np.zeros((samples, len(points))),
+            events=np.zeros((EVENTS, 3)),
+            accounts=accounts,
+            ledger=np.zeros(6),
+            first=np.zeros(5),
+            first_deflection=np.zeros(len(points)),
+            tally=np.zeros(3, dtype=np.int64),
+        )
 
     @property
     def steps(self) -> int:
@@ -124,10 +135,15 @@ def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) ->
     loads = np.zeros((len(forces), len(stage.rows(np.zeros(1)))))
     for row, force in zip(loads, forces, strict=True):
         row[:] = stage.load_rows(force.position)
-    return Feed(stage=stage, modes=modes, loads=loads,
-                drive=np.array([stage.omega, stage.origin, stage.unit_s, *stage.growth]),
-                forces=np.array([amplitudes.real, amplitudes.imag]), answers=stage.answers,
-                points=np.ascontiguousarray(stage.rows(points).T))  # fmt: skip
+    return Feed(
+        stage=stage,
+        modes=modes,
+        loads=loads,
+        drive=np.array([stage.omega, stage.origin, stage.unit_s, *stage.growth]),
+        forces=np.array([amplitudes.real, amplitudes.imag]),
+        answers=stage.answers,
+        points=np.ascontiguousarray(stage.rows(points).T),
+    )
 
 
 def slider_seconds(steps: float, rows: int, two_way: bool) -> float:
@@ -174,8 +190,12 @@ def look(fed: Feed, around: Window, sliding: Sliding) -> None:
 
 
 def run_stages(
-    stages: Sequence[Stage], z: Array, sliding: Sliding, forces: Sequence[PointForce], tell: Callable[[int], None],
-) -> tuple[str, Array, Array]:  # fmt: skip
+    stages: Sequence[Stage],
+    z: Array,
+    sliding: Sliding,
+    forces: Sequence[PointForce],
+    tell: Callable[[int], None],
+) -> tuple[str, Array, Array]:
     """Run through all stages from free modes z; (why it stopped, q, dq/dt of the modes then).
 
     `tell` hears the steps done.
@@ -206,10 +226,27 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
     s, stage, space = sliding, fed.stage, room(fed)
     while around and s.tally[0] < stage.n_steps:
         why = kernels.slide(
-            min(CHUNK, stage.n_steps - s.tally[0]), stage.dt, fed.modes, fed.drive, *around, s.motion, s.law, s.two_way,
-            fed.loads, fed.forces, fed.answers, s.accounts, s.ledger, stage.every, s.kept, fed.points, s.deflections,
-            s.events, s.tally, *space,
-        )  # fmt: skip
+            min(CHUNK, stage.n_steps - s.tally[0]),
+            stage.dt,
+            fed.modes,
+            fed.drive,
+            *around,
+            s.motion,
+            s.law,
+            s.two_way,
+            fed.loads,
+            fed.forces,
+            fed.answers,
+            s.accounts,
+            s.ledger,
+            stage.every,
+            s.kept,
+            fed.points,
+            s.deflections,
+            s.events,
+            s.tally,
+            *space,
+        )
         tell(s.steps)
         if why == kernels.NOT_FINITE:
             return "diverged"

@@ -74,8 +74,13 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumStudy:
         check_size(bench.beam, model, asked.count, asked.modes)
     modes = tuple(range(1, asked.modes + 1))
     errors = {m: tuple(_error(bench, m, asked.count, n)[0] for n in reversed(modes))[::-1] for m in MODELS}
-    return SpectrumStudy(count=asked.count, modes=modes, segment=errors["segment"], fem=errors["fem"],
-                         theories=_theory_errors(bench.beam, modes))  # fmt: skip
+    return SpectrumStudy(
+        count=asked.count,
+        modes=modes,
+        segment=errors["segment"],
+        fem=errors["fem"],
+        theories=_theory_errors(bench.beam, modes),
+    )
 
 
 def _theory_errors(beam: "Beam", modes: tuple[int, ...]) -> dict[str, tuple[float, ...]]:
@@ -153,8 +158,16 @@ def _row(bench: Workbench, mode: int, count: int, seconds: dict[str, float], pre
         width, mean_error = found.relative_width, bench.frequency_error("mean", count, mode)
     except InputError as error:
         notes += [str(error)] if not notes else []
-    return Row(mode=mode, count=count, exact_hz=bench.exact_hz(mode), segment=cells["segment"],
-               fem=cells["fem"], bracket_width=width, mean_error=mean_error, notes=tuple(notes))  # fmt: skip
+    return Row(
+        mode=mode,
+        count=count,
+        exact_hz=bench.exact_hz(mode),
+        segment=cells["segment"],
+        fem=cells["fem"],
+        bracket_width=width,
+        mean_error=mean_error,
+        notes=tuple(notes),
+    )
 
 
 def _cell(
@@ -190,5 +203,6 @@ def sensitivity(beam: "Beam", asked: "Sensitivity", steps: int = 25) -> Sensitiv
         tuple(frequency_hz(structs.replace(beam, youngs_modulus=e, density=rho), asked.mode) for e in moduli)
         for rho in densities
     )
-    return SensitivityStudy(mode=asked.mode, moduli=moduli, densities=densities, frequencies_hz=table,
-                            published_hz=asked.published_hz)  # fmt: skip
+    return SensitivityStudy(
+        mode=asked.mode, moduli=moduli, densities=densities, frequencies_hz=table, published_hz=asked.published_hz
+    )

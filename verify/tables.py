@@ -155,8 +155,14 @@ def _finite(value: float) -> float | None:
 def _plain_map(found: Any) -> dict[str, Any]:
     rows = found.values.tolist()
     nested = [[_finite(v) for v in row] for row in rows] if found.values.ndim == 2 else [_finite(v) for v in rows]
-    return {"quantity": found.quantity, "unit": found.unit, "axes": msgspec.to_builtins(found.axes), "values": nested,
-            "method": found.method, "reasons": list(found.reasons)}  # fmt: skip
+    return {
+        "quantity": found.quantity,
+        "unit": found.unit,
+        "axes": msgspec.to_builtins(found.axes),
+        "values": nested,
+        "method": found.method,
+        "reasons": list(found.reasons),
+    }
 
 
 def _flat_map(found: Any) -> list[dict[str, Any]]:

@@ -185,15 +185,20 @@ def _measures(
     low, high = extremes(lambda at: ellipses(at)[2], fine)
     ratio, tilt, area = ellipses(x)
     return WaveMeasures(
-        window=window, waves=waves, envelope=(largest - least) / (largest + least),
+        window=window,
+        waves=waves,
+        envelope=(largest - least) / (largest + least),
         travelling_index=travelling_index(deflection(rule.x), rule.weights),
         mean_axis_ratio=mean_over(lambda at: ellipses(at)[0], whole, 2 * halves),
-        x=x, axis_ratio=ratio, tilt_deg=tilt, signed_area=area,
+        x=x,
+        axis_ratio=ratio,
+        tilt_deg=tilt,
+        signed_area=area,
         signed_area_range=(low, mean_over(lambda at: ellipses(at)[2], window, 2 * halves), high),
         ideal_axis_ratio=0.5 * waves.wavenumber.real * beam.thickness,
         crest_speed=float(crest_speed(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
         energy_flux=float(energy_flux(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
-    )  # fmt: skip
+    )
 
 
 def surface_motion(beam: Beam, slope: ComplexArray) -> ComplexArray:
@@ -257,8 +262,9 @@ def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | N
     basis, values = wave_basis(x, k, 0.5 * (x[0] + x[-1])) * root[:, None], deflection * root
     amplitudes = np.linalg.lstsq(basis, values, rcond=None)[0]
     rest = np.linalg.norm(values - basis @ amplitudes) / np.linalg.norm(values)
-    return TwoWaves(wavenumber=complex(k), forward=complex(amplitudes[0]), backward=complex(amplitudes[1]),
-                    residual=float(rest))  # fmt: skip
+    return TwoWaves(
+        wavenumber=complex(k), forward=complex(amplitudes[0]), backward=complex(amplitudes[1]), residual=float(rest)
+    )
 
 
 def zero_field() -> ZeroFieldError:

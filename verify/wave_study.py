@@ -92,8 +92,12 @@ def motor_row(scene: "Scene", bench: "Workbench", model: str, count: int | None)
 
 def _operation(a: Any, scene: "Scene", bench: "Workbench", frequency: float) -> Operation:
     found = measures(driven(replace(a, frequency_hz=frequency), scene, bench, a.count), a.window)
-    return Operation(frequency_hz=frequency, standing_wave_ratio=found.standing_wave_ratio,
-                     axis_ratio=found.mean_axis_ratio, crest_speed=found.crest_speed)  # fmt: skip
+    return Operation(
+        frequency_hz=frequency,
+        standing_wave_ratio=found.standing_wave_ratio,
+        axis_ratio=found.mean_axis_ratio,
+        crest_speed=found.crest_speed,
+    )
 
 
 def motor_table(
@@ -131,12 +135,20 @@ def wave_study(
     x = np.linspace(0.0, scene.beam.length, 601)
     points, problems = operating_points(scene, model, count, asked.reflection_limit, eta)
     return WaveStudy(
-        rows=rows, x=tuple(x.tolist()), count=asked.count, undamped=not scene.beam.loss_factor,
+        rows=rows,
+        x=tuple(x.tolist()),
+        count=asked.count,
+        undamped=not scene.beam.loss_factor,
         envelopes={name: tuple(abs(field.deflection(x)).tolist()) for name, field in fields.items()},
-        ellipses=_ellipses(scene.beam, fields["analytic"]), map=design_map(asked.quantity, chosen, axes, scene, bench),
-        points=points, notes=tuple(str(problem) for problem in problems), operating_loss_factor=eta,
-        pure_phase=_pure_along_a_phase(scene), first_phase_deg=scene.forces[0].phase_deg, other_drive=across,
-    )  # fmt: skip
+        ellipses=_ellipses(scene.beam, fields["analytic"]),
+        map=design_map(asked.quantity, chosen, axes, scene, bench),
+        points=points,
+        notes=tuple(str(problem) for problem in problems),
+        operating_loss_factor=eta,
+        pure_phase=_pure_along_a_phase(scene),
+        first_phase_deg=scene.forces[0].phase_deg,
+        other_drive=across,
+    )
 
 
 def _pure_along_a_phase(scene: "Scene") -> bool:

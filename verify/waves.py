@@ -199,5 +199,11 @@ def wave_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
 
 def _exact(a: Any) -> Any:
     """The same drive on the exact beam."""
-    return InWindow(frequency_hz=a.frequency_hz, phase_deg=a.phase_deg, position=a.position, loss_factor=a.loss_factor,
-                    drive=a.drive, window=a.window)  # fmt: skip
+    return InWindow(
+        frequency_hz=a.frequency_hz,
+        phase_deg=a.phase_deg,
+        position=a.position,
+        loss_factor=a.loss_factor,
+        drive=a.drive,
+        window=a.window,
+    )

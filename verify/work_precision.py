@@ -134,15 +134,27 @@ def _exact(scene: "Scene") -> tuple[float, float]:
 
 
 def run_once(
-    scene: "Scene", model: str, count: int | None, *, ledger: bool = False, samples: int = 2,
+    scene: "Scene",
+    model: str,
+    count: int | None,
+    *,
+    ledger: bool = False,
+    samples: int = 2,
     coupling: str | None = None,
-) -> "Motion":  # fmt: skip
+) -> "Motion":
     """The scene's slider on one model, coupled as it says unless told otherwise."""
     a = SliderInTime(model=model, count=count, coupling=coupling)  # type: ignore[arg-type]
     asked = described(a, scene)
     per_period = scene.motion.steps_per_period if scene.motion else 64
-    found = simulate(scene.beam, slider=slider_of(a, scene), steps_per_period=per_period, samples=samples,
-                     ledger=ledger, patient=False, **asked)  # fmt: skip
+    found = simulate(
+        scene.beam,
+        slider=slider_of(a, scene),
+        steps_per_period=per_period,
+        samples=samples,
+        ledger=ledger,
+        patient=False,
+        **asked,
+    )
     if found.statistics.stopped == "interrupted":
         raise KeyboardInterrupt
     return found
@@ -152,11 +164,15 @@ def _row(model: str, count: int, found: "list[Motion]", exact: float, before: Wo
     length = found[0].duration
     error = relative_error(found[0].displacement, exact)
     return WorkRow(
-        model=model, count=count, rows=len(found[0].end.q), displacement=found[0].displacement, error=error,
+        model=model,
+        count=count,
+        rows=len(found[0].end.q),
+        displacement=found[0].displacement,
+        error=error,
         order=log(before.error / error) / log(count / before.count) if before and before.error * error > 0 else None,
         run_ms_per_ms=median(m.statistics.wall_s for m in found) / length,
         set_up_ms=1e3 * median(m.statistics.set_up_s for m in found),
-    )  # fmt: skip
+    )
 
 
 def at_equal_error(work: Work) -> Comparison | NotCompared:
@@ -168,8 +184,10 @@ def at_equal_error(work: Work) -> Comparison | NotCompared:
     spans = [(abs(line[-1].error), abs(line[0].error)) for line in lines.values()]
     error = max(low for low, _ in spans)
     if error > min(high for _, high in spans):
-        words = ", ".join(f"{name} {100 * low:.3g} to {100 * high:.3g} %"
-                          for name, (low, high) in zip(MODELS.values(), spans, strict=True))  # fmt: skip
+        words = ", ".join(
+            f"{name} {100 * low:.3g} to {100 * high:.3g} %"
+            for name, (low, high) in zip(MODELS.values(), spans, strict=True)
+        )
         return NotCompared(why=f"the models share no error ({words})", remedy="give counts that overlap in error")
     costs = {model: _cost_at(line, error) for model, line in lines.items()}
     return Comparison(error=error, segment=costs["segment"], fem=costs["fem"], duration=work.duration)

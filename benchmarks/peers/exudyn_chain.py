@@ -45,9 +45,10 @@ def assemble(case: Case) -> tuple[Any, list[int], list[int]]:
             return [0.0, case.now(t)[k], 0.0]
 
         system.AddLoad(
-            items.LoadForceVector(markerNumber=point(bodies[link], where - half), loadVector=[0.0, 1.0, 0.0],
-                                  loadVectorUserFunction=pull)
-        )  # fmt: skip
+            items.LoadForceVector(
+                markerNumber=point(bodies[link], where - half), loadVector=[0.0, 1.0, 0.0], loadVectorUserFunction=pull
+            )
+        )
     return system, nodes, bodies
 
 
@@ -80,9 +81,14 @@ def prepare(case: Case) -> Run:
         steps, _ = count(step, end)
         system, _, bodies = assemble(case)
         sensor = system.AddSensor(
-            items.SensorBody(bodyNumber=bodies[middle], localPosition=[at - case.link / 2, 0.0, 0.0],
-                             storeInternal=True, writeToFile=False, outputVariableType=exu.OutputVariableType.Position)
-        )  # fmt: skip
+            items.SensorBody(
+                bodyNumber=bodies[middle],
+                localPosition=[at - case.link / 2, 0.0, 0.0],
+                storeInternal=True,
+                writeToFile=False,
+                outputVariableType=exu.OutputVariableType.Position,
+            )
+        )
         system.Assemble()
         system.SolveDynamic(settings_for(steps, end), solverType=exu.DynamicSolverType.GeneralizedAlpha)
         seen = np.array(system.GetSensorStoredData(sensor))

@@ -11,8 +11,10 @@ from benchmarks.peers.slider import Run, Sled, surface_speed
 
 def _with_slider(case: Case, sled: Sled, step: float) -> str:
     """The chain's XML and one more body."""
-    body = (f'<body name="sled" pos="{sled.start!r} 0 0.01"><joint name="slide" type="slide" axis="1 0 0"/>'
-            f'<inertial pos="0 0 0" mass="{sled.mass!r}" diaginertia="1e-9 1e-9 1e-9"/></body>')  # fmt: skip
+    body = (
+        f'<body name="sled" pos="{sled.start!r} 0 0.01"><joint name="slide" type="slide" axis="1 0 0"/>'
+        f'<inertial pos="0 0 0" mass="{sled.mass!r}" diaginertia="1e-9 1e-9 1e-9"/></body>'
+    )
     return _model_text(case, step).replace("</worldbody>", body + "</worldbody>")
 
 

@@ -17,10 +17,22 @@ if TYPE_CHECKING:
 Figure = dict[str, Any]
 
 GREY = "#8a8f98"
-COLOUR = {"segment": "#2f80ed", "fem": "#e8760c", "mean": "#2a9d5c", "rayleigh": "#9b6bdf", "timoshenko": "#d6427a",
-          "key": GREY}  # fmt: skip
-NAME = {"segment": "segments", "fem": "Hermite elements", "mean": "mean of both", "rayleigh": "Rayleigh",
-        "timoshenko": "Timoshenko", "key": "key"}  # fmt: skip
+COLOUR = {
+    "segment": "#2f80ed",
+    "fem": "#e8760c",
+    "mean": "#2a9d5c",
+    "rayleigh": "#9b6bdf",
+    "timoshenko": "#d6427a",
+    "key": GREY,
+}
+NAME = {
+    "segment": "segments",
+    "fem": "Hermite elements",
+    "mean": "mean of both",
+    "rayleigh": "Rayleigh",
+    "timoshenko": "Timoshenko",
+    "key": "key",
+}
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash")
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x")
 
@@ -63,8 +75,15 @@ def axes(x: str, y: str, **more: Any) -> Figure:
 
 
 def _line(model: str, x: Iterable[Any], y: Iterable[Any], **more: Any) -> Figure:
-    trace: Figure = {"type": "scatter", "mode": "lines+markers", "name": NAME[model], "x": list(x), "y": list(y),
-                     "line": {"color": COLOUR[model]}, "marker": {"color": COLOUR[model], "size": 6}}  # fmt: skip
+    trace: Figure = {
+        "type": "scatter",
+        "mode": "lines+markers",
+        "name": NAME[model],
+        "x": list(x),
+        "y": list(y),
+        "line": {"color": COLOUR[model]},
+        "marker": {"color": COLOUR[model], "size": 6},
+    }
     line = trace["line"] | more.pop("line", {})
     marker = trace["marker"] | more.pop("marker", {})
     return trace | more | {"line": line, "marker": marker}
@@ -78,10 +97,12 @@ def _signed_errors(study: "SpectrumStudy", two_sided: bool) -> dict[str, Any]:
     below = " Rigid links with rotary inertia lie below, Hermite elements above." if two_sided else ""
     data = [_line(m, study.modes, _percent(getattr(study, m))) for m in ("segment", "fem")]
     return chart(
-        "mode-errors", f"Frequency error over mode number, N = {study.count}",
+        "mode-errors",
+        f"Frequency error over mode number, N = {study.count}",
         f"Signed, against exact Euler-Bernoulli.{below}",
-        data, axes("mode number", "frequency error, %"),
-    )  # fmt: skip
+        data,
+        axes("mode number", "frequency error, %"),
+    )
 
 
 def _model_form(study: "SpectrumStudy") -> dict[str, Any]:
@@ -90,11 +111,13 @@ def _model_form(study: "SpectrumStudy") -> dict[str, Any]:
     for theory, errors in study.theories.items():
         data.append(_line(theory, study.modes, _percent(errors, size=True), line={"dash": "dash"}))
     return chart(
-        "model-form", f"Discretisation beside model form, N = {study.count}",
+        "model-form",
+        f"Discretisation beside model form, N = {study.count}",
         "Solid: what dividing the beam costs. Dashed: what Euler-Bernoulli theory leaves out, rotary inertia "
         "(Rayleigh) and shear as well (Timoshenko). A mesh finer than that answers a question nobody asked.",
-        data, axes("mode number", "size of the frequency error, %", yaxis={"type": "log", "exponentformat": "power"}),
-    )  # fmt: skip
+        data,
+        axes("mode number", "size of the frequency error, %", yaxis={"type": "log", "exponentformat": "power"}),
+    )
 
 
 def _by_mode(rows: "tuple[Row, ...]") -> "dict[int, list[Row]]":
@@ -129,11 +152,13 @@ def _convergence(rows: "tuple[Row, ...]") -> dict[str, Any]:
     data += [_slope(rows, 4), *([_slope(rows, 6)] if means else []), *keys]
     log = {"type": "log", "exponentformat": "power"}
     return chart(
-        "convergence", "Convergence with the number of segments or elements",
+        "convergence",
+        "Convergence with the number of segments or elements",
         (mean_in_words(rows) + " " if means else "")
         + f"Grey: reference slopes. At about {100.0 * EIGENVALUE_FLOOR:.0e} % rounding takes over.",
-        data, axes("segments or elements N", "size of the frequency error, %", xaxis=_sizes(rows), yaxis=log),
-    )  # fmt: skip
+        data,
+        axes("segments or elements N", "size of the frequency error, %", xaxis=_sizes(rows), yaxis=log),
+    )
 
 
 def mean_in_words(rows: "tuple[Row, ...]") -> str:
@@ -161,8 +186,15 @@ def _slope(rows: "tuple[Row, ...]", order: int) -> Figure:
         return {"type": "scatter", "x": [], "y": [], "name": f"slope {order}"}
     counts = sorted({row.count for row in rows if row.count >= start[0]})
     y = [250.0 * abs(start[1]) * (start[0] / n) ** order for n in counts]
-    return {"type": "scatter", "mode": "lines", "name": f"slope {order}", "x": counts, "y": y, "hoverinfo": "skip",
-            "line": {"color": GREY, "width": 1, "dash": "dot" if order == 6 else "solid"}}  # fmt: skip
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": f"slope {order}",
+        "x": counts,
+        "y": y,
+        "hoverinfo": "skip",
+        "line": {"color": GREY, "width": 1, "dash": "dot" if order == 6 else "solid"},
+    }
 
 
 def _bracket(rows: "tuple[Row, ...]") -> dict[str, Any]:
@@ -175,11 +207,12 @@ def _bracket(rows: "tuple[Row, ...]") -> dict[str, Any]:
     lower |= {"fill": "tonexty", "fillcolor": "rgba(138,143,152,0.18)"}
     mean = _line("mean", counts, _percent([row.mean_error for row in group]))
     return chart(
-        "bracket", f"Two-sided bound on mode {mode}",
+        "bracket",
+        f"Two-sided bound on mode {mode}",
         "The exact frequency (zero) lies in the grey band for every N: no reference solution is needed to know that.",
         [upper, lower, mean] if group else [],
         axes("segments or elements N", "against the exact frequency, %", xaxis=_sizes(group)),
-    )  # fmt: skip
+    )
 
 
 def _work(rows: "tuple[Row, ...]") -> dict[str, Any]:
@@ -188,8 +221,12 @@ def _work(rows: "tuple[Row, ...]") -> dict[str, Any]:
         for model in ("segment", "fem"):
             cells = [(getattr(row, model), row.count) for row in group]
             solved = [(cell, count) for cell, count in cells if cell.error is not None]
-            trace = _line(model, [1e3 * cell.run_time_s for cell, _ in solved],
-                          _percent([cell.error for cell, _ in solved], size=True), **style)  # fmt: skip
+            trace = _line(
+                model,
+                [1e3 * cell.run_time_s for cell, _ in solved],
+                _percent([cell.error for cell, _ in solved], size=True),
+                **style,
+            )
             if solved:
                 labels = [f"N = {count}" for _, count in solved]
                 data.append(trace | {"text": labels, "showlegend": model not in named, "legendgroup": model})
@@ -197,29 +234,44 @@ def _work(rows: "tuple[Row, ...]") -> dict[str, Any]:
         keys.append(key)
     log = {"type": "log", "exponentformat": "power"}
     return chart(
-        "work-precision", "Run time against error",
+        "work-precision",
+        "Run time against error",
         "A warm solve from beam to modes, set-up included, median of interleaved repeats on the machine named below. "
         "Lower left is better. scikit-fem's assembly is part of the Hermite time.",
-        data + keys, axes("run time, ms", "size of the frequency error, %", xaxis=log, yaxis=log),
-    )  # fmt: skip
+        data + keys,
+        axes("run time, ms", "size of the frequency error, %", xaxis=log, yaxis=log),
+    )
 
 
 def _sensitivity(study: "SensitivityStudy") -> dict[str, Any]:
     shades = ("#56c7c2", "#3fa7d6", "#2f80ed", "#6d6fe0", "#9b6bdf")
     moduli = [e / 1e9 for e in study.moduli]
     data: list[Figure] = [
-        {"type": "scatter", "mode": "lines", "name": f"ρ = {rho:.0f} kg/m³", "x": moduli, "y": list(row),
-         "line": {"color": shades[i], "width": 3 if i == 2 else 1.5}}
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": f"ρ = {rho:.0f} kg/m³",
+            "x": moduli,
+            "y": list(row),
+            "line": {"color": shades[i], "width": 3 if i == 2 else 1.5},
+        }
         for i, (rho, row) in enumerate(zip(study.densities, study.frequencies_hz, strict=True))
-    ]  # fmt: skip
+    ]
     caption = (
         f"Exact Euler-Bernoulli: frequency goes with sqrt(E / rho), so that one per cent of modulus or density moves "
         f"mode {study.mode} by half a per cent."
     )
     if study.published_hz:
-        data.append({"type": "scatter", "mode": "lines", "name": f"published {study.published_hz:g} Hz",
-                     "x": [moduli[0], moduli[-1]], "y": [study.published_hz] * 2,
-                     "line": {"color": "#d6427a", "dash": "dash"}})  # fmt: skip
+        data.append(
+            {
+                "type": "scatter",
+                "mode": "lines",
+                "name": f"published {study.published_hz:g} Hz",
+                "x": [moduli[0], moduli[-1]],
+                "y": [study.published_hz] * 2,
+                "line": {"color": "#d6427a", "dash": "dash"},
+            }
+        )
         caption += " The dashed line is the published figure: every crossing is a material that fits it."
     layout = axes("Young's modulus, GPa", f"frequency of mode {study.mode}, Hz")
     return chart("sensitivity", f"Mode {study.mode} over the inferred modulus and density", caption, data, layout)

@@ -38,8 +38,9 @@ def page(result: "RunResult", command: str) -> str:
     from verify.contact import FELT
 
     loader = PackageLoader("verify", "report")
-    templates = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-                            lstrip_blocks=True)  # fmt: skip
+    templates = Environment(
+        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     templates.filters |= {"figure": figure, "percent": percent, "duration": seconds_in_words}
     charts = charts_of(result) + (wave_charts(result.wave) if result.wave else [])
     charts += motion_charts(result.motion) if result.motion else []

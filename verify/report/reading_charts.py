@@ -28,17 +28,30 @@ def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
     claimed = {abs(c.number): c.id for c in study.claims if c.quantity == "slider.mean_speed" and c.number}
     forces = [max(one.condition.forces) for one in study.readings]
     for value, name in claimed.items():
-        data.append({"type": "scatter", "mode": "lines", "name": f"claimed: {name}", "x": [min(forces), max(forces)],
-                     "y": [100 * value] * 2, "line": {"color": GREY, "width": 2, "dash": "dash"}})  # fmt: skip
+        data.append(
+            {
+                "type": "scatter",
+                "mode": "lines",
+                "name": f"claimed: {name}",
+                "x": [min(forces), max(forces)],
+                "y": [100 * value] * 2,
+                "line": {"color": GREY, "width": 2, "dash": "dash"},
+            }
+        )
     log = {"type": "log", "exponentformat": "none"}
-    return [chart(
-        "slider-readings", f"Readings of the slider: size of the mean speed over the force, {_model(study)}",
-        "Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods over which "
-        "the forces grow), drawn a little beside its force. Points of a colour above one another differ in place, mu "
-        "and K. On hover: the claims that hold, by letter.",
-        data, axes("force, N", "size of the mean speed, cm/s", xaxis=log,
-                   yaxis={"type": "log", "exponentformat": "power"}),
-    )]  # fmt: skip
+    return [
+        chart(
+            "slider-readings",
+            f"Readings of the slider: size of the mean speed over the force, {_model(study)}",
+            "Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods over "
+            "which the forces grow), drawn a little beside its force. Points of a colour above one another differ in "
+            "place, mu and K. On hover: the claims that hold, by letter.",
+            data,
+            axes(
+                "force, N", "size of the mean speed, cm/s", xaxis=log, yaxis={"type": "log", "exponentformat": "power"}
+            ),
+        )
+    ]
 
 
 def _model(study: "ReadingsStudy") -> str:
@@ -49,12 +62,20 @@ def _way(name: tuple[str, str], readings: "list[Reading]", colour: str, beside: 
     """One colour, drawn at its forces times `beside`."""
     ended = [one for one in readings if one.speed]
     return {
-        "type": "scatter", "mode": "markers", "name": f"{name[0]}, {name[1]}",
-        "x": [beside * max(one.condition.forces) for one in ended], "y": [100 * abs(one.speed or 0.0) for one in ended],
-        "text": [_hover(one) for one in ended], "hoverinfo": "text",
-        "marker": {"color": colour, "size": 7, "line": {"color": colour, "width": 1.5},
-                   "symbol": ["circle" if (one.speed or 0.0) < 0 else "circle-open" for one in ended]},
-    }  # fmt: skip
+        "type": "scatter",
+        "mode": "markers",
+        "name": f"{name[0]}, {name[1]}",
+        "x": [beside * max(one.condition.forces) for one in ended],
+        "y": [100 * abs(one.speed or 0.0) for one in ended],
+        "text": [_hover(one) for one in ended],
+        "hoverinfo": "text",
+        "marker": {
+            "color": colour,
+            "size": 7,
+            "line": {"color": colour, "width": 1.5},
+            "symbol": ["circle" if (one.speed or 0.0) < 0 else "circle-open" for one in ended],
+        },
+    }
 
 
 def _hover(reading: "Reading") -> str:
