@@ -12,10 +12,11 @@ from time import perf_counter
 
 from scipy.sparse.linalg import splu
 
-from verify import eigen, fem_beam, segment_model
+from verify import fem_beam, segment_model
 from verify.beam import Beam
-from verify.division import divide
 from verify.extended_precision import eigenvalue_error
+from verify.models import eigen
+from verify.models.division import divide
 
 SUPPORTS = (("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "free"), ("free", "free"))
 MODELS = {"segment": segment_model, "fem": fem_beam}

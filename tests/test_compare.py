@@ -5,7 +5,7 @@ import pytest
 
 from verify import compare
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
-from verify.modes import Modes
+from verify.models.modes import Modes
 from verify.workbench import Need, Workbench, merged
 
 X = np.linspace(0, 1, 41)

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from verify import analytic_modes
 from verify.beam import PointForce
 from verify.contact import FELT, coupling_of, surface_speed
-from verify.fields import HarmonicField
+from verify.models.fields import HarmonicField
 from verify.simulate import simulate
 from verify.slider import Slider
 

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes, closed_forms, eigen, error_laws, fem_beam, segment_model
+from verify import analytic_modes, closed_forms, error_laws, fem_beam, segment_model
 from verify import chain as chain_of_links
 from verify.beam import PointForce
 from verify.errors import InputError
+from verify.models import eigen
 
 MODELS = {"segment": segment_model, "fem": fem_beam}
 

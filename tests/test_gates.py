@@ -24,12 +24,9 @@ from verify import (
     compare,
     contact,
     contact_kernels,
-    division,
-    eigen,
     fem_beam,
     fem_motion,
     forcing,
-    harmonic_solvers,
     motions,
     operating_point,
     pure_wave,
@@ -50,6 +47,8 @@ from verify.checked import checked
 from verify.compare import Bracket
 from verify.errors import InputError
 from verify.gates import expectation, judge
+from verify.models import division, eigen
+from verify.models import driven_pencil as harmonic_solvers
 from verify.plan import asks_of
 from verify.quantities import QUANTITIES, Quantity
 from verify.run import workbench_for

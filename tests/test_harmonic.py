@@ -13,7 +13,7 @@ from verify.beam import SUPPORTS, PointForce
 from verify.chain import build_chain
 from verify.drives import driven_field, held_units
 from verify.errors import InputError, ResonanceError
-from verify.fields import wavenumber
+from verify.models.fields import wavenumber
 from verify.point_loads import four_weights, joint_weights
 
 FORCES = (PointForce(position=0.083, amplitude=0.7), PointForce(position=0.611, amplitude=1.3, phase_deg=63.0))

@@ -8,10 +8,10 @@ from scipy.linalg import eigh
 from verify import fem_beam, segment_model
 from verify.beam import Beam
 from verify.chain import build_chain, chain_pencil
-from verify.division import divide
-from verify.eigen import forced_response
 from verify.errors import InputError
-from verify.harmonic_solvers import check_dense, damped_response, modal_receptance, refuse_near_resonance
+from verify.models.division import divide
+from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, refuse_near_resonance
+from verify.models.eigen import forced_response
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 CLAMPED = replace(STRIP, supports=("clamped", "free"))

@@ -203,7 +203,7 @@ SHARED = [
         lambda: np.sqrt(link_omega2(22 * np.pi / 49)) / (22 * np.pi / 49) ** 2 - 1,
     ),
     Shared(
-        "division",
+        "models.division",
         "each part takes the stiffness of its neighbour",
         ("chain.divide", "fem_beam.divide"),
         after(lambda parts: replace(parts, moduli=np.roll(parts.moduli, 1))),
@@ -212,7 +212,7 @@ SHARED = [
         lambda: strip("fem"),
     ),
     Shared(
-        "division",
+        "models.division",
         "each part takes the mass of its neighbour",
         ("chain.divide", "fem_beam.divide"),
         after(lambda parts: replace(parts, masses_per_length=np.roll(parts.masses_per_length, 1))),
@@ -221,34 +221,34 @@ SHARED = [
         lambda: strip("segment"),
     ),
     Shared(
-        "eigen",
+        "models.eigen",
         "values two ten-thousandths too large in the quotient",
-        ("eigen.factored_quotient",),
+        ("models.eigen.factored_quotient",),
         after(heavier),
         "paper",
         ("segment-mode-22",),
         lambda: np.sqrt(link_omega2(22 * np.pi / 49)) / (22 * np.pi / 49) ** 2 - 1,
     ),
     Shared(
-        "eigen",
+        "models.eigen",
         "a driven pencil at a slightly higher frequency",
-        ("harmonic_solvers.forced_response",),
+        ("models.driven_pencil.forced_response",),
         lambda true: lambda pencil, loads, omega2, stiffness: true(pencil, loads, 1.0005 * omega2, stiffness),
         "paper-wave",
         ("loss-on-elements",),
         lambda: modal_sum(0.2137, DRIVES, 0.01),
     ),
     Shared(
-        "eigen",
+        "models.eigen",
         "a driven pencil whose losses are conjugate",
-        ("harmonic_solvers.forced_response",),
+        ("models.driven_pencil.forced_response",),
         lambda true: lambda pencil, loads, omega2, stiffness: true(pencil, loads, omega2, stiffness.conj()),
         "paper-wave",
         ("loss-on-elements",),
         lambda: modal_sum(0.2137, DRIVES, 0.01),
     ),
     Shared(
-        "harmonic_solvers",
+        "models.driven_pencil",
         "damping ratios a tenth too large",
         tuple(f"{m}.damped_response" for m in MODELS),
         lambda true: (
@@ -259,7 +259,7 @@ SHARED = [
         lambda: modal_sum(0.2137, DRIVES, 0.004, 0.013),
     ),
     Shared(
-        "harmonic_solvers",
+        "models.driven_pencil",
         "shares of the modes without their losses",
         tuple(f"{m}.modal_receptance" for m in MODELS),
         lambda true: lambda pencil, weights, omega2, eta: true(pencil, weights, omega2, 0.0),
@@ -268,25 +268,25 @@ SHARED = [
         lambda: modal_sum(0.2137, ((0.0731, 0.0),), 0.01),
     ),
     Shared(
-        "modes",
+        "models.modes",
         "shapes read a hundredth nearer to the left end",
-        ("modes.Modes._on_beam",),
+        ("models.modes.Modes._on_beam",),
         lambda true: lambda modes, x: 0.99 * true(modes, x),
         "free-free-bar",
         ("node-by-segments",),
         free_node,
     ),
     Shared(
-        "fields",
+        "models.fields",
         "fields read a thousandth nearer to the left end",
-        ("fields.HarmonicField._on_beam",),
+        ("models.fields.HarmonicField._on_beam",),
         lambda true: lambda field, x: 0.999 * true(field, x),
         "paper-wave",
         ("loss-on-elements",),
         lambda: modal_sum(0.2137, DRIVES, 0.01),
     ),
     Shared(
-        "fields",
+        "models.fields",
         "forces that lag instead of lead",
         ("analytic_harmonic.phasor", "fem_beam.phasor", "segment_model.phasor"),
         after(np.conj),
@@ -295,9 +295,9 @@ SHARED = [
         lambda: modal_sum(0.2137, DRIVES, 0.01),
     ),
     Shared(
-        "fields",
+        "models.fields",
         "a wavenumber a ten-thousandth too large",
-        ("analytic_harmonic.wavenumber", "fields.wavenumber"),
+        ("analytic_harmonic.wavenumber", "models.fields.wavenumber"),
         after(lambda k: 1.0001 * k),
         "paper-wave",
         ("swr-law",),
@@ -340,7 +340,7 @@ SHARED = [
         per_hertz,
     ),
     Shared(
-        "search",
+        "models.search",
         "a minimum found a hundred-thousandth beside itself",
         ("waves.least_over",),
         after(lambda found: replace(found, x=found.x * (1 + 1e-5))),
@@ -394,7 +394,7 @@ SHARED = [
         lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ),
     ),
     Shared(
-        "time_basis",
+        "models.time_basis",
         "polynomials of the surface three per cent too large",
         ("moving_surface.taylor_table",),
         after(lambda table: 1.03 * table),
@@ -507,7 +507,7 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
             )
         alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
         assert all(call in alone for call in calls_of(tree, "check_work")), path.stem
-    assert "eigen" in takers
+    assert "models.eigen" in takers
 
 
 def test_every_module_that_two_models_stand_on_is_in_the_table():
@@ -515,5 +515,12 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
     faces = (("analytic_modes", "analytic_motion"), ("fem_beam", "fem_motion"), ("segment_model", "segment_motion"))
     behind = [set().union(*(imported(face, set()) for face in pair)) for pair in faces]
     shared = (behind[0] & behind[1]) | (behind[0] & behind[2]) | (behind[1] & behind[2])
-    assert shared >= {"modes", "fields", "division", "eigen", "harmonic_solvers", "time_basis"}
+    assert shared >= {
+        "models.modes",
+        "models.fields",
+        "models.division",
+        "models.eigen",
+        "models.driven_pencil",
+        "models.time_basis",
+    }
     assert shared - {"errors", "patience"} <= {row.module for row in SHARED}

@@ -9,8 +9,8 @@ from msgspec.structs import replace
 from verify import analytic_modes, fem_beam, segment_model
 from verify import chain as chain_of_links
 from verify.beam import SUPPORTS, Beam, Section
-from verify.division import part_counts
 from verify.errors import InputError
+from verify.models.division import part_counts
 from verify.quantities import QUANTITIES
 
 SOLVERS = {"segment": segment_model.solve_modes, "fem": fem_beam.solve_modes}
@@ -80,7 +80,7 @@ def test_elastic_eigenvalues_of_both_models_add_up_to_the_trace(ends, count):
         strain = pencil.strain(np.eye(pencil.n))
         stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
         trace = np.trace(np.linalg.solve(pencil.mass_matrix(), stiffness))
-        from verify.eigen import lowest
+        from verify.models.eigen import lowest
 
         assert lowest(pencil, pencil.n - pencil.rigid_modes).values.sum() == pytest.approx(trace, rel=1e-11)
         if pencil.rigid_modes:

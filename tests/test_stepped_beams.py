@@ -8,8 +8,8 @@ from scipy.linalg import eigh
 
 from verify import analytic_modes, chain, closed_forms, fem_beam, segment_model
 from verify.beam import Beam, Section
-from verify.division import divide, part_counts
 from verify.errors import InputError
+from verify.models.division import divide, part_counts
 from verify.scene import load_scene
 
 STEPPED = Beam(

@@ -10,12 +10,12 @@ from verify import analytic_modes, fem_beam, fem_motion, segment_model, segment_
 from verify.analytic_motion import MOST
 from verify.beam import Beam, Section
 from verify.chain import build_chain
-from verify.division import divide
 from verify.errors import InputError
-from verify.fields import phasor
 from verify.forcing import SMOOTH_STEP
+from verify.models.division import divide
+from verify.models.fields import phasor
+from verify.models.time_basis import taylor_table
 from verify.moving_surface import Growth, Steps, basis_of, stages_from_rest, steady_stage
-from verify.time_basis import taylor_table
 
 HELD = [("pinned", "pinned"), ("clamped", "free"), ("clamped", "clamped"), ("guided", "pinned"), ("pinned", "clamped")]
 

@@ -7,21 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import (
-    analytic_modes,
-    closed_forms,
-    error_laws,
-    fem_beam,
-    intervals,
-    load_scene,
-    segment_model,
-    travelling_wave,
-)
+from verify import analytic_modes, closed_forms, error_laws, fem_beam, load_scene, segment_model, travelling_wave
 from verify.beam import PointForce
 from verify.design_map import Axis, design_map, parse_axis
 from verify.drives import driven_field
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
-from verify.fields import HarmonicField, wavenumber
+from verify.models import intervals
+from verify.models.fields import HarmonicField, wavenumber
 from verify.operating_point import best_points, operating_points
 from verify.quantities import arguments_of, evaluate, quantity
 from verify.travelling_wave import (
@@ -220,7 +212,7 @@ def test_the_fit_is_one_over_the_whole_window():
 
 def test_every_hill_is_looked_at():
     """Two tops that the grid takes in the wrong order."""
-    from verify.intervals import extremes
+    from verify.models.intervals import extremes
 
     def figure(x):
         return np.exp(-(((x - 0.31) / 0.02) ** 2)) + 1.003 * np.exp(-(((x - 0.755) / 0.02) ** 2)) - 0.1 * x

@@ -10,7 +10,7 @@ from verify.beam import Beam, PointForce
 from verify.closed_forms import check_uniform
 from verify.closed_forms import frequency_hz as mode_frequency_hz
 from verify.errors import InputError, ResonanceError
-from verify.fields import (
+from verify.models.fields import (
     RESONANCE,
     ComplexArray,
     HarmonicField,
@@ -19,7 +19,7 @@ from verify.fields import (
     refuse_resonance,
     wavenumber,
 )
-from verify.modes import Array
+from verify.models.modes import Array
 
 
 def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> HarmonicField:

@@ -13,7 +13,7 @@ from verify.analytic_harmonic import solve_harmonic, unit_responses
 from verify.beam import Beam, check_whole
 from verify.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.errors import InputError
-from verify.modes import Array, Modes
+from verify.models.modes import Array, Modes
 from verify.section_minors import end_minor
 
 __all__ = [

@@ -22,8 +22,8 @@ from verify.chain_motion import ChainMotion
 from verify.chain_studies import Progress, transient, unheard
 from verify.chain_system import axial_stiffness, build_system
 from verify.chain_work import MOST, check_kept, check_modes_of
-from verify.division import Array
 from verify.errors import InputError
+from verify.models.division import Array
 from verify.simulate import simulate
 from verify.validity import NONLINEAR, axial_inertia_size
 

@@ -11,6 +11,7 @@ from verify.contact import Coupling, coupling_of, law_entries
 from verify.errors import InputError
 from verify.excited import gripped_step, longest_step, missed, speeds, stepped
 from verify.margins import margins_of
+from verify.models.time_basis import Array, TimeBasis
 from verify.motion import EndState, Ledger, Motion, Statistics
 from verify.moving_mass import carried_along, receptance, weighed_down
 from verify.moving_surface import Stage
@@ -18,7 +19,6 @@ from verify.patience import check_work
 from verify.request import MOST_STEPS, Request
 from verify.slider import Slider
 from verify.slider_run import Sliding, run_stages, slider_seconds
-from verify.time_basis import Array, TimeBasis
 
 
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:

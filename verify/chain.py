@@ -12,8 +12,8 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.chain_walls import Wall, wall_factors, welded_halves
-from verify.division import Parts, divide
-from verify.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
+from verify.models.division import Parts, divide
+from verify.models.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
 
 Joints = Literal["series", "printed"]
 JOINTS: tuple[str, ...] = get_args(Joints)

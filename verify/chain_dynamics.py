@@ -16,8 +16,8 @@ from verify import chain_kernels as kernels
 from verify.chain_linear import Linearisation, choose_pivots
 from verify.chain_statics import forces_at, gyroscopic, mass_matrix
 from verify.chain_system import ChainState, ChainSystem, circular, held_points
-from verify.division import Array
 from verify.errors import InputError
+from verify.models.division import Array
 
 Indices = NDArray[np.int64]
 PIVOT_LOSS = 0.1

@@ -16,8 +16,8 @@ from verify import elastic_kernels as kernels
 from verify.beam import check_number
 from verify.chain_system import ChainSystem, circular, link_at
 from verify.chain_work import PER_STRETCHING_STEP, fixed_steps, refuse_work
-from verify.division import Array
 from verify.errors import InputError
+from verify.models.division import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from verify.division import Array
 from verify.errors import InputError
+from verify.models.division import Array
 
 Indices = NDArray[np.int64]
 STRAYED = 1e-6

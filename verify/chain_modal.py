@@ -24,8 +24,8 @@ from verify.chain_modes import lowest_modes
 from verify.chain_motion import ChainMotion, Statistics, checked_times, how_started
 from verify.chain_system import ChainState, ChainSystem, circular, link_at
 from verify.chain_work import modal_work, refuse_work
-from verify.division import Array
 from verify.errors import InputError
+from verify.models.division import Array
 
 SCHEMES: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {
     1: ((0.5, 0.5), (1.0,)),

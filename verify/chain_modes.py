@@ -4,9 +4,9 @@ import numpy as np
 
 from verify.chain import Chain, chain_pencil, with_ends
 from verify.chain_system import ChainSystem
-from verify.division import Array
-from verify.eigen import lowest
 from verify.errors import InputError
+from verify.models.division import Array
+from verify.models.eigen import lowest
 
 
 def lowest_modes(system: ChainSystem, n_modes: int) -> tuple[Array, Array, Array, float]:

@@ -21,8 +21,8 @@ from verify.chain_dynamics import (
 from verify.chain_linear import choose_pivots
 from verify.chain_system import ChainState, ChainSystem, link_at
 from verify.chain_work import fixed_steps, per_evaluation, refuse_work
-from verify.division import Array
 from verify.errors import InputError, near_name
+from verify.models.division import Array
 
 Method = Literal["rk4", "adaptive"]
 METHODS: tuple[str, ...] = get_args(Method)

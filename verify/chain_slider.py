@@ -14,8 +14,8 @@ from verify.beam import Beam, check_number
 from verify.chain_elastic import ElasticMotion
 from verify.chain_motion import ChainMotion
 from verify.contact import law_entries
-from verify.division import Array
 from verify.errors import InputError
+from verify.models.division import Array
 from verify.slider import Slider
 from verify.slider_run import contact_space, fresh_motion
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from verify.chain_system import ChainState, ChainSystem, held_points
-from verify.division import Array
 from verify.errors import InputError
+from verify.models.division import Array
 
 TOLERANCE = 1e-9
 """Residual moment, relative to the largest moment in the chain."""

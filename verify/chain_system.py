@@ -14,8 +14,8 @@ import numpy as np
 from verify.beam import Beam, PointForce, check_number
 from verify.chain import Chain, Joints, build_chain
 from verify.chain_walls import Wall
-from verify.division import Array, divide
 from verify.errors import InputError
+from verify.models.division import Array, divide
 from verify.point_loads import Load, joint_weights
 
 Tip = Literal["free", "roller"]

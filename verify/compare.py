@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
-from verify.modes import Array, Modes
+from verify.models.modes import Array, Modes
 
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14

@@ -6,11 +6,11 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.models.time_basis import Array
 from verify.slider import NormalChoice, Slider
-from verify.time_basis import Array
 
 if TYPE_CHECKING:
-    from verify.fields import HarmonicField
+    from verify.models.fields import HarmonicField
 
 FELT = 1e-3
 """From this relative change of the surface's motion on, a slider is coupled back to the beam."""

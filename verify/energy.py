@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from verify.models.time_basis import Array, ComplexArray, TimeBasis
 from verify.motion import Ledger
 from verify.moving_surface import Stage, free_at
-from verify.time_basis import Array, ComplexArray, TimeBasis
 
 GAUSS = 6
 BLOCK = 2000

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
-from verify.division import Parts, check_division, divide
-from verify.eigen import (
+from verify.models.division import Parts, check_division, divide
+from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
+from verify.models.eigen import (
     DENSE_UNKNOWNS,
     Array,
     ComplexArray,
@@ -22,9 +23,8 @@ from verify.eigen import (
     lowest,
     method_name,
 )
-from verify.fields import HarmonicField, check_drive, phasor
-from verify.harmonic_solvers import damped_response, modal_receptance, refuse_near_resonance
-from verify.modes import Modes
+from verify.models.fields import HarmonicField, check_drive, phasor
+from verify.models.modes import Modes
 
 FIELD = "n_elements"
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam
-from verify.division import divide
-from verify.eigen import modal_basis
 from verify.fem_beam import assemble, check, element_pencil, free_unknowns, hermite, nodal_weights
-from verify.harmonic_solvers import check_dense
-from verify.time_basis import Array, TimeBasis, check_held
+from verify.models.division import divide
+from verify.models.driven_pencil import check_dense
+from verify.models.eigen import modal_basis
+from verify.models.time_basis import Array, TimeBasis, check_held
 
 Nodal = Callable[[Any], tuple[Array, Array]]
 """Node numbers -> deflection and slope (per element length) of all modes there, each (n, len(numbers))."""

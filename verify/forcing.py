@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.beam import PointForce
-from verify.fields import RESONANCE, ComplexArray, phasor, refuse_resonance
-from verify.time_basis import Array, TimeBasis
+from verify.models.fields import RESONANCE, ComplexArray, phasor, refuse_resonance
+from verify.models.time_basis import Array, TimeBasis
 
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])

@@ -4,8 +4,8 @@ import msgspec
 
 from verify.contact import Coupling, Margins
 from verify.errors import InputError
+from verify.models.time_basis import Array
 from verify.slider import Slider
-from verify.time_basis import Array
 
 
 class Statistics(msgspec.Struct, frozen=True, kw_only=True):

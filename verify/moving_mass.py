@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.errors import InputError
-from verify.fields import RESONANCE
-from verify.time_basis import Array, ComplexArray, TimeBasis
+from verify.models.fields import RESONANCE
+from verify.models.time_basis import Array, ComplexArray, TimeBasis
 
 if TYPE_CHECKING:
     from verify.moving_surface import Stage

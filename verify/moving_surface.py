@@ -10,10 +10,10 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
-from verify.time_basis import Array, ComplexArray, TimeBasis, taylor_table
+from verify.models.time_basis import Array, ComplexArray, TimeBasis, taylor_table
 
 if TYPE_CHECKING:
-    from verify.fields import HarmonicField
+    from verify.models.fields import HarmonicField
 
 Shapes = Callable[[Array, int], Array]
 ANALYTIC_DEGREE = 8
@@ -275,7 +275,7 @@ def steady_edges(field: "HarmonicField") -> tuple[Array, int]:
     if field.count is None:
         cells = int(np.ceil(length * abs(field.wavenumber) / 0.3)) + 1
         return np.union1d(np.linspace(0.0, length, cells + 1), [f.position for f in field.forces]), ANALYTIC_DEGREE
-    from verify.division import divide
+    from verify.models.division import divide
 
     parts: Any = divide(field.beam, field.count)
     return np.asarray(parts.nodes * parts.unit), 3

@@ -9,7 +9,7 @@ from verify.workbench import Key, Need, Settings, merged, model_module
 
 if TYPE_CHECKING:
     from verify.beam import Beam
-    from verify.fields import HarmonicField
+    from verify.models.fields import HarmonicField
     from verify.scene import AxialInertia, Scene, Wave
     from verify.slider import Slider
 

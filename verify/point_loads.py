@@ -10,7 +10,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from verify.chain import Chain
-from verify.eigen import Array
+from verify.models.eigen import Array
 
 Load = Literal["reciprocal", "lever"]
 LOADS: tuple[str, ...] = get_args(Load)

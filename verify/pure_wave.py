@@ -9,10 +9,10 @@ from verify.closed_forms import check_uniform
 from verify.contact import law_entries
 from verify.errors import InputError
 from verify.forcing import CONSTANT
+from verify.models.time_basis import Array
 from verify.moving_surface import ANALYTIC_DEGREE, NO_MODES, Stage
 from verify.slider import Slider
 from verify.slider_run import Sliding, run_stages
-from verify.time_basis import Array
 
 STEPS = 1024
 """Of one period."""

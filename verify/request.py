@@ -7,12 +7,12 @@ import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.errors import InputError
-from verify.fields import check_drive
 from verify.forcing import CONSTANT, SMOOTH_STEP
+from verify.models.fields import check_drive
+from verify.models.time_basis import Array
 from verify.motion import EndState, Motion
 from verify.moving_surface import Growth, check_line, cut
 from verify.slider import Slider
-from verify.time_basis import Array
 
 STEPS_PER_PERIOD = 64
 """At least: more where the start excites faster modes (`excited`)."""

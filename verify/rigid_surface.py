@@ -8,8 +8,8 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.errors import InputError
+from verify.models.time_basis import Array
 from verify.slider import GRAVITY
-from verify.time_basis import Array
 
 STEPS = 4096
 STEPS_PER_PERIOD = 4000

@@ -19,12 +19,12 @@ from verify.chain import (
     with_ends,
 )
 from verify.chain_walls import WALLS, Wall
-from verify.division import check_division
-from verify.eigen import Array, ComplexArray, Eigenpairs, check_size, lowest, method_name
 from verify.errors import InputError, near_name
-from verify.fields import HarmonicField, check_drive, phasor
-from verify.harmonic_solvers import damped_response, modal_receptance, refuse_near_resonance
-from verify.modes import Modes
+from verify.models.division import check_division
+from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
+from verify.models.eigen import Array, ComplexArray, Eigenpairs, check_size, lowest, method_name
+from verify.models.fields import HarmonicField, check_drive, phasor
+from verify.models.modes import Modes
 from verify.point_loads import LOADS, Load, joint_weights
 
 FIELD = "n_segments"

@@ -10,12 +10,12 @@ import numpy as np
 from verify.beam import Beam
 from verify.chain import Chain, build_chain, chain_pencil, corrected_reading, with_ends
 from verify.chain_walls import Wall
-from verify.eigen import modal_basis
 from verify.errors import InputError, near_name
-from verify.harmonic_solvers import check_dense
+from verify.models.driven_pencil import check_dense
+from verify.models.eigen import modal_basis
+from verify.models.time_basis import Array, TimeBasis, check_held
 from verify.point_loads import Load, joint_weights
 from verify.segment_model import check
-from verify.time_basis import Array, TimeBasis, check_held
 
 Line = Literal["spline", "raw"]
 LINES: tuple[str, ...] = get_args(Line)

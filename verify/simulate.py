@@ -11,11 +11,11 @@ from verify.carried import begin, coupling_on, slide, steady_field, times_of
 from verify.contact import Coupling
 from verify.forcing import check_no_resonance
 from verify.margins import margins_of
+from verify.models.time_basis import Array, TimeBasis
 from verify.motion import EndState, Ledger, Motion, Statistics
 from verify.moving_surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
 from verify.request import STEPS_PER_PERIOD, Envelope, Request, requested
 from verify.slider import Slider
-from verify.time_basis import Array, TimeBasis
 
 CLOSED_FORM_ROWS = 2000
 

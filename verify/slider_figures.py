@@ -7,10 +7,10 @@ import msgspec
 
 if TYPE_CHECKING:
     from verify.chain_slider import ChainRide
+    from verify.models.time_basis import Array
     from verify.motion import Motion
     from verify.scene import Scene
     from verify.slider import Slider
-    from verify.time_basis import Array
 
 MODELS = {"segment": "segments", "fem": "elements"}
 COUNTED = MODELS | {"chain": "rigid links, nonlinear"}

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.beam import PointForce
-from verify.fields import phasor
 from verify.forcing import turns
+from verify.models.fields import phasor
+from verify.models.time_basis import Array
 from verify.moving_surface import Stage
-from verify.time_basis import Array
 
 CHUNK = 20_000
 """Steps between two looks at the keyboard."""

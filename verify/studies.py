@@ -126,7 +126,7 @@ def check_size(beam: "Beam", model: str, count: int, n_modes: int) -> None:
 
 def _check_together(beam: "Beam", counts: tuple[int, ...], n_modes: int) -> None:
     """Raise InputError where all solves, each done and then timed, would take too long."""
-    from verify.eigen import solve_seconds
+    from verify.models.eigen import solve_seconds
 
     sizes = [(model_module(model), count) for count in counts for model in MODELS]
     seconds = sum(

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from verify.beam import Beam, check_number
 from verify.closed_forms import check_uniform
 from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
-from verify.fields import Array, ComplexArray, HarmonicField, phasor, unit_response, wavenumber
-from verify.intervals import Rule, extremes, mean_over, rule_over, whole_halves
-from verify.search import least_over
+from verify.models.fields import Array, ComplexArray, HarmonicField, phasor, unit_response, wavenumber
+from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
+from verify.models.search import least_over
 
 STANDING = 1e-12
 """A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""

@@ -10,7 +10,7 @@ from verify.beam import Beam, check_number
 from verify.drives import held_units
 from verify.error_laws import discrete_wavenumber
 from verify.errors import InputError, NoFigureError, ResonanceError
-from verify.fields import Array, ComplexArray, unit_response, wavenumber
+from verify.models.fields import Array, ComplexArray, unit_response, wavenumber
 from verify.travelling_wave import (
     STANDING,
     STILL,

@@ -7,7 +7,7 @@ from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, Power,
 from verify.workbench import Workbench
 
 if TYPE_CHECKING:
-    from verify.fields import HarmonicField
+    from verify.models.fields import HarmonicField
     from verify.scene import Scene
     from verify.travelling_wave import WaveMeasures
 

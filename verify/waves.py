@@ -9,12 +9,12 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce, check_frequency
 from verify.compare import observed_order, relative_error
 from verify.drives import driven_field
-from verify.eigen import solve_seconds
 from verify.error_laws import check_carried, discrete_wavenumber
 from verify.errors import InputError, ResonanceError
-from verify.fields import Array, HarmonicField, phasor
+from verify.models.eigen import solve_seconds
+from verify.models.fields import Array, HarmonicField, phasor
+from verify.models.search import Least, least_over
 from verify.patience import check_work
-from verify.search import Least, least_over
 from verify.travelling_wave import WaveMeasures, measure, middle_half, two_waves
 from verify.wave_arguments import InWindow
 from verify.workbench import model_module

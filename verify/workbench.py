@@ -12,8 +12,8 @@ from verify.errors import InputError, NoBracketError
 
 if TYPE_CHECKING:
     from verify.compare import Bracket
-    from verify.fields import HarmonicField
-    from verify.modes import Array, Modes
+    from verify.models.fields import HarmonicField
+    from verify.models.modes import Array, Modes
     from verify.motion import Motion
 
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]

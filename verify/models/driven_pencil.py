@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam
-from verify.eigen import (
+from verify.errors import InputError
+from verify.models.eigen import (
     DENSE_UNKNOWNS,
     Array,
     ComplexArray,
@@ -15,9 +16,8 @@ from verify.eigen import (
     modal_basis,
     resonance_distance,
 )
-from verify.errors import InputError
-from verify.fields import RESONANCE, refuse_resonance
-from verify.modes import Modes
+from verify.models.fields import RESONANCE, refuse_resonance
+from verify.models.modes import Modes
 
 
 def damped_response(
