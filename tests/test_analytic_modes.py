@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes, closed_forms
 from verify.beam import SUPPORTS
 from verify.errors import InputError
+from verify.exact import closed_forms
+from verify.exact import modes as analytic_modes
 
 PAIRS = list(product(SUPPORTS, SUPPORTS))
 

@@ -7,10 +7,10 @@ import pytest
 from msgspec.structs import replace
 
 from verify import axial_study, load_scene, run_scene
-from verify.analytic_modes import solve_harmonic
 from verify.axial_study import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
 from verify.cli import status_of
 from verify.errors import InputError
+from verify.exact.modes import solve_harmonic
 from verify.plain import run_as_plain
 from verify.plan import plan_scene
 from verify.quantities import arguments_of, evaluate, quantity
@@ -87,7 +87,7 @@ def test_side_by_side_the_exact_field_is_the_beams_and_finer_chains_come_nearer(
 
 def test_the_exact_field_is_a_sum_of_the_beams_modes(study):
     """Written out again: undamped modes of unit modal mass from rest."""
-    from verify import analytic_modes
+    from verify.exact import modes as analytic_modes
 
     scene = small()
     modes = analytic_modes.solve_modes(scene.beam, 300)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes
 from verify.beam import PointForce
 from verify.contact import FELT, coupling_of, surface_speed
+from verify.exact import modes as analytic_modes
 from verify.models.fields import HarmonicField
 from verify.simulate import simulate
 from verify.slider import Slider

@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes, closed_forms, error_laws, fem_beam, segment_model
 from verify import chain as chain_of_links
+from verify import fem_beam, segment_model
 from verify.beam import PointForce
 from verify.errors import InputError
+from verify.exact import closed_forms, error_laws
+from verify.exact import modes as analytic_modes
 from verify.models import eigen
 
 MODELS = {"segment": segment_model, "fem": fem_beam}

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import error_laws, fem_beam, segment_model
+from verify import fem_beam, segment_model
 from verify.errors import InputError
+from verify.exact import error_laws
 from verify.extended_precision import chain_bands, count_below, eigenvalue_error, hermite_bands
 
 MODELS = {"segment": segment_model, "fem": fem_beam}

@@ -8,8 +8,6 @@ import pytest
 from msgspec import structs
 
 from verify import (
-    analytic_harmonic,
-    analytic_modes,
     axial_study,
     carried,
     chain,
@@ -20,7 +18,6 @@ from verify import (
     chain_studies,
     chain_system,
     chain_walls,
-    closed_forms,
     compare,
     contact,
     contact_kernels,
@@ -32,7 +29,6 @@ from verify import (
     pure_wave,
     request,
     rigid_surface,
-    section_minors,
     segment_model,
     segment_motion,
     simulate,
@@ -46,6 +42,9 @@ from verify.beam import Beam
 from verify.checked import checked
 from verify.compare import Bracket
 from verify.errors import InputError
+from verify.exact import closed_forms, section_minors
+from verify.exact import harmonic as analytic_harmonic
+from verify.exact import modes as analytic_modes
 from verify.gates import expectation, judge
 from verify.models import division, eigen
 from verify.models import driven_pencil as harmonic_solvers

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes, closed_forms, fem_beam, segment_model
-from verify.analytic_harmonic import pinned_shapes, slow_shapes, spliced_shapes
+from verify import fem_beam, segment_model
 from verify.beam import SUPPORTS, PointForce
 from verify.chain import build_chain
 from verify.drives import driven_field, held_units
 from verify.errors import InputError, ResonanceError
+from verify.exact import closed_forms
+from verify.exact import modes as analytic_modes
+from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
 from verify.models.fields import wavenumber
 from verify.point_loads import four_weights, joint_weights
 

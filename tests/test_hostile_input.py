@@ -11,12 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import analytic_modes, fem_beam, gates, patience, rigid_surface, segment_model
+from verify import fem_beam, gates, patience, rigid_surface, segment_model
 from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.checked import checked
 from verify.cli import status_of
 from verify.compare import observed_order, relative_error
 from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
+from verify.exact import modes as analytic_modes
 from verify.models import eigen
 from verify.quantities import QUANTITIES, in_words
 from verify.scene import Gate, literal, load_scene

@@ -194,9 +194,9 @@ SHARED = [
         lambda: pinned_omega(22) / (2 * np.pi),
     ),
     Shared(
-        "closed_forms",
+        "exact.closed_forms",
         "roots of one half wave too many",
-        ("closed_forms.root_parts",),
+        ("exact.closed_forms.root_parts",),
         second_argument(lambda mode: mode + 1),
         "paper",
         ("segment-mode-22",),
@@ -288,7 +288,7 @@ SHARED = [
     Shared(
         "models.fields",
         "forces that lag instead of lead",
-        ("analytic_harmonic.phasor", "fem_beam.phasor", "segment_model.phasor"),
+        ("exact.harmonic.phasor", "fem_beam.phasor", "segment_model.phasor"),
         after(np.conj),
         "paper-wave",
         ("loss-on-elements",),
@@ -297,14 +297,14 @@ SHARED = [
     Shared(
         "models.fields",
         "a wavenumber a ten-thousandth too large",
-        ("analytic_harmonic.wavenumber", "models.fields.wavenumber"),
+        ("exact.harmonic.wavenumber", "models.fields.wavenumber"),
         after(lambda k: 1.0001 * k),
         "paper-wave",
         ("swr-law",),
         lambda: swr(gamma(K * L)),
     ),
     Shared(
-        "error_laws",
+        "exact.error_laws",
         "waves of the links a thousandth too short",
         ("waves.discrete_wavenumber",),
         after(lambda k: 1.001 * k),
@@ -512,7 +512,7 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
 
 def test_every_module_that_two_models_stand_on_is_in_the_table():
     """`errors` carries sentences and `patience` refusals: no figures, as the test above holds."""
-    faces = (("analytic_modes", "analytic_motion"), ("fem_beam", "fem_motion"), ("segment_model", "segment_motion"))
+    faces = (("exact.modes", "exact.in_time"), ("fem_beam", "fem_motion"), ("segment_model", "segment_motion"))
     behind = [set().union(*(imported(face, set()) for face in pair)) for pair in faces]
     shared = (behind[0] & behind[1]) | (behind[0] & behind[2]) | (behind[1] & behind[2])
     assert shared >= {

@@ -6,10 +6,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import analytic_modes, fem_beam, segment_model
 from verify import chain as chain_of_links
+from verify import fem_beam, segment_model
 from verify.beam import SUPPORTS, Beam, Section
 from verify.errors import InputError
+from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts
 from verify.quantities import QUANTITIES
 

@@ -31,7 +31,7 @@ why = "two-sided"
 @pytest.fixture
 def scene(pytester):
     from verify import Beam
-    from verify.closed_forms import frequency_hz
+    from verify.exact.closed_forms import frequency_hz
 
     beam = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
     text = SCENE.replace("EXACT", repr(frequency_hz(beam, 3)))

@@ -3,9 +3,10 @@
 import pytest
 from msgspec.structs import replace
 
-from verify import error_laws, sizing
+from verify import sizing
 from verify.beam import Section
 from verify.errors import InputError
+from verify.exact import error_laws
 from verify.scene import load_scene
 from verify.workbench import Workbench, model_module
 

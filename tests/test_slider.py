@@ -5,9 +5,9 @@ import pytest
 from motion_reference import FORCES, FREQUENCY, STRIP, coupled_motion
 from msgspec.structs import replace
 
-from verify.analytic_modes import solve_harmonic
 from verify.beam import Beam, PointForce
 from verify.contact_kernels import SLIPS, STICKS
+from verify.exact.modes import solve_harmonic
 from verify.moving_surface import basis_of
 from verify.pure_wave import terminal_speed
 from verify.simulate import simulate

@@ -6,9 +6,11 @@ import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
 
-from verify import analytic_modes, chain, closed_forms, fem_beam, segment_model
+from verify import chain, fem_beam, segment_model
 from verify.beam import Beam, Section
 from verify.errors import InputError
+from verify.exact import closed_forms
+from verify.exact import modes as analytic_modes
 from verify.models.division import divide, part_counts
 from verify.scene import load_scene
 

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import analytic_modes, closed_forms, compare, error_laws, fem_beam, segment_model
+from verify import compare, fem_beam, segment_model
 from verify.beam import SUPPORTS
 from verify.chain_walls import WALLS, wall_factors
 from verify.errors import InputError, NoBracketError
+from verify.exact import closed_forms, error_laws
+from verify.exact import modes as analytic_modes
 from verify.workbench import Workbench
 
 PAIRS = list(product(SUPPORTS, SUPPORTS))

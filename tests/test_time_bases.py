@@ -6,11 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP
 
-from verify import analytic_modes, fem_beam, fem_motion, segment_model, segment_motion
-from verify.analytic_motion import MOST
+from verify import fem_beam, fem_motion, segment_model, segment_motion
 from verify.beam import Beam, Section
 from verify.chain import build_chain
 from verify.errors import InputError
+from verify.exact import modes as analytic_modes
+from verify.exact.in_time import MOST
 from verify.forcing import SMOOTH_STEP
 from verify.models.division import divide
 from verify.models.fields import phasor

@@ -7,7 +7,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import SUPPORTS, Section
-from verify.closed_forms import frequency_hz
+from verify.exact.closed_forms import frequency_hz
 from verify.validity import axial_inertia_size, discretisation, model_form, nearest_mode
 
 

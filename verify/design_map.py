@@ -14,8 +14,8 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.error_laws import PARTS
 from verify.errors import InputError, NoFigureError, near_name
+from verify.exact.error_laws import PARTS
 from verify.models.fields import Array
 from verify.travelling_wave import middle_half
 from verify.unit_waves import FAST, Gaps, UnitDrive, superposed

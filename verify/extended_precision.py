@@ -9,8 +9,8 @@ from math import inf
 from typing import TypeAlias
 
 from verify.beam import Beam
-from verify.closed_forms import check_uniform
 from verify.errors import InputError
+from verify.exact.closed_forms import check_uniform
 
 Bands: TypeAlias = list[list[Decimal]]
 """Row j holds the entries (j, j), (j, j + 1), ... up to the half bandwidth."""

@@ -43,7 +43,7 @@ def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
     if a.model == "analytic" or a.count is None:
         if a.theory == "euler-bernoulli":
             return bench.exact_hz(a.mode)
-        from verify.closed_forms import frequency_hz
+        from verify.exact.closed_forms import frequency_hz
 
         return frequency_hz(scene.beam, a.mode, a.theory)
     return bench.frequency_hz(a.model, a.count, a.mode, a.settings)
@@ -51,7 +51,7 @@ def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
 
 def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
     if a.model == "analytic" or a.count is None:
-        from verify.closed_forms import frequency_hz
+        from verify.exact.closed_forms import frequency_hz
 
         exact = frequency_hz(scene.beam, a.mode)
         return (frequency_hz(scene.beam, a.mode, a.theory) - exact) / exact
@@ -59,7 +59,7 @@ def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
 
 
 def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
-    from verify.error_laws import dispersion_frequency_hz
+    from verify.exact.error_laws import dispersion_frequency_hz
 
     solved = bench.modes(a.model, a.count, a.modes).frequencies_hz
     closed = [dispersion_frequency_hz(a.model, scene.beam, n, a.count) for n in range(1, a.modes + 1)]
@@ -67,8 +67,8 @@ def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
 
 
 def _law_ratio(a: DiscreteAtSize, scene: "Scene", bench: Workbench) -> float:
-    from verify.closed_forms import check_uniform
-    from verify.error_laws import leading_error
+    from verify.exact.closed_forms import check_uniform
+    from verify.exact.error_laws import leading_error
 
     check_uniform(scene.beam)
     law = leading_error(a.model, scene.beam.supports, a.mode, a.count)
@@ -109,13 +109,13 @@ def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:
 
 
 def _rule_frequency(a: NeighbourModes, scene: "Scene", bench: Workbench) -> float:
-    from verify.closed_forms import rule_frequency_hz
+    from verify.exact.closed_forms import rule_frequency_hz
 
     return rule_frequency_hz(scene.beam, a.mode - 1, a.mode)
 
 
 def _quarter_wavelength(a: AtFrequency, scene: "Scene", bench: Workbench) -> float:
-    from verify.closed_forms import quarter_wavelength
+    from verify.exact.closed_forms import quarter_wavelength
 
     if a.frequency_hz is None and scene.drive is None:
         raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")

@@ -116,7 +116,7 @@ def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = 
     if model == "analytic":
         if count is not None:
             raise InputError(f"count = {count!r} is for fem and segment: the exact beam takes modes, how many it keeps")
-        from verify.analytic_motion import time_basis as exact
+        from verify.exact.in_time import time_basis as exact
 
         return exact(beam, modes)
     if count is None:

@@ -219,7 +219,7 @@ def _chosen(scene: "Scene") -> tuple[Skipped, ...]:
     slider = scene.slider if _slides(scene) else None
     if not (slider or scene.axial_inertia) or not scene.forces or scene.beam.stepped:
         return ()
-    from verify.analytic_modes import solve_harmonic
+    from verify.exact.modes import solve_harmonic
 
     assert scene.drive is not None
     try:
@@ -245,9 +245,9 @@ def _slides(scene: "Scene") -> bool:
 
 def _coupling(slider: "Slider", field: "HarmonicField") -> tuple[Skipped, ...]:
     """One-way or two-way, and that a slider without normal inertia is a simplification."""
-    from verify.analytic_modes import solve_harmonic
     from verify.beam import PointForce
     from verify.contact import FELT, coupling_of, surface_speed
+    from verify.exact.modes import solve_harmonic
 
     x = slider.start_on(field.beam)
     felt = solve_harmonic(field.beam, (PointForce(position=x),), field.frequency_hz).deflection([x])[0]
@@ -276,7 +276,7 @@ def _over_the_force(scene: "Scene", asked: "AxialInertia") -> Skipped:
     """Up to which force the linear chain will do: linear or nonlinear is decided by that number."""
     from msgspec.structs import replace
 
-    from verify.analytic_modes import solve_harmonic
+    from verify.exact.modes import solve_harmonic
     from verify.validity import NONLINEAR
 
     assert scene.drive is not None

@@ -5,9 +5,9 @@ from math import isfinite
 import numpy as np
 
 from verify.beam import Beam, check_number
-from verify.closed_forms import check_uniform
 from verify.contact import law_entries
 from verify.errors import InputError
+from verify.exact.closed_forms import check_uniform
 from verify.forcing import CONSTANT
 from verify.models.time_basis import Array
 from verify.moving_surface import ANALYTIC_DEGREE, NO_MODES, Stage

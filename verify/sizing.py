@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from verify.error_laws import expected_error, parts_from_here_on, sine_fits, smallest_count
 from verify.errors import InputError, PairingError
+from verify.exact.error_laws import expected_error, parts_from_here_on, sine_fits, smallest_count
 from verify.timing import interleaved_medians
 from verify.workbench import Settings, Workbench, model_module
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from verify.closed_forms import THEORIES, frequency_hz
 from verify.errors import InputError
+from verify.exact.closed_forms import THEORIES, frequency_hz
 from verify.patience import check_work
 from verify.timing import interleaved_medians
 from verify.workbench import Workbench, model_module

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
-from verify.closed_forms import check_uniform
 from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
+from verify.exact.closed_forms import check_uniform
 from verify.models.fields import Array, ComplexArray, HarmonicField, phasor, unit_response, wavenumber
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
 from verify.models.search import least_over

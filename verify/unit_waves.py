@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.drives import held_units
-from verify.error_laws import discrete_wavenumber
 from verify.errors import InputError, NoFigureError, ResonanceError
+from verify.exact.error_laws import discrete_wavenumber
 from verify.models.fields import Array, ComplexArray, unit_response, wavenumber
 from verify.travelling_wave import (
     STANDING,
@@ -124,7 +124,7 @@ def unit_fields(
     NaN at undamped resonances. Raises InputError.
     """
     if count is None:
-        from verify.analytic_modes import unit_responses
+        from verify.exact.modes import unit_responses
 
         return unit_responses(beam, places, frequencies, x)
     from verify.workbench import model_module

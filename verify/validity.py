@@ -3,8 +3,8 @@
 from math import pi
 
 from verify.beam import Beam
-from verify.closed_forms import frequency_hz
-from verify.error_laws import leading_error
+from verify.exact.closed_forms import frequency_hz
+from verify.exact.error_laws import leading_error
 
 NONLINEAR = 1e-3
 """From this (kL)^2 <theta^2> on, the linear chain is not the paper's chain."""

@@ -9,8 +9,8 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce, check_frequency
 from verify.compare import observed_order, relative_error
 from verify.drives import driven_field
-from verify.error_laws import check_carried, discrete_wavenumber
 from verify.errors import InputError, ResonanceError
+from verify.exact.error_laws import check_carried, discrete_wavenumber
 from verify.models.eigen import solve_seconds
 from verify.models.fields import Array, HarmonicField, phasor
 from verify.models.search import Least, least_over
@@ -70,7 +70,7 @@ def solve_by_model(
 ) -> HarmonicField:
     """One model's solve_harmonic by name. Raises InputError."""
     if model == "analytic":
-        from verify.analytic_modes import solve_harmonic
+        from verify.exact.modes import solve_harmonic
 
         return solve_harmonic(beam, forces, frequency_hz)
     field: HarmonicField = model_module(model).solve_harmonic(beam, forces, frequency_hz, count, **settings)

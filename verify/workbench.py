@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import msgspec
 
 from verify.beam import Beam
-from verify.error_laws import leading_error
 from verify.errors import InputError, NoBracketError
+from verify.exact.error_laws import leading_error
 
 if TYPE_CHECKING:
     from verify.compare import Bracket
@@ -134,9 +134,9 @@ class Workbench:
         """The exact Euler-Bernoulli frequency, Hz: closed form, for stepped beams by counting. Raises InputError."""
         if mode not in self._exact:
             if self.beam.stepped:
-                from verify.analytic_modes import stepped_frequency_hz as exact
+                from verify.exact.modes import stepped_frequency_hz as exact
             else:
-                from verify.closed_forms import frequency_hz as exact
+                from verify.exact.closed_forms import frequency_hz as exact
             self._exact[mode] = exact(self.beam, mode)
         return self._exact[mode]
 
@@ -162,7 +162,8 @@ class Workbench:
             return mode - 1
         key = ((model, count, for_model(model, settings)), mode)
         if key not in self._index:
-            from verify import analytic_modes, compare
+            from verify import compare
+            from verify.exact import modes as analytic_modes
 
             modes = self.modes(model, count, mode, settings)
             stride = max(len(modes.points) // (16 * modes.n_modes + 64), 1)
@@ -198,7 +199,8 @@ class Workbench:
         self, model: str, count: int, mode: int, reading: str | None = None, settings: Settings = ()
     ) -> float:
         """Relative L2 error of the mass-normalised deflection at the model's nodes. Raises InputError."""
-        from verify import analytic_modes, compare
+        from verify import compare
+        from verify.exact import modes as analytic_modes
 
         modes = self.modes(model, count, mode, settings)
         if reading is not None and reading not in modes.readings:
@@ -210,7 +212,8 @@ class Workbench:
 
     def curvature_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """Relative L2 error of the curvature where the model knows it best. Raises InputError."""
-        from verify import analytic_modes, compare
+        from verify import compare
+        from verify.exact import modes as analytic_modes
 
         modes = self.modes(model, count, mode, settings)
         exact = analytic_modes.mode_shape(self.beam, mode, modes.curvature_points, 2)
@@ -219,7 +222,8 @@ class Workbench:
 
     def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
         """Where a mode stands still between the ends, (n_nodes,), metres, ascending. Raises InputError."""
-        from verify import analytic_modes, compare
+        from verify import compare
+        from verify.exact import modes as analytic_modes
 
         if model == "analytic" or count is None:
             return compare.zeros(lambda x: analytic_modes.mode_shape(self.beam, mode, x), self.beam.length, mode)

@@ -8,7 +8,7 @@ from math import pi
 from typing import TYPE_CHECKING, Any
 
 from verify.compare import EIGENVALUE_FLOOR
-from verify.error_laws import MEAN_LIMIT
+from verify.exact.error_laws import MEAN_LIMIT
 
 if TYPE_CHECKING:
     from verify.run import RunResult

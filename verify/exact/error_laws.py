@@ -9,8 +9,8 @@ from cmath import sqrt as csqrt
 from math import cos, pi, sin, sqrt
 
 from verify.beam import Beam
-from verify.closed_forms import check_mode, check_uniform, wavenumber_length
 from verify.errors import CutOffError, InputError
+from verify.exact.closed_forms import check_mode, check_uniform, wavenumber_length
 
 MEAN_LIMIT = 2.187653657707005
 """mu at which the error of segments is -3 times that of Hermite elements, so that their mean has the elements' size."""

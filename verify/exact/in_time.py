@@ -5,10 +5,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from msgspec.structs import replace
 
-from verify.analytic_modes import mode_shapes, solve_harmonic, solve_modes
 from verify.beam import Beam, PointForce, check_whole
-from verify.closed_forms import check_uniform
 from verify.errors import InputError
+from verify.exact.closed_forms import check_uniform
+from verify.exact.modes import mode_shapes, solve_harmonic, solve_modes
 from verify.models.fields import phasor
 from verify.models.time_basis import Array, ComplexArray, TimeBasis, check_held
 

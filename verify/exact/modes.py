@@ -9,12 +9,12 @@ from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
 
-from verify.analytic_harmonic import solve_harmonic, unit_responses
 from verify.beam import Beam, check_whole
-from verify.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.errors import InputError
+from verify.exact.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
+from verify.exact.harmonic import solve_harmonic, unit_responses
+from verify.exact.section_minors import end_minor
 from verify.models.modes import Array, Modes
-from verify.section_minors import end_minor
 
 __all__ = [
     "exact_frequency_hz",

@@ -7,9 +7,9 @@ from math import factorial, pi, sqrt
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.closed_forms import check_uniform
-from verify.closed_forms import frequency_hz as mode_frequency_hz
 from verify.errors import InputError, ResonanceError
+from verify.exact.closed_forms import check_uniform
+from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
 from verify.models.fields import (
     RESONANCE,
     ComplexArray,
