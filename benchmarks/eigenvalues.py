@@ -12,8 +12,9 @@ from time import perf_counter
 
 from scipy.sparse.linalg import splu
 
-from verify import fem_beam, segment_model
+from verify import segment_model
 from verify.beam import Beam
+from verify.elements import hermite as fem_beam
 from verify.extended_precision import eigenvalue_error
 from verify.models import eigen
 from verify.models.division import divide

@@ -10,8 +10,9 @@ import pytest
 from msgspec.structs import replace
 
 from verify import chain as chain_of_links
-from verify import fem_beam, segment_model
+from verify import segment_model
 from verify.beam import PointForce
+from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes

@@ -21,8 +21,6 @@ from verify import (
     compare,
     contact,
     contact_kernels,
-    fem_beam,
-    fem_motion,
     forcing,
     motions,
     operating_point,
@@ -41,6 +39,8 @@ from verify import (
 from verify.beam import Beam
 from verify.checked import checked
 from verify.compare import Bracket
+from verify.elements import hermite as fem_beam
+from verify.elements import in_time as fem_motion
 from verify.errors import InputError
 from verify.exact import closed_forms, section_minors
 from verify.exact import harmonic as analytic_harmonic

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import fem_beam, segment_model
+from verify import segment_model
 from verify.beam import SUPPORTS, PointForce
 from verify.chain import build_chain
 from verify.drives import driven_field, held_units
+from verify.elements import hermite as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes

@@ -5,9 +5,10 @@ import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
 
-from verify import fem_beam, segment_model
+from verify import segment_model
 from verify.beam import Beam
 from verify.chain import build_chain, chain_pencil
+from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.models.division import divide
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, refuse_near_resonance

@@ -11,11 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import fem_beam, gates, patience, rigid_surface, segment_model
+from verify import gates, patience, rigid_surface, segment_model
 from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.checked import checked
 from verify.cli import status_of
 from verify.compare import observed_order, relative_error
+from verify.elements import hermite as fem_beam
 from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
 from verify.exact import modes as analytic_modes
 from verify.models import eigen

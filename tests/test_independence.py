@@ -182,7 +182,7 @@ def heavier(values_and_vectors):
     return 1.0002 * values, vectors
 
 
-MODELS = ("segment_model", "fem_beam")
+MODELS = ("segment_model", "elements.hermite")
 SHARED = [
     Shared(
         "beam",
@@ -205,7 +205,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the stiffness of its neighbour",
-        ("chain.divide", "fem_beam.divide"),
+        ("chain.divide", "elements.hermite.divide"),
         after(lambda parts: replace(parts, moduli=np.roll(parts.moduli, 1))),
         "patched-strip",
         ("elements-at-24",),
@@ -214,7 +214,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the mass of its neighbour",
-        ("chain.divide", "fem_beam.divide"),
+        ("chain.divide", "elements.hermite.divide"),
         after(lambda parts: replace(parts, masses_per_length=np.roll(parts.masses_per_length, 1))),
         "patched-strip",
         ("segments-at-24",),
@@ -288,7 +288,7 @@ SHARED = [
     Shared(
         "models.fields",
         "forces that lag instead of lead",
-        ("exact.harmonic.phasor", "fem_beam.phasor", "segment_model.phasor"),
+        ("exact.harmonic.phasor", "elements.hermite.phasor", "segment_model.phasor"),
         after(np.conj),
         "paper-wave",
         ("loss-on-elements",),
@@ -512,7 +512,11 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
 
 def test_every_module_that_two_models_stand_on_is_in_the_table():
     """`errors` carries sentences and `patience` refusals: no figures, as the test above holds."""
-    faces = (("exact.modes", "exact.in_time"), ("fem_beam", "fem_motion"), ("segment_model", "segment_motion"))
+    faces = (
+        ("exact.modes", "exact.in_time"),
+        ("elements.hermite", "elements.in_time"),
+        ("segment_model", "segment_motion"),
+    )
     behind = [set().union(*(imported(face, set()) for face in pair)) for pair in faces]
     shared = (behind[0] & behind[1]) | (behind[0] & behind[2]) | (behind[1] & behind[2])
     assert shared >= {

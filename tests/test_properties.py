@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from verify import chain as chain_of_links
-from verify import fem_beam, segment_model
+from verify import segment_model
 from verify.beam import SUPPORTS, Beam, Section
+from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts

@@ -6,8 +6,9 @@ import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
 
-from verify import chain, fem_beam, segment_model
+from verify import chain, segment_model
 from verify.beam import Beam, Section
+from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes

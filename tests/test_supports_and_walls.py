@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import compare, fem_beam, segment_model
+from verify import compare, segment_model
 from verify.beam import SUPPORTS
 from verify.chain_walls import WALLS, wall_factors
+from verify.elements import hermite as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes

@@ -6,9 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP
 
-from verify import fem_beam, fem_motion, segment_model, segment_motion
+from verify import segment_model, segment_motion
 from verify.beam import Beam, Section
 from verify.chain import build_chain
+from verify.elements import hermite as fem_beam
+from verify.elements import in_time as fem_motion
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.exact.in_time import MOST

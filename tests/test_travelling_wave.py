@@ -7,10 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import fem_beam, load_scene, segment_model, travelling_wave
+from verify import load_scene, segment_model, travelling_wave
 from verify.beam import PointForce
 from verify.design_map import Axis, design_map, parse_axis
 from verify.drives import driven_field
+from verify.elements import hermite as fem_beam
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes

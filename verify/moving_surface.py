@@ -122,7 +122,7 @@ def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = 
     if count is None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {model}")
     if model == "fem":
-        from verify.fem_motion import time_basis as elements
+        from verify.elements.in_time import time_basis as elements
 
         return elements(beam, count)
     from verify.segment_motion import time_basis as segments

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam
-from verify.fem_beam import assemble, check, element_pencil, free_unknowns, hermite, nodal_weights
+from verify.elements.hermite import assemble, check, element_pencil, free_unknowns, hermite, nodal_weights
 from verify.models.division import divide
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
