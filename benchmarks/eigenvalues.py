@@ -12,12 +12,12 @@ from time import perf_counter
 
 from scipy.sparse.linalg import splu
 
-from verify import segment_model
 from verify.beam import Beam
 from verify.elements import hermite as fem_beam
 from verify.extended_precision import eigenvalue_error
 from verify.models import eigen
 from verify.models.division import divide
+from verify.segments import linear as segment_model
 
 SUPPORTS = (("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "free"), ("free", "free"))
 MODELS = {"segment": segment_model, "fem": fem_beam}

@@ -7,7 +7,7 @@ from itertools import combinations_with_replacement
 from math import log2
 
 from verify.beam import SUPPORTS, Beam
-from verify.chain_walls import WALLS
+from verify.segments.walls import WALLS
 from verify.workbench import Workbench
 
 

@@ -10,9 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import jn_zeros
 
-from verify import segment_model
 from verify.beam import Beam, PointForce
-from verify.chain import build_chain, chain_pencil, mass_matrix
 from verify.chain_dynamics import (
     accelerations,
     at_rest,
@@ -29,6 +27,8 @@ from verify.chain_dynamics import (
 from verify.chain_statics import solve_static
 from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
+from verify.segments import linear as segment_model
+from verify.segments.links import build_chain, chain_pencil, mass_matrix
 
 
 def beam(left="pinned", right="pinned", **more):

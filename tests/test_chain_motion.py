@@ -9,13 +9,14 @@ from scipy.integrate import solve_ivp
 from test_chain_dynamics import beam, odd_chain, some_state
 
 from verify import chain_kernels as kernels
-from verify import chain_motion, segment_model
+from verify import chain_motion
 from verify.beam import PointForce
 from verify.chain_dynamics import at_rest, energies, linearise, positions, project
 from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, simulate_modal
 from verify.chain_motion import simulate, step_limit
 from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
+from verify.segments import linear as segment_model
 from verify.validity import axial_inertia_size
 
 

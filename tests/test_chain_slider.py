@@ -105,7 +105,7 @@ def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
 
 
 def test_the_contact_line_of_unequal_links_goes_through_the_corrected_joints(paper_beam):
-    from verify.chain import build_chain, corrected_reading
+    from verify.segments.links import build_chain, corrected_reading
 
     system = build_system(paper_beam, 12, forces(1.0), 4276.0, grading=2.7)
     chain = build_chain(paper_beam, 12, grading=2.7)

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import chain as chain_of_links
-from verify import segment_model
 from verify.beam import PointForce
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
 from verify.models import eigen
+from verify.segments import linear as segment_model
+from verify.segments import links as chain_of_links
 
 MODELS = {"segment": segment_model, "fem": fem_beam}
 

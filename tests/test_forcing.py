@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP, linear_motion
 
-from verify.chain import build_chain
 from verify.errors import InputError, ResonanceError
 from verify.forcing import SMOOTH_STEP, Modal, advanced, answer, free_part, state_of, turns
 from verify.moving_surface import basis_of, cut
-from verify.point_loads import joint_weights
+from verify.segments.links import build_chain
+from verify.segments.loads import joint_weights
 from verify.simulate import simulate
 
 frequencies = st.floats(30.0, 9e4)

@@ -10,14 +10,12 @@ from msgspec import structs
 from verify import (
     axial_study,
     carried,
-    chain,
     chain_dynamics,
     chain_kernels,
     chain_modal,
     chain_statics,
     chain_studies,
     chain_system,
-    chain_walls,
     compare,
     contact,
     contact_kernels,
@@ -27,8 +25,6 @@ from verify import (
     pure_wave,
     request,
     rigid_surface,
-    segment_model,
-    segment_motion,
     simulate,
     sizing,
     slider_figures,
@@ -52,6 +48,10 @@ from verify.plan import asks_of
 from verify.quantities import QUANTITIES, Quantity
 from verify.run import workbench_for
 from verify.scene import Complex, Gate, load_scene, packaged_scenes
+from verify.segments import in_time as segment_motion
+from verify.segments import linear as segment_model
+from verify.segments import links as chain
+from verify.segments import walls as chain_walls
 
 PAPER = load_scene("paper")
 

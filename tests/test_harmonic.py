@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import segment_model
 from verify.beam import SUPPORTS, PointForce
-from verify.chain import build_chain
 from verify.drives import driven_field, held_units
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError, ResonanceError
@@ -17,7 +15,9 @@ from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes
 from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
 from verify.models.fields import wavenumber
-from verify.point_loads import four_weights, joint_weights
+from verify.segments import linear as segment_model
+from verify.segments.links import build_chain
+from verify.segments.loads import four_weights, joint_weights
 
 FORCES = (PointForce(position=0.083, amplitude=0.7), PointForce(position=0.611, amplitude=1.3, phase_deg=63.0))
 X = np.array([0.0, 0.021, 0.083, 0.3333, 0.52, 0.7, 0.73])
@@ -159,7 +159,7 @@ def test_a_force_anywhere_even_in_the_last_link_keeps_the_error_small(titanium_s
 
 
 def test_dropping_the_reflected_neighbour_of_a_pinned_end_would_cost_tens_of_per_cent(titanium_strip, monkeypatch):
-    from verify import point_loads
+    from verify.segments import loads as point_loads
 
     forces = (PointForce(position=0.01),)  # in the first of 40 links
     exact = analytic_modes.solve_harmonic(titanium_strip, forces, 23.0)

@@ -5,14 +5,14 @@ import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
 
-from verify import segment_model
 from verify.beam import Beam
-from verify.chain import build_chain, chain_pencil
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.models.division import divide
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, refuse_near_resonance
 from verify.models.eigen import forced_response
+from verify.segments import linear as segment_model
+from verify.segments.links import build_chain, chain_pencil
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
 CLAMPED = replace(STRIP, supports=("clamped", "free"))

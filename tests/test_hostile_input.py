@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import gates, patience, rigid_surface, segment_model
+from verify import gates, patience, rigid_surface
 from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.checked import checked
 from verify.cli import status_of
@@ -22,6 +22,7 @@ from verify.exact import modes as analytic_modes
 from verify.models import eigen
 from verify.quantities import QUANTITIES, in_words
 from verify.scene import Gate, literal, load_scene
+from verify.segments import linear as segment_model
 from verify.words import figure, number
 from verify.workbench import Workbench
 

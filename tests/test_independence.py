@@ -182,7 +182,7 @@ def heavier(values_and_vectors):
     return 1.0002 * values, vectors
 
 
-MODELS = ("segment_model", "elements.hermite")
+MODELS = ("segments.linear", "elements.hermite")
 SHARED = [
     Shared(
         "beam",
@@ -205,7 +205,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the stiffness of its neighbour",
-        ("chain.divide", "elements.hermite.divide"),
+        ("segments.links.divide", "elements.hermite.divide"),
         after(lambda parts: replace(parts, moduli=np.roll(parts.moduli, 1))),
         "patched-strip",
         ("elements-at-24",),
@@ -214,7 +214,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the mass of its neighbour",
-        ("chain.divide", "elements.hermite.divide"),
+        ("segments.links.divide", "elements.hermite.divide"),
         after(lambda parts: replace(parts, masses_per_length=np.roll(parts.masses_per_length, 1))),
         "patched-strip",
         ("segments-at-24",),
@@ -288,7 +288,7 @@ SHARED = [
     Shared(
         "models.fields",
         "forces that lag instead of lead",
-        ("exact.harmonic.phasor", "elements.hermite.phasor", "segment_model.phasor"),
+        ("exact.harmonic.phasor", "elements.hermite.phasor", "segments.linear.phasor"),
         after(np.conj),
         "paper-wave",
         ("loss-on-elements",),
@@ -515,7 +515,7 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
     faces = (
         ("exact.modes", "exact.in_time"),
         ("elements.hermite", "elements.in_time"),
-        ("segment_model", "segment_motion"),
+        ("segments.linear", "segments.in_time"),
     )
     behind = [set().union(*(imported(face, set()) for face in pair)) for pair in faces]
     shared = (behind[0] & behind[1]) | (behind[0] & behind[2]) | (behind[1] & behind[2])

@@ -6,14 +6,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import chain as chain_of_links
-from verify import segment_model
 from verify.beam import SUPPORTS, Beam, Section
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts
 from verify.quantities import QUANTITIES
+from verify.segments import linear as segment_model
+from verify.segments import links as chain_of_links
 
 SOLVERS = {"segment": segment_model.solve_modes, "fem": fem_beam.solve_modes}
 supports = st.tuples(st.sampled_from(SUPPORTS), st.sampled_from(SUPPORTS))

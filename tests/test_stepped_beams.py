@@ -6,7 +6,6 @@ import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
 
-from verify import chain, segment_model
 from verify.beam import Beam, Section
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError
@@ -14,6 +13,8 @@ from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes
 from verify.models.division import divide, part_counts
 from verify.scene import load_scene
+from verify.segments import linear as segment_model
+from verify.segments import links as chain
 
 STEPPED = Beam(
     length=0.6,

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import compare, segment_model
+from verify import compare
 from verify.beam import SUPPORTS
-from verify.chain_walls import WALLS, wall_factors
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
+from verify.segments import linear as segment_model
+from verify.segments.walls import WALLS, wall_factors
 from verify.workbench import Workbench
 
 PAIRS = list(product(SUPPORTS, SUPPORTS))
@@ -97,7 +98,7 @@ def test_gregorys_errors_at_forty_segments(titanium_strip, supports, expected):
 
 
 def test_a_wall_joint_as_stiff_as_any_other_is_of_order_one(titanium_strip, monkeypatch):
-    from verify import chain_walls
+    from verify.segments import walls as chain_walls
 
     monkeypatch.setitem(chain_walls._CORRECTIONS, "gregory", ())
     assert order(replace(titanium_strip, supports=("clamped", "free")), 2, (80, 160)) == pytest.approx(1.0, abs=0.03)
@@ -237,7 +238,7 @@ def test_settings_that_do_not_exist_are_refused(titanium_strip):
 )
 def test_a_welded_half_lies_at_its_clamped_wall(titanium_strip, supports, halves):
     """Nine links and half a link at each clamped end fill the beam; a wall's first joint is half a link off it."""
-    from verify.chain import build_chain
+    from verify.segments.links import build_chain
 
     beam = replace(titanium_strip, supports=supports)
     nodes, link = build_chain(beam, 9, wall="welded").nodes, 0.73 / (9 + 0.5 * sum(halves))

@@ -6,9 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP
 
-from verify import segment_model, segment_motion
 from verify.beam import Beam, Section
-from verify.chain import build_chain
 from verify.elements import hermite as fem_beam
 from verify.elements import in_time as fem_motion
 from verify.errors import InputError
@@ -19,6 +17,9 @@ from verify.models.division import divide
 from verify.models.fields import phasor
 from verify.models.time_basis import taylor_table
 from verify.moving_surface import Growth, Steps, basis_of, stages_from_rest, steady_stage
+from verify.segments import in_time as segment_motion
+from verify.segments import linear as segment_model
+from verify.segments.links import build_chain
 
 HELD = [("pinned", "pinned"), ("clamped", "free"), ("clamped", "clamped"), ("guided", "pinned"), ("pinned", "clamped")]
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import load_scene, segment_model, travelling_wave
+from verify import load_scene, travelling_wave
 from verify.beam import PointForce
 from verify.design_map import Axis, design_map, parse_axis
 from verify.drives import driven_field
@@ -19,6 +19,7 @@ from verify.models import intervals
 from verify.models.fields import HarmonicField, wavenumber
 from verify.operating_point import best_points, operating_points
 from verify.quantities import arguments_of, evaluate, quantity
+from verify.segments import linear as segment_model
 from verify.travelling_wave import (
     ellipse,
     fit_waves,

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from verify.chain import Chain, chain_pencil, with_ends
 from verify.chain_system import ChainSystem
 from verify.errors import InputError
 from verify.models.division import Array
 from verify.models.eigen import lowest
+from verify.segments.links import Chain, chain_pencil, with_ends
 
 
 def lowest_modes(system: ChainSystem, n_modes: int) -> tuple[Array, Array, Array, float]:

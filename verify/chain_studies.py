@@ -7,15 +7,15 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.chain import link_inertia
 from verify.chain_dynamics import at_rest, linearise, positions
 from verify.chain_modal import modal_basis, simulate_linear, simulate_modal
 from verify.chain_motion import ChainMotion, simulate
 from verify.chain_statics import solve_static
 from verify.chain_system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
-from verify.chain_walls import Wall
 from verify.chain_work import MOST, STATIC_LINKS, check_links, check_modes_of
 from verify.errors import InputError
+from verify.segments.links import link_inertia
+from verify.segments.walls import Wall
 
 Progress = Callable[[float], None]
 """Hears how much of a motion is done, 0 to 1."""

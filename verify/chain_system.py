@@ -12,11 +12,11 @@ from typing import Literal
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_number
-from verify.chain import Chain, Joints, build_chain
-from verify.chain_walls import Wall
 from verify.errors import InputError
 from verify.models.division import Array, divide
-from verify.point_loads import Load, joint_weights
+from verify.segments.links import Chain, Joints, build_chain
+from verify.segments.loads import Load, joint_weights
+from verify.segments.walls import Wall
 
 Tip = Literal["free", "roller"]
 MAX_ACTUATORS = 4

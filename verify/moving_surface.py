@@ -125,7 +125,7 @@ def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = 
         from verify.elements.in_time import time_basis as elements
 
         return elements(beam, count)
-    from verify.segment_motion import time_basis as segments
+    from verify.segments.in_time import time_basis as segments
 
     return segments(beam, count, line=line)  # type: ignore[arg-type]
 

@@ -11,9 +11,9 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.chain_walls import Wall, wall_factors, welded_halves
 from verify.models.division import Parts, divide
 from verify.models.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
+from verify.segments.walls import Wall, wall_factors, welded_halves
 
 Joints = Literal["series", "printed"]
 JOINTS: tuple[str, ...] = get_args(Joints)

@@ -9,8 +9,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from verify.chain import Chain
 from verify.models.eigen import Array
+from verify.segments.links import Chain
 
 Load = Literal["reciprocal", "lever"]
 LOADS: tuple[str, ...] = get_args(Load)

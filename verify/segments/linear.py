@@ -7,7 +7,13 @@ from typing import Literal, get_args
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
-from verify.chain import (
+from verify.errors import InputError, near_name
+from verify.models.division import check_division
+from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
+from verify.models.eigen import Array, ComplexArray, Eigenpairs, check_size, lowest, method_name
+from verify.models.fields import HarmonicField, check_drive, phasor
+from verify.models.modes import Modes
+from verify.segments.links import (
     JOINTS,
     Chain,
     Joints,
@@ -18,14 +24,8 @@ from verify.chain import (
     joint_curvatures,
     with_ends,
 )
-from verify.chain_walls import WALLS, Wall
-from verify.errors import InputError, near_name
-from verify.models.division import check_division
-from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import Array, ComplexArray, Eigenpairs, check_size, lowest, method_name
-from verify.models.fields import HarmonicField, check_drive, phasor
-from verify.models.modes import Modes
-from verify.point_loads import LOADS, Load, joint_weights
+from verify.segments.loads import LOADS, Load, joint_weights
+from verify.segments.walls import WALLS, Wall
 
 FIELD = "n_segments"
 Reading = Literal["corrected", "raw", "links"]

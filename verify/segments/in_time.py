@@ -8,14 +8,14 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from verify.beam import Beam
-from verify.chain import Chain, build_chain, chain_pencil, corrected_reading, with_ends
-from verify.chain_walls import Wall
 from verify.errors import InputError, near_name
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.time_basis import Array, TimeBasis, check_held
-from verify.point_loads import Load, joint_weights
-from verify.segment_model import check
+from verify.segments.linear import check
+from verify.segments.links import Chain, build_chain, chain_pencil, corrected_reading, with_ends
+from verify.segments.loads import Load, joint_weights
+from verify.segments.walls import Wall
 
 Line = Literal["spline", "raw"]
 LINES: tuple[str, ...] = get_args(Line)
@@ -109,7 +109,7 @@ def _straight(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
 def _splined(beam: Beam, chain: Chain, joints: Joints, uniform: bool) -> Callable[[Array, int], Array]:
     """The C2 spline through the corrected joints."""
     if not uniform:
-        from verify.segment_model import _spline
+        from verify.segments.linear import _spline
 
         everywhere = corrected_reading(chain, joints(np.arange(chain.n_segments + 1)))
         return lambda x, derivative: _spline(chain, everywhere, x, derivative)
