@@ -14,7 +14,7 @@ from scipy.sparse.linalg import splu
 
 from verify.beam import Beam
 from verify.elements import hermite as fem_beam
-from verify.extended_precision import eigenvalue_error
+from verify.judge.extended_precision import eigenvalue_error
 from verify.models import eigen
 from verify.models.division import divide
 from verify.segments import linear as segment_model

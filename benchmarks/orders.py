@@ -7,8 +7,8 @@ from itertools import combinations_with_replacement
 from math import log2
 
 from verify.beam import SUPPORTS, Beam
+from verify.judge.workbench import Workbench
 from verify.segments.walls import WALLS
-from verify.workbench import Workbench
 
 
 def main() -> None:

@@ -188,7 +188,7 @@ def test_choose_names_the_smaller_number_that_happens_to_do(verify):
 @pytest.mark.parametrize("scene", ["steel-cantilever", "stepped-beam", "free-free-bar"])
 def test_choose_confirms_its_answer_by_solves_for_any_beam(verify, scene):
     from verify import load_scene
-    from verify.workbench import Workbench
+    from verify.judge.workbench import Workbench
 
     data = json.loads(verify("choose", "--mode", "5", "--error", "0.2%", "--scene", scene, "--json")[1])
     bench = Workbench(load_scene(scene).beam)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from verify import compare
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
+from verify.judge import compare
+from verify.judge.workbench import Need, Workbench, merged
 from verify.models.modes import Modes
-from verify.workbench import Need, Workbench, merged
 
 X = np.linspace(0, 1, 41)
 SINES = np.array([np.sin(n * np.pi * X) for n in (1, 2, 3, 4)])

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.exact import error_laws
-from verify.extended_precision import chain_bands, count_below, eigenvalue_error, hermite_bands
+from verify.judge.extended_precision import chain_bands, count_below, eigenvalue_error, hermite_bands
 from verify.segments import linear as segment_model
 
 MODELS = {"segment": segment_model, "fem": fem_beam}

@@ -16,7 +16,6 @@ from verify import (
     chain_statics,
     chain_studies,
     chain_system,
-    compare,
     contact,
     contact_kernels,
     forcing,
@@ -26,15 +25,12 @@ from verify import (
     request,
     rigid_surface,
     simulate,
-    sizing,
     slider_figures,
     travelling_wave,
     waves,
-    workbench,
 )
 from verify.beam import Beam
 from verify.checked import checked
-from verify.compare import Bracket
 from verify.elements import hermite as fem_beam
 from verify.elements import in_time as fem_motion
 from verify.errors import InputError
@@ -42,6 +38,8 @@ from verify.exact import closed_forms, section_minors
 from verify.exact import harmonic as analytic_harmonic
 from verify.exact import modes as analytic_modes
 from verify.gates import expectation, judge
+from verify.judge import compare, sizing, workbench
+from verify.judge.compare import Bracket
 from verify.models import division, eigen
 from verify.models import driven_pencil as harmonic_solvers
 from verify.plan import asks_of

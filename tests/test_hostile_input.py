@@ -15,16 +15,16 @@ from verify import gates, patience, rigid_surface
 from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.checked import checked
 from verify.cli import status_of
-from verify.compare import observed_order, relative_error
 from verify.elements import hermite as fem_beam
 from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
 from verify.exact import modes as analytic_modes
+from verify.judge.compare import observed_order, relative_error
+from verify.judge.workbench import Workbench
 from verify.models import eigen
 from verify.quantities import QUANTITIES, in_words
 from verify.scene import Gate, literal, load_scene
 from verify.segments import linear as segment_model
 from verify.words import figure, number
-from verify.workbench import Workbench
 
 TITANIUM = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
 """SI."""

@@ -349,9 +349,9 @@ SHARED = [
         lambda: (21.5 * np.pi / L) ** 2 * np.sqrt(EI / LINE) / (2 * np.pi),
     ),
     Shared(
-        "compare",
+        "judge.compare",
         "errors of twice their size",
-        ("compare.relative_error",),
+        ("judge.compare.relative_error",),
         after(lambda error: 2 * error),
         "paper",
         ("segment-mode-22",),

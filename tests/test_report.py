@@ -120,8 +120,8 @@ def wave_map(study):
 
 def small_study(*overrides):
     from verify import load_scene
+    from verify.judge.workbench import Workbench
     from verify.wave_study import wave_study
-    from verify.workbench import Workbench
 
     scene = load_scene(
         "paper-wave", ("wave.counts=[49]", "wave.frequency_hz=4200,4300,11", "wave.phase_deg=0,180,13", *overrides)
@@ -228,10 +228,10 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
 
 
 def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(titanium_strip):
+    from verify.judge.workbench import Workbench
     from verify.report.charts import mean_in_words
     from verify.scene import Convergence
     from verify.studies import convergence
-    from verify.workbench import Workbench
 
     bench = Workbench(titanium_strip)
     low = convergence(bench, Convergence(modes=(3, 7), counts=(12, 24)))

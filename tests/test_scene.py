@@ -271,7 +271,7 @@ SIZES = st.floats(1e-9, 1e3)
 def test_relative_errors_do_not_depend_on_size_or_material(length, width, thickness, modulus, density, count, scale):
     """Dimensional analysis: the error of a mode is a function of n and N alone, to rounding."""
     from verify.beam import Beam
-    from verify.workbench import Workbench
+    from verify.judge.workbench import Workbench
 
     assume(1e-12 < thickness / length < 1e12)  # femtometres beside kilometres leave floating point, and are refused
     assume(1e-12 < thickness / (length * scale) < 1e12)

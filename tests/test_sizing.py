@@ -3,12 +3,12 @@
 import pytest
 from msgspec.structs import replace
 
-from verify import sizing
 from verify.beam import Section
 from verify.errors import InputError
 from verify.exact import error_laws
+from verify.judge import sizing
+from verify.judge.workbench import Workbench, model_module
 from verify.scene import load_scene
-from verify.workbench import Workbench, model_module
 
 
 def errors_of(bench, model, mode, sizes, settings=()):

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import compare
 from verify.beam import SUPPORTS
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
+from verify.judge import compare
+from verify.judge.workbench import Workbench
 from verify.segments import linear as segment_model
 from verify.segments.walls import WALLS, wall_factors
-from verify.workbench import Workbench
 
 PAIRS = list(product(SUPPORTS, SUPPORTS))
 UNORDERED = list(combinations_with_replacement(SUPPORTS, 2))

@@ -15,6 +15,7 @@ from verify.elements import hermite as fem_beam
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
+from verify.judge.workbench import Workbench
 from verify.models import intervals
 from verify.models.fields import HarmonicField, wavenumber
 from verify.operating_point import best_points, operating_points
@@ -31,7 +32,6 @@ from verify.travelling_wave import (
 )
 from verify.wave_study import motor_row
 from verify.waves import own_wavenumber, solve_by_model
-from verify.workbench import Workbench
 
 PAPER = load_scene("paper")
 BEAM = PAPER.beam

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from msgspec import Meta
 
 from verify.errors import InputError
+from verify.judge.workbench import Workbench
 from verify.quantity_types import Arguments, Mode, Quantity, Wall
-from verify.workbench import Workbench
 
 if TYPE_CHECKING:
     from verify.scene import Scene

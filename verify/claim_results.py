@@ -10,9 +10,9 @@ from verify.errors import InputError
 from verify.quantities import arguments_of, evaluate, needs_of, quantity
 
 if TYPE_CHECKING:
+    from verify.judge.workbench import Need, Workbench
     from verify.motion_study import MotionStudy
     from verify.scene import Scene
-    from verify.workbench import Need, Workbench
 
 
 class ClaimResult(msgspec.Struct, frozen=True, kw_only=True):

@@ -152,8 +152,8 @@ def table(
 def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
     from verify import quantities
+    from verify.judge.workbench import Workbench
     from verify.scene import given_arguments
-    from verify.workbench import Workbench
 
     found = quantities.quantity(quantity)
     given = given_arguments(arguments)
@@ -181,12 +181,12 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
 @_as_json
 def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """From how many segments or elements on an accuracy is kept, how that is known, and what they cost."""
+    from verify.judge.workbench import Workbench
     from verify.plain import accuracy, choice_as_plain, mode_number
-    from verify.workbench import Workbench
 
     wanted, number = accuracy(error), mode_number(mode)
     beam = _load(scene, overrides).beam
-    from verify.sizing import choose as chosen
+    from verify.judge.sizing import choose as chosen
 
     bench = Workbench(beam)
     choices = chosen(bench, number, wanted)

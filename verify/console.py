@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from verify.claim_results import ClaimResult
     from verify.design_map import DesignMap
     from verify.gates import GateResult
+    from verify.judge.sizing import Choice
     from verify.motion_study import MotionStudy
     from verify.plan import Plan
     from verify.readings import ReadingsStudy
     from verify.run import RunResult
-    from verify.sizing import Choice
     from verify.studies import Cell, Row
     from verify.wave_study import MotorRow, Operation
     from verify.work_precision import Work

@@ -21,8 +21,8 @@ from verify.travelling_wave import middle_half
 from verify.unit_waves import FAST, Gaps, UnitDrive, superposed
 
 if TYPE_CHECKING:
+    from verify.judge.workbench import Workbench
     from verify.scene import Scene
-    from verify.workbench import Workbench
 
 AXES = {
     "frequency_hz": "4000:4600:241",

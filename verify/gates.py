@@ -12,8 +12,8 @@ from verify.quantity_types import Quantity
 from verify.scene import Complex
 
 if TYPE_CHECKING:
+    from verify.judge.workbench import Need, Workbench
     from verify.scene import Gate, Scene
-    from verify.workbench import Need, Workbench
 
 
 class Band(msgspec.Struct, frozen=True, kw_only=True):

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
+from verify.judge.workbench import Need, Settings, Workbench, for_model
 from verify.quantity_types import (
     AtFrequency,
     AtSize,
@@ -17,7 +18,6 @@ from verify.quantity_types import (
     ShapesOverSizes,
     ToError,
 )
-from verify.workbench import Need, Settings, Workbench, for_model
 
 if TYPE_CHECKING:
     from verify.scene import Scene
@@ -76,27 +76,27 @@ def _law_ratio(a: DiscreteAtSize, scene: "Scene", bench: Workbench) -> float:
 
 
 def _order(a: OverSizes, scene: "Scene", bench: Workbench) -> float:
-    from verify.compare import observed_order
+    from verify.judge.compare import observed_order
 
     return observed_order(a.counts, [bench.frequency_error(a.model, n, a.mode, a.settings) for n in a.counts])
 
 
 def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
-    from verify.compare import observed_order
+    from verify.judge.compare import observed_order
 
     errors = [bench.shape_error(a.model, n, a.mode, a.reading, a.settings) for n in a.counts]
     return observed_order(a.counts, errors)
 
 
 def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
-    from verify.sizing import enough_from
+    from verify.judge.sizing import enough_from
 
     found = enough_from(bench, a.model, a.mode, a.error, a.settings)
     return found.smaller if a.of == "least" and found.smaller is not None else found.count
 
 
 def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
-    from verify.sizing import count_guess
+    from verify.judge.sizing import count_guess
 
     return _solved(a.model, count_guess(a.model, scene.beam, a.mode, a.error), a.mode, a.settings)
 

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from verify.judge.workbench import Workbench
 from verify.motion_arguments import (
     CouplingSize,
     Creep,
@@ -17,7 +18,6 @@ from verify.motion_arguments import (
 )
 from verify.quantity_types import Quantity
 from verify.slider_figures import RUN_FIGURES, RunFigure
-from verify.workbench import Workbench
 
 if TYPE_CHECKING:
     from verify.scene import Scene

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from verify.beam import PointForce
+    from verify.judge.workbench import Workbench
     from verify.scene import Scene
-    from verify.workbench import Workbench
 
 MODES = 400
 """Of the exact beam from rest, unless asked for otherwise."""
@@ -182,7 +182,7 @@ def slider_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
 
     Over counts against the exact beam, over steps against one sixteen times finer than the finest.
     """
-    from verify.compare import observed_order, relative_error
+    from verify.judge.compare import observed_order, relative_error
 
     given = {name: getattr(a, name) for name in SliderInTime.__struct_fields__}
 

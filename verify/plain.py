@@ -11,15 +11,15 @@ from verify.scene import literal
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy
+    from verify.judge.sizing import Choice
+    from verify.judge.workbench import Workbench
     from verify.motion import Motion
     from verify.motion_study import MotionStudy
     from verify.readings import Reading, ReadingsStudy
     from verify.run import RunResult
-    from verify.sizing import Choice
     from verify.studies import Row
     from verify.wave_study import WaveStudy
     from verify.work_precision import Work
-    from verify.workbench import Workbench
 
 
 def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:

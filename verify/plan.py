@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.errors import InputError
-from verify.workbench import Key, Need, Settings, merged, model_module
+from verify.judge.workbench import Key, Need, Settings, merged, model_module
 
 if TYPE_CHECKING:
     from verify.beam import Beam

@@ -11,8 +11,8 @@ import pytest
 
 if TYPE_CHECKING:
     from verify.gates import GateResult
+    from verify.judge.workbench import Workbench
     from verify.scene import Gate, Scene
-    from verify.workbench import Workbench
 
 
 class GateFailedError(Exception):

@@ -12,11 +12,11 @@ import msgspec
 from verify.chain_quantities import CHAIN_QUANTITIES
 from verify.checked import checked
 from verify.errors import InputError, near_name
+from verify.judge.workbench import Need, Workbench
 from verify.mode_quantities import MODE_QUANTITIES
 from verify.motion_quantities import MOTION_QUANTITIES
 from verify.quantity_types import Arguments, Quantity
 from verify.wave_quantities import WAVE_QUANTITIES
-from verify.workbench import Need, Workbench
 
 if TYPE_CHECKING:
     from verify.scene import Scene

@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.workbench import Need, Settings, Workbench
+from verify.judge.workbench import Need, Settings, Workbench
 
 if TYPE_CHECKING:
     from verify.scene import Scene

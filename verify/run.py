@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.gates import GateResult, judge
+from verify.judge.workbench import Solve, Workbench
 from verify.plan import CHAIN_IN_TIME, STUDIES, asks_of
 from verify.scene import Scene, load_scene
-from verify.workbench import Solve, Workbench
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy

@@ -8,9 +8,9 @@ import msgspec
 
 from verify.errors import InputError
 from verify.exact.closed_forms import THEORIES, frequency_hz
+from verify.judge.workbench import Workbench, model_module
 from verify.patience import check_work
 from verify.timing import interleaved_medians
-from verify.workbench import Workbench, model_module
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -183,7 +183,7 @@ def _cell(
 
 def _local_order(count_1: int, error_1: float | None, count_2: int, error_2: float) -> float | None:
     """The order between two sizes; None where an error is rounding, changes sign or the sizes are equal."""
-    from verify.compare import ORDER_FLOOR
+    from verify.judge.compare import ORDER_FLOOR
 
     if error_1 is None or count_1 == count_2 or error_1 * error_2 <= 0 or min(abs(error_1), abs(error_2)) < ORDER_FLOOR:
         return None

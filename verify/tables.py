@@ -8,9 +8,9 @@ from typing import Any
 import msgspec
 
 from verify.checked import checked
+from verify.judge.workbench import Workbench
 from verify.plain import finite, flat_row, work_as_plain
 from verify.scene import Convergence, Counts, Scene, given_arguments, literal
-from verify.workbench import Workbench
 
 Step = Callable[[str], None]
 

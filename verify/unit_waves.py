@@ -127,7 +127,7 @@ def unit_fields(
         from verify.exact.modes import unit_responses
 
         return unit_responses(beam, places, frequencies, x)
-    from verify.workbench import model_module
+    from verify.judge.workbench import model_module
 
     return np.asarray(model_module(model).unit_responses(beam, places, frequencies, x, count))
 

@@ -16,8 +16,8 @@ from verify.wave_arguments import BestFrequency, InWindow
 from verify.waves import SEARCHED, check_fields, driven, measures, quietest_drive
 
 if TYPE_CHECKING:
+    from verify.judge.workbench import Workbench
     from verify.scene import Scene, Wave
-    from verify.workbench import Workbench
 
 
 class Operation(msgspec.Struct, frozen=True, kw_only=True):

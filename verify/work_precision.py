@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec.structs import replace
 
-from verify.compare import check_reference, relative_error
 from verify.errors import InputError
+from verify.judge.compare import check_reference, relative_error
 from verify.motion_arguments import SliderInTime
 from verify.motions import described, slider_of
 from verify.patience import check_work

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from verify.compare import EIGENVALUE_FLOOR
 from verify.exact.error_laws import MEAN_LIMIT
+from verify.judge.compare import EIGENVALUE_FLOOR
 
 if TYPE_CHECKING:
     from verify.run import RunResult
@@ -52,7 +52,7 @@ def charts_of(result: "RunResult") -> list[dict[str, Any]]:
 def bracketed(result: "RunResult") -> bool:
     """Whether segments lie below and elements above for this beam."""
     from verify.errors import NoBracketError
-    from verify.workbench import check_bracket
+    from verify.judge.workbench import check_bracket
 
     try:
         check_bracket(result.scene.beam, ())

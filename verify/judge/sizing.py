@@ -8,8 +8,8 @@ import msgspec
 
 from verify.errors import InputError, PairingError
 from verify.exact.error_laws import expected_error, parts_from_here_on, sine_fits, smallest_count
+from verify.judge.workbench import Settings, Workbench, model_module
 from verify.timing import interleaved_medians
-from verify.workbench import Settings, Workbench, model_module
 
 if TYPE_CHECKING:
     from verify.beam import Beam

@@ -11,7 +11,7 @@ from verify.errors import InputError, NoBracketError
 from verify.exact.error_laws import leading_error
 
 if TYPE_CHECKING:
-    from verify.compare import Bracket
+    from verify.judge.compare import Bracket
     from verify.models.fields import HarmonicField
     from verify.models.modes import Array, Modes
     from verify.motion import Motion
@@ -162,8 +162,8 @@ class Workbench:
             return mode - 1
         key = ((model, count, for_model(model, settings)), mode)
         if key not in self._index:
-            from verify import compare
             from verify.exact import modes as analytic_modes
+            from verify.judge import compare
 
             modes = self.modes(model, count, mode, settings)
             stride = max(len(modes.points) // (16 * modes.n_modes + 64), 1)
@@ -173,7 +173,7 @@ class Workbench:
 
     def frequency_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """Signed, relative to the exact Euler-Bernoulli frequency. Raises InputError."""
-        from verify import compare
+        from verify.judge import compare
 
         return compare.relative_error(self.paired_frequency_hz(model, count, mode, settings), self.exact_hz(mode))
 
@@ -183,7 +183,7 @@ class Workbench:
         Holds for uniform beams of equal parts without a clamped end (checked on every mode and support for
         N = 2..24), and loosely, with order 2, for clamped ends with the wall joint 2EI/l.
         """
-        from verify import compare
+        from verify.judge import compare
 
         check_bracket(self.beam, settings)
         width = 2.0 * leading_error("fem", self.beam.supports, mode, count)
@@ -199,8 +199,8 @@ class Workbench:
         self, model: str, count: int, mode: int, reading: str | None = None, settings: Settings = ()
     ) -> float:
         """Relative L2 error of the mass-normalised deflection at the model's nodes. Raises InputError."""
-        from verify import compare
         from verify.exact import modes as analytic_modes
+        from verify.judge import compare
 
         modes = self.modes(model, count, mode, settings)
         if reading is not None and reading not in modes.readings:
@@ -212,8 +212,8 @@ class Workbench:
 
     def curvature_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """Relative L2 error of the curvature where the model knows it best. Raises InputError."""
-        from verify import compare
         from verify.exact import modes as analytic_modes
+        from verify.judge import compare
 
         modes = self.modes(model, count, mode, settings)
         exact = analytic_modes.mode_shape(self.beam, mode, modes.curvature_points, 2)
@@ -222,8 +222,8 @@ class Workbench:
 
     def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
         """Where a mode stands still between the ends, (n_nodes,), metres, ascending. Raises InputError."""
-        from verify import compare
         from verify.exact import modes as analytic_modes
+        from verify.judge import compare
 
         if model == "analytic" or count is None:
             return compare.zeros(lambda x: analytic_modes.mode_shape(self.beam, mode, x), self.beam.length, mode)
