@@ -19,7 +19,7 @@ from time import perf_counter
 from benchmarks.chain_races import BEAM, FREQUENCY, case_of
 from benchmarks.peers.slider import Run, Sled, reference
 from verify.beam import PointForce
-from verify.simulate import simulate
+from verify.motion.simulate import simulate
 from verify.slider import Slider
 
 OWN = "verify, segments"

@@ -11,11 +11,11 @@ from verify.axial_study import chain_deflection, departure, departure_of, driven
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.exact.modes import solve_harmonic
+from verify.motion.validity import NONLINEAR, axial_inertia_size
 from verify.plain import run_as_plain
 from verify.plan import plan_scene
 from verify.quantities import arguments_of, evaluate, quantity
 from verify.run import n_steps, workbench_for
-from verify.validity import NONLINEAR, axial_inertia_size
 from verify.words import work_in_words
 
 SMALL = (
@@ -127,7 +127,7 @@ def test_a_clamped_and_free_chain_departs_too():
 
 def test_there_is_one_definition_of_the_size():
     """The study's, the margins' and the plan's: a steady field's mean square slope at its own frequency."""
-    from verify.simulate import simulate
+    from verify.motion.simulate import simulate
 
     beam = load_scene("paper-slider").beam
     forces = [one.on(beam) for one in load_scene("paper-slider").drive.force]

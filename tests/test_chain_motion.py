@@ -16,8 +16,8 @@ from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, 
 from verify.chain_motion import simulate, step_limit
 from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
+from verify.motion.validity import axial_inertia_size
 from verify.segments import linear as segment_model
-from verify.validity import axial_inertia_size
 
 
 def free_chain(n=6, **more):

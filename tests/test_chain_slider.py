@@ -10,7 +10,7 @@ from verify.chain_motion import simulate as simulate_chain
 from verify.chain_slider import _reading, half_steps, ride
 from verify.chain_system import build_system
 from verify.errors import InputError
-from verify.simulate import simulate
+from verify.motion.simulate import simulate
 from verify.slider import Slider
 
 STEP = 4e-6

@@ -5,10 +5,10 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import PointForce
-from verify.contact import FELT, coupling_of, surface_speed
 from verify.exact import modes as analytic_modes
 from verify.models.fields import HarmonicField
-from verify.simulate import simulate
+from verify.motion.contact import FELT, coupling_of, surface_speed
+from verify.motion.simulate import simulate
 from verify.slider import Slider
 
 HERTZ = 1310.0

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP, linear_motion
 
 from verify.errors import InputError, ResonanceError
-from verify.forcing import SMOOTH_STEP, Modal, advanced, answer, free_part, state_of, turns
-from verify.moving_surface import basis_of, cut
+from verify.motion.forcing import SMOOTH_STEP, Modal, advanced, answer, free_part, state_of, turns
+from verify.motion.simulate import simulate
+from verify.motion.surface import basis_of, cut
 from verify.segments.links import build_chain
 from verify.segments.loads import joint_weights
-from verify.simulate import simulate
 
 frequencies = st.floats(30.0, 9e4)
 ratios = st.floats(0.0, 0.4)

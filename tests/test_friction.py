@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from mpmath import mp
 from scipy.integrate import solve_ivp
 
-from verify import rigid_surface
-from verify.contact_kernels import SLIPS, STICKS, TURNS, coulomb_span, slide_on_belt, tanh_speed_change
 from verify.errors import InputError
-from verify.rigid_surface import coulomb_decrement, creep_speed, free_decay, stick_slip_times
+from verify.motion.kernels import SLIPS, STICKS, TURNS, coulomb_span, slide_on_belt, tanh_speed_change
+from verify.motion.result import rigid_surface
+from verify.motion.rigid_surface import coulomb_decrement, creep_speed, free_decay, stick_slip_times
 
 
 def power_of_ten(low, high):

@@ -9,23 +9,14 @@ from msgspec import structs
 
 from verify import (
     axial_study,
-    carried,
     chain_dynamics,
     chain_kernels,
     chain_modal,
     chain_statics,
     chain_studies,
     chain_system,
-    contact,
-    contact_kernels,
-    forcing,
     motions,
     operating_point,
-    pure_wave,
-    request,
-    rigid_surface,
-    simulate,
-    slider_figures,
     travelling_wave,
     waves,
 )
@@ -42,6 +33,9 @@ from verify.judge import compare, sizing, workbench
 from verify.judge.compare import Bracket
 from verify.models import division, eigen
 from verify.models import driven_pencil as harmonic_solvers
+from verify.motion.result import carried, contact, forcing, pure_wave, request, rigid_surface, simulate
+from verify.motion.result import figures as slider_figures
+from verify.motion.result import kernels as contact_kernels
 from verify.plan import asks_of
 from verify.quantities import QUANTITIES, Quantity
 from verify.run import workbench_for

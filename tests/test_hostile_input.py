@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import gates, patience, rigid_surface
+from verify import gates, patience
 from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.checked import checked
 from verify.cli import status_of
@@ -21,6 +21,7 @@ from verify.exact import modes as analytic_modes
 from verify.judge.compare import observed_order, relative_error
 from verify.judge.workbench import Workbench
 from verify.models import eigen
+from verify.motion.result import rigid_surface
 from verify.quantities import QUANTITIES, in_words
 from verify.scene import Gate, literal, load_scene
 from verify.segments import linear as segment_model

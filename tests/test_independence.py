@@ -19,8 +19,8 @@ from scipy.optimize import brentq
 from test_stepped_beams import written_out
 
 import verify
-from verify.contact_kernels import HALF
 from verify.gates import judge
+from verify.motion.kernels import HALF
 from verify.run import workbench_for
 from verify.scene import Complex, load_scene
 
@@ -358,36 +358,36 @@ SHARED = [
         lambda: np.sqrt(link_omega2(22 * np.pi / 49)) / (22 * np.pi / 49) ** 2 - 1,
     ),
     Shared(
-        "forcing",
+        "motion.forcing",
         "the forced part a ten-thousandth too large",
-        ("moving_surface.answer",),
+        ("motion.surface.answer",),
         after(lambda found: replace(found, amplitudes=1.0001 * found.amplitudes)),
         "paper-slider",
         ("beam-segments", "beam-elements"),
         lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ),
     ),
     Shared(
-        "forcing",
+        "motion.forcing",
         "free modes that turn the other way",
-        ("moving_surface.advanced",),
+        ("motion.surface.advanced",),
         lambda true: lambda modes, z, t: true(modes, z * np.array([[1.0], [-1.0]]), t),
         "paper-slider",
         ("beam-segments",),
         lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ),
     ),
     Shared(
-        "forcing",
+        "motion.forcing",
         "loads of every mode a ten-thousandth too large",
-        ("moving_surface.modal",),
+        ("motion.surface.modal",),
         after(lambda modes: replace(modes, loads=1.0001 * modes.loads)),
         "paper-slider",
         ("beam-segments", "beam-elements"),
         lambda: from_rest(0.2137, 0.83e-3, 2 / HERTZ),
     ),
     Shared(
-        "moving_surface",
+        "motion.surface",
         "a drive whose time is behind by a microsecond",
-        ("moving_surface.Stage.drive_factors",),
+        ("motion.surface.Stage.drive_factors",),
         lambda true: lambda stage, t: true(stage, t - 1e-6),
         "paper-slider",
         ("beam-segments",),
@@ -396,16 +396,16 @@ SHARED = [
     Shared(
         "models.time_basis",
         "polynomials of the surface three per cent too large",
-        ("moving_surface.taylor_table",),
+        ("motion.surface.taylor_table",),
         after(lambda table: 1.03 * table),
         "paper-slider",
         ("slider-against-the-wave",),
         drift_against_the_wave,
     ),
     Shared(
-        "contact",
+        "motion.contact",
         "a lever forty times as long",
-        ("carried.law_entries",),
+        ("motion.carried.law_entries",),
         after(lambda law: law * np.where(np.arange(len(law)) == HALF, 40.0, 1.0)),
         "paper-slider",
         ("slider-against-the-wave",),

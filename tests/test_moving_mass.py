@@ -6,12 +6,12 @@ from motion_reference import FORCES, FREQUENCY, STRIP, held_motion
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.contact_kernels import SLIPS, STICKS
 from verify.errors import InputError
-from verify.moving_surface import basis_of
+from verify.motion.kernels import SLIPS, STICKS
+from verify.motion.simulate import simulate
+from verify.motion.surface import basis_of
 from verify.run import workbench_for
 from verify.scene import load_scene
-from verify.simulate import simulate
 from verify.slider import Slider
 from verify.waves import solve_by_model
 

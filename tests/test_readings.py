@@ -11,8 +11,8 @@ from verify.chain_readings import Chains
 from verify.chain_slider import half_steps, ride
 from verify.chain_system import build_system
 from verify.errors import InputError
+from verify.motion.figures import mean
 from verify.readings import chain_reading, reading, readings_study
-from verify.slider_figures import mean
 
 SCENE = load_scene("paper-slider")
 LENGTH, PLACES = 0.5, (0.0116, 0.5 - 0.0116)
@@ -155,8 +155,8 @@ def test_a_chain_under_small_forces_reads_as_the_linear_one():
 
 def test_means_are_the_balances_of_the_run():
     """Mean friction is m dv / t in the tangential kinematics, the slope at the end the mean of the surface's speed."""
+    from verify.motion.figures import RUN_FIGURES
     from verify.motion_study import every_step
-    from verify.slider_figures import RUN_FIGURES
     from verify.work_precision import run_once
 
     scene = as_read(slope=70.0, mu=0.3, place=0.231, soft=2.0)

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from motion_reference import FORCES, FREQUENCY, STRIP
 
-from verify import slider_run
 from verify.beam import PointForce
-from verify.contact_kernels import SLIPS
 from verify.errors import InputError
-from verify.simulate import simulate
+from verify.motion.kernels import SLIPS
+from verify.motion.result import stepping as slider_run
+from verify.motion.simulate import simulate
 from verify.slider import Slider
 
 LIGHT = Slider(mass=1.3e-3, mu=0.21, slope=120.0, position=0.17, coupling="one-way")

@@ -6,11 +6,11 @@ from motion_reference import FORCES, FREQUENCY, STRIP, coupled_motion
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.contact_kernels import SLIPS, STICKS
 from verify.exact.modes import solve_harmonic
-from verify.moving_surface import basis_of
-from verify.pure_wave import terminal_speed
-from verify.simulate import simulate
+from verify.motion.kernels import SLIPS, STICKS
+from verify.motion.pure_wave import terminal_speed
+from verify.motion.simulate import simulate
+from verify.motion.surface import basis_of
 from verify.slider import Slider
 
 HEAVY = Slider(mass=0.4, mu=0.3, slope=300.0, position=0.19, coupling="two-way", normal="massless")

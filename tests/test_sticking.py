@@ -3,7 +3,7 @@
 import pytest
 
 from verify.beam import Beam, PointForce
-from verify.simulate import simulate
+from verify.motion.simulate import simulate
 from verify.slider import Slider
 
 BEAM = Beam(length=0.73, width=0.017, thickness=0.0023, youngs_modulus=113e9, density=4430.0)

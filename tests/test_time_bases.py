@@ -12,11 +12,11 @@ from verify.elements import in_time as fem_motion
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.exact.in_time import MOST
-from verify.forcing import SMOOTH_STEP
 from verify.models.division import divide
 from verify.models.fields import phasor
 from verify.models.time_basis import taylor_table
-from verify.moving_surface import Growth, Steps, basis_of, stages_from_rest, steady_stage
+from verify.motion.forcing import SMOOTH_STEP
+from verify.motion.surface import Growth, Steps, basis_of, stages_from_rest, steady_stage
 from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain

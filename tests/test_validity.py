@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from verify.beam import SUPPORTS, Section
 from verify.exact.closed_forms import frequency_hz
-from verify.validity import axial_inertia_size, discretisation, model_form, nearest_mode
+from verify.motion.validity import axial_inertia_size, discretisation, model_form, nearest_mode
 
 
 @pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)

@@ -24,8 +24,8 @@ from verify.chain_system import axial_stiffness, build_system
 from verify.chain_work import MOST, check_kept, check_modes_of
 from verify.errors import InputError
 from verify.models.division import Array
-from verify.simulate import simulate
-from verify.validity import NONLINEAR, axial_inertia_size
+from verify.motion.simulate import simulate
+from verify.motion.validity import NONLINEAR, axial_inertia_size
 
 if TYPE_CHECKING:
     from verify.scene import Scene

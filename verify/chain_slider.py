@@ -13,11 +13,11 @@ from scipy.interpolate import CubicSpline
 from verify.beam import Beam, check_number
 from verify.chain_elastic import ElasticMotion
 from verify.chain_motion import ChainMotion
-from verify.contact import law_entries
 from verify.errors import InputError
 from verify.models.division import Array
+from verify.motion.contact import law_entries
+from verify.motion.stepping import contact_space, fresh_motion
 from verify.slider import Slider
-from verify.slider_run import contact_space, fresh_motion
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,7 +63,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
     Raises InputError where the times are not evenly spaced and odd in number, for two-way coupling, which the chain's
     own integrators do not know, for the links' edges as a contact line, and for a beam of unlike thicknesses.
     """
-    from verify import contact_kernels as kernels
+    from verify.motion.result import kernels
 
     times = chain.times
     if len(times) < 3 or len(times) % 2 == 0 or np.ptp(np.diff(times)) > 1e-9 * times[-1]:

@@ -8,8 +8,8 @@ from msgspec import Meta
 
 from verify.beam import check_number
 from verify.errors import InputError
+from verify.motion.figures import RUN_FIGURES
 from verify.slider import NormalChoice
-from verify.slider_figures import RUN_FIGURES
 
 if TYPE_CHECKING:
     from verify.scene import Scene

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.judge.workbench import Workbench
+from verify.motion.figures import RUN_FIGURES, RunFigure
 from verify.motion_arguments import (
     CouplingSize,
     Creep,
@@ -17,20 +18,19 @@ from verify.motion_arguments import (
     SliderOrder,
 )
 from verify.quantity_types import Quantity
-from verify.slider_figures import RUN_FIGURES, RunFigure
 
 if TYPE_CHECKING:
     from verify.scene import Scene
 
 
 def _free_decay(a: FreeDecay, scene: "Scene", bench: Workbench) -> float:
-    from verify.rigid_surface import free_decay
+    from verify.motion.rigid_surface import free_decay
 
     return free_decay(a.mu, a.slope, a.speed, a.time, a.gravity)
 
 
 def _creep_speed(a: Creep, scene: "Scene", bench: Workbench) -> float:
-    from verify.rigid_surface import creep_speed
+    from verify.motion.rigid_surface import creep_speed
 
     return creep_speed(a.mu, a.slope, a.pull, a.gravity)
 
@@ -39,7 +39,7 @@ def _belt(which: int) -> Any:
     """Stick time (0) or slip time (1)."""
 
     def evaluate(a: OnBelt, scene: "Scene", bench: Workbench) -> float:
-        from verify.rigid_surface import stick_slip_times
+        from verify.motion.rigid_surface import stick_slip_times
 
         return stick_slip_times(a.mass, a.stiffness, a.static, a.kinetic, a.speed)[which]
 
@@ -47,13 +47,13 @@ def _belt(which: int) -> Any:
 
 
 def _decrement(a: Oscillator, scene: "Scene", bench: Workbench) -> float:
-    from verify.rigid_surface import coulomb_decrement
+    from verify.motion.rigid_surface import coulomb_decrement
 
     return coulomb_decrement(a.mass, a.stiffness, a.force)
 
 
 def _terminal_speed(a: OnWave, scene: "Scene", bench: Workbench) -> float:
-    from verify.pure_wave import terminal_speed
+    from verify.motion.pure_wave import terminal_speed
     from verify.slider import Slider
     from verify.waves import drive_frequency
 

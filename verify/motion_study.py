@@ -8,8 +8,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.claims import asks_for_turned
-from verify.motion import Motion
-from verify.slider_figures import RUN_FIGURES, Condition, condition_of
+from verify.motion.figures import RUN_FIGURES, Condition, condition_of
+from verify.motion.result import Motion
 from verify.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
 
 if TYPE_CHECKING:

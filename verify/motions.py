@@ -7,10 +7,10 @@ from msgspec.structs import replace
 
 from verify.beam import PointForce
 from verify.errors import InputError
-from verify.motion import Motion
+from verify.motion.request import STEPS_PER_PERIOD
+from verify.motion.result import Motion
+from verify.motion.simulate import simulate
 from verify.motion_arguments import SliderInTime
-from verify.request import STEPS_PER_PERIOD
-from verify.simulate import simulate
 from verify.slider import Slider
 from verify.waves import drive_forces, drive_frequency, solve_by_model
 
@@ -147,7 +147,7 @@ def without_slider(a: Any, scene: "Scene", bench: "Workbench") -> Motion:
 
 def coupling_size(a: Any, scene: "Scene") -> float:
     """The size of a slider's friction or of its inertia at its place, by one model. Raises InputError."""
-    from verify.contact import coupling_of, surface_speed
+    from verify.motion.contact import coupling_of, surface_speed
 
     _check_forced(scene, "a slider's beam")
     slider, frequency = slider_of(a, scene), drive_frequency(a, scene)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from verify.axial_study import AxialStudy
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
-    from verify.motion import Motion
+    from verify.motion.result import Motion
     from verify.motion_study import MotionStudy
     from verify.readings import Reading, ReadingsStudy
     from verify.run import RunResult

@@ -246,8 +246,8 @@ def _slides(scene: "Scene") -> bool:
 def _coupling(slider: "Slider", field: "HarmonicField") -> tuple[Skipped, ...]:
     """One-way or two-way, and that a slider without normal inertia is a simplification."""
     from verify.beam import PointForce
-    from verify.contact import FELT, coupling_of, surface_speed
     from verify.exact.modes import solve_harmonic
+    from verify.motion.contact import FELT, coupling_of, surface_speed
 
     x = slider.start_on(field.beam)
     felt = solve_harmonic(field.beam, (PointForce(position=x),), field.frequency_hz).deflection([x])[0]
@@ -261,7 +261,7 @@ def _coupling(slider: "Slider", field: "HarmonicField") -> tuple[Skipped, ...]:
 
 def _linear(field: "HarmonicField") -> Skipped:
     """A slider's run is on the linear chain whatever the size, which is said."""
-    from verify.validity import NONLINEAR
+    from verify.motion.validity import NONLINEAR
 
     size = _size(field)
     linear = "linear chain with an exact step" if size <= NONLINEAR else "linear chain, although"
@@ -277,7 +277,7 @@ def _over_the_force(scene: "Scene", asked: "AxialInertia") -> Skipped:
     from msgspec.structs import replace
 
     from verify.exact.modes import solve_harmonic
-    from verify.validity import NONLINEAR
+    from verify.motion.validity import NONLINEAR
 
     assert scene.drive is not None
     forces = [replace(force, amplitude=1.0) for force in scene.forces]
@@ -294,7 +294,7 @@ def _size(field: "HarmonicField") -> float:
     """(kL)^2 <theta^2>, averaged over the beam and a period."""
     import numpy as np
 
-    from verify.validity import axial_inertia_size
+    from verify.motion.validity import axial_inertia_size
 
     slopes = abs(field.slope(np.linspace(0.0, field.beam.length, 400)))
     return axial_inertia_size(field.beam, field.frequency_hz, 0.5 * float((slopes**2).mean()))

@@ -10,8 +10,8 @@ from msgspec.structs import replace
 from verify.chain_readings import Chains
 from verify.claims import Claim, ReadingsAsk, asks_for_turned
 from verify.errors import InputError
+from verify.motion.figures import Condition, condition_of
 from verify.motion_study import every_step, figures_of, reversed_scene
-from verify.slider_figures import Condition, condition_of
 from verify.work_precision import run_once
 
 if TYPE_CHECKING:

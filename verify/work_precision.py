@@ -10,15 +10,15 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.compare import check_reference, relative_error
+from verify.motion.figures import MODELS
+from verify.motion.simulate import simulate
+from verify.motion.stepping import slider_seconds
 from verify.motion_arguments import SliderInTime
 from verify.motions import described, slider_of
 from verify.patience import check_work
-from verify.simulate import simulate
-from verify.slider_figures import MODELS
-from verify.slider_run import slider_seconds
 
 if TYPE_CHECKING:
-    from verify.motion import Motion
+    from verify.motion.result import Motion
     from verify.scene import Scene
 
 ROUNDS = 7

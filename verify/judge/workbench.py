@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from verify.judge.compare import Bracket
     from verify.models.fields import HarmonicField
     from verify.models.modes import Array, Modes
-    from verify.motion import Motion
+    from verify.motion.result import Motion
 
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Keyword settings of a model's solve_modes other than their defaults, for instance (("wall", "half"),)."""

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Any
 
+from verify.motion.validity import NONLINEAR
 from verify.motion_study import thinned
 from verify.report.charts import COLOUR, GREY, Figure, axes, chart
-from verify.validity import NONLINEAR
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy

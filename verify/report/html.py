@@ -35,7 +35,7 @@ def page(result: "RunResult", command: str) -> str:
     """The whole HTML page, plotly's script included."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    from verify.contact import FELT
+    from verify.motion.contact import FELT
 
     loader = PackageLoader("verify", "report")
     templates = Environment(

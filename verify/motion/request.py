@@ -7,11 +7,11 @@ import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.errors import InputError
-from verify.forcing import CONSTANT, SMOOTH_STEP
 from verify.models.fields import check_drive
 from verify.models.time_basis import Array
-from verify.motion import EndState, Motion
-from verify.moving_surface import Growth, check_line, cut
+from verify.motion.forcing import CONSTANT, SMOOTH_STEP
+from verify.motion.result import EndState, Motion
+from verify.motion.surface import Growth, check_line, cut
 from verify.slider import Slider
 
 STEPS_PER_PERIOD = 64

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from verify.models.time_basis import Array, ComplexArray, TimeBasis
-from verify.motion import Ledger
-from verify.moving_surface import Stage, free_at
+from verify.motion.result import Ledger
+from verify.motion.surface import Stage, free_at
 
 GAUSS = 6
 BLOCK = 2000

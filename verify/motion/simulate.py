@@ -7,14 +7,14 @@ from typing import Literal
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.carried import begin, coupling_on, slide, steady_field, times_of
-from verify.contact import Coupling
-from verify.forcing import check_no_resonance
-from verify.margins import margins_of
 from verify.models.time_basis import Array, TimeBasis
-from verify.motion import EndState, Ledger, Motion, Statistics
-from verify.moving_surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
-from verify.request import STEPS_PER_PERIOD, Envelope, Request, requested
+from verify.motion.carried import begin, coupling_on, slide, steady_field, times_of
+from verify.motion.contact import Coupling
+from verify.motion.forcing import check_no_resonance
+from verify.motion.margins import margins_of
+from verify.motion.request import STEPS_PER_PERIOD, Envelope, Request, requested
+from verify.motion.result import EndState, Ledger, Motion, Statistics
+from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
 from verify.slider import Slider
 
 CLOSED_FORM_ROWS = 2000
@@ -169,6 +169,6 @@ def _closed_ledger(request: Request, stages: list[Stage], basis: TimeBasis | Non
     """The books of a beam alone from rest; a steady beam has no energy to gain, a continued run is not booked."""
     if basis is None or not request.accounts or request.before is not None:
         return None
-    from verify.energy import driven_ledger
+    from verify.motion.energy import driven_ledger
 
     return driven_ledger(stages, basis, z)

@@ -2,9 +2,9 @@
 
 import msgspec
 
-from verify.contact import Coupling, Margins
 from verify.errors import InputError
 from verify.models.time_basis import Array
+from verify.motion.contact import Coupling, Margins
 from verify.slider import Slider
 
 

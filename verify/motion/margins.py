@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from verify.contact import Margins
-from verify.moving_surface import Stage
-from verify.request import Request
+from verify.motion.contact import Margins
+from verify.motion.request import Request
+from verify.motion.surface import Stage
+from verify.motion.validity import axial_inertia_size, discretisation, model_form
 from verify.slider import GRAVITY
-from verify.validity import axial_inertia_size, discretisation, model_form
 
 
 def margins_of(request: Request, stage: Stage, fall: float | None = None) -> Margins:

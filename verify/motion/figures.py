@@ -8,7 +8,7 @@ import msgspec
 if TYPE_CHECKING:
     from verify.chain_slider import ChainRide
     from verify.models.time_basis import Array
-    from verify.motion import Motion
+    from verify.motion.result import Motion
     from verify.scene import Scene
     from verify.slider import Slider
 

@@ -7,7 +7,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.models.time_basis import Array
-from verify.moving_surface import Stage, cut, free_at
+from verify.motion.surface import Stage, cut, free_at
 
 UNSEEN = 1e-4
 """Of the surface's speed, rms: what the steps of a run may miss of it."""

@@ -5,14 +5,14 @@ from math import isfinite
 import numpy as np
 
 from verify.beam import Beam, check_number
-from verify.contact import law_entries
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
-from verify.forcing import CONSTANT
 from verify.models.time_basis import Array
-from verify.moving_surface import ANALYTIC_DEGREE, NO_MODES, Stage
+from verify.motion.contact import law_entries
+from verify.motion.forcing import CONSTANT
+from verify.motion.stepping import Sliding, run_stages
+from verify.motion.surface import ANALYTIC_DEGREE, NO_MODES, Stage
 from verify.slider import Slider
-from verify.slider_run import Sliding, run_stages
 
 STEPS = 1024
 """Of one period."""

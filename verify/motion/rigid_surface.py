@@ -28,7 +28,7 @@ def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Array:
 
 def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
     """Speed that tanh friction leaves of `speed` after `time` on a surface at rest, m/s."""
-    from verify.contact_kernels import slide_on_belt
+    from verify.motion.kernels import slide_on_belt
 
     state = np.array([0.0, speed, 0.0])
     slide_on_belt(STEPS, time / STEPS, _law(False, mu * gravity, 0.0, slope), 0.0, 0.0, 0.0, state, np.zeros((0, 3)))
@@ -37,7 +37,7 @@ def free_decay(mu: float, slope: float, speed: float, time: float, gravity: floa
 
 def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) -> float:
     """Speed at which a slider under the constant acceleration `pull` creeps in the end, m/s. Raises InputError."""
-    from verify.contact_kernels import slide_on_belt
+    from verify.motion.kernels import slide_on_belt
 
     if not abs(pull) <= HELD * mu * gravity:
         raise InputError(f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull")
@@ -57,7 +57,7 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
 
     Raises InputError where it does not stick and slip.
     """
-    from verify.contact_kernels import SLIPS, STICKS, slide_on_belt
+    from verify.motion.kernels import SLIPS, STICKS, slide_on_belt
 
     if kinetic >= static:
         raise InputError(
@@ -86,7 +86,7 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
 
 def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
     """Amplitude that a spring-mass oscillator on a floor with Coulomb friction `force` loses in a cycle, metres."""
-    from verify.contact_kernels import slide_on_belt
+    from verify.motion.kernels import slide_on_belt
 
     period = 2.0 * pi * sqrt(mass / stiffness)
     start = 12.5 * force / stiffness

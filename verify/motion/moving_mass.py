@@ -9,7 +9,7 @@ from verify.models.fields import RESONANCE
 from verify.models.time_basis import Array, ComplexArray, TimeBasis
 
 if TYPE_CHECKING:
-    from verify.moving_surface import Stage
+    from verify.motion.surface import Stage
     from verify.slider import Slider
 
 PASSES = 4

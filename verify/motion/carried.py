@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 
 from verify.beam import PointForce
-from verify.contact import Coupling, coupling_of, law_entries
 from verify.errors import InputError
-from verify.excited import gripped_step, longest_step, missed, speeds, stepped
-from verify.margins import margins_of
 from verify.models.time_basis import Array, TimeBasis
-from verify.motion import EndState, Ledger, Motion, Statistics
-from verify.moving_mass import carried_along, receptance, weighed_down
-from verify.moving_surface import Stage
+from verify.motion.contact import Coupling, coupling_of, law_entries
+from verify.motion.margins import margins_of
+from verify.motion.moving_mass import carried_along, receptance, weighed_down
+from verify.motion.request import MOST_STEPS, Request
+from verify.motion.result import EndState, Ledger, Motion, Statistics
+from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
+from verify.motion.stepping import Sliding, run_stages, slider_seconds
+from verify.motion.surface import Stage
 from verify.patience import check_work
-from verify.request import MOST_STEPS, Request
 from verify.slider import Slider
-from verify.slider_run import Sliding, run_stages, slider_seconds
 
 
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:
