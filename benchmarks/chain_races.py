@@ -18,11 +18,11 @@ from scipy.linalg import eigh
 
 from benchmarks.peers.case import Array, Case, Run, matrices
 from verify.beam import Beam, PointForce
-from verify.chain_dynamics import at_rest, flatten, workspace
-from verify.chain_kernels import accelerate
-from verify.chain_modal import linear_deflection, modal_basis, simulate_modal
-from verify.chain_motion import simulate, step_limit
-from verify.chain_system import ChainSystem, build_system
+from verify.chain.dynamics import at_rest, flatten, workspace
+from verify.chain.kernels import accelerate
+from verify.chain.splitting import linear_deflection, modal_basis, simulate_modal
+from verify.chain.stepping import simulate, step_limit
+from verify.chain.system import ChainSystem, build_system
 from verify.timing import interleaved_medians
 
 END, SAMPLES, WANTED = 2e-3, 200, 1e-3

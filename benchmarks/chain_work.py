@@ -22,9 +22,9 @@ from scipy.interpolate import CubicSpline
 
 from benchmarks.chain_races import END, MODES, SAMPLES, case_of, converged, error, fixed_steps, system_of, timed
 from benchmarks.peers.case import Array, Case, Run
-from verify.chain_dynamics import at_rest
-from verify.chain_modal import ModalBasis, modal_basis, simulate_modal
-from verify.chain_motion import simulate, step_limit
+from verify.chain.dynamics import at_rest
+from verify.chain.splitting import ModalBasis, modal_basis, simulate_modal
+from verify.chain.stepping import simulate, step_limit
 
 FORCE = 10.0
 BAND, WIDTH = 5, 16

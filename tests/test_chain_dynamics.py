@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.special import jn_zeros
 
 from verify.beam import Beam, PointForce
-from verify.chain_dynamics import (
+from verify.chain.dynamics import (
     accelerations,
     at_rest,
     choose_pivots,
@@ -24,8 +24,8 @@ from verify.chain_dynamics import (
     project,
     workspace,
 )
-from verify.chain_statics import solve_static
-from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.chain.statics import solve_static
+from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain, chain_pencil, mass_matrix
@@ -123,7 +123,7 @@ def test_the_recursion_holds_for_any_chain(seed, n, roller, axial):
 
 def test_an_evaluation_costs_in_proportion_to_the_links():
     """Side by side: twenty times the links may cost at most 20^1.1 of the time, and an allowance for noise."""
-    from verify import chain_kernels as kernels
+    from verify.chain import kernels
 
     def seconds(n):
         system = build_system(beam(), n)

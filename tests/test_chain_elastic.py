@@ -9,11 +9,11 @@ from test_chain_dynamics import beam, odd_chain
 from test_chain_motion import driven, rms
 
 from verify.beam import Section
-from verify.chain_dynamics import at_rest
-from verify.chain_elastic import elastic_step_limit, simulate_elastic
-from verify.chain_modal import modal_basis, simulate_linear
-from verify.chain_motion import simulate
-from verify.chain_system import Actuator, LinkLoad, Rotation, axial_stiffness, build_system
+from verify.chain.dynamics import at_rest
+from verify.chain.splitting import modal_basis, simulate_linear
+from verify.chain.stepping import simulate
+from verify.chain.stretching import elastic_step_limit, simulate_elastic
+from verify.chain.system import Actuator, LinkLoad, Rotation, axial_stiffness, build_system
 from verify.errors import InputError
 
 EA = beam().youngs_modulus * beam().area

@@ -7,13 +7,13 @@ import pytest
 from scipy.linalg import eigh
 
 from verify.beam import Beam
-from verify.chain_dynamics import accelerations, at_rest, linearise
-from verify.chain_linear import Linearisation
-from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, simulate_modal
-from verify.chain_motion import simulate
-from verify.chain_statics import solve_static
-from verify.chain_studies import UNIT_CANTILEVER, turning_frequency
-from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.chain.dynamics import accelerations, at_rest, linearise
+from verify.chain.problems import UNIT_CANTILEVER, turning_frequency
+from verify.chain.small_motion import Linearisation
+from verify.chain.splitting import linear_deflection, modal_basis, simulate_linear, simulate_modal
+from verify.chain.statics import solve_static
+from verify.chain.stepping import simulate
+from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
 
 FLAPPING = {

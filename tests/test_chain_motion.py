@@ -8,13 +8,13 @@ from chain_reference import by_multipliers, woinowsky_krieger
 from scipy.integrate import solve_ivp
 from test_chain_dynamics import beam, odd_chain, some_state
 
-from verify import chain_kernels as kernels
-from verify import chain_motion
 from verify.beam import PointForce
-from verify.chain_dynamics import at_rest, energies, linearise, positions, project
-from verify.chain_modal import linear_deflection, modal_basis, simulate_linear, simulate_modal
-from verify.chain_motion import simulate, step_limit
-from verify.chain_system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.chain import kernels
+from verify.chain import stepping as chain_motion
+from verify.chain.dynamics import at_rest, energies, linearise, positions, project
+from verify.chain.splitting import linear_deflection, modal_basis, simulate_linear, simulate_modal
+from verify.chain.stepping import simulate, step_limit
+from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.errors import InputError
 from verify.motion.validity import axial_inertia_size
 from verify.segments import linear as segment_model
@@ -521,7 +521,7 @@ def test_places_off_the_chain_are_refused():
 
 
 def test_a_constant_end_moment_bends_a_damped_cantilever_to_its_equilibrium():
-    from verify.chain_statics import solve_static
+    from verify.chain.statics import solve_static
 
     system = build_system(beam("clamped", "free"), 5, joint_dashpot=2e-2)
     system = replace(system, loads=(LinkLoad(link=5, at=0.0, moment=0.5),))

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from verify.beam import PointForce
-from verify.chain_dynamics import at_rest
-from verify.chain_modal import modal_basis, simulate_linear
-from verify.chain_motion import simulate as simulate_chain
-from verify.chain_slider import _reading, half_steps, ride
-from verify.chain_system import build_system
+from verify.chain.dynamics import at_rest
+from verify.chain.ride import _reading, half_steps, ride
+from verify.chain.splitting import modal_basis, simulate_linear
+from verify.chain.stepping import simulate as simulate_chain
+from verify.chain.system import build_system
 from verify.errors import InputError
 from verify.motion.simulate import simulate
 from verify.slider import Slider

@@ -7,20 +7,14 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from verify import (
-    axial_study,
-    chain_dynamics,
-    chain_kernels,
-    chain_modal,
-    chain_statics,
-    chain_studies,
-    chain_system,
-    motions,
-    operating_point,
-    travelling_wave,
-    waves,
-)
+from verify import axial_study, motions, operating_point, travelling_wave, waves
 from verify.beam import Beam
+from verify.chain import dynamics as chain_dynamics
+from verify.chain import kernels as chain_kernels
+from verify.chain import problems as chain_studies
+from verify.chain import splitting as chain_modal
+from verify.chain import statics as chain_statics
+from verify.chain import system as chain_system
 from verify.checked import checked
 from verify.elements import hermite as fem_beam
 from verify.elements import in_time as fem_motion

@@ -6,10 +6,10 @@ from bead_reference import ChainCurve, PinnedBeam, mean_speed
 from msgspec.structs import replace
 
 from verify import load_scene
-from verify.chain_elastic import simulate_elastic
+from verify.chain.ride import half_steps, ride
+from verify.chain.stretching import simulate_elastic
+from verify.chain.system import build_system
 from verify.chain_readings import Chains
-from verify.chain_slider import half_steps, ride
-from verify.chain_system import build_system
 from verify.errors import InputError
 from verify.motion.figures import mean
 from verify.readings import chain_reading, reading, readings_study

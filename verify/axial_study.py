@@ -15,13 +15,13 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.chain_dynamics import at_rest
-from verify.chain_elastic import simulate_elastic
-from verify.chain_modal import linear_deflection, modal_basis
-from verify.chain_motion import ChainMotion
-from verify.chain_studies import Progress, transient, unheard
-from verify.chain_system import axial_stiffness, build_system
-from verify.chain_work import MOST, check_kept, check_modes_of
+from verify.chain.dynamics import at_rest
+from verify.chain.problems import Progress, transient, unheard
+from verify.chain.splitting import linear_deflection, modal_basis
+from verify.chain.stepping import ChainMotion
+from verify.chain.stretching import simulate_elastic
+from verify.chain.system import axial_stiffness, build_system
+from verify.chain.work import MOST, check_kept, check_modes_of
 from verify.errors import InputError
 from verify.models.division import Array
 from verify.motion.simulate import simulate

@@ -117,37 +117,37 @@ class FromRest(Chained, frozen=True, kw_only=True):
 
 
 def _cantilever_tip(a: TipUnderLoad, scene: "Scene", bench: Workbench) -> float:
-    from verify import chain_studies
+    from verify.chain import problems as chain_studies
 
     return float(getattr(chain_studies.cantilever_tip(a.load, a.links, a.wall), a.component))
 
 
 def _rollup_gap(a: RolledUp, scene: "Scene", bench: Workbench) -> float:
-    from verify import chain_studies
+    from verify.chain import problems as chain_studies
 
     return chain_studies.rollup_gap(a.links, a.wall)
 
 
 def _hanging_frequency(a: Hanging, scene: "Scene", bench: Workbench) -> float:
-    from verify import chain_studies
+    from verify.chain import problems as chain_studies
 
     return chain_studies.hanging_frequency(a.mode, a.links)
 
 
 def _turning_frequency(a: Turning, scene: "Scene", bench: Workbench) -> float:
-    from verify import chain_studies
+    from verify.chain import problems as chain_studies
 
     return chain_studies.turning_frequency(a.mode, a.links, a.speed, a.wall)
 
 
 def _large_amplitude_frequency(a: LargeAmplitude, scene: "Scene", bench: Workbench) -> float:
-    from verify import chain_studies
+    from verify.chain import problems as chain_studies
 
     return chain_studies.large_amplitude_frequency(scene.beam, a.amplitude, a.links, bench.tell)
 
 
 def _energy_drift(a: FreeMotion, scene: "Scene", bench: Workbench) -> float:
-    from verify import chain_studies
+    from verify.chain import problems as chain_studies
 
     return chain_studies.energy_drift(
         scene.beam, a.links, a.amplitude, a.periods, a.step, a.tolerance or 1e-8, bench.tell
@@ -157,8 +157,8 @@ def _energy_drift(a: FreeMotion, scene: "Scene", bench: Workbench) -> float:
 def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> float:
     from msgspec.structs import replace
 
-    from verify import chain_studies
     from verify.axial_study import point_forces
+    from verify.chain import problems as chain_studies
 
     forces = point_forces(scene, "chain.transient_deflection")
     assert scene.drive is not None
@@ -197,7 +197,7 @@ def _nothing(a: Any, scene: "Scene") -> tuple[()]:
 
 def _no_modes(a: Any, scene: "Scene") -> tuple[()]:
     """The same, for a figure of the scene's own beam. Raises InputError for a beam that is no nonlinear chain."""
-    from verify.chain_system import check_buildable
+    from verify.chain.system import check_buildable
 
     check_buildable(scene.beam)
     return ()

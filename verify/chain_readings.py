@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec.structs import replace
 
-from verify.chain_dynamics import at_rest
-from verify.chain_motion import ChainMotion, simulate
-from verify.chain_slider import ChainRide, half_steps, ride
-from verify.chain_system import build_system
+from verify.chain.dynamics import at_rest
+from verify.chain.ride import ChainRide, half_steps, ride
+from verify.chain.stepping import ChainMotion, simulate
+from verify.chain.system import build_system
 from verify.errors import InputError
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from verify.motion.result import Motion
 from verify.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
 
 if TYPE_CHECKING:
-    from verify.chain_slider import ChainRide
+    from verify.chain.ride import ChainRide
     from verify.scene import Scene
 
 MOST_SAMPLES = 100_000

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 if TYPE_CHECKING:
-    from verify.chain_slider import ChainRide
+    from verify.chain.ride import ChainRide
     from verify.models.time_basis import Array
     from verify.motion.result import Motion
     from verify.scene import Scene

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from verify.chain_system import ChainSystem
+from verify.chain.system import ChainSystem
 from verify.errors import InputError
 from verify.models.division import Array
 from verify.models.eigen import lowest

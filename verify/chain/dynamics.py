@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verify import chain_kernels as kernels
-from verify.chain_linear import Linearisation, choose_pivots
-from verify.chain_statics import forces_at, gyroscopic, mass_matrix
-from verify.chain_system import ChainState, ChainSystem, circular, held_points
+from verify.chain import kernels
+from verify.chain.small_motion import Linearisation, choose_pivots
+from verify.chain.statics import forces_at, gyroscopic, mass_matrix
+from verify.chain.system import ChainState, ChainSystem, circular, held_points
 from verify.errors import InputError
 from verify.models.division import Array
 

@@ -7,12 +7,12 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.chain_dynamics import at_rest, linearise, positions
-from verify.chain_modal import modal_basis, simulate_linear, simulate_modal
-from verify.chain_motion import ChainMotion, simulate
-from verify.chain_statics import solve_static
-from verify.chain_system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
-from verify.chain_work import MOST, STATIC_LINKS, check_links, check_modes_of
+from verify.chain.dynamics import at_rest, linearise, positions
+from verify.chain.splitting import modal_basis, simulate_linear, simulate_modal
+from verify.chain.statics import solve_static
+from verify.chain.stepping import ChainMotion, simulate
+from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.chain.work import MOST, STATIC_LINKS, check_links, check_modes_of
 from verify.errors import InputError
 from verify.segments.links import link_inertia
 from verify.segments.walls import Wall

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from verify import elastic_kernels as kernels
 from verify.beam import check_number
-from verify.chain_system import ChainSystem, circular, link_at
-from verify.chain_work import PER_STRETCHING_STEP, fixed_steps, refuse_work
+from verify.chain import stretching_kernels as kernels
+from verify.chain.system import ChainSystem, circular, link_at
+from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.errors import InputError
 from verify.models.division import Array
 

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from verify.beam import Beam, check_number
-from verify.chain_elastic import ElasticMotion
-from verify.chain_motion import ChainMotion
+from verify.chain.stepping import ChainMotion
+from verify.chain.stretching import ElasticMotion
 from verify.errors import InputError
 from verify.models.division import Array
 from verify.motion.contact import law_entries

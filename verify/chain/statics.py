@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.chain_system import ChainState, ChainSystem, held_points
+from verify.chain.system import ChainState, ChainSystem, held_points
 from verify.errors import InputError
 from verify.models.division import Array
 

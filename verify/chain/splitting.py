@@ -17,13 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from verify import chain_kernels as kernels
 from verify.beam import check_number
-from verify.chain_dynamics import at_rest, flatten, linearise, project, workspace
-from verify.chain_modes import lowest_modes
-from verify.chain_motion import ChainMotion, Statistics, checked_times, how_started
-from verify.chain_system import ChainState, ChainSystem, circular, link_at
-from verify.chain_work import modal_work, refuse_work
+from verify.chain import kernels
+from verify.chain.dynamics import at_rest, flatten, linearise, project, workspace
+from verify.chain.modes import lowest_modes
+from verify.chain.stepping import ChainMotion, Statistics, checked_times, how_started
+from verify.chain.system import ChainState, ChainSystem, circular, link_at
+from verify.chain.work import modal_work, refuse_work
 from verify.errors import InputError
 from verify.models.division import Array
 

@@ -8,9 +8,9 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from verify import chain_kernels as kernels
 from verify.beam import check_number
-from verify.chain_dynamics import (
+from verify.chain import kernels
+from verify.chain.dynamics import (
     PIVOT_LOSS,
     flatten,
     held_rows,
@@ -18,9 +18,9 @@ from verify.chain_dynamics import (
     project,
     workspace,
 )
-from verify.chain_linear import choose_pivots
-from verify.chain_system import ChainState, ChainSystem, link_at
-from verify.chain_work import fixed_steps, per_evaluation, refuse_work
+from verify.chain.small_motion import choose_pivots
+from verify.chain.system import ChainState, ChainSystem, link_at
+from verify.chain.work import fixed_steps, per_evaluation, refuse_work
 from verify.errors import InputError, near_name
 from verify.models.division import Array
 
