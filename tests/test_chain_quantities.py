@@ -11,7 +11,7 @@ from verify.gates import judge
 from verify.plan import plan_scene
 from verify.quantities import arguments_of, evaluate, quantity
 from verify.run import workbench_for
-from verify.scene import Gate, MotionAsk, load_scene
+from verify.scenes.scene import Gate, MotionAsk, load_scene
 
 CHAIN = load_scene("chain")
 

@@ -10,13 +10,13 @@ from msgspec.structs import replace
 
 import verify
 from verify import load_scene, run_scene
-from verify.checked import checked
 from verify.claim_words import answer_in_words, found_words
-from verify.claims import Claim
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.plan import plan_scene
 from verify.report.html import page
+from verify.scenes.checked import checked
+from verify.scenes.claims import Claim
 from verify.work_precision import Comparison, NotCompared, Work, WorkRow, at_equal_error, work_of
 
 STRANGER = """

@@ -13,11 +13,11 @@ import msgspec
 import pytest
 from msgspec.structs import replace
 
-from verify.checked import checked
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.quantities import QUANTITIES, arguments_of, evaluate
-from verify.scene import Scene
+from verify.scenes.checked import checked
+from verify.scenes.scene import Scene
 
 FORCES = [
     {"position": 0.0411, "measured_from": "left", "amplitude": 1.3, "phase_deg": 17.0},

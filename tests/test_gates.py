@@ -15,7 +15,6 @@ from verify.chain import problems as chain_studies
 from verify.chain import splitting as chain_modal
 from verify.chain import statics as chain_statics
 from verify.chain import system as chain_system
-from verify.checked import checked
 from verify.elements import hermite as fem_beam
 from verify.elements import in_time as fem_motion
 from verify.errors import InputError
@@ -33,7 +32,8 @@ from verify.motion.result import kernels as contact_kernels
 from verify.plan import asks_of
 from verify.quantities import QUANTITIES, Quantity
 from verify.run import workbench_for
-from verify.scene import Complex, Gate, load_scene, packaged_scenes
+from verify.scenes.checked import checked
+from verify.scenes.scene import Complex, Gate, load_scene, packaged_scenes
 from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 from verify.segments import links as chain

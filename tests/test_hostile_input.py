@@ -13,7 +13,6 @@ from msgspec.structs import replace
 
 from verify import gates, patience
 from verify.beam import Beam, PointForce, Section, check_frequency
-from verify.checked import checked
 from verify.cli import status_of
 from verify.elements import hermite as fem_beam
 from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
@@ -23,7 +22,8 @@ from verify.judge.workbench import Workbench
 from verify.models import eigen
 from verify.motion.result import rigid_surface
 from verify.quantities import QUANTITIES, in_words
-from verify.scene import Gate, literal, load_scene
+from verify.scenes.checked import checked
+from verify.scenes.scene import Gate, literal, load_scene
 from verify.segments import linear as segment_model
 from verify.words import figure, number
 

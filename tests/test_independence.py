@@ -22,7 +22,7 @@ import verify
 from verify.gates import judge
 from verify.motion.kernels import HALF
 from verify.run import workbench_for
-from verify.scene import Complex, load_scene
+from verify.scenes.scene import Complex, load_scene
 
 L, WIDTH, H, E, RHO, HERTZ, D = 0.5, 0.02, 0.001, 70e9, 2700.0, 4276.0, 0.0116
 """The paper's beam, as its scenes state it."""

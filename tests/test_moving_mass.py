@@ -11,7 +11,7 @@ from verify.motion.kernels import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
 from verify.run import workbench_for
-from verify.scene import load_scene
+from verify.scenes.scene import load_scene
 from verify.slider import Slider
 from verify.waves import solve_by_model
 

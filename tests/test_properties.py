@@ -148,7 +148,7 @@ def test_elements_lie_above_the_exact_stepped_frequencies_and_come_down_to_them(
 def test_any_arguments_give_a_figure_or_a_sentence(arguments, name, beam):
     from verify.judge.workbench import Workbench
     from verify.quantities import arguments_of, evaluate, quantity
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
     found = quantity(name)
     try:
@@ -195,7 +195,7 @@ def wave_figure(name, arguments, beam, forces):
     """A figure of two forces or none at all: None where a sentence refused it."""
     from verify.judge.workbench import Workbench
     from verify.quantities import arguments_of, evaluate, quantity
-    from verify.scene import Drive, Scene, SceneForce
+    from verify.scenes.scene import Drive, Scene, SceneForce
 
     found = quantity(name)
     drive = Drive(
@@ -274,7 +274,7 @@ def test_any_sensible_wave_is_a_figure_or_a_sentence(asked, ends):
 def test_any_sweep_gives_a_map_or_a_sentence(asked, ends, sweeps):
     from verify.design_map import design_map, parse_axis
     from verify.judge.workbench import Workbench
-    from verify.scene import Drive, Scene, SceneForce
+    from verify.scenes.scene import Drive, Scene, SceneForce
 
     beam = replace(BASE, supports=ends)
     far = SceneForce(position=0.03, measured_from="right", phase_deg=90.0)

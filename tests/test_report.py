@@ -230,7 +230,7 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
 def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(titanium_strip):
     from verify.judge.workbench import Workbench
     from verify.report.charts import mean_in_words
-    from verify.scene import Convergence
+    from verify.scenes.scene import Convergence
     from verify.studies import convergence
 
     bench = Workbench(titanium_strip)

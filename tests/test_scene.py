@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from verify import load_scene
 from verify.errors import InputError
-from verify.scene import STARTER, literal, packaged_scenes, split_assignment
+from verify.scenes.scene import STARTER, literal, packaged_scenes, split_assignment
 
 BEAM = """
 [beam]
@@ -212,8 +212,8 @@ TREES = st.recursive(
     )
 )
 def test_no_tree_of_values_gives_anything_but_a_scene_or_a_sentence(tree):
-    from verify.checked import checked
-    from verify.scene import Scene
+    from verify.scenes.checked import checked
+    from verify.scenes.scene import Scene
 
     try:
         checked(tree, Scene)
@@ -240,8 +240,8 @@ WAVES = st.fixed_dictionaries(
 @settings(max_examples=200, deadline=None)
 @given(WAVES, st.dictionaries(st.sampled_from(["frequency_hz", "kind", "force"]), TREES))
 def test_no_wave_table_gives_anything_but_a_scene_or_a_sentence(wave, drive):
-    from verify.checked import checked
-    from verify.scene import Scene
+    from verify.scenes.checked import checked
+    from verify.scenes.scene import Scene
 
     beam = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470}
     two = {"frequency_hz": 433.0, "force": [{"position": 0.02}, {"position": 0.7}]}

@@ -8,7 +8,7 @@ from verify.errors import InputError
 from verify.exact import error_laws
 from verify.judge import sizing
 from verify.judge.workbench import Workbench, model_module
-from verify.scene import load_scene
+from verify.scenes.scene import load_scene
 
 
 def errors_of(bench, model, mode, sizes, settings=()):

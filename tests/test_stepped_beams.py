@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes
 from verify.models.division import divide, part_counts
-from verify.scene import load_scene
+from verify.scenes.scene import load_scene
 from verify.segments import linear as segment_model
 from verify.segments import links as chain
 

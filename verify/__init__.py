@@ -6,7 +6,7 @@ if TYPE_CHECKING:
     from verify.beam import Beam, PointForce
     from verify.errors import InputError
     from verify.run import run_scene
-    from verify.scene import load_scene
+    from verify.scenes.scene import load_scene
     from verify.slider import Slider
 
 __all__ = ["Beam", "InputError", "PointForce", "Slider", "__version__", "load_scene", "run_scene"]
@@ -17,7 +17,7 @@ _HOME = {
     "InputError": "verify.errors",
     "PointForce": "verify.beam",
     "Slider": "verify.slider",
-    "load_scene": "verify.scene",
+    "load_scene": "verify.scenes.scene",
     "run_scene": "verify.run",
 }
 

@@ -28,7 +28,7 @@ from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 Links = Literal["full", "transverse", "elastic"]
 """Rigid links; rigid links without inertia along x; links of the beam's own EA / l."""

@@ -9,7 +9,7 @@ from verify.judge.workbench import Workbench
 from verify.quantity_types import Arguments, Mode, Quantity, Wall
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 Links = Annotated[int, Meta(ge=1, description="links of the chain; segments and count mean the same")]
 Load = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]

@@ -13,7 +13,7 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.beam import PointForce
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 KEPT = 40
 """Chains remembered; one of 49 links over a millisecond takes a megabyte."""

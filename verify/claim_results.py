@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from verify.claims import READ, Claim
 from verify.errors import InputError
 from verify.quantities import arguments_of, evaluate, needs_of, quantity
+from verify.scenes.claims import READ, Claim
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Need, Workbench
     from verify.motion_study import MotionStudy
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 
 class ClaimResult(msgspec.Struct, frozen=True, kw_only=True):

@@ -15,7 +15,7 @@ from verify import __version__
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 PERCENT = 100
 BAD_INPUT, GATE_FAILED, INTERRUPTED, NO_READER = 2, 1, 130, 141
@@ -153,7 +153,7 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
     """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
     from verify import quantities
     from verify.judge.workbench import Workbench
-    from verify.scene import given_arguments
+    from verify.scenes.scene import given_arguments
 
     found = quantities.quantity(quantity)
     given = given_arguments(arguments)
@@ -239,7 +239,7 @@ def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
 @_as_json
 def scenes(as_json: bool) -> None:
     """List the packaged scenes."""
-    from verify.scene import load_scene, packaged_scenes
+    from verify.scenes.scene import load_scene, packaged_scenes
 
     found = [load_scene(name) for name in packaged_scenes()]
     if as_json:
@@ -257,7 +257,7 @@ def scenes(as_json: bool) -> None:
 def init(path: str, force: bool, as_json: bool) -> None:
     """Write a commented scene to PATH to start from."""
     from verify.files import exists, write_whole
-    from verify.scene import STARTER
+    from verify.scenes.scene import STARTER
 
     if path.startswith("--"):
         raise InputError(f"path = {path!r} looks like an option: write it as './{path}'")
@@ -271,7 +271,7 @@ def init(path: str, force: bool, as_json: bool) -> None:
 
 
 def _load(scene: str, overrides: tuple[str, ...]) -> "Scene":
-    from verify.scene import load_scene
+    from verify.scenes.scene import load_scene
 
     return load_scene(scene, overrides)
 

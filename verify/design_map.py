@@ -22,7 +22,7 @@ from verify.unit_waves import FAST, Gaps, UnitDrive, superposed
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 AXES = {
     "frequency_hz": "4000:4600:241",

@@ -9,11 +9,11 @@ import msgspec
 from verify.errors import InputError
 from verify.quantities import arguments_of, as_plain, evaluate, in_words, needs_of, quantity
 from verify.quantity_types import Quantity
-from verify.scene import Complex
+from verify.scenes.scene import Complex
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Need, Workbench
-    from verify.scene import Gate, Scene
+    from verify.scenes.scene import Gate, Scene
 
 
 class Band(msgspec.Struct, frozen=True, kw_only=True):

@@ -20,7 +20,7 @@ from verify.quantity_types import (
 )
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 
 def _solved(model: str, count: int | None, n_modes: int, settings: Settings = ()) -> tuple[Need, ...]:

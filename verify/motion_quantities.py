@@ -20,7 +20,7 @@ from verify.motion_arguments import (
 from verify.quantity_types import Quantity
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 
 def _free_decay(a: FreeDecay, scene: "Scene", bench: Workbench) -> float:

@@ -7,14 +7,14 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.claims import asks_for_turned
 from verify.motion.figures import RUN_FIGURES, Condition, condition_of
 from verify.motion.result import Motion
+from verify.scenes.claims import asks_for_turned
 from verify.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
 
 if TYPE_CHECKING:
     from verify.chain.ride import ChainRide
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 MOST_SAMPLES = 100_000
 DRIFT_S = 0.2

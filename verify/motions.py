@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from verify.beam import PointForce
     from verify.judge.workbench import Workbench
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 MODES = 400
 """Of the exact beam from rest, unless asked for otherwise."""

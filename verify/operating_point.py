@@ -14,7 +14,7 @@ from verify.unit_waves import Gaps, UnitDrive, superposed
 from verify.waves import drive_forces, drive_frequency, drive_kind, driven_beam, quietest
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 
 class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.scene import literal
+from verify.scenes.scene import literal
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy

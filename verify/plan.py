@@ -10,7 +10,7 @@ from verify.judge.workbench import Key, Need, Settings, merged, model_module
 if TYPE_CHECKING:
     from verify.beam import Beam
     from verify.models.fields import HarmonicField
-    from verify.scene import AxialInertia, Scene, Wave
+    from verify.scenes.scene import AxialInertia, Scene, Wave
     from verify.slider import Slider
 
 CHAIN_IN_TIME = (

@@ -12,7 +12,7 @@ import pytest
 if TYPE_CHECKING:
     from verify.gates import GateResult
     from verify.judge.workbench import Workbench
-    from verify.scene import Gate, Scene
+    from verify.scenes.scene import Gate, Scene
 
 
 class GateFailedError(Exception):
@@ -36,7 +36,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile
 def _has_gates(path: Path) -> bool:
     """Whether a file found in a folder, not named, is a scene with gates; one that is no TOML is not ours."""
     from verify.errors import InputError
-    from verify.scene import read_toml
+    from verify.scenes.scene import read_toml
 
     try:
         data = read_toml(path)
@@ -52,7 +52,7 @@ class SceneFile(pytest.File):
         """One item for each gate. A scene that cannot be read is a collection error with its sentence."""
         from verify.errors import InputError
         from verify.run import workbench_for
-        from verify.scene import load_scene
+        from verify.scenes.scene import load_scene
 
         try:
             scene = load_scene(self.path)

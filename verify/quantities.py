@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 import msgspec
 
 from verify.chain_quantities import CHAIN_QUANTITIES
-from verify.checked import checked
 from verify.errors import InputError, near_name
 from verify.judge.workbench import Need, Workbench
 from verify.mode_quantities import MODE_QUANTITIES
 from verify.motion_quantities import MOTION_QUANTITIES
 from verify.quantity_types import Arguments, Quantity
+from verify.scenes.checked import checked
 from verify.wave_quantities import WAVE_QUANTITIES
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 QUANTITIES: dict[str, Quantity] = {
     q.name: q for q in (*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES, *CHAIN_QUANTITIES)

@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.judge.workbench import Need, Settings, Workbench
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]
 Size = Annotated[int, Meta(ge=1, description="segments or elements; the exact beam has none")]

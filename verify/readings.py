@@ -8,14 +8,14 @@ import msgspec
 from msgspec.structs import replace
 
 from verify.chain_readings import Chains
-from verify.claims import Claim, ReadingsAsk, asks_for_turned
 from verify.errors import InputError
 from verify.motion.figures import Condition, condition_of
 from verify.motion_study import every_step, figures_of, reversed_scene
+from verify.scenes.claims import Claim, ReadingsAsk, asks_for_turned
 from verify.work_precision import run_once
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 LISTS = ("kinematics", "normal", "soft_start_periods", "positions", "forces", "mu", "slope")
 """What is varied, the slowest first."""

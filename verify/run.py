@@ -10,7 +10,7 @@ import msgspec
 from verify.gates import GateResult, judge
 from verify.judge.workbench import Solve, Workbench
 from verify.plan import CHAIN_IN_TIME, STUDIES, asks_of
-from verify.scene import Scene, load_scene
+from verify.scenes.scene import Scene, load_scene
 
 if TYPE_CHECKING:
     from verify.axial_study import AxialStudy

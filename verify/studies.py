@@ -14,7 +14,7 @@ from verify.timing import interleaved_medians
 
 if TYPE_CHECKING:
     from verify.beam import Beam
-    from verify.scene import Convergence, Sensitivity, Spectrum
+    from verify.scenes.scene import Convergence, Sensitivity, Spectrum
 
 MODELS = ("segment", "fem")
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import msgspec
 
-from verify.checked import checked
 from verify.judge.workbench import Workbench
 from verify.plain import finite, flat_row, work_as_plain
-from verify.scene import Convergence, Counts, Scene, given_arguments, literal
+from verify.scenes.checked import checked
+from verify.scenes.scene import Convergence, Counts, Scene, given_arguments, literal
 
 Step = Callable[[str], None]
 

@@ -8,7 +8,7 @@ from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, Power,
 
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
     from verify.travelling_wave import WaveMeasures
 
 

@@ -17,7 +17,7 @@ from verify.waves import SEARCHED, check_fields, driven, measures, quietest_driv
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
-    from verify.scene import Scene, Wave
+    from verify.scenes.scene import Scene, Wave
 
 
 class Operation(msgspec.Struct, frozen=True, kw_only=True):

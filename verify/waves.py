@@ -21,7 +21,7 @@ from verify.wave_arguments import InWindow
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 SEARCHED = 70
 """Driven fields behind a best frequency: a grid of 41, the rest by Brent's method."""

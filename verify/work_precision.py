@@ -19,7 +19,7 @@ from verify.patience import check_work
 
 if TYPE_CHECKING:
     from verify.motion.result import Motion
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 ROUNDS = 7
 ORDER, ASTRAY = 4.0, 1.0

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from verify.chain.ride import ChainRide
     from verify.models.time_basis import Array
     from verify.motion.result import Motion
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
     from verify.slider import Slider
 
 MODELS = {"segment": "segments", "fem": "elements"}

@@ -7,13 +7,13 @@ import msgspec
 from msgspec import Meta
 
 from verify.beam import Beam, PointForce, check_frequency, check_number
-from verify.checked import checked
-from verify.claims import Claim, ReadingsAsk
 from verify.errors import InputError, near_name, shown
 from verify.files import exists
+from verify.scenes.checked import checked
+from verify.scenes.claims import Claim, ReadingsAsk
 from verify.slider import Slider
 
-PACKAGED = Path(__file__).parent / "scenes"
+PACKAGED = Path(__file__).parent
 STARTER = PACKAGED / "starter.toml"
 _LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
 

@@ -12,7 +12,7 @@ from verify.motion.figures import RUN_FIGURES
 from verify.slider import NormalChoice
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scenes.scene import Scene
 
 Sign = Literal["negative", "positive"]
 Read = Literal["stated", "figure", "follows"]
