@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from verify import axial_study, motions, operating_point, travelling_wave, waves
+from verify import axial_study, motions
 from verify.beam import Beam
 from verify.chain import dynamics as chain_dynamics
 from verify.chain import kernels as chain_kernels
@@ -38,6 +38,9 @@ from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 from verify.segments import links as chain
 from verify.segments import walls as chain_walls
+from verify.waves.driven import driven as waves
+from verify.waves.driven import measures as travelling_wave
+from verify.waves.driven import operating_point
 
 PAPER = load_scene("paper")
 

@@ -8,7 +8,6 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import SUPPORTS, PointForce
-from verify.drives import driven_field, held_units
 from verify.elements import hermite as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
@@ -18,6 +17,7 @@ from verify.models.fields import wavenumber
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain
 from verify.segments.loads import four_weights, joint_weights
+from verify.waves.imposed import driven_field, held_units
 
 FORCES = (PointForce(position=0.083, amplitude=0.7), PointForce(position=0.611, amplitude=1.3, phase_deg=63.0))
 X = np.array([0.0, 0.021, 0.083, 0.3333, 0.52, 0.7, 0.73])
@@ -201,7 +201,7 @@ def test_orders_of_loads_and_readings(titanium_strip, load, reading, expected):
 
 def test_raw_readings_of_49_links_are_wrong_by_their_known_amounts(paper_beam):
     """The reference sheet's figures at 4276 Hz in leading order: -mu^2/6, +mu^2/12 and -mu^4/180 of the axis ratio."""
-    from verify.travelling_wave import ellipse, surface_motion
+    from verify.waves.measures import ellipse, surface_motion
 
     forces = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=90.0))
     frequency = 4252.71  # the chain's own best, where its wave is pure

@@ -13,7 +13,7 @@ from verify.motion.surface import basis_of
 from verify.run import workbench_for
 from verify.scenes.scene import load_scene
 from verify.slider import Slider
-from verify.waves import solve_by_model
+from verify.waves.driven import solve_by_model
 
 HELD = Slider(mass=0.04, mu=0.3, slope=300.0, position=0.19, coupling="two-way")
 DURATION = 2.5e-3

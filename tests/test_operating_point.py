@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import travelling_wave
 from verify.beam import PointForce
-from verify.operating_point import Landscape
-from verify.waves import own_wavenumber, solve_by_model
+from verify.waves.driven import measures as travelling_wave
+from verify.waves.driven import own_wavenumber, solve_by_model
+from verify.waves.operating_point import Landscape
 
 WINDOW = (0.1825, 0.5475)
 """The middle half of 0.73 m."""

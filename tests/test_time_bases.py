@@ -185,7 +185,7 @@ def test_the_pieces_a_slider_sees_are_the_shapes(model, count, start):
             basis, FORCES, 2 * np.pi * FREQUENCY, 0.01, [Growth(Steps(1, 1e-4, 1), SMOOTH_STEP)], 0.0
         )[0]
     else:
-        from verify.waves import solve_by_model
+        from verify.waves.driven import solve_by_model
 
         stage = steady_stage(
             solve_by_model(model, beam, FORCES, FREQUENCY, count, {}), Steps(1, 1e-4, 1), 0.0, basis, 0.0

@@ -7,10 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import load_scene, travelling_wave
+from verify import load_scene
 from verify.beam import PointForce
 from verify.design_map import Axis, design_map, parse_axis
-from verify.drives import driven_field
 from verify.elements import hermite as fem_beam
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import closed_forms, error_laws
@@ -18,10 +17,13 @@ from verify.exact import modes as analytic_modes
 from verify.judge.workbench import Workbench
 from verify.models import intervals
 from verify.models.fields import HarmonicField, wavenumber
-from verify.operating_point import best_points, operating_points
 from verify.quantities import arguments_of, evaluate, quantity
 from verify.segments import linear as segment_model
-from verify.travelling_wave import (
+from verify.wave_study import motor_row
+from verify.waves.driven import measures as travelling_wave
+from verify.waves.driven import own_wavenumber, solve_by_model
+from verify.waves.imposed import driven_field
+from verify.waves.measures import (
     ellipse,
     fit_waves,
     fitted_wavenumber,
@@ -30,8 +32,7 @@ from verify.travelling_wave import (
     phasors,
     surface_motion,
 )
-from verify.wave_study import motor_row
-from verify.waves import own_wavenumber, solve_by_model
+from verify.waves.operating_point import best_points, operating_points
 
 PAPER = load_scene("paper")
 BEAM = PAPER.beam

@@ -17,8 +17,8 @@ from msgspec.structs import replace
 from verify.errors import InputError, NoFigureError, near_name
 from verify.exact.error_laws import PARTS
 from verify.models.fields import Array
-from verify.travelling_wave import middle_half
-from verify.unit_waves import FAST, Gaps, UnitDrive, superposed
+from verify.waves.measures import middle_half
+from verify.waves.unit_waves import FAST, Gaps, UnitDrive, superposed
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -121,7 +121,7 @@ def _whose(asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> str:
 
 
 def _superposed(found: Any, asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> DesignMap:
-    from verify.waves import drive_forces, drive_frequency, drive_kind, driven_beam
+    from verify.waves.driven import drive_forces, drive_frequency, drive_kind, driven_beam
 
     beam, forces = driven_beam(asked, scene), drive_forces(asked, scene)
     spans = {axis.name: np.array(axis.values) for axis in axes}
@@ -155,7 +155,7 @@ def _superposed(found: Any, asked: Any, axes: tuple[Axis, ...], scene: "Scene") 
 
 def _check_points(asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> None:
     """Raise InputError where the solves behind all points would take too long."""
-    from verify.waves import check_fields
+    from verify.waves.driven import check_fields
 
     counts = next((axis.values for axis in axes if axis.name == "count"), (asked.count,))
     others = prod(len(axis.values) for axis in axes if axis.name != "count")

@@ -55,7 +55,7 @@ def _decrement(a: Oscillator, scene: "Scene", bench: Workbench) -> float:
 def _terminal_speed(a: OnWave, scene: "Scene", bench: Workbench) -> float:
     from verify.motion.pure_wave import terminal_speed
     from verify.slider import Slider
-    from verify.waves import drive_frequency
+    from verify.waves.driven import drive_frequency
 
     slider = Slider(mass=1.0, mu=a.mu, slope=a.slope, kinematics=a.kinematics, gravity=a.gravity)
     return terminal_speed(scene.beam, slider, a.amplitude, drive_frequency(a, scene))

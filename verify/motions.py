@@ -12,7 +12,7 @@ from verify.motion.result import Motion
 from verify.motion.simulate import simulate
 from verify.motion_arguments import SliderInTime
 from verify.slider import Slider
-from verify.waves import drive_forces, drive_frequency, solve_by_model
+from verify.waves.driven import drive_forces, drive_frequency, solve_by_model
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,19 +9,19 @@ from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, Power,
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
-    from verify.travelling_wave import WaveMeasures
+    from verify.waves.measures import WaveMeasures
 
 
 def field_of(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> "HarmonicField":
     """The field that arguments describe. Raises InputError."""
-    from verify.waves import driven
+    from verify.waves.driven import driven
 
     return driven(a, scene, bench, count if count is not None else a.count)
 
 
 def measured(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> "WaveMeasures":
     """The wave measures that arguments describe. Raises InputError."""
-    from verify.waves import measures
+    from verify.waves.driven import measures
 
     return measures(field_of(a, scene, bench, count), a.window)
 
@@ -33,34 +33,34 @@ def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
 def _axis_ratio(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> float:
     if getattr(a, "x", None) is None:
         return measured(a, scene, bench, count).mean_axis_ratio
-    from verify.travelling_wave import ellipse, surface_motion
+    from verify.waves.measures import ellipse, surface_motion
 
     field = field_of(a, scene, bench, count)
     return float(ellipse(surface_motion(field.beam, field.slope(a.x)), field.deflection(a.x))[0][0])
 
 
 def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:
-    from verify.waves import power_imbalance
+    from verify.waves.driven import power_imbalance
 
     field = field_of(a, scene, bench)
     return power_imbalance(field, measured(a, scene, bench))
 
 
 def _best_frequency(a: BestFrequency, scene: "Scene", bench: Workbench) -> float:
-    from verify.waves import best_frequency
+    from verify.waves.driven import best_frequency
 
     return best_frequency(a, scene, bench)
 
 
 def _order(a: WaveOrder, scene: "Scene", bench: Workbench) -> float:
-    from verify.waves import wave_order
+    from verify.waves.driven import wave_order
 
     return wave_order(a, scene, bench)
 
 
 def _receptance(a: Receptance, scene: "Scene", bench: Workbench) -> complex:
-    from verify.unit_waves import receptance
-    from verify.waves import drive_frequency, driven_beam
+    from verify.waves.driven import drive_frequency, driven_beam
+    from verify.waves.unit_waves import receptance
 
     return receptance(a.model, driven_beam(a, scene), a.position, drive_frequency(a, scene), a.x, a.count)
 
@@ -69,7 +69,7 @@ def _sensitivity(name: str) -> Any:
     """One sensitivity of the operating point at which the scene drives."""
 
     def evaluate(a: Sensitivity, scene: "Scene", bench: Workbench) -> float:
-        from verify.operating_point import driven_point
+        from verify.waves.operating_point import driven_point
 
         return float(getattr(driven_point(a, scene), name))
 

@@ -38,7 +38,7 @@ def steady_field(request: Request, forces: tuple[PointForce, ...]) -> Any:
     """The steady field of the request's model and damping under these forces, `HarmonicField`. Raises InputError."""
     from msgspec.structs import replace
 
-    from verify.waves import solve_by_model
+    from verify.waves.driven import solve_by_model
 
     if request.model != "analytic" and request.count is None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {request.model}")

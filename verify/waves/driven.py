@@ -7,7 +7,6 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce, check_frequency
-from verify.drives import driven_field
 from verify.errors import InputError, ResonanceError
 from verify.exact.error_laws import check_carried, discrete_wavenumber
 from verify.judge.compare import observed_order, relative_error
@@ -16,8 +15,9 @@ from verify.models.eigen import solve_seconds
 from verify.models.fields import Array, HarmonicField, phasor
 from verify.models.search import Least, least_over
 from verify.patience import check_work
-from verify.travelling_wave import WaveMeasures, measure, middle_half, two_waves
 from verify.wave_arguments import InWindow
+from verify.waves.imposed import driven_field
+from verify.waves.measures import WaveMeasures, measure, middle_half, two_waves
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
-from verify.drives import held_units
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.exact.error_laws import discrete_wavenumber
 from verify.models.fields import Array, ComplexArray, unit_response, wavenumber
-from verify.travelling_wave import (
+from verify.waves.imposed import held_units
+from verify.waves.measures import (
     STANDING,
     STILL,
     check_window,
