@@ -14,7 +14,7 @@ from verify.exact.modes import solve_harmonic
 from verify.motion.validity import NONLINEAR, axial_inertia_size
 from verify.plain import run_as_plain
 from verify.plan import plan_scene
-from verify.quantities import arguments_of, evaluate, quantity
+from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.run import n_steps, workbench_for
 from verify.words import work_in_words
 

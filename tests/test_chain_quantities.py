@@ -9,7 +9,7 @@ from verify.beam import Section
 from verify.errors import InputError
 from verify.gates import judge
 from verify.plan import plan_scene
-from verify.quantities import arguments_of, evaluate, quantity
+from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.run import workbench_for
 from verify.scenes.scene import Gate, MotionAsk, load_scene
 

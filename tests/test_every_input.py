@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
-from verify.quantities import QUANTITIES, arguments_of, evaluate
+from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.scenes.checked import checked
 from verify.scenes.scene import Scene
 

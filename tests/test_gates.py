@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from verify import axial_study, motions
+from verify import axial_study
 from verify.beam import Beam
 from verify.chain import dynamics as chain_dynamics
 from verify.chain import kernels as chain_kernels
@@ -30,7 +30,8 @@ from verify.motion.result import carried, contact, forcing, pure_wave, request, 
 from verify.motion.result import figures as slider_figures
 from verify.motion.result import kernels as contact_kernels
 from verify.plan import asks_of
-from verify.quantities import QUANTITIES, Quantity
+from verify.quantities.catalogue import QUANTITIES, Quantity
+from verify.quantities.catalogue import simulated as motions
 from verify.run import workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import Complex, Gate, load_scene, packaged_scenes
@@ -163,7 +164,7 @@ def error_relative_to_the_computed_frequency_with_its_sign_lost(patch):
 def count_one_too_high(patch):
     from msgspec.structs import replace
 
-    from verify import quantities
+    from verify.quantities.catalogue import catalogue as quantities
 
     found = QUANTITIES["mode.count_needed"]
     wrong: Quantity = replace(found, evaluate=lambda *given: found.evaluate(*given) + 1)
@@ -1307,7 +1308,7 @@ def test_a_gate_without_a_reason_is_refused():
 
 def test_no_sentence_speaks_of_null_or_of_a_class():
     """Neither in the refusal of an argument nor in the list of quantities."""
-    from verify.quantities import arguments_of, described, quantity
+    from verify.quantities.catalogue import arguments_of, described, quantity
 
     for name in QUANTITIES:
         for key in ("count", "counts", "model", "mode", "x", "window", "error"):

@@ -21,7 +21,7 @@ from verify.judge.compare import observed_order, relative_error
 from verify.judge.workbench import Workbench
 from verify.models import eigen
 from verify.motion.result import rigid_surface
-from verify.quantities import QUANTITIES, in_words
+from verify.quantities.catalogue import QUANTITIES, in_words
 from verify.scenes.checked import checked
 from verify.scenes.scene import Gate, literal, load_scene
 from verify.segments import linear as segment_model

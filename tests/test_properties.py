@@ -11,7 +11,7 @@ from verify.elements import hermite as fem_beam
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts
-from verify.quantities import QUANTITIES
+from verify.quantities.catalogue import QUANTITIES
 from verify.segments import linear as segment_model
 from verify.segments import links as chain_of_links
 
@@ -147,7 +147,7 @@ def test_elements_lie_above_the_exact_stepped_frequencies_and_come_down_to_them(
 )
 def test_any_arguments_give_a_figure_or_a_sentence(arguments, name, beam):
     from verify.judge.workbench import Workbench
-    from verify.quantities import arguments_of, evaluate, quantity
+    from verify.quantities.catalogue import arguments_of, evaluate, quantity
     from verify.scenes.scene import Scene
 
     found = quantity(name)
@@ -194,7 +194,7 @@ WAVE_FIGURES = st.sampled_from(sorted(name for name in QUANTITIES if name.starts
 def wave_figure(name, arguments, beam, forces):
     """A figure of two forces or none at all: None where a sentence refused it."""
     from verify.judge.workbench import Workbench
-    from verify.quantities import arguments_of, evaluate, quantity
+    from verify.quantities.catalogue import arguments_of, evaluate, quantity
     from verify.scenes.scene import Drive, Scene, SceneForce
 
     found = quantity(name)

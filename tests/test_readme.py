@@ -15,7 +15,7 @@ import pytest
 
 from verify.gates import judge
 from verify.plain import run_as_plain
-from verify.quantities import QUANTITIES, arguments_of, evaluate
+from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.run import run_scene, workbench_for
 from verify.scenes.scene import given_arguments, load_scene, packaged_scenes
 

@@ -17,7 +17,7 @@ from verify.exact import modes as analytic_modes
 from verify.judge.workbench import Workbench
 from verify.models import intervals
 from verify.models.fields import HarmonicField, wavenumber
-from verify.quantities import arguments_of, evaluate, quantity
+from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.segments import linear as segment_model
 from verify.wave_study import motor_row
 from verify.waves.driven import measures as travelling_wave

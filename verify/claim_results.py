@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities import arguments_of, evaluate, needs_of, quantity
+from verify.quantities.catalogue import arguments_of, evaluate, needs_of, quantity
 from verify.scenes.claims import READ, Claim
 
 if TYPE_CHECKING:

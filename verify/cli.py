@@ -151,8 +151,8 @@ def table(
 @_as_json
 def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
-    from verify import quantities
     from verify.judge.workbench import Workbench
+    from verify.quantities.catalogue import catalogue as quantities
     from verify.scenes.scene import given_arguments
 
     found = quantities.quantity(quantity)
@@ -202,7 +202,7 @@ def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_jso
 @_as_json
 def list_quantities(as_json: bool) -> None:
     """List the named quantities with their arguments, units and defaults."""
-    from verify.quantities import described
+    from verify.quantities.catalogue import described
 
     listed = described()
     if as_json:

@@ -92,8 +92,8 @@ def design_map(
     progress: Callable[[str], None] = lambda step: None,
 ) -> DesignMap:
     """Evaluate a wave quantity over its axes; `arguments` are its others. Raises InputError."""
-    from verify.quantities import arguments_of
-    from verify.quantities import quantity as named
+    from verify.quantities.catalogue import arguments_of
+    from verify.quantities.catalogue import quantity as named
 
     found = named(quantity)
     if not quantity.startswith("wave.") or not 1 <= len(axes) <= 2 or len({a.name for a in axes}) != len(axes):

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities import arguments_of, as_plain, evaluate, in_words, needs_of, quantity
-from verify.quantity_types import Quantity
+from verify.quantities.catalogue import arguments_of, as_plain, evaluate, in_words, needs_of, quantity
+from verify.quantities.kind import Quantity
 from verify.scenes.scene import Complex
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.design_map import Axis, DesignMap, design_map
 from verify.errors import InputError
-from verify.wave_arguments import BestFrequency, InWindow
+from verify.quantities.wave_arguments import BestFrequency, InWindow
 from verify.waves.driven import SEARCHED, check_fields, driven, measures, quietest_drive
 from verify.waves.measures import surface_motion
 from verify.waves.operating_point import OperatingPoint, edge_note, operating_points

@@ -13,9 +13,9 @@ from verify.judge.compare import check_reference, relative_error
 from verify.motion.figures import MODELS
 from verify.motion.simulate import simulate
 from verify.motion.stepping import slider_seconds
-from verify.motion_arguments import SliderInTime
-from verify.motions import described, slider_of
 from verify.patience import check_work
+from verify.quantities.motion_arguments import SliderInTime
+from verify.quantities.simulated import described, slider_of
 
 if TYPE_CHECKING:
     from verify.motion.result import Motion

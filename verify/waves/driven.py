@@ -15,7 +15,7 @@ from verify.models.eigen import solve_seconds
 from verify.models.fields import Array, HarmonicField, phasor
 from verify.models.search import Least, least_over
 from verify.patience import check_work
-from verify.wave_arguments import InWindow
+from verify.quantities.wave_arguments import InWindow
 from verify.waves.imposed import driven_field
 from verify.waves.measures import WaveMeasures, measure, middle_half, two_waves
 

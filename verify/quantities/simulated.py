@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.motion.request import STEPS_PER_PERIOD
 from verify.motion.result import Motion
 from verify.motion.simulate import simulate
-from verify.motion_arguments import SliderInTime
+from verify.quantities.motion_arguments import SliderInTime
 from verify.slider import Slider
 from verify.waves.driven import drive_forces, drive_frequency, solve_by_model
 

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.quantity_types import Arguments, Size, Sizes, check_count
+from verify.quantities.kind import Arguments, Size, Sizes, check_count
 from verify.slider import GRAVITY
 
 Positive = Annotated[float, Meta(gt=0)]

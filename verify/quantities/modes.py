@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.judge.workbench import Need, Settings, Workbench, for_model
-from verify.quantity_types import (
+from verify.quantities.kind import (
     AtFrequency,
     AtSize,
     BracketAt,

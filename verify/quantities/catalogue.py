@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import msgspec
 
-from verify.chain_quantities import CHAIN_QUANTITIES
 from verify.errors import InputError, near_name
 from verify.judge.workbench import Need, Workbench
-from verify.mode_quantities import MODE_QUANTITIES
-from verify.motion_quantities import MOTION_QUANTITIES
-from verify.quantity_types import Arguments, Quantity
+from verify.quantities.chain import CHAIN_QUANTITIES
+from verify.quantities.kind import Arguments, Quantity
+from verify.quantities.modes import MODE_QUANTITIES
+from verify.quantities.motion import MOTION_QUANTITIES
+from verify.quantities.waves import WAVE_QUANTITIES
 from verify.scenes.checked import checked
-from verify.wave_quantities import WAVE_QUANTITIES
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene

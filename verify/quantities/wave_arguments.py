@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.quantity_types import Arguments, Size, Sizes, check_count
+from verify.quantities.kind import Arguments, Size, Sizes, check_count
 
 Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
 

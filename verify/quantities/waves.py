@@ -3,8 +3,17 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.judge.workbench import Workbench
-from verify.quantity_types import Quantity
-from verify.wave_arguments import At, AxisRatio, BestFrequency, InWindow, Power, Receptance, Sensitivity, WaveOrder
+from verify.quantities.kind import Quantity
+from verify.quantities.wave_arguments import (
+    At,
+    AxisRatio,
+    BestFrequency,
+    InWindow,
+    Power,
+    Receptance,
+    Sensitivity,
+    WaveOrder,
+)
 
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField

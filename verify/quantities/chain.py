@@ -6,7 +6,7 @@ from msgspec import Meta
 
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
-from verify.quantity_types import Arguments, Mode, Quantity, Wall
+from verify.quantities.kind import Arguments, Mode, Quantity, Wall
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene

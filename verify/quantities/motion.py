@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 from verify.judge.workbench import Workbench
 from verify.motion.figures import RUN_FIGURES, RunFigure
-from verify.motion_arguments import (
+from verify.quantities.kind import Quantity
+from verify.quantities.motion_arguments import (
     CouplingSize,
     Creep,
     DeflectionAt,
@@ -17,7 +18,6 @@ from verify.motion_arguments import (
     SliderInTime,
     SliderOrder,
 )
-from verify.quantity_types import Quantity
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -65,7 +65,7 @@ def _slider(figure: RunFigure) -> Any:
     """One figure of the slider's run."""
 
     def evaluate(a: SliderInTime, scene: "Scene", bench: Workbench) -> float:
-        from verify.motions import with_slider
+        from verify.quantities.simulated import with_slider
 
         run = with_slider(a, scene, bench, sampled=figure.sampled)
         return figure.of(
@@ -76,31 +76,31 @@ def _slider(figure: RunFigure) -> Any:
 
 
 def _deflection_under(a: SliderDeflection, scene: "Scene", bench: Workbench) -> float:
-    from verify.motions import with_slider
+    from verify.quantities.simulated import with_slider
 
     return float(with_slider(a, scene, bench, at=(a.x,)).deflection[-1, 0])
 
 
 def _loaded(a: LoadedDeflection, scene: "Scene", bench: Workbench) -> complex:
-    from verify.motions import loaded_deflection
+    from verify.quantities.simulated import loaded_deflection
 
     return loaded_deflection(a, scene)
 
 
 def _coupling_size(a: CouplingSize, scene: "Scene", bench: Workbench) -> float:
-    from verify.motions import coupling_size
+    from verify.quantities.simulated import coupling_size
 
     return coupling_size(a, scene)
 
 
 def _order(a: SliderOrder, scene: "Scene", bench: Workbench) -> float:
-    from verify.motions import slider_order
+    from verify.quantities.simulated import slider_order
 
     return slider_order(a, scene, bench)
 
 
 def _deflection(a: DeflectionAt, scene: "Scene", bench: Workbench) -> float:
-    from verify.motions import without_slider
+    from verify.quantities.simulated import without_slider
 
     return float(without_slider(a, scene, bench).deflection[-1, 0])
 
