@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify import axial_study, load_scene, run_scene
-from verify.axial_study import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
+from verify import load_scene, run_scene
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.exact.modes import solve_harmonic
@@ -16,6 +15,8 @@ from verify.plain import run_as_plain
 from verify.plan import plan_scene
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.run import n_steps, workbench_for
+from verify.studies import axial_inertia as axial_study
+from verify.studies.axial_inertia import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
 from verify.words import work_in_words
 
 SMALL = (

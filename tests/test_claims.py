@@ -10,14 +10,14 @@ from msgspec.structs import replace
 
 import verify
 from verify import load_scene, run_scene
-from verify.claim_words import answer_in_words, found_words
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.plan import plan_scene
 from verify.report.html import page
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
-from verify.work_precision import Comparison, NotCompared, Work, WorkRow, at_equal_error, work_of
+from verify.studies.claim_words import answer_in_words, found_words
+from verify.studies.work_precision import Comparison, NotCompared, Work, WorkRow, at_equal_error, work_of
 
 STRANGER = """
 name = "mine"
@@ -343,7 +343,7 @@ read = "stated"
 
 
 def test_friction_that_sticks_allows_what_mu_static_does(tmp_path):
-    from verify.motion_study import motion_study
+    from verify.studies.slider import motion_study
 
     path = stranger(tmp_path)
     path.write_text(path.read_text("utf-8").replace("slope = 300", 'law = "coulomb"\nmu_static = 0.9'), "utf-8")
@@ -353,7 +353,7 @@ def test_friction_that_sticks_allows_what_mu_static_does(tmp_path):
 
 
 def test_a_slider_that_leaves_the_steady_wave_has_no_mean_speed_there(tmp_path):
-    from verify.motion_study import motion_study
+    from verify.studies.slider import motion_study
 
     path = stranger(tmp_path)
     path.write_text(path.read_text("utf-8").replace("slope = 300", "slope = 300\nspeed = 3.0"), "utf-8")

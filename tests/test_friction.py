@@ -10,8 +10,8 @@ from mpmath import mp
 from scipy.integrate import solve_ivp
 
 from verify.errors import InputError
+from verify.motion import rigid_surface
 from verify.motion.kernels import SLIPS, STICKS, TURNS, coulomb_span, slide_on_belt, tanh_speed_change
-from verify.motion.result import rigid_surface
 from verify.motion.rigid_surface import coulomb_decrement, creep_speed, free_decay, stick_slip_times
 
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from verify import axial_study
 from verify.beam import Beam
 from verify.chain import dynamics as chain_dynamics
 from verify.chain import kernels as chain_kernels
@@ -26,12 +25,12 @@ from verify.judge import compare, sizing, workbench
 from verify.judge.compare import Bracket
 from verify.models import division, eigen
 from verify.models import driven_pencil as harmonic_solvers
-from verify.motion.result import carried, contact, forcing, pure_wave, request, rigid_surface, simulate
-from verify.motion.result import figures as slider_figures
-from verify.motion.result import kernels as contact_kernels
+from verify.motion import carried, contact, forcing, pure_wave, request, rigid_surface, simulate
+from verify.motion import figures as slider_figures
+from verify.motion import kernels as contact_kernels
 from verify.plan import asks_of
+from verify.quantities import simulated as motions
 from verify.quantities.catalogue import QUANTITIES, Quantity
-from verify.quantities.catalogue import simulated as motions
 from verify.run import workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import Complex, Gate, load_scene, packaged_scenes
@@ -39,9 +38,10 @@ from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 from verify.segments import links as chain
 from verify.segments import walls as chain_walls
+from verify.studies import axial_inertia as axial_study
+from verify.waves import operating_point
 from verify.waves.driven import driven as waves
 from verify.waves.driven import measures as travelling_wave
-from verify.waves.driven import operating_point
 
 PAPER = load_scene("paper")
 
@@ -164,7 +164,7 @@ def error_relative_to_the_computed_frequency_with_its_sign_lost(patch):
 def count_one_too_high(patch):
     from msgspec.structs import replace
 
-    from verify.quantities.catalogue import catalogue as quantities
+    from verify.quantities import catalogue as quantities
 
     found = QUANTITIES["mode.count_needed"]
     wrong: Quantity = replace(found, evaluate=lambda *given: found.evaluate(*given) + 1)

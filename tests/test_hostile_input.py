@@ -20,7 +20,7 @@ from verify.exact import modes as analytic_modes
 from verify.judge.compare import observed_order, relative_error
 from verify.judge.workbench import Workbench
 from verify.models import eigen
-from verify.motion.result import rigid_surface
+from verify.motion import rigid_surface
 from verify.quantities.catalogue import QUANTITIES, in_words
 from verify.scenes.checked import checked
 from verify.scenes.scene import Gate, literal, load_scene

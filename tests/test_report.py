@@ -121,7 +121,7 @@ def wave_map(study):
 def small_study(*overrides):
     from verify import load_scene
     from verify.judge.workbench import Workbench
-    from verify.wave_study import wave_study
+    from verify.studies.wave import wave_study
 
     scene = load_scene(
         "paper-wave", ("wave.counts=[49]", "wave.frequency_hz=4200,4300,11", "wave.phase_deg=0,180,13", *overrides)
@@ -231,7 +231,7 @@ def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(tit
     from verify.judge.workbench import Workbench
     from verify.report.charts import mean_in_words
     from verify.scenes.scene import Convergence
-    from verify.studies import convergence
+    from verify.studies.modes import convergence
 
     bench = Workbench(titanium_strip)
     low = convergence(bench, Convergence(modes=(3, 7), counts=(12, 24)))

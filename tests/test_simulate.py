@@ -9,8 +9,8 @@ from motion_reference import FORCES, FREQUENCY, STRIP
 
 from verify.beam import PointForce
 from verify.errors import InputError
+from verify.motion import stepping as slider_run
 from verify.motion.kernels import SLIPS
-from verify.motion.result import stepping as slider_run
 from verify.motion.simulate import simulate
 from verify.slider import Slider
 

@@ -9,7 +9,6 @@ from msgspec.structs import replace
 
 from verify import load_scene
 from verify.beam import PointForce
-from verify.design_map import Axis, design_map, parse_axis
 from verify.elements import hermite as fem_beam
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import closed_forms, error_laws
@@ -19,7 +18,8 @@ from verify.models import intervals
 from verify.models.fields import HarmonicField, wavenumber
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.segments import linear as segment_model
-from verify.wave_study import motor_row
+from verify.studies.design_map import Axis, design_map, parse_axis
+from verify.studies.wave import motor_row
 from verify.waves.driven import measures as travelling_wave
 from verify.waves.driven import own_wavenumber, solve_by_model
 from verify.waves.imposed import driven_field

@@ -152,7 +152,7 @@ def table(
 def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
     from verify.judge.workbench import Workbench
-    from verify.quantities.catalogue import catalogue as quantities
+    from verify.quantities import catalogue as quantities
     from verify.scenes.scene import given_arguments
 
     found = quantities.quantity(quantity)

@@ -14,18 +14,18 @@ from rich.text import Text
 from verify.words import figure, number, percent, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
-    from verify.axial_study import AxialStudy
-    from verify.claim_results import ClaimResult
-    from verify.design_map import DesignMap
     from verify.gates import GateResult
     from verify.judge.sizing import Choice
-    from verify.motion_study import MotionStudy
     from verify.plan import Plan
-    from verify.readings import ReadingsStudy
     from verify.run import RunResult
-    from verify.studies import Cell, Row
-    from verify.wave_study import MotorRow, Operation
-    from verify.work_precision import Work
+    from verify.studies.axial_inertia import AxialStudy
+    from verify.studies.claims import ClaimResult
+    from verify.studies.design_map import DesignMap
+    from verify.studies.modes import Cell, Row
+    from verify.studies.readings import ReadingsStudy
+    from verify.studies.slider import MotionStudy
+    from verify.studies.wave import MotorRow, Operation
+    from verify.studies.work_precision import Work
 
 
 class Terminal(Console):
@@ -69,7 +69,7 @@ def print_run(result: "RunResult", report: Path | None) -> None:
 
 def _print_slider(console: Console, study: "MotionStudy") -> None:
     """What the slider was found to do, how far that can be believed, and what it costs."""
-    from verify.claim_words import answer_in_words
+    from verify.studies.claim_words import answer_in_words
 
     for finding in study.findings:
         console.print(Text(f"{finding.what}: {finding.found}"))
@@ -85,7 +85,7 @@ def _print_slider(console: Console, study: "MotionStudy") -> None:
 
 def _print_claims(console: Console, claims: "tuple[ClaimResult, ...]") -> None:
     """Who says what, what is found, and how."""
-    from verify.claim_words import VERDICT, claimed_words, found_words
+    from verify.studies.claim_words import VERDICT, claimed_words, found_words
 
     for condition, group in groupby(claims, key=lambda claim: claim.condition):
         console.print(Text.assemble(("published claims", "bold"), f", found with {condition}" if condition else ""))
@@ -101,7 +101,7 @@ def _print_claims(console: Console, claims: "tuple[ClaimResult, ...]") -> None:
 
 def _print_readings(console: Console, study: "ReadingsStudy") -> None:
     """Which claims each group of readings meets, the best of each on the exact beam too, what verdicts turn with."""
-    from verify.claim_words import (
+    from verify.studies.claim_words import (
         best_cells,
         bound_words,
         cm_per_s,
@@ -248,8 +248,8 @@ def _operation(one: "Operation") -> tuple[str, str, str]:
 
 def print_work(work: "Work") -> None:
     """A slider's run time against its error, and both models at one error."""
-    from verify.claim_words import answer_in_words
-    from verify.work_precision import at_equal_error
+    from verify.studies.claim_words import answer_in_words
+    from verify.studies.work_precision import at_equal_error
 
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
     for name in ("model", "N", "modes", "displacement, nm", "error %", "order", "ms per ms", "set-up ms"):

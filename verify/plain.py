@@ -10,16 +10,16 @@ from verify.errors import InputError
 from verify.scenes.scene import literal
 
 if TYPE_CHECKING:
-    from verify.axial_study import AxialStudy
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
     from verify.motion.result import Motion
-    from verify.motion_study import MotionStudy
-    from verify.readings import Reading, ReadingsStudy
     from verify.run import RunResult
-    from verify.studies import Row
-    from verify.wave_study import WaveStudy
-    from verify.work_precision import Work
+    from verify.studies.axial_inertia import AxialStudy
+    from verify.studies.modes import Row
+    from verify.studies.readings import Reading, ReadingsStudy
+    from verify.studies.slider import MotionStudy
+    from verify.studies.wave import WaveStudy
+    from verify.studies.work_precision import Work
 
 
 def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
@@ -73,7 +73,7 @@ def motion_as_plain(study: "MotionStudy") -> dict[str, Any]:
 
 def work_as_plain(work: "Work") -> dict[str, Any]:
     """Run time against error, and both models at one error or why they are not compared."""
-    from verify.work_precision import Comparison, at_equal_error
+    from verify.studies.work_precision import Comparison, at_equal_error
 
     answer = at_equal_error(work)
     plain: dict[str, Any] = msgspec.to_builtins(answer)

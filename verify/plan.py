@@ -95,7 +95,7 @@ def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
 def _claim_asks(scene: "Scene") -> list[Ask]:
     asks = []
     for claim in scene.claim:
-        from verify.claim_results import claim_needs
+        from verify.studies.claims import claim_needs
 
         try:
             asks.append(Ask(f"claim {claim.id}", claim_needs(claim, scene)))

@@ -13,12 +13,12 @@ from verify.plan import CHAIN_IN_TIME, STUDIES, asks_of
 from verify.scenes.scene import Scene, load_scene
 
 if TYPE_CHECKING:
-    from verify.axial_study import AxialStudy
-    from verify.claim_results import ClaimResult
-    from verify.motion_study import MotionStudy
-    from verify.readings import ReadingsStudy
-    from verify.studies import Row, SensitivityStudy, SpectrumStudy
-    from verify.wave_study import WaveStudy
+    from verify.studies.axial_inertia import AxialStudy
+    from verify.studies.claims import ClaimResult
+    from verify.studies.modes import Row, SensitivityStudy, SpectrumStudy
+    from verify.studies.readings import ReadingsStudy
+    from verify.studies.slider import MotionStudy
+    from verify.studies.wave import WaveStudy
 
 
 class RunResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -68,7 +68,7 @@ def run_scene(scene: Scene | str | Path, progress: Callable[[str], None] = lambd
     studied = _studies(found, bench, progress)
     claims: tuple[ClaimResult, ...] = ()
     if found.claim:
-        from verify.claim_results import claim_results
+        from verify.studies.claims import claim_results
 
         claims = claim_results(found, bench, studied["motion"], progress)
     return RunResult(
@@ -87,7 +87,7 @@ def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) ->
     """Every study of `RunResult` by name, None where the scene does not ask for it."""
     done: dict[str, Any] = dict.fromkeys(STUDIES)
     if scene.spectrum or scene.convergence or scene.sensitivity:
-        from verify import studies
+        from verify.studies import modes as studies
 
         if scene.spectrum:
             progress("error spectrum")
@@ -97,19 +97,19 @@ def _studies(scene: Scene, bench: Workbench, progress: Callable[[str], None]) ->
         if scene.sensitivity:
             done["sensitivity"] = studies.sensitivity(scene.beam, scene.sensitivity)
     if scene.wave:
-        from verify.wave_study import wave_study
+        from verify.studies.wave import wave_study
 
         done["wave"] = wave_study(scene, bench, scene.wave, progress)
     if scene.motion and scene.slider:
-        from verify.motion_study import motion_study
+        from verify.studies.slider import motion_study
 
         done["motion"] = motion_study(scene, progress)
     if scene.readings:
-        from verify.readings import readings_study
+        from verify.studies.readings import readings_study
 
         done["readings"] = readings_study(scene, progress)
     if scene.axial_inertia:
-        from verify.axial_study import axial_study
+        from verify.studies.axial_inertia import axial_study
 
         done["axial_inertia"] = axial_study(scene, progress)
     return done

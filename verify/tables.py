@@ -60,7 +60,7 @@ def convergence(scene: Scene, modes: str | None, counts: str | None) -> Job:
     request = checked(asked, Convergence)
 
     def run(step: Step) -> Any:
-        from verify.studies import convergence as solve
+        from verify.studies.modes import convergence as solve
 
         return solve(Workbench(scene.beam), request, step)
 
@@ -82,7 +82,7 @@ def motor(scene: Scene, counts: str | None) -> Job:
         raise InputError("--wave takes a scene with two forces: add them to its [drive]")
 
     def run(step: Step) -> Any:
-        from verify.wave_study import motor_table
+        from verify.studies.wave import motor_table
 
         return motor_table(scene, Workbench(scene.beam), tuple(sizes), step)
 
@@ -95,7 +95,7 @@ def motor(scene: Scene, counts: str | None) -> Job:
 
 
 def _flat_motor(rows: Any) -> list[dict[str, Any]]:
-    from verify.wave_study import Operation
+    from verify.studies.wave import Operation
 
     flat = []
     for row in rows:
@@ -113,12 +113,12 @@ def slider(scene: Scene, counts: str | None) -> Job:
         from verify.errors import InputError
 
         raise InputError("--slider takes a scene with [slider] and [motion], for instance paper-slider")
-    from verify.work_precision import ROUNDS
+    from verify.studies.work_precision import ROUNDS
 
     sizes = checked(list(_listed(counts) if counts is not None else scene.motion.counts), Counts, "counts")
 
     def run(step: Step) -> Any:
-        from verify.work_precision import work_of
+        from verify.studies.work_precision import work_of
 
         return work_of(scene, tuple(sizes), step)
 
@@ -132,7 +132,7 @@ def slider(scene: Scene, counts: str | None) -> Job:
 
 def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple[str, ...]) -> Job:
     """A wave quantity over one or two axes. Raises InputError."""
-    from verify.design_map import design_map, parse_axis
+    from verify.studies.design_map import design_map, parse_axis
 
     axes = tuple(parse_axis(text) for text in sweeps)
     given = given_arguments(arguments)

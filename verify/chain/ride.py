@@ -63,7 +63,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
     Raises InputError where the times are not evenly spaced and odd in number, for two-way coupling, which the chain's
     own integrators do not know, for the links' edges as a contact line, and for a beam of unlike thicknesses.
     """
-    from verify.motion.result import kernels
+    from verify.motion import kernels
 
     times = chain.times
     if len(times) < 3 or len(times) % 2 == 0 or np.ptp(np.diff(times)) > 1e-9 * times[-1]:

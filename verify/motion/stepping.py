@@ -179,7 +179,7 @@ def room(fed: Feed) -> tuple[Array, Array, Array, Array]:
 
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     """The first sample: the slider as it is put on, before any step; a slider on its way keeps its height and climb."""
-    from verify.motion.result import kernels
+    from verify.motion import kernels
 
     speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law, *room(fed)[:3])
     sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed, sliding.motion[5]
@@ -221,7 +221,7 @@ def run_stages(
 
 def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callable[[int], None]) -> str:
     """One stage in chunks; why it ended. The loop keeps its own books, so that an interrupt finds them closed."""
-    from verify.motion.result import kernels
+    from verify.motion import kernels
 
     s, stage, space = sliding, fed.stage, room(fed)
     while around and s.tally[0] < stage.n_steps:

@@ -157,8 +157,8 @@ def _energy_drift(a: FreeMotion, scene: "Scene", bench: Workbench) -> float:
 def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> float:
     from msgspec.structs import replace
 
-    from verify.axial_study import point_forces
     from verify.chain import problems as chain_studies
+    from verify.studies.axial_inertia import point_forces
 
     forces = point_forces(scene, "chain.transient_deflection")
     assert scene.drive is not None
@@ -183,7 +183,7 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
 
 
 def _axial_departure(a: Departing, scene: "Scene", bench: Workbench) -> float:
-    from verify.axial_study import departure, driven_chain
+    from verify.studies.axial_inertia import departure, driven_chain
 
     driven = driven_chain(scene, "chain.axial_departure", a.links, a.time, a.x)
     found = departure(driven, a.force, a.inertia, bench.tell)

@@ -3,11 +3,11 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.motion.validity import NONLINEAR
-from verify.motion_study import thinned
 from verify.report.charts import COLOUR, GREY, Figure, axes, chart
+from verify.studies.slider import thinned
 
 if TYPE_CHECKING:
-    from verify.axial_study import AxialStudy
+    from verify.studies.axial_inertia import AxialStudy
 
 NAMES = {
     "exact": "exact field",

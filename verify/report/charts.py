@@ -12,7 +12,7 @@ from verify.judge.compare import EIGENVALUE_FLOOR
 
 if TYPE_CHECKING:
     from verify.run import RunResult
-    from verify.studies import Row, SensitivityStudy, SpectrumStudy
+    from verify.studies.modes import Row, SensitivityStudy, SpectrumStudy
 
 Figure = dict[str, Any]
 

@@ -9,7 +9,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verify import claim_words
 from verify.errors import InputError
 from verify.files import write_whole
 from verify.plain import finite
@@ -18,6 +17,7 @@ from verify.report.charts import charts_of
 from verify.report.motion_charts import motion_charts
 from verify.report.reading_charts import reading_charts
 from verify.report.wave_charts import wave_charts
+from verify.studies import claim_words
 from verify.words import figure, percent, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:

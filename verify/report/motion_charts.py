@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING, Any
 
-from verify.motion_study import thinned
 from verify.report.charts import COLOUR, GREY, NAME, Figure, axes, chart
+from verify.studies.slider import thinned
 
 if TYPE_CHECKING:
-    from verify.motion_study import MotionStudy
+    from verify.studies.slider import MotionStudy
 
 _NAMES = {"analytic": "exact beam", **NAME}
 _COLOURS = {"analytic": GREY, **COLOUR}

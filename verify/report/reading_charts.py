@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING, Any
 
-from verify.claim_words import met_words, start_words
 from verify.report.charts import COLOUR, GREY, Figure, axes, chart
+from verify.studies.claim_words import met_words, start_words
 
 if TYPE_CHECKING:
-    from verify.readings import Reading, ReadingsStudy
+    from verify.studies.readings import Reading, ReadingsStudy
 
 _COLOURS = (COLOUR["segment"], COLOUR["fem"], "#2a9d5c", "#8f5bd1", "#b8860b", GREY)
 

@@ -7,7 +7,7 @@ import numpy as np
 from verify.report.charts import COLOUR, GREY, NAME, Figure, axes, chart
 
 if TYPE_CHECKING:
-    from verify.wave_study import WaveStudy
+    from verify.studies.wave import WaveStudy
 
 CLIPPED = 10.0
 """The largest standing-wave ratio that a map tells from larger ones."""

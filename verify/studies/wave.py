@@ -8,9 +8,9 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam
-from verify.design_map import Axis, DesignMap, design_map
 from verify.errors import InputError
 from verify.quantities.wave_arguments import BestFrequency, InWindow
+from verify.studies.design_map import Axis, DesignMap, design_map
 from verify.waves.driven import SEARCHED, check_fields, driven, measures, quietest_drive
 from verify.waves.measures import surface_motion
 from verify.waves.operating_point import OperatingPoint, edge_note, operating_points

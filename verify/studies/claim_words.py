@@ -2,12 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-from verify.readings import NAMES, Reading, ReadingsStudy
+from verify.studies.readings import NAMES, Reading, ReadingsStudy
 
 if TYPE_CHECKING:
-    from verify.claim_results import ClaimResult
-    from verify.readings import Bound, Group
-    from verify.work_precision import Comparison, NotCompared
+    from verify.studies.claims import ClaimResult
+    from verify.studies.readings import Bound, Group
+    from verify.studies.work_precision import Comparison, NotCompared
 
 UNITS = {"soft_start_periods": " periods", "positions": " m", "forces": " N", "slope": " s/m"}
 LEAST_SHOWN = 1e-4
@@ -152,7 +152,7 @@ def best_cells(group: "Group") -> list[str]:
 
 def answer_in_words(answer: "Comparison | NotCompared") -> str:
     """Both models at one error, loop and set-up; or why nothing is compared, and what to change."""
-    from verify.work_precision import NotCompared
+    from verify.studies.work_precision import NotCompared
 
     if isinstance(answer, NotCompared):
         return f"run times at equal error are not compared: {answer.why}; {answer.remedy}"

@@ -11,8 +11,8 @@ from verify.scenes.claims import READ, Claim
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Need, Workbench
-    from verify.motion_study import MotionStudy
     from verify.scenes.scene import Scene
+    from verify.studies.slider import MotionStudy
 
 
 class ClaimResult(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import msgspec
 from msgspec.structs import replace
 
-from verify.chain_readings import Chains
 from verify.errors import InputError
 from verify.motion.figures import Condition, condition_of
-from verify.motion_study import every_step, figures_of, reversed_scene
 from verify.scenes.claims import Claim, ReadingsAsk, asks_for_turned
-from verify.work_precision import run_once
+from verify.studies.chain_readings import Chains
+from verify.studies.slider import every_step, figures_of, reversed_scene
+from verify.studies.work_precision import run_once
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene

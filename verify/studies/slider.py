@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify.motion.figures import RUN_FIGURES, Condition, condition_of
 from verify.motion.result import Motion
 from verify.scenes.claims import asks_for_turned
-from verify.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
+from verify.studies.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
 
 if TYPE_CHECKING:
     from verify.chain.ride import ChainRide
