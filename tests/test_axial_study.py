@@ -12,9 +12,9 @@ from verify.errors import InputError
 from verify.exact.modes import solve_harmonic
 from verify.motion.validity import NONLINEAR, axial_inertia_size
 from verify.plain import run_as_plain
-from verify.plan import plan_scene
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
-from verify.run import n_steps, workbench_for
+from verify.run.plan import plan_scene
+from verify.run.runner import n_steps, workbench_for
 from verify.studies import axial_inertia as axial_study
 from verify.studies.axial_inertia import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
 from verify.words import work_in_words

@@ -7,10 +7,10 @@ from msgspec.structs import replace
 
 from verify.beam import Section
 from verify.errors import InputError
-from verify.gates import judge
-from verify.plan import plan_scene
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
-from verify.run import workbench_for
+from verify.run.gates import judge
+from verify.run.plan import plan_scene
+from verify.run.runner import workbench_for
 from verify.scenes.scene import Gate, MotionAsk, load_scene
 
 CHAIN = load_scene("chain")

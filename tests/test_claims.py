@@ -12,8 +12,8 @@ import verify
 from verify import load_scene, run_scene
 from verify.cli import status_of
 from verify.errors import InputError
-from verify.plan import plan_scene
 from verify.report.html import page
+from verify.run.plan import plan_scene
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
 from verify.studies.claim_words import answer_in_words, found_words

@@ -20,7 +20,6 @@ from verify.errors import InputError
 from verify.exact import closed_forms, section_minors
 from verify.exact import harmonic as analytic_harmonic
 from verify.exact import modes as analytic_modes
-from verify.gates import expectation, judge
 from verify.judge import compare, sizing, workbench
 from verify.judge.compare import Bracket
 from verify.models import division, eigen
@@ -28,10 +27,11 @@ from verify.models import driven_pencil as harmonic_solvers
 from verify.motion import carried, contact, forcing, pure_wave, request, rigid_surface, simulate
 from verify.motion import figures as slider_figures
 from verify.motion import kernels as contact_kernels
-from verify.plan import asks_of
 from verify.quantities import simulated as motions
 from verify.quantities.catalogue import QUANTITIES, Quantity
-from verify.run import workbench_for
+from verify.run.gates import expectation, judge
+from verify.run.plan import asks_of
+from verify.run.runner import workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import Complex, Gate, load_scene, packaged_scenes
 from verify.segments import in_time as segment_motion

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import gates, patience
+from verify import patience
 from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.cli import status_of
 from verify.elements import hermite as fem_beam
@@ -22,6 +22,7 @@ from verify.judge.workbench import Workbench
 from verify.models import eigen
 from verify.motion import rigid_surface
 from verify.quantities.catalogue import QUANTITIES, in_words
+from verify.run import gates
 from verify.scenes.checked import checked
 from verify.scenes.scene import Gate, literal, load_scene
 from verify.segments import linear as segment_model
@@ -574,7 +575,7 @@ def test_any_order_of_words_is_a_command_or_one_refusal(folder, words):
 
 @pytest.mark.parametrize("layout", ["csv", "markdown"])
 def test_an_endless_ratio_is_a_word_in_every_layout(layout):
-    from verify.tables import rows_as_text
+    from verify.run.tables import rows_as_text
 
     told = rows_as_text([{"ratio": float("inf"), "way": -float("inf"), "none": None, "size": 0.3}], layout)
     cells = told.splitlines()[-1].strip("| ").replace(" ", "").replace("|", ",").split(",")

@@ -19,9 +19,9 @@ from scipy.optimize import brentq
 from test_stepped_beams import written_out
 
 import verify
-from verify.gates import judge
 from verify.motion.kernels import HALF
-from verify.run import workbench_for
+from verify.run.gates import judge
+from verify.run.runner import workbench_for
 from verify.scenes.scene import Complex, load_scene
 
 L, WIDTH, H, E, RHO, HERTZ, D = 0.5, 0.02, 0.001, 70e9, 2700.0, 4276.0, 0.0116

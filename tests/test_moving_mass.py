@@ -10,7 +10,7 @@ from verify.errors import InputError
 from verify.motion.kernels import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
-from verify.run import workbench_for
+from verify.run.runner import workbench_for
 from verify.scenes.scene import load_scene
 from verify.slider import Slider
 from verify.waves.driven import solve_by_model
@@ -277,7 +277,7 @@ def test_a_beam_that_a_weight_bends_is_not_shaken_by_it():
 
 def test_the_choice_of_coupling_is_told_with_both_sizes():
     scene = load_scene("paper-slider")
-    from verify.plan import plan_scene
+    from verify.run.plan import plan_scene
 
     chosen = {entry.what: entry.why for entry in plan_scene(scene).chosen}
     assert "9.3e-05" in chosen["one-way coupling"]
@@ -293,7 +293,7 @@ def test_the_choice_of_coupling_is_told_with_both_sizes():
 
 def test_the_report_names_the_simplification_and_the_size_of_what_it_leaves_out():
     from verify.report.html import page
-    from verify.run import run_scene
+    from verify.run.runner import run_scene
 
     scene = load_scene("paper-slider", ("motion.counts=[9,18,27]", "motion.count=9", "motion.duration=5e-4"))
     told = page(run_scene(replace(scene, gate=(), readings=None, claim=())), "verify run")

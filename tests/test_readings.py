@@ -190,7 +190,7 @@ def small(**asked):
 def study():
     told = []
     found = readings_study(small(), told.append)
-    from verify.run import n_steps
+    from verify.run.runner import n_steps
 
     assert len(told) == n_steps(small()) - n_steps(replace(small(), readings=None))
     return found

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from verify.beam import Beam, PointForce
     from verify.errors import InputError
-    from verify.run import run_scene
+    from verify.run.runner import run_scene
     from verify.scenes.scene import load_scene
     from verify.slider import Slider
 
@@ -18,7 +18,7 @@ _HOME = {
     "PointForce": "verify.beam",
     "Slider": "verify.slider",
     "load_scene": "verify.scenes.scene",
-    "run_scene": "verify.run",
+    "run_scene": "verify.run.runner",
 }
 
 

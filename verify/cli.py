@@ -64,7 +64,7 @@ def cli() -> None:
 def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as_json: bool) -> None:
     """Run everything SCENE asks for; write its report; exit 1 when a gate fails."""
     from verify.files import writable_folder
-    from verify.run import n_steps, run_scene
+    from verify.run.runner import n_steps, run_scene
 
     asked = _load(scene, overrides)
     target = None if no_report else writable_folder(Path(folder), "reports") / f"{asked.name}.html"
@@ -124,7 +124,7 @@ def table(
     layout: str | None,
 ) -> None:
     """Both discrete models side by side; the motor's figures or the slider's over sizes; or a sweep."""
-    from verify import tables
+    from verify.run import tables
 
     asked = _load(scene, overrides)
     if arguments and not sweeps:
@@ -222,7 +222,7 @@ def list_quantities(as_json: bool) -> None:
 @_as_json
 def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Print what SCENE will run, what is skipped, and why. Solves nothing."""
-    from verify.plan import plan_scene
+    from verify.run.plan import plan_scene
 
     planned = plan_scene(_load(scene, overrides))
     if as_json:

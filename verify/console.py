@@ -14,10 +14,10 @@ from rich.text import Text
 from verify.words import figure, number, percent, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
-    from verify.gates import GateResult
     from verify.judge.sizing import Choice
-    from verify.plan import Plan
-    from verify.run import RunResult
+    from verify.run.gates import GateResult
+    from verify.run.plan import Plan
+    from verify.run.runner import RunResult
     from verify.studies.axial_inertia import AxialStudy
     from verify.studies.claims import ClaimResult
     from verify.studies.design_map import DesignMap

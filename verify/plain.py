@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
     from verify.motion.result import Motion
-    from verify.run import RunResult
+    from verify.run.runner import RunResult
     from verify.studies.axial_inertia import AxialStudy
     from verify.studies.modes import Row
     from verify.studies.readings import Reading, ReadingsStudy

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from verify.gates import GateResult
     from verify.judge.workbench import Workbench
+    from verify.run.gates import GateResult
     from verify.scenes.scene import Gate, Scene
 
 
@@ -51,7 +51,7 @@ class SceneFile(pytest.File):
     def collect(self) -> Iterable["GateItem"]:
         """One item for each gate. A scene that cannot be read is a collection error with its sentence."""
         from verify.errors import InputError
-        from verify.run import workbench_for
+        from verify.run.runner import workbench_for
         from verify.scenes.scene import load_scene
 
         try:
@@ -73,7 +73,7 @@ class GateItem(pytest.Item):
 
     def runtest(self) -> None:
         """Judge the gate; its figures become JUnit properties whether it passes or not."""
-        from verify.gates import judge
+        from verify.run.gates import judge
 
         result = judge(self.gate, self.scene, self.bench)
         self.user_properties.extend(properties(result))

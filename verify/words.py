@@ -4,7 +4,7 @@ from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from verify.run import RunResult
+    from verify.run.runner import RunResult
 
 
 def seconds_in_words(seconds: float | None) -> str:

@@ -11,7 +11,7 @@ from verify.exact.error_laws import MEAN_LIMIT
 from verify.judge.compare import EIGENVALUE_FLOOR
 
 if TYPE_CHECKING:
-    from verify.run import RunResult
+    from verify.run.runner import RunResult
     from verify.studies.modes import Row, SensitivityStudy, SpectrumStudy
 
 Figure = dict[str, Any]

@@ -21,7 +21,7 @@ from verify.studies import claim_words
 from verify.words import figure, percent, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
-    from verify.run import RunResult
+    from verify.run.runner import RunResult
 
 _PACKAGES = ("fem-segment-verify", "numpy", "scipy", "scikit-fem", "plotly")
 

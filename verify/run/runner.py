@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from verify.gates import GateResult, judge
 from verify.judge.workbench import Solve, Workbench
-from verify.plan import CHAIN_IN_TIME, STUDIES, asks_of
+from verify.run.gates import GateResult, judge
+from verify.run.plan import CHAIN_IN_TIME, STUDIES, asks_of
 from verify.scenes.scene import Scene, load_scene
 
 if TYPE_CHECKING:

@@ -83,7 +83,7 @@ def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
     """Everything in a scene that wants a figure."""
     asks = []
     for gate in scene.gate:
-        from verify.gates import gate_needs
+        from verify.run.gates import gate_needs
 
         try:
             asks.append(Ask(f"gate {gate.id}", gate_needs(gate, scene)))
