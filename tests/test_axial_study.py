@@ -11,8 +11,8 @@ from verify.cli import status_of
 from verify.errors import InputError
 from verify.exact.modes import solve_harmonic
 from verify.motion.validity import NONLINEAR, axial_inertia_size
-from verify.plain import run_as_plain
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
+from verify.report.plain import run_as_plain
 from verify.run.plan import plan_scene
 from verify.run.runner import n_steps, workbench_for
 from verify.studies import axial_inertia as axial_study

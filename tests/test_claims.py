@@ -133,8 +133,8 @@ def test_each_claim_stands_beside_what_is_found_under_a_condition_that_is_named(
 
 
 def test_report_terminal_and_json_carry_claims_and_readings(result, capsys):
-    from verify.console import print_run
-    from verify.plain import finite, run_as_plain
+    from verify.report.plain import finite, run_as_plain
+    from verify.report.terminal import print_run
 
     text = page(result, "verify run x")
     print_run(result, None)

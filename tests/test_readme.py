@@ -13,8 +13,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from verify.plain import run_as_plain
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
+from verify.report.plain import run_as_plain
 from verify.run.gates import judge
 from verify.run.runner import run_scene, workbench_for
 from verify.scenes.scene import given_arguments, load_scene, packaged_scenes

@@ -75,11 +75,11 @@ def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as
 
         write_report(result, target, command=_command_line("run", scene, overrides))
     if as_json:
-        from verify.plain import run_as_plain
+        from verify.report.plain import run_as_plain
 
         _print_json(run_as_plain(result, target))
     else:
-        from verify.console import print_run
+        from verify.report.terminal import print_run
 
         print_run(result, target)
     if not result.passed:
@@ -182,7 +182,7 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
 def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """From how many segments or elements on an accuracy is kept, how that is known, and what they cost."""
     from verify.judge.workbench import Workbench
-    from verify.plain import accuracy, choice_as_plain, mode_number
+    from verify.report.plain import accuracy, choice_as_plain, mode_number
 
     wanted, number = accuracy(error), mode_number(mode)
     beam = _load(scene, overrides).beam
@@ -193,7 +193,7 @@ def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_jso
     if as_json:
         _print_json(choice_as_plain(bench, number, wanted, choices))
     else:
-        from verify.console import print_choices
+        from verify.report.terminal import print_choices
 
         print_choices(bench.exact_hz(number), number, wanted, choices)
 
@@ -230,7 +230,7 @@ def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
 
         _print_json(msgspec.to_builtins(planned))
     else:
-        from verify.console import print_plan
+        from verify.report.terminal import print_plan
 
         print_plan(planned)
 
@@ -279,7 +279,7 @@ def _load(scene: str, overrides: tuple[str, ...]) -> "Scene":
 def _print_json(data: Any) -> None:
     import json
 
-    from verify.plain import finite
+    from verify.report.plain import finite
 
     click.echo(json.dumps(finite(data), indent=2, allow_nan=False))
 
@@ -309,7 +309,7 @@ def _progress(n_steps: int, *, quiet: bool) -> Iterator[Callable[[str], None]]:
     if quiet or not sys.stderr.isatty():
         yield lambda step: None
         return
-    from verify.console import progress_bar
+    from verify.report.terminal import progress_bar
 
     with progress_bar(n_steps) as step:
         yield step

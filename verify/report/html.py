@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
 from verify.files import write_whole
-from verify.plain import finite
 from verify.report.axial_charts import NAMES, axial_charts
 from verify.report.charts import charts_of
 from verify.report.motion_charts import motion_charts
+from verify.report.plain import finite
 from verify.report.reading_charts import reading_charts
 from verify.report.wave_charts import wave_charts
 from verify.studies import claim_words

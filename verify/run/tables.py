@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from verify.judge.workbench import Workbench
-from verify.plain import finite, flat_row, work_as_plain
+from verify.report.plain import finite, flat_row, work_as_plain
 from verify.scenes.checked import checked
 from verify.scenes.scene import Convergence, Counts, Scene, given_arguments, literal
 
@@ -65,7 +65,7 @@ def convergence(scene: Scene, modes: str | None, counts: str | None) -> Job:
         return solve(Workbench(scene.beam), request, step)
 
     def draw(rows: Any) -> None:
-        from verify.console import print_table
+        from verify.report.terminal import print_table
 
         print_table(rows)
 
@@ -87,7 +87,7 @@ def motor(scene: Scene, counts: str | None) -> Job:
         return motor_table(scene, Workbench(scene.beam), tuple(sizes), step)
 
     def draw(rows: Any) -> None:
-        from verify.console import print_motor
+        from verify.report.terminal import print_motor
 
         print_motor(rows)
 
@@ -123,7 +123,7 @@ def slider(scene: Scene, counts: str | None) -> Job:
         return work_of(scene, tuple(sizes), step)
 
     def draw(work: Any) -> None:
-        from verify.console import print_work
+        from verify.report.terminal import print_work
 
         print_work(work)
 
@@ -141,7 +141,7 @@ def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple
         return design_map(quantity, given, axes, scene, Workbench(scene.beam), step)
 
     def draw(found: Any) -> None:
-        from verify.console import print_map
+        from verify.report.terminal import print_map
 
         print_map(found)
 
