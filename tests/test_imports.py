@@ -11,70 +11,43 @@ import pytest
 import verify
 
 PACKAGE = Path(verify.__file__).parent
-MODELS = ("analytic_modes", "fem_beam", "segment_model")
-# the house, from the ground up: a module imports only from floors below its own
-FLOORS = [
-    {"errors", "timing", "search", "words"},
-    {"chain_work", "patience", "beam", "checked", "files", "contact_kernels", "chain_kernels", "elastic_kernels"},
-    {"modes", "fields", "closed_forms", "eigen", "division", "chain_walls", "slider", "time_basis", "slider_figures"},
-    {
-        "error_laws",
-        "extended_precision",
-        "chain",
-        "harmonic_solvers",
-        "analytic_harmonic",
-        "section_minors",
-        "drives",
-        "forcing",
-        "contact",
-        "claims",
-    },
-    {"point_loads", "motion", "validity"},
-    {"chain_system", *MODELS},
-    {
-        "segment_motion",
-        "fem_motion",
-        "analytic_motion",
-        "chain_statics",
-        "chain_elastic",
-        "chain_modes",
-        "chain_linear",
-    },
-    {"moving_surface", "chain_dynamics"},
-    {"slider_run", "energy", "chain_motion", "moving_mass", "excited", "request"},
-    {"margins"},
-    {"chain_modal", "chain_slider"},
-    {"chain_studies"},
-    {"compare", "intervals"},
-    {"travelling_wave"},
-    {"workbench"},
-    {"quantity_types", "sizing"},
-    {"wave_arguments"},
-    {"waves", "unit_waves"},
-    {"rigid_surface", "pure_wave", "carried", "operating_point"},
-    {"simulate"},
-    {"motion_arguments", "axial_study"},
-    {"motions"},
-    {"mode_quantities", "wave_quantities", "motion_quantities", "chain_quantities"},
-    {"work_precision"},
-    {"motion_study"},
-    {"chain_readings"},
-    {"readings"},
-    {"quantities", "scene"},
-    {"design_map"},
-    {"gates", "claim_results", "claim_words"},
-    {"studies", "wave_study"},
-    {"plan"},
-    {"run"},
-    {"plain", "console"},
-    {"tables", "report"},
-    {"pytest_plugin", "cli"},
-    {"__main__", "__init__"},
-]
+MODELS = ("exact", "elements", "segments")
+ROOMS = (
+    "values",
+    "models",
+    *MODELS,
+    "judge",
+    "waves",
+    "motion",
+    "chain",
+    "scenes",
+    "quantities",
+    "studies",
+    "run",
+    "report",
+    "faces",
+    "doors",
+)
+"""From the ground up: a room imports from those before it; the three models from none of each other."""
+DOORS = {"__init__", "__main__", "cli", "pytest_plugin"}
+FACES = {"analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"}
+
+
+def modules():
+    """(dotted name below verify, path) of everything that is compiled."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        yield ".".join(path.relative_to(PACKAGE).with_suffix("").parts), path
+
+
+def room_of(name):
+    """The room that a module lies in: values, faces and doors lie side by side in the hall."""
+    first, _, rest = name.partition(".")
+    hall = "doors" if first in DOORS else "faces" if first in FACES else "values"
+    return first if rest or (PACKAGE / first).is_dir() else hall
 
 
 def imports_of(path, *, typing_too=False):
-    """Names of our own modules that a file imports anywhere, but for typing alone."""
+    """Dotted names below verify that a file imports anywhere, but for typing alone."""
     tree = ast.parse(path.read_text("utf-8"))
     if not typing_too:
         for node in ast.walk(tree):
@@ -83,83 +56,67 @@ def imports_of(path, *, typing_too=False):
     found = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "verify":
-            parts = node.module.split(".")
-            found |= {parts[1]} if len(parts) > 1 else {alias.name for alias in node.names if alias.name in known()}
+            under = node.module.partition(".")[2]
+            found |= {f"{under}.{a.name}".strip(".") for a in node.names} if is_package(under) else {under}
         elif isinstance(node, ast.Import):
-            found |= {a.name.split(".")[1] for a in node.names if a.name.startswith("verify.")}
-    return found
+            found |= {a.name.partition(".")[2] for a in node.names if a.name.startswith("verify.")}
+    return {name for name in found if (PACKAGE / f"{name.replace('.', '/')}.py").exists() or is_package(name)}
 
 
-def known():
-    return set().union(*FLOORS)
+def is_package(name):
+    return (PACKAGE / name.replace(".", "/")).is_dir()
 
 
-def modules():
-    return {p.parent.name if p.parent != PACKAGE else p.stem: p for p in sorted(PACKAGE.rglob("*.py"))}
+def test_every_room_is_known_and_says_what_it_is_for():
+    rooms = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
+    assert rooms == {path.parent.name for path in PACKAGE.glob("*/*.py")}
+    assert rooms == set(ROOMS) - {"values", "faces", "doors"}
+    for room in rooms:
+        said = ast.get_docstring(ast.parse((PACKAGE / room / "__init__.py").read_text("utf-8")))
+        assert said, room
+        assert len(said.splitlines()) >= 3, f"{room} says too little of what it takes and gives, and who may call it"
+
+
+@pytest.mark.parametrize("name", [name for name, _ in modules()])
+def test_a_room_imports_from_rooms_below_it_alone(name):
+    own = room_of(name)
+    for imported in imports_of(PACKAGE / f"{name.replace('.', '/')}.py"):
+        there = room_of(imported)
+        assert there == own or ROOMS.index(there) < ROOMS.index(own), f"{name} imports {imported}, not below it"
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_model_imports_no_other_model_and_no_judge(model):
-    own = {
-        "analytic_modes": {"closed_forms", "analytic_harmonic", "section_minors"},
-        "fem_beam": {"harmonic_solvers"},
-        "segment_model": {"chain", "chain_walls", "point_loads", "harmonic_solvers"},
-    }
-    allowed = {"beam", "division", "modes", "fields", "errors", "eigen"} | own[model]
-    assert imports_of(PACKAGE / f"{model}.py", typing_too=True) <= allowed
+def test_a_model_knows_no_other_model_and_no_judge(model):
+    """Not even for typing: their agreement is evidence between independent modes, loads and readings."""
+    for path in (PACKAGE / model).glob("*.py"):
+        assert {room_of(name) for name in imports_of(path, typing_too=True)} <= {"values", "models", model}, path.name
 
 
-def test_what_a_model_is_made_of_knows_no_other_model_either():
-    shared = {"beam", "division", "modes", "fields", "errors", "eigen"}
-    parts = {
-        "analytic_harmonic": {"closed_forms"},
-        "section_minors": set(),
-        "chain": {"chain_walls"},
-        "point_loads": {"chain"},
-        "harmonic_solvers": set(),
-    }
-    for part, own in parts.items():
-        assert imports_of(PACKAGE / f"{part}.py", typing_too=True) <= shared | own, part
+def test_nothing_inside_stands_on_a_face():
+    for name, path in modules():
+        assert name in FACES or not {room_of(one) for one in imports_of(path)} & {"faces"}, name
 
 
-@pytest.mark.parametrize(
-    ("motion", "own"),
-    [
-        ("segment_motion", {"segment_model", "chain", "chain_walls", "point_loads", "harmonic_solvers", "eigen"}),
-        ("fem_motion", {"fem_beam", "division", "harmonic_solvers", "eigen"}),
-        ("analytic_motion", {"analytic_modes", "closed_forms", "fields"}),
-    ],
-)
-def test_a_models_motion_imports_no_other_model(motion, own):
-    """Their agreement in time is evidence between independent modes, loads and readings."""
-    assert imports_of(PACKAGE / f"{motion}.py", typing_too=True) <= {"beam", "errors", "time_basis"} | own
+def test_closed_forms_take_the_beam_alone():
+    assert imports_of(PACKAGE / "exact" / "closed_forms.py", typing_too=True) == {"beam", "errors"}
 
 
-def test_numba_is_imported_in_the_kernels_alone_and_they_only_where_something_steps():
-    kernels = {path.stem for path in PACKAGE.rglob("*.py") if "import njit" in path.read_text("utf-8")}
-    assert "contact_kernels" in kernels
-    assert all(name.endswith("_kernels") for name in kernels)
-    for name in ("slider_run", "rigid_surface"):
-        tree = ast.parse((PACKAGE / f"{name}.py").read_text("utf-8"))
-        at_the_top = {alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names}
-        assert not at_the_top & {"contact_kernels", "slide", "slide_on_belt"}
+def test_numba_is_imported_in_kernels_alone_and_they_only_where_something_steps():
+    """In one module each, for its cache sees no edit in an imported one; and in functions, which only stepping calls."""
+    kernels = {name for name, path in modules() if "import njit" in path.read_text("utf-8")}
+    assert kernels
+    assert all(name.endswith("kernels") for name in kernels)
+    for name, path in modules():
+        tree = ast.parse(path.read_text("utf-8"))
+        tree.body = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
+        at_the_top = {f"{node.module}.{a.name}" for node in tree.body for a in node.names} | {
+            node.module for node in tree.body
+        }
+        assert not at_the_top & {f"verify.motion.{one}" for one in ("kernels",)}, name
 
 
-def test_closed_forms_know_no_model():
-    assert imports_of(PACKAGE / "closed_forms.py", typing_too=True) == {"beam", "errors"}
-
-
-def test_scikit_fem_is_imported_in_the_finite_element_model_alone():
-    users = {path.stem for path in PACKAGE.rglob("*.py") if "skfem" in path.read_text("utf-8")}
-    assert users == {"fem_beam"}
-
-
-def test_imports_run_one_way_down_the_house():
-    floor = {name: i for i, names in enumerate(FLOORS) for name in names}
-    for path in PACKAGE.rglob("*.py"):
-        name = "report" if path.parent.name == "report" else path.stem
-        for imported in imports_of(path) - {name}:
-            assert floor[imported] < floor[name], f"{name} imports {imported}, which is not below it"
+def test_scikit_fem_is_imported_by_the_finite_elements_alone():
+    assert {room_of(name) for name, path in modules() if "skfem" in path.read_text("utf-8")} == {"elements"}
 
 
 def test_nothing_below_the_command_line_prints():

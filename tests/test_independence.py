@@ -7,6 +7,7 @@ by formulas that import nothing of the suite. A fault that is never reached, bec
 
 import ast
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -416,11 +417,12 @@ SHARED = [
 
 def seam(path):
     """(what holds it, name) of an attribute below verify."""
-    module, *rest = path.split(".")
-    holder = import_module(f"{verify.__name__}.{module}")
-    for name in rest[:-1]:
-        holder = getattr(holder, name)
-    return holder, rest[-1]
+    holder, (*rest, name) = verify, path.split(".")
+    for part in rest:
+        with suppress(ModuleNotFoundError):
+            import_module(f"{holder.__name__}.{part}")
+        holder = getattr(holder, part)
+    return holder, name
 
 
 def plant(monkeypatch, shared):
@@ -479,9 +481,10 @@ def test_the_gates_of_the_table_are_green_without_a_fault():
 
 def imported(module, found):
     """The modules of the suite behind one, into `found`, lazily imported ones as well."""
-    if module not in found:
+    path = Path(verify.__file__).parent / f"{module.replace('.', '/')}.py"
+    if module not in found and path.exists():
         found.add(module)
-        tree = ast.parse((Path(verify.__file__).parent / f"{module}.py").read_text(encoding="utf-8"))
+        tree = ast.parse(path.read_text(encoding="utf-8"))
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("verify."):
                 imported(node.module.removeprefix("verify."), found)
@@ -501,7 +504,7 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module == "verify.patience":
                 assert [(alias.name, alias.asname) for alias in node.names] == [("check_work", None)], path.stem
-                takers.add(path.stem)
+                takers.add(".".join(path.relative_to(Path(verify.__file__).parent).with_suffix("").parts))
             assert not (isinstance(node, ast.Import) and any(a.name == "verify.patience" for a in node.names)), (
                 path.stem
             )

@@ -1,0 +1,27 @@
+"""A field in, wave measures and surface ellipses out. The room is `verify.waves`."""
+
+from verify.waves.measures import (
+    TwoWaves,
+    WaveMeasures,
+    ellipse,
+    fit_waves,
+    measure,
+    measure_series,
+    middle_half,
+    phasors,
+    surface_motion,
+    two_waves,
+)
+
+__all__ = [
+    "TwoWaves",
+    "WaveMeasures",
+    "ellipse",
+    "fit_waves",
+    "measure",
+    "measure_series",
+    "middle_half",
+    "phasors",
+    "surface_motion",
+    "two_waves",
+]
