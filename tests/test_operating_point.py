@@ -5,7 +5,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import PointForce
-from verify.waves.driven import measures as travelling_wave
+from verify.waves import measures as travelling_wave
 from verify.waves.driven import own_wavenumber, solve_by_model
 from verify.waves.operating_point import Landscape
 

@@ -20,7 +20,7 @@ from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.segments import linear as segment_model
 from verify.studies.design_map import Axis, design_map, parse_axis
 from verify.studies.wave import motor_row
-from verify.waves.driven import measures as travelling_wave
+from verify.waves import measures as travelling_wave
 from verify.waves.driven import own_wavenumber, solve_by_model
 from verify.waves.imposed import driven_field
 from verify.waves.measures import (

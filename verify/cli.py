@@ -71,7 +71,7 @@ def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as
     with _progress(n_steps(asked), quiet=as_json) as step:
         result = run_scene(asked, step)
     if target is not None:
-        from verify.report import write_report
+        from verify.report.html import write_report
 
         write_report(result, target, command=_command_line("run", scene, overrides))
     if as_json:

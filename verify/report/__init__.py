@@ -1,5 +1,5 @@
-"""The HTML report: one self-contained file that needs no network."""
+"""What a person or a script gets to see of a result: the HTML page, the terminal, plain data.
 
-from verify.report.html import write_report
-
-__all__ = ["write_report"]
+Takes results that tell themselves in tables, charts and facts, gives text; nothing below the doors but this room
+writes files. The doors call it.
+"""
