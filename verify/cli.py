@@ -92,6 +92,7 @@ def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as
 @_overrides
 @click.option("--modes", metavar="LIST", help="Modes, for instance 1,5,22. Default: the scene's [convergence].")
 @click.option("--counts", metavar="LIST", help="Segments and elements, for instance 10,20,49,98.")
+@click.option("--of", "study", metavar="STUDY", help="Whatever a study of SCENE finds, by the name of its section.")
 @click.option("--wave", is_flag=True, help="The motor's figures over the counts instead of modes.")
 @click.option("--slider", is_flag=True, help="The slider's displacement and its run time over the counts.")
 @click.option(
@@ -116,6 +117,7 @@ def table(
     overrides: tuple[str, ...],
     modes: str | None,
     counts: str | None,
+    study: str | None,
     wave: bool,
     slider: bool,
     sweeps: tuple[str, ...],
@@ -123,13 +125,15 @@ def table(
     as_json: bool,
     layout: str | None,
 ) -> None:
-    """Both discrete models side by side; the motor's figures or the slider's over sizes; or a sweep."""
+    """All discrete models side by side; any study; the motor's figures or the slider's over sizes; or a sweep."""
     from verify.run import tables
 
     asked = _load(scene, overrides)
     if arguments and not sweeps:
         raise InputError(f"{arguments[0]!r}: KEY=VALUE arguments belong to a --sweep")
-    if sweeps:
+    if study is not None:
+        job = tables.study_of(asked, study)
+    elif sweeps:
         job = tables.sweep(asked, sweeps, quantity, arguments)
     elif slider:
         job = tables.slider(asked, counts)
@@ -138,9 +142,13 @@ def table(
     with _progress(job.n_steps, quiet=as_json or bool(layout)) as step:
         found = job.run(step)
     if as_json or layout:
-        click.echo(job.text(found, layout or "json"), nl=False)
+        from verify.report.plain import text_of
+
+        click.echo(text_of(found, layout or "json"), nl=False)
     else:
-        job.draw(found)
+        from verify.report.terminal import print_found
+
+        print_found(found)
 
 
 @cli.command()
@@ -153,7 +161,7 @@ def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tu
     """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
     from verify.judge.workbench import Workbench
     from verify.quantities import catalogue as quantities
-    from verify.scenes.scene import given_arguments
+    from verify.scenes.toml import given_arguments
 
     found = quantities.quantity(quantity)
     given = given_arguments(arguments)

@@ -36,7 +36,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "SceneFile
 def _has_gates(path: Path) -> bool:
     """Whether a file found in a folder, not named, is a scene with gates; one that is no TOML is not ours."""
     from verify.errors import InputError
-    from verify.scenes.scene import read_toml
+    from verify.scenes.toml import read_toml
 
     try:
         data = read_toml(path)

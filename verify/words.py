@@ -1,10 +1,8 @@
 """Figures in words: durations, per cents, measured values, what a run solved."""
 
+from collections.abc import Callable
 from math import isfinite, isnan
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from verify.run.runner import RunResult
+from typing import Any
 
 
 def seconds_in_words(seconds: float | None) -> str:
@@ -41,7 +39,35 @@ def number(value: float, digits: int) -> str:
     return f"{value:.{digits}g}" if isfinite(value) else "–" if isnan(value) else "infinity"
 
 
-def work_in_words(result: "RunResult") -> str:
+def work_in_words(solves: int, fields: int, motions: int) -> str:
     """What a run solved, by kind; kinds of which there is nothing are left out."""
-    kinds = {"modal solves": len(result.solves), "driven fields": result.n_fields, "motions in time": result.n_motions}
+    kinds = {"modal solves": solves, "driven fields": fields, "motions in time": motions}
     return ", ".join(f"{n} {name}" for name, n in kinds.items() if n) or "closed forms only"
+
+
+def bare_percent(value: float) -> str:
+    """A relative figure in per cent without the sign for it, at most nine characters."""
+    return f"{100 * value:+.4f}" if abs(value) >= 1e-4 else f"{100 * value:+.2e}".replace("e-0", "e-")
+
+
+_FORMS: dict[str, Callable[[float], str]] = {
+    "percent": percent,
+    "size": lambda value: percent(value, sign=False),
+    "bare percent": bare_percent,
+    "bare size": lambda value: bare_percent(value).lstrip("+"),
+    "duration": seconds_in_words,
+    "ratio": lambda value: f"{value:.5f}" if value < 10 else number(value, 4),
+    "4": lambda value: number(value, 4),
+}
+"""How a number is written in a cell, beside Python's own formats."""
+
+
+def cell(value: Any, form: str = "", factor: float = 1.0, unit: str = "") -> str:
+    """A value in a cell of a table: words as they are, a dash for what there is not."""
+    if value is None:
+        return "–"
+    if isinstance(value, str):
+        return value
+    if form in _FORMS:
+        return _FORMS[form](factor * value) + unit
+    return (format(factor * value, form) if form else f"{value}") + unit

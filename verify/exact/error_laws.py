@@ -6,7 +6,10 @@ The models are not asked: this is what they are checked against.
 
 from cmath import asin
 from cmath import sqrt as csqrt
+from collections.abc import Callable
 from math import cos, pi, sin, sqrt
+
+import msgspec
 
 from verify.beam import Beam
 from verify.errors import CutOffError, InputError
@@ -14,9 +17,6 @@ from verify.exact.closed_forms import check_mode, check_uniform, wavenumber_leng
 
 MEAN_LIMIT = 2.187653657707005
 """mu at which the error of segments is -3 times that of Hermite elements, so that their mean has the elements' size."""
-PARTS = {"segment": "segments", "fem": "elements"}
-_CUT_OFF_ROOTS = {"segment": 48.0, "fem": 1680.0 / 17.0}
-"""omega^2 rho A l^4 / EI at mu = pi, the end of the lower branch."""
 _HERMITE_HUMP = 2.975618
 """mu at which the Hermite elements' frequency error is largest on the lower branch, 3.7056 %."""
 
@@ -38,7 +38,7 @@ def dispersion_frequency_hz(model: str, beam: Beam, mode: int, count: int) -> fl
     mu = wavenumber_length(beam.supports, mode) / count
     if mu >= pi:
         raise InputError(f"mode = {mode!r}: the dispersion of {count} parts ends below it, raise count")
-    omega = sqrt(_segment_root(mu) if model == "segment" else _hermite_root(mu))
+    omega = sqrt(law_of(model).root(mu))
     return omega * beam.wave_constant * (count / beam.length) ** 2 / (2.0 * pi)
 
 
@@ -62,7 +62,7 @@ def _hermite_root(mu: float) -> float:
 
 def cut_off_hz(model: str, beam: Beam, count: int) -> float:
     """The frequency, Hz, above which no wave runs along a discrete model of equal parts: a half wave on each part."""
-    return sqrt(_CUT_OFF_ROOTS[model]) * beam.wave_constant * (count / beam.length) ** 2 / (2.0 * pi)
+    return sqrt(law_of(model).cut_off_root) * beam.wave_constant * (count / beam.length) ** 2 / (2.0 * pi)
 
 
 def check_carried(model: str, beam: Beam, count: int, frequency_hz: float) -> None:
@@ -72,8 +72,8 @@ def check_carried(model: str, beam: Beam, count: int, frequency_hz: float) -> No
     fewest = int(count * sqrt(frequency_hz / cut_off_hz(model, beam, count)))
     fewest += cut_off_hz(model, beam, fewest) <= frequency_hz
     raise CutOffError(
-        f"count = {count!r}: {count} {PARTS[model]} carry waves up to {cut_off_hz(model, beam, count):.6g} Hz and "
-        f"frequency_hz = {frequency_hz!r} lies beyond, give count = {fewest} or more"
+        f"count = {count!r}: {count} {law_of(model).parts} carry waves up to {cut_off_hz(model, beam, count):.6g} Hz "
+        f"and frequency_hz = {frequency_hz!r} lies beyond, give count = {fewest} or more"
     )
 
 
@@ -87,7 +87,7 @@ def discrete_wavenumber(model: str, beam: Beam, count: int, frequency_hz: float)
     check_carried(model, beam, count, frequency_hz)
     length = beam.length / count
     root = (2.0 * pi * frequency_hz / beam.wave_constant * length**2) ** 2 / (1.0 + 1j * beam.loss_factor)
-    s2 = _segment_s2(root) if model == "segment" else _hermite_s2(root)
+    s2 = law_of(model).s2(root)
     mu = 2.0 * asin(csqrt(s2))
     return (mu if mu.imag <= 0 else mu.conjugate()) / length
 
@@ -114,10 +114,9 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
     +mu^4/1440 for Hermite elements; mu^4 (-1/1440 + c / (12 N)) for segments with Gregory's joints at their c
     clamped ends; mu = beta L / N.
     """
+    law = law_of(model)
     mu4 = (wavenumber_length(supports, mode) / count) ** 4
-    if model == "fem":
-        return mu4 / 1440.0
-    return mu4 * (-1.0 / 1440.0 + supports.count("clamped") / (12.0 * count))
+    return law.leading(mu4, supports.count("clamped"), count)
 
 
 def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
@@ -125,7 +124,7 @@ def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
     if not sine_fits(beam.supports):
         return leading_error(model, beam.supports, mode, count)
     exact = wavenumber_length(beam.supports, mode) / count
-    root = _segment_root(exact) if model == "segment" else _hermite_root(exact)
+    root = law_of(model).root(exact)
     return sqrt(root) / exact**2 - 1.0
 
 
@@ -140,7 +139,7 @@ def parts_from_here_on(model: str, beam: Beam, mode: int, error: float) -> int:
     def reached(count: int) -> bool:
         return abs(expected_error(model, beam, mode, count)) <= error
 
-    smallest = smallest_count(model, beam, mode)
+    smallest = smallest_count(beam, mode)
     falls_to, hump = last_hump(model, beam, mode)
     beside = [max(int(hump), smallest), max(int(hump) + 1, smallest)]
     if all(reached(count) for count in beside):
@@ -176,12 +175,62 @@ def last_hump(model: str, beam: Beam, mode: int) -> tuple[int, float]:
     elements rises from 0.72 % at mu = pi to 3.71 % at mu = 2.9756 and then falls. Of the laws, mu^4 / 1440 only
     falls; mu^4 (-1/1440 + c / (12 N)) is zero at N = 120 c and has a hump at 150 c. (0, 0) where it only falls.
     """
+    law = law_of(model)
     if sine_fits(beam.supports):
-        return 0, wavenumber_length(beam.supports, mode) / _HERMITE_HUMP if model == "fem" else 0.0
-    clamped = beam.supports.count("clamped") if model == "segment" else 0
+        return 0, wavenumber_length(beam.supports, mode) / law.hump if law.hump else 0.0
+    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
     return 120 * clamped, 150.0 * clamped
 
 
-def smallest_count(model: str, beam: Beam, mode: int) -> int:
+def smallest_count(beam: Beam, mode: int) -> int:
     """The fewest parts that have the mode on their lower branch."""
     return max(int(wavenumber_length(beam.supports, mode) / pi) + 1, mode + 1, 2)
+
+
+class Law(msgspec.Struct, frozen=True, kw_only=True):
+    """What is known of a discrete model of equal parts without solving it."""
+
+    parts: str
+    """What it is made of, in a word."""
+    root: Callable[[float], float]
+    """mu = beta L / N -> omega^2 rho A l^4 / EI, the exact dispersion on the lower branch."""
+    s2: Callable[[complex], complex]
+    """Its inverse: sin^2(mu / 2)."""
+    cut_off_root: float
+    """The root at mu = pi, the end of the lower branch."""
+    leading: Callable[[float, int, int], float]
+    """(mu^4, clamped ends, count) -> the leading relative frequency error."""
+    feels_clamps: bool
+    """Whether clamped ends are in it."""
+    hump: float | None
+    """mu at which the error is largest on the lower branch; None where it only grows."""
+
+
+LAWS = {
+    "segment": Law(
+        parts="segments",
+        root=_segment_root,
+        s2=_segment_s2,
+        cut_off_root=48.0,
+        leading=lambda mu4, clamped, count: mu4 * (-1.0 / 1440.0 + clamped / (12.0 * count)),
+        feels_clamps=True,
+        hump=None,
+    ),
+    "fem": Law(
+        parts="elements",
+        root=_hermite_root,
+        s2=_hermite_s2,
+        cut_off_root=1680.0 / 17.0,
+        leading=lambda mu4, clamped, count: mu4 / 1440.0,
+        feels_clamps=False,
+        hump=_HERMITE_HUMP,
+    ),
+}
+"""By the name of the model."""
+
+
+def law_of(model: str) -> Law:
+    """The law of a discrete model. Raises InputError for one of which none is known."""
+    if model not in LAWS:
+        raise InputError(f"model = {model!r}: no error law of it is known, choose one of {', '.join(LAWS)}")
+    return LAWS[model]

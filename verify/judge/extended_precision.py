@@ -4,6 +4,7 @@ Sylvester's law of inertia on K - lambda M, eliminated in `decimal`. The matrice
 more, from the textbook, for uniform beams of equal parts; no solver and no model takes part.
 """
 
+from collections.abc import Callable
 from decimal import Decimal, localcontext
 from math import inf
 from typing import TypeAlias
@@ -30,7 +31,7 @@ def eigenvalue_error(beam: Beam, model: str, count: int, mode: int, frequency_hz
     check_uniform(beam)
     with localcontext() as context:
         context.prec = DIGITS
-        bands = chain_bands(beam.supports, count) if model == "segment" else hermite_bands(beam.supports, count)
+        bands = _bands_of(model)(beam.supports, count)
         omega = 2 * _PI * Decimal(frequency_hz) / Decimal(beam.wave_constant)
         root = omega * (Decimal(beam.length) / count) ** 2
         rank = mode + beam.rigid_motions
@@ -125,3 +126,11 @@ def hermite_bands(supports: tuple[str, str], n: int) -> tuple[Bands, Bands]:
         _add(stiffness, at, k)
         _add(mass, at, m)
     return stiffness, mass
+
+
+def _bands_of(model: str) -> Callable[[tuple[str, str], int], tuple[Bands, Bands]]:
+    """Of stiffness and mass. Raises InputError for a model whose matrices are not written out here."""
+    known = {"segment": chain_bands, "fem": hermite_bands}
+    if model not in known:
+        raise InputError(f"model = {model!r}: eigenvalues are counted for {' and '.join(known)} alone")
+    return known[model]

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.errors import InputError, PairingError
-from verify.exact.error_laws import expected_error, parts_from_here_on, sine_fits, smallest_count
-from verify.judge.workbench import Settings, Workbench, model_module
+from verify.exact.error_laws import expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
+from verify.judge.workbench import Settings, Workbench
+from verify.models.catalogue import MODELS, discrete
 from verify.timing import interleaved_medians
 
 if TYPE_CHECKING:
@@ -57,7 +58,15 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
 
 def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
     """Where to begin: the error law's answer, on a stepped beam the fewest parts that have the mode."""
-    return smallest_count(model, beam, mode) if beam.stepped else parts_from_here_on(model, beam, mode, error)
+    if beam.stepped or MODELS.named(model).error_law is None:
+        return smallest_count(beam, mode)
+    return parts_from_here_on(model, beam, mode, error)
+
+
+def _expected(model: str, beam: "Beam", mode: int, count: int) -> float | None:
+    """The error that the model's own law expects; None on a stepped beam, and of a model without one."""
+    law = MODELS.named(model).error_law
+    return None if beam.stepped or law is None else law(beam, mode, count)
 
 
 def enough_from(bench: Workbench, model: str, mode: int, error: float, settings: Settings = ()) -> Enough:
@@ -70,7 +79,7 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
     """
 
     def reached(count: int) -> bool:
-        if model_module(model).n_elastic(bench.beam, count) < mode:
+        if MODELS.named(model).n_elastic(bench.beam, count) < mode:
             return False
         try:
             return abs(bench.frequency_error(model, count, mode, settings)) <= error
@@ -78,8 +87,9 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
             return False
 
     guess = count_guess(model, bench.beam, mode, error)
-    smallest = max(len(bench.beam.pieces), 1 + (model == "segment"))
-    uniform = not (bench.beam.section or settings)
+    smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
+    law = MODELS.named(model).error_law is not None
+    uniform = law and not (bench.beam.section or settings)
     if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:
         count = _around(reached, guess, smallest, model, error)
         return Enough(
@@ -98,8 +108,8 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
 
 def _dip(model: str, beam: "Beam", mode: int, error: float, count: int) -> int | None:
     """The smallest size below `count` within `error` by the discrete dispersion."""
-    sizes = range(smallest_count(model, beam, mode), count)
-    if model == "segment" or len(sizes) == 0 or abs(expected_error(model, beam, mode, sizes[0])) > error:
+    sizes = range(smallest_count(beam, mode), count)
+    if law_of(model).hump is None or len(sizes) == 0 or abs(expected_error(model, beam, mode, sizes[0])) > error:
         return None  # towards the cut-off the error falls again: if the smallest size does not do, none does
     return sizes[0] if any(abs(expected_error(model, beam, mode, n)) > error for n in sizes) else None
 
@@ -156,18 +166,19 @@ def _unreached(model: str, error: float, count: int) -> InputError:
     return InputError(f"error = {error!r}: the {model} model does not reach it up to count = {count}")
 
 
-def choose(bench: Workbench, mode: int, error: float, models: tuple[str, ...] = ("segment", "fem")) -> list[Choice]:
+def choose(bench: Workbench, mode: int, error: float, models: tuple[str, ...] = ()) -> list[Choice]:
     """For each model the size from which on it keeps `error`, and its time, taken in turns. Raises InputError."""
-    found = {model: enough_from(bench, model, mode, error) for model in models}
+    names = models or tuple(model.name for model in discrete())
+    found = {model: enough_from(bench, model, mode, error) for model in names}
     jobs = [_solver(bench, model, one.count, mode) for model, one in found.items()]
     return [
         Choice(
             model=model,
             count=one.count,
-            unknowns=model_module(model).unknowns(bench.beam, one.count),
+            unknowns=MODELS.named(model).unknowns(bench.beam, one.count),
             error=bench.frequency_error(model, one.count, mode),
             run_time_s=seconds,
-            expected_error=None if bench.beam.stepped else expected_error(model, bench.beam, mode, one.count),
+            expected_error=_expected(model, bench.beam, mode, one.count),
             smaller=one.smaller,
             known_by=one.known_by,
             smaller_error=None if one.smaller is None else bench.frequency_error(model, one.smaller, mode),
@@ -177,4 +188,4 @@ def choose(bench: Workbench, mode: int, error: float, models: tuple[str, ...] = 
 
 
 def _solver(bench: Workbench, model: str, count: int, mode: int) -> Callable[[], object]:
-    return lambda: model_module(model).solve_modes(bench.beam, mode, count)
+    return lambda: MODELS.named(model).solve_modes(bench.beam, mode, count)

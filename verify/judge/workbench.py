@@ -9,6 +9,7 @@ import msgspec
 from verify.beam import Beam
 from verify.errors import InputError, NoBracketError
 from verify.exact.error_laws import leading_error
+from verify.models.catalogue import MODELS, bounding
 
 if TYPE_CHECKING:
     from verify.judge.compare import Bracket
@@ -16,10 +17,10 @@ if TYPE_CHECKING:
     from verify.models.modes import Array, Modes
     from verify.motion.result import Motion
 
+MEAN = "mean"
+"""The middle between the model below and the model above, where a model's name is asked for."""
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Keyword settings of a model's solve_modes other than their defaults, for instance (("wall", "half"),)."""
-
-_MODULES = {"fem": "verify.elements.hermite", "segment": "verify.segments.linear"}
 
 
 class Need(msgspec.Struct, frozen=True):
@@ -46,13 +47,6 @@ class Solve(msgspec.Struct, frozen=True):
 Key: TypeAlias = tuple[str, int, Settings]
 
 
-def model_module(model: str) -> Any:
-    """The module of a discrete model, imported when first asked for."""
-    from importlib import import_module
-
-    return import_module(_MODULES[model])
-
-
 def merged(needs: Iterable[Need]) -> dict[Key, int]:
     """(model, count, settings) -> the most modes anybody wants of it."""
     wanted: dict[Key, int] = {}
@@ -64,7 +58,8 @@ def merged(needs: Iterable[Need]) -> dict[Key, int]:
 
 def for_model(model: str, settings: Settings) -> Settings:
     """The settings that a model knows: walls and joints are the segments' own."""
-    return settings if model == "segment" else tuple((k, v) for k, v in settings if k == "grading")
+    known = MODELS.named(model).modal_settings
+    return tuple((name, value) for name, value in settings if name in known)
 
 
 def check_bracket(beam: Beam, settings: Settings) -> None:
@@ -83,6 +78,21 @@ def check_bracket(beam: Beam, settings: Settings) -> None:
     else:
         return
     raise NoBracketError(f"mode.bracket: {reason}")
+
+
+def is_bracketed(beam: Beam) -> bool:
+    """Whether segments lie below and elements above for this beam, as they are by default."""
+    try:
+        check_bracket(beam, ())
+    except NoBracketError:
+        return False
+    return True
+
+
+def check_size(beam: Beam, model: str, count: int, n_modes: int) -> None:
+    """Raise InputError for a size that cannot be solved at all, before any work on it."""
+    found = MODELS.named(model)
+    found.check(beam, max(min(n_modes, found.n_elastic(beam, count)), 1), count)
 
 
 class Workbench:
@@ -104,6 +114,13 @@ class Workbench:
         """Harmonic fields by everything that makes them."""
         self.motions: dict[Any, Motion] = {}
         """Simulations by everything that makes them."""
+        self.n_unkept_motions = 0
+        """How many were done besides, of the nonlinear chain."""
+
+    @property
+    def n_motions(self) -> int:
+        """How many simulations were done for figures."""
+        return len(self.motions) + self.n_unkept_motions
 
     def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> "Modes":
         """At least `n_modes` modes of a discrete model. Raises InputError."""
@@ -115,7 +132,7 @@ class Workbench:
 
     def _solve(self, key: Key, n_wanted: int, n_needed: int) -> "Modes":
         model, count, settings = key
-        module = model_module(model)
+        module = MODELS.named(model)
         # what others wish for must not fail the one who asks for less, so theirs is cut to what there is
         available = module.n_elastic(self.beam, count)
         if n_needed > available:
@@ -124,7 +141,7 @@ class Workbench:
             )
         n_modes = min(n_wanted, available)
         start = perf_counter()
-        modes: Modes = module.solve_modes(self.beam, n_modes, count, **dict(settings))
+        modes = module.solve_modes(self.beam, n_modes, count, **dict(settings))
         seconds = perf_counter() - start
         unknowns = module.unknowns(self.beam, count)
         self.solves.append(Solve(model, count, settings, n_modes, unknowns, modes.method, seconds))
@@ -142,7 +159,7 @@ class Workbench:
 
     def frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """The frequency of mode number `mode` by rank, Hz; model "mean" is the middle of the bracket."""
-        if model == "mean":
+        if model == MEAN:
             return self.bracket(mode, count, settings).mean
         return float(self.modes(model, count, mode, settings).frequencies_hz[mode - 1])
 
@@ -151,7 +168,7 @@ class Workbench:
 
         On a stepped beam, which has no exact shapes here, by rank. Raises PairingError.
         """
-        if model == "mean":
+        if model == MEAN:
             return self.bracket(mode, count, settings).mean
         index = self.paired_index(model, count, mode, settings)
         return float(self.modes(model, count, mode, settings).frequencies_hz[index])
@@ -177,6 +194,13 @@ class Workbench:
 
         return compare.relative_error(self.paired_frequency_hz(model, count, mode, settings), self.exact_hz(mode))
 
+    def error_or_why(self, model: str, count: int, mode: int) -> tuple[float | None, str]:
+        """(signed frequency error, '') or (None, why there is none)."""
+        try:
+            return self.frequency_error(model, count, mode), ""
+        except InputError as error:
+            return None, str(error)
+
     def bracket(self, mode: int, count: int, settings: Settings = ()) -> "Bracket":
         """Segments below and Hermite elements above the exact frequency, Hz. Raises NoBracketError.
 
@@ -186,13 +210,14 @@ class Workbench:
         from verify.judge import compare
 
         check_bracket(self.beam, settings)
-        width = 2.0 * leading_error("fem", self.beam.supports, mode, count)
+        lower, upper = bounding()
+        width = 2.0 * leading_error(upper.name, self.beam.supports, mode, count)
         if width < max(10.0 * compare.EIGENVALUE_FLOOR, 1e-16 * count):
             raise NoBracketError(
                 f"mode.bracket: at count = {count} it would be {width:.0e} wide, thinner than the eigenvalue error, "
                 "use a smaller count"
             )
-        below, above = (self.frequency_hz(model, count, mode, settings) for model in ("segment", "fem"))
+        below, above = (self.frequency_hz(model.name, count, mode, settings) for model in (lower, upper))
         return compare.bracket(below, above)
 
     def shape_error(
@@ -225,7 +250,7 @@ class Workbench:
         from verify.exact import modes as analytic_modes
         from verify.judge import compare
 
-        if model == "analytic" or count is None:
+        if count is None:
             return compare.zeros(lambda x: analytic_modes.mode_shape(self.beam, mode, x), self.beam.length, mode)
         modes = self.modes(model, count, mode, settings)
         index = self.paired_index(model, count, mode, settings)

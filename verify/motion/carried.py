@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import PointForce
 from verify.errors import InputError
+from verify.models.catalogue import MODELS, check_count
 from verify.models.time_basis import Array, TimeBasis
 from verify.motion.contact import Coupling, coupling_of, law_entries
 from verify.motion.margins import margins_of
@@ -19,6 +21,9 @@ from verify.motion.stepping import Sliding, run_stages, slider_seconds
 from verify.motion.surface import Stage
 from verify.patience import check_work
 from verify.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.models.fields import HarmonicField
 
 
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:
@@ -34,19 +39,15 @@ def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis
     return coupling_of(slider, request.beam, request.frequency_hz, speed, felt)
 
 
-def steady_field(request: Request, forces: tuple[PointForce, ...]) -> Any:
-    """The steady field of the request's model and damping under these forces, `HarmonicField`. Raises InputError."""
-    from msgspec.structs import replace
-
-    from verify.waves.driven import solve_by_model
-
-    if request.model != "analytic" and request.count is None:
-        raise InputError(f"count is missing: give the number of segments or elements for model = {request.model}")
-    beam, settings = request.beam, {}
+def steady_field(request: Request, forces: tuple[PointForce, ...]) -> "HarmonicField":
+    """The steady field of the request's model and damping under these forces. Raises InputError."""
+    check_count(request.model, request.count)
+    model, beam, settings = MODELS[request.model], request.beam, {}
     if request.damping_replaced:
-        beam = replace(beam, loss_factor=2.0 * request.damping if request.model == "analytic" else 0.0)
-        settings = {} if request.model == "analytic" else {"modal_damping": request.damping}
-    return solve_by_model(request.model, beam, forces, request.frequency_hz, request.count, settings)
+        by_mode = "modal_damping" in model.field_settings
+        beam = replace(beam, loss_factor=0.0 if by_mode else 2.0 * request.damping)
+        settings = {"modal_damping": request.damping} if by_mode else {}
+    return model.solve_harmonic(beam, forces, request.frequency_hz, request.count, **settings)
 
 
 def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Coupling | None) -> Array:

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from verify.models.catalogue import MODELS
+
 if TYPE_CHECKING:
     from verify.chain.ride import ChainRide
     from verify.models.time_basis import Array
@@ -12,8 +14,8 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
     from verify.slider import Slider
 
-MODELS = {"segment": "segments", "fem": "elements"}
-COUNTED = MODELS | {"chain": "rigid links, nonlinear"}
+CHAIN = "chain"
+"""What a condition calls the nonlinear chain, which is no model of small vibration."""
 
 
 class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
@@ -97,7 +99,20 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def model_words(self) -> str:
         """'49 segments', 'exact beam'."""
-        return f"{self.count} {COUNTED[self.model]}" if self.count else "exact beam"
+        if self.nonlinear:
+            return f"{self.count} rigid links, nonlinear"
+        model = MODELS.named(self.model)
+        return f"{self.count} {model.parts}" if model.sized else model.title
+
+    @property
+    def nonlinear(self) -> bool:
+        """Whether it is the nonlinear chain."""
+        return self.model == CHAIN
+
+    @property
+    def kind_words(self) -> str:
+        """'chain' for the nonlinear one, else 'linear'."""
+        return CHAIN if self.nonlinear else "linear"
 
     @property
     def start_words(self) -> str:
@@ -130,7 +145,7 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
 
 def _normal_in(model: str, slider: "Slider") -> str:
     """Whether the slider is held on this model's surface, and whether that is fed back."""
-    if model == "chain" or slider.normal == "massless":
+    if model == CHAIN or slider.normal == "massless":
         return "massless"
     return "held, one-way," if slider.coupling == "one-way" else "held"
 

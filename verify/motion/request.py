@@ -7,6 +7,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.errors import InputError
+from verify.models.catalogue import MODELS
 from verify.models.fields import check_drive
 from verify.models.time_basis import Array
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP
@@ -121,8 +122,7 @@ def requested(
 
 def _check_start(model: str, start: str, soft: float, envelope: Envelope, before: Motion | None) -> None:
     check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
-    if model not in ("analytic", "fem", "segment"):
-        raise InputError(f"model = {model!r} is not known: known are analytic, fem, segment")
+    MODELS.named(model)
     if start not in ("rest", "steady"):
         raise InputError(f"start = {start!r} is not known: known are rest, steady")
     if (soft or envelope) and (start == "steady" or before):

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.models.catalogue import MODELS
 from verify.models.time_basis import Array, TimeBasis
 from verify.motion.carried import begin, coupling_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
@@ -26,7 +27,7 @@ def simulate(
     frequency_hz: float,
     duration: float,
     *,
-    model: Literal["analytic", "fem", "segment"] = "segment",
+    model: str = "segment",
     count: int | None = None,
     modes: int = 400,
     start: Literal["rest", "steady"] = "rest",
@@ -115,7 +116,8 @@ def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
 def _damping_notes(request: Request, basis: TimeBasis | None) -> list[str]:
     """Which damping acts, and what it stands for: a ratio and a loss factor twice it agree at a resonance only."""
     ratio, eta = f"a ratio {request.damping:g} of every mode", request.beam.loss_factor
-    if request.start == "steady" and request.model == "analytic" and request.damping_replaced:
+    by_mode = "modal_damping" in MODELS[request.model].field_settings
+    if request.start == "steady" and request.damping_replaced and not by_mode:
         return [f"damping: a loss factor {2.0 * request.damping:g} in the steady field in place of {ratio}"]
     notes = []
     if request.start == "steady" and eta and not request.damping_replaced:

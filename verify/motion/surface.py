@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
+from verify.models.catalogue import MODELS, check_count
 from verify.models.time_basis import Array, ComplexArray, TimeBasis, taylor_table
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 
@@ -113,26 +114,13 @@ def free_at(stage: Stage, z: Array, t: float) -> Array:
 
 def basis_of(beam: Beam, model: str, count: int | None, modes: int, line: str = "spline") -> TimeBasis:
     """The free modes of a model by name. Raises InputError."""
-    if model == "analytic":
-        if count is not None:
-            raise InputError(f"count = {count!r} is for fem and segment: the exact beam takes modes, how many it keeps")
-        from verify.exact.in_time import time_basis as exact
-
-        return exact(beam, modes)
-    if count is None:
-        raise InputError(f"count is missing: give the number of segments or elements for model = {model}")
-    if model == "fem":
-        from verify.elements.in_time import time_basis as elements
-
-        return elements(beam, count)
-    from verify.segments.in_time import time_basis as segments
-
-    return segments(beam, count, line=line)  # type: ignore[arg-type]
+    check_count(model, count)
+    return MODELS[model].time_basis(beam, count, modes, line)
 
 
 def check_line(model: str, start: str, line: str) -> None:
     """Raise InputError where the rigid links' own edges are asked for and cannot be had."""
-    if line == "raw" and model != "segment":
+    if line not in MODELS.named(model).lines:
         raise InputError(
             f"slider.line = 'raw' is the edge of rigid links, which model = {model} has none of: leave it out"
         )
@@ -238,7 +226,7 @@ def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: Tim
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
 
     def drive(x: Array, derivative: int) -> Array:
-        higher, rest = divmod(derivative, 4) if field.model == "analytic" else (0, derivative)
+        higher, rest = divmod(derivative, 4) if field.count is None else (0, derivative)
         values = field.shapes(x, rest) * field.wavenumber ** (4 * higher)
         return np.array([values.real, values.imag])
 

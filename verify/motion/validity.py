@@ -1,10 +1,14 @@
 """Which errors a run carries that no step size removes: the theory's, the division's, and those of linear theory."""
 
 from math import pi
+from typing import TYPE_CHECKING
 
 from verify.beam import Beam
 from verify.exact.closed_forms import frequency_hz
-from verify.exact.error_laws import leading_error
+from verify.exact.error_laws import LAWS, leading_error
+
+if TYPE_CHECKING:
+    from verify.models.fields import HarmonicField
 
 NONLINEAR = 1e-3
 """From this (kL)^2 <theta^2> on, the linear chain is not the paper's chain."""
@@ -15,10 +19,18 @@ def axial_inertia_size(beam: Beam, frequency_hz: float, mean_square_slope: float
 
     <theta^2> is the mean over the links and over time. A scale, not a bound: on the paper's beam at 4276 Hz the first
     millisecond from rest departs from the linear chain at mid-span by 0.6 of it in the rms, and by 3 at its end; at the
-    tenths of the beam that end lies between 0.4 and 3.8 (`axial_study`).
+    tenths of the beam that end lies between 0.4 and 3.8 (the study of axial inertia).
     """
     squared_wavenumber = 2.0 * pi * frequency_hz / beam.wave_constant
     return float(squared_wavenumber * beam.length**2 * mean_square_slope)
+
+
+def field_size(field: "HarmonicField") -> float:
+    """The same of a steady field, averaged over the beam and a period."""
+    import numpy as np
+
+    slopes = abs(field.slope(np.linspace(0.0, field.beam.length, 400)))
+    return axial_inertia_size(field.beam, field.frequency_hz, 0.5 * float((slopes**2).mean()))
 
 
 def nearest_mode(beam: Beam, drive_hz: float) -> int:
@@ -40,7 +52,7 @@ def model_form(beam: Beam, drive_hz: float) -> float | None:
 
 
 def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
-    """The leading frequency error of a discrete model at the mode nearest the drive; None for the exact beam."""
-    if count is None or beam.stepped:
+    """The leading frequency error of a discrete model at the mode nearest the drive; None where no law is known."""
+    if count is None or beam.stepped or model not in LAWS:
         return None
     return leading_error(model, beam.supports, nearest_mode(beam, drive_hz), count)

@@ -9,36 +9,48 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import msgspec
 
-from verify.errors import InputError, near_name
+from verify.errors import InputError
 from verify.judge.workbench import Need, Workbench
 from verify.quantities.chain import CHAIN_QUANTITIES
-from verify.quantities.kind import Arguments, Quantity
+from verify.quantities.kind import A, Among, Arguments, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
 from verify.quantities.motion import MOTION_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
+from verify.registry import Registry
 from verify.scenes.checked import checked
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
-QUANTITIES: dict[str, Quantity] = {
-    q.name: q for q in (*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES, *CHAIN_QUANTITIES)
-}
+QUANTITIES: Registry[Quantity[Any]] = Registry(
+    "quantity",
+    "verify.quantities",
+    own=(*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES, *CHAIN_QUANTITIES),
+)
 
 
-def quantity(name: str) -> Quantity:
+def quantity(name: str) -> Quantity[Any]:
     """A quantity by name. Raises InputError with the nearest name."""
-    if name not in QUANTITIES:
-        raise InputError(f"quantity = {name!r} is not known: {near_name(name, tuple(QUANTITIES))}")
-    return QUANTITIES[name]
+    return QUANTITIES.named(name)
 
 
-def arguments_of(found: Quantity, given: dict[str, Any]) -> Arguments:
+def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     """Arguments checked against the quantity's types; one number stands for a list of one. Raises InputError."""
     fields = msgspec.structs.fields(found.arguments)
     lists = {f.name for f in fields if _type_words(f.type).startswith("list")}
     data = {k: [v] if k in lists and not isinstance(v, list) else v for k, v in given.items()}
-    return checked(_one_name(data, {f.name for f in fields}), found.arguments)
+    data = _one_name(data, {f.name for f in fields})
+    for field in fields:
+        if (among := _among(field.type)) and isinstance(name := data.get(field.name), str):
+            among.check(name, field.name)
+    return checked(data, found.arguments)
+
+
+def _among(kind: Any) -> Among | None:
+    """Which models an argument may name; None where it names none."""
+    parts = (kind, *get_args(kind))
+    extras = [meta.extra for part in parts for meta in getattr(part, "__metadata__", ()) if meta.extra]
+    return next((extra["among"] for extra in extras if "among" in extra), None)
 
 
 def _one_name(given: dict[str, Any], known: set[str]) -> dict[str, Any]:
@@ -49,12 +61,12 @@ def _one_name(given: dict[str, Any], known: set[str]) -> dict[str, Any]:
     return {other[k] if k in other and k not in known and other[k] in known else k: v for k, v in given.items()}
 
 
-def needs_of(found: Quantity, arguments: Arguments, scene: "Scene") -> tuple[Need, ...]:
+def needs_of(found: Quantity[A], arguments: A, scene: "Scene") -> tuple[Need, ...]:
     """The solves a figure will ask for."""
     return found.needs(arguments, scene)
 
 
-def evaluate(found: Quantity, arguments: Arguments, scene: "Scene", bench: Workbench) -> Any:
+def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Any:
     """The figure: float, int, complex or Bracket. Raises InputError."""
     return found.evaluate(arguments, scene, bench)
 
@@ -115,6 +127,8 @@ def _described_argument(field: Any) -> dict[str, Any]:
 
 def _type_words(kind: Any) -> str:
     """A type as a user would say it."""
+    if among := _among(kind):
+        return " | ".join(among.names())
     if hasattr(kind, "__metadata__"):
         return _type_words(get_args(kind)[0])
     if get_origin(kind) is Literal:

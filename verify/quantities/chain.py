@@ -158,10 +158,11 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
     from msgspec.structs import replace
 
     from verify.chain import problems as chain_studies
-    from verify.studies.axial_inertia import point_forces
+    from verify.chain.departure import point_forces
 
     forces = point_forces(scene, "chain.transient_deflection")
     assert scene.drive is not None
+    bench.n_unkept_motions += 1
     if a.x > scene.beam.length:
         raise InputError(f"x = {a.x!r} lies off the chain: give up to {scene.beam.length!r} m")
     if a.force is not None:
@@ -183,33 +184,28 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
 
 
 def _axial_departure(a: Departing, scene: "Scene", bench: Workbench) -> float:
-    from verify.studies.axial_inertia import departure, driven_chain
+    from verify.chain.departure import departure, driven_chain
 
     driven = driven_chain(scene, "chain.axial_departure", a.links, a.time, a.x)
     found = departure(driven, a.force, a.inertia, bench.tell)
     return found.at_end if a.of == "end" else found.rms
 
 
-def _nothing(a: Any, scene: "Scene") -> tuple[()]:
-    """The nonlinear chain takes no modes of others."""
-    return ()
-
-
-def _no_modes(a: Any, scene: "Scene") -> tuple[()]:
-    """The same, for a figure of the scene's own beam. Raises InputError for a beam that is no nonlinear chain."""
+def _buildable(a: Any, scene: "Scene") -> tuple[()]:
+    """No modes of others. Raises InputError for a beam that is no nonlinear chain."""
     from verify.chain.system import check_buildable
 
     check_buildable(scene.beam)
     return ()
 
 
-CHAIN_QUANTITIES = (
+CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "chain.cantilever_tip",
         "1",
         "Tip of a cantilever under a dead transverse force: w/L or 1 - x/L.",
         TipUnderLoad,
-        _nothing,
+        "equilibrium",
         _cantilever_tip,
     ),
     Quantity(
@@ -217,7 +213,7 @@ CHAIN_QUANTITIES = (
         "1",
         "Distance of the ends over L under an end moment 2 pi EI/L.",
         RolledUp,
-        _nothing,
+        "equilibrium",
         _rollup_gap,
     ),
     Quantity(
@@ -225,7 +221,7 @@ CHAIN_QUANTITIES = (
         "1",
         "Omega sqrt(L/g) of a hanging chain of uniform links.",
         Hanging,
-        _nothing,
+        "equilibrium",
         _hanging_frequency,
     ),
     Quantity(
@@ -233,7 +229,7 @@ CHAIN_QUANTITIES = (
         "1",
         "Omega sqrt(rho A L^4/EI), lead-lag, of a cantilever whose clamp turns.",
         Turning,
-        _nothing,
+        "equilibrium",
         _turning_frequency,
     ),
     Quantity(
@@ -241,31 +237,35 @@ CHAIN_QUANTITIES = (
         "1",
         "First frequency between immovable hinges over the linear one.",
         LargeAmplitude,
-        _no_modes,
+        "in time",
         _large_amplitude_frequency,
+        needs=_buildable,
     ),
     Quantity(
         "chain.energy_drift",
         "1",
         "Largest change of energy of an undamped chain over its energy.",
         FreeMotion,
-        _no_modes,
+        "in time",
         _energy_drift,
+        needs=_buildable,
     ),
     Quantity(
         "chain.transient_deflection",
         "m",
         "Deflection of the chain from rest under the scene's forces.",
         FromRest,
-        _no_modes,
+        "in time",
         _transient_deflection,
+        needs=_buildable,
     ),
     Quantity(
         "chain.axial_departure",
         "1",
         "Nonlinear chain less the linear one, from rest, over the linear one's rms.",
         Departing,
-        _no_modes,
+        "in time",
         _axial_departure,
+        needs=_buildable,
     ),
 )

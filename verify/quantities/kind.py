@@ -1,25 +1,63 @@
-"""What a quantity is, and the typed arguments that quantities take."""
+"""What a quantity is, and the typed arguments that quantities share."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
 
 import msgspec
 from msgspec import Meta
 
-from verify.errors import InputError
-from verify.judge.workbench import Need, Settings, Workbench
+from verify.errors import InputError, near_name
+from verify.judge.workbench import MEAN, Need, Settings, Workbench
+from verify.models import catalogue
+from verify.models.catalogue import MODELS
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
+Work: TypeAlias = Literal["closed form", "modes", "harmonic", "equilibrium", "in time"]
+"""What is done for a figure: nothing but arithmetic; eigenvalues (of models of parts; the exact beam's are closed
+forms); driven fields; equilibria and modes of the nonlinear chain; motion in time."""
+
+
+class Among(msgspec.Struct, frozen=True):
+    """Which models a name may be of."""
+
+    verb: str
+    """One that they have."""
+    sized: bool = False
+    """Whether they have parts."""
+    mean: bool = False
+    """Whether the mean of the models below and above is one."""
+
+    def names(self) -> tuple[str, ...]:
+        """All of them, in the order of the alphabet."""
+        models = [m for m in MODELS.values() if m.can(self.verb) and (m.sized or not self.sized)]
+        return (*sorted(m.name for m in models), *([MEAN] if self.mean else []))
+
+    def check(self, name: str, field: str = "model") -> None:
+        """Raise InputError, with the nearest that is, for a name that is none of them."""
+        if self.mean and name == MEAN:
+            return
+        found = MODELS.get(name)
+        if found is None or not found.can(self.verb) or (self.sized and not found.sized):
+            raise InputError(f"{field} = {name!r} is not known: {near_name(name, self.names())}")
+
+
+def model_meta(meaning: str, verb: str, *, sized: bool = False, mean: bool = False) -> Meta:
+    """The annotation of an argument that names a model."""
+    return Meta(description=meaning, extra={"among": Among(verb, sized, mean)})
+
+
 Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]
 Size = Annotated[int, Meta(ge=1, description="segments or elements; the exact beam has none")]
 Sizes = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(description="three or more sizes, 20,40,80")]
-AnyModel = Annotated[
-    Literal["analytic", "fem", "segment", "mean"],
-    Meta(description="mean is the middle between segment (below) and fem (above), nearer up to beta L = 0.696 pi N"),
-]
-DiscreteModel = Annotated[Literal["fem", "segment"], Meta(description="which discrete model")]
+_BRACKET = "mean is the middle between segment (below) and fem (above), nearer up to beta L = 0.696 pi N"
+AnyModel = Annotated[str, model_meta(_BRACKET, "solve_modes", mean=True)]
+ModesModel = Annotated[str, model_meta("which model", "solve_modes")]
+DiscreteModel = Annotated[str, model_meta("which discrete model", "solve_modes", sized=True)]
+FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
+DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
+MovingModel = Annotated[str, model_meta("which model", "time_basis")]
 Theory = Annotated[
     Literal["euler-bernoulli", "rayleigh", "timoshenko"], Meta(description="beam theory of the analytic model")
 ]
@@ -37,15 +75,18 @@ Grading = Annotated[float, Meta(gt=0, description="length of a section's last pa
 
 
 def check_count(model: str, count: int | None) -> None:
-    """Raise InputError for a discrete model without its size, or the exact beam with one."""
-    if model != "analytic" and count is None:
-        raise InputError(f"count is missing: give the number of segments or elements for model = {model}")
-    if model == "analytic" and count is not None:
-        raise InputError(f"count = {count!r} is for model = fem or segment: the exact beam has no parts, leave it out")
+    """Raise InputError for a model of parts without their number, or one that has none with one."""
+    if model != MEAN:
+        catalogue.check_count(model, count)
+    elif count is None:
+        raise InputError(f"count is missing: give the number of segments or elements for model = {MEAN}")
 
 
 class Arguments(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Base of the typed arguments of a quantity."""
+
+    slides: ClassVar[bool] = False
+    """Whether they are about the scene's slider."""
 
 
 class Divided(Arguments, frozen=True, kw_only=True):
@@ -66,9 +107,11 @@ class Divided(Arguments, frozen=True, kw_only=True):
 
     def check_settings(self, model: str) -> None:
         """Raise InputError for a setting that the model does not have."""
-        for name, _ in self.settings:
-            if model in ("analytic", "fem") and (name != "grading" or model == "analytic"):
-                raise InputError(f"{name} = {getattr(self, name)!r} is a setting of model = segment, not of {model}")
+        known = () if model == MEAN else MODELS.named(model).modal_settings
+        for name, value in self.settings:
+            if model != MEAN and name not in known:
+                able = " or ".join(m.name for m in catalogue.discrete() if name in m.modal_settings)
+                raise InputError(f"{name} = {value!r} is a setting of model = {able}, not of {model}")
 
 
 class AtSize(Divided, frozen=True, kw_only=True):
@@ -81,7 +124,7 @@ class AtSize(Divided, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
-        if self.model != "analytic" and self.theory != "euler-bernoulli":
+        if self.count is not None and self.theory != "euler-bernoulli":
             raise InputError(
                 f"theory = {self.theory!r} belongs to model = analytic: the {self.model} model is Euler-Bernoulli"
             )
@@ -108,7 +151,7 @@ class ShapeAt(DiscreteAtSize, frozen=True, kw_only=True):
 class NodeAt(Divided, frozen=True, kw_only=True):
     """One node of one shape of one model."""
 
-    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")]
+    model: ModesModel
     mode: Mode
     node: Annotated[int, Meta(ge=1, description="which node, from the left, ends not counted")] = 1
     count: Size | None = None
@@ -121,10 +164,7 @@ class NodeAt(Divided, frozen=True, kw_only=True):
 class OverSizes(Divided, frozen=True, kw_only=True):
     """One mode of one model over several sizes."""
 
-    model: Annotated[
-        Literal["fem", "segment", "mean"],
-        Meta(description="mean is the middle of the bracket"),
-    ]
+    model: Annotated[str, model_meta("mean is the middle of the bracket", "solve_modes", sized=True, mean=True)]
     mode: Mode
     counts: Sizes
 
@@ -181,13 +221,32 @@ class AtFrequency(Arguments, frozen=True, kw_only=True):
     frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
 
 
-class Quantity(msgspec.Struct, frozen=True):
-    """A named figure."""
+class DriveArguments(AtFrequency, frozen=True, kw_only=True):
+    """The drive of a scene, with what is given instead."""
+
+    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
+    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
+
+
+A = TypeVar("A", bound=Arguments)
+
+
+def no_needs(arguments: Any, scene: "Scene") -> tuple[Need, ...]:
+    """Nothing that has to be solved beforehand."""
+    return ()
+
+
+class Quantity(msgspec.Struct, Generic[A], frozen=True):
+    """A named figure. One is registered by `QUANTITIES.register(mine)` or as an entry point of `verify.quantities`."""
 
     name: str
     unit: str
     summary: str
-    arguments: type[Arguments]
-    needs: Callable[[Any, "Scene"], tuple[Need, ...]]
-    """What has to be solved for it, as far as can be known beforehand."""
-    evaluate: Callable[[Any, "Scene", Workbench], Any]
+    arguments: type[A]
+    work: Work
+    evaluate: Callable[[A, "Scene", Workbench], Any]
+    """A real or complex number, or a bracket. Raises InputError."""
+    needs: Callable[[A, "Scene"], tuple[Need, ...]] = no_needs
+    """What has to be solved for it, as far as can be known beforehand. Raises InputError where it cannot be."""
+    superposed: str = ""
+    """Of a figure that a map over frequency and phase superposes from two unit drives: which of theirs it is."""

@@ -3,7 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
-from verify.judge.workbench import Need, Settings, Workbench, for_model
+from verify.judge.workbench import MEAN, Need, Settings, Workbench, for_model
+from verify.models.catalogue import MODELS, bounding
+from verify.quantities.cases import drive_frequency
 from verify.quantities.kind import (
     AtFrequency,
     AtSize,
@@ -25,22 +27,22 @@ if TYPE_CHECKING:
 
 def _solved(model: str, count: int | None, n_modes: int, settings: Settings = ()) -> tuple[Need, ...]:
     """The solves behind one figure; the middle of both models takes both."""
-    if model == "analytic" or count is None:
+    if count is None:
         return ()
-    models = ("segment", "fem") if model == "mean" else (model,)
-    return tuple(Need(m, count, n_modes, for_model(m, settings)) for m in models)
+    models = bounding() if model == MEAN else (MODELS.named(model),)
+    return tuple(Need(m.name, count, n_modes, for_model(m.name, settings)) for m in models)
 
 
-def _at_size(a: Any, scene: "Scene") -> tuple[Need, ...]:
+def _at_size(a: AtSize | DiscreteAtSize | NodeAt, scene: "Scene") -> tuple[Need, ...]:
     return _solved(a.model, a.count, a.mode, a.settings)
 
 
-def _over_sizes(a: Any, scene: "Scene") -> tuple[Need, ...]:
+def _over_sizes(a: OverSizes, scene: "Scene") -> tuple[Need, ...]:
     return tuple(need for count in a.counts for need in _solved(a.model, count, a.mode, a.settings))
 
 
 def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
-    if a.model == "analytic" or a.count is None:
+    if a.count is None:
         if a.theory == "euler-bernoulli":
             return bench.exact_hz(a.mode)
         from verify.exact.closed_forms import frequency_hz
@@ -50,7 +52,7 @@ def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
 
 
 def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
-    if a.model == "analytic" or a.count is None:
+    if a.count is None:
         from verify.exact.closed_forms import frequency_hz
 
         exact = frequency_hz(scene.beam, a.mode)
@@ -117,99 +119,107 @@ def _rule_frequency(a: NeighbourModes, scene: "Scene", bench: Workbench) -> floa
 def _quarter_wavelength(a: AtFrequency, scene: "Scene", bench: Workbench) -> float:
     from verify.exact.closed_forms import quarter_wavelength
 
-    if a.frequency_hz is None and scene.drive is None:
-        raise InputError("frequency_hz is missing and the scene has no drive: give frequency_hz in hertz")
-    return quarter_wavelength(scene.beam, a.frequency_hz or scene.drive.frequency_hz)  # type: ignore[union-attr]
+    return quarter_wavelength(scene.beam, drive_frequency(a, scene))
 
 
-MODE_QUANTITIES = (
-    Quantity("mode.frequency", "Hz", "Frequency of one mode.", AtSize, _at_size, _frequency),
+MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
+    Quantity("mode.frequency", "Hz", "Frequency of one mode.", AtSize, "modes", _frequency, needs=_at_size),
     Quantity(
         "mode.frequency_error",
         "1",
         "Signed error relative to the exact Euler-Bernoulli frequency.",
         AtSize,
-        _at_size,
+        "modes",
         _frequency_error,
+        needs=_at_size,
     ),
     Quantity(
         "mode.dispersion_error",
         "1",
         "Largest deviation of the solver from the model's own exact dispersion.",
         FirstModes,
-        lambda a, s: _solved(a.model, a.count, a.modes),
+        "modes",
         _dispersion_error,
+        needs=lambda a, s: _solved(a.model, a.count, a.modes),
     ),
     Quantity(
         "mode.law_ratio",
         "1",
         "Frequency error over its leading law, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)).",
         DiscreteAtSize,
-        _at_size,
+        "modes",
         _law_ratio,
+        needs=_at_size,
     ),
     Quantity(
         "mode.shape_error",
         "1",
         "Relative L2 error of the mass-normalised deflection at the model's nodes.",
         ShapeAt,
-        _at_size,
+        "modes",
         lambda a, s, bench: bench.shape_error(a.model, a.count, a.mode, a.reading, a.settings),
+        needs=_at_size,
     ),
     Quantity(
         "mode.curvature_error",
         "1",
         "Relative L2 error of the curvature at joints or Gauss points.",
         DiscreteAtSize,
-        _at_size,
+        "modes",
         lambda a, s, bench: bench.curvature_error(a.model, a.count, a.mode, a.settings),
+        needs=_at_size,
     ),
     Quantity(
         "mode.node_position",
         "m",
         "Where a mode stands still, from the left end.",
         NodeAt,
-        _at_size,
+        "modes",
         _node_position,
+        needs=_at_size,
     ),
     Quantity(
         "mode.order",
         "1",
         "Observed order of the frequency error over sizes.",
         OverSizes,
-        _over_sizes,
+        "modes",
         _order,
+        needs=_over_sizes,
     ),
     Quantity(
         "mode.shape_order",
         "1",
         "Observed order of the shape error over sizes.",
         ShapesOverSizes,
-        _over_sizes,
+        "modes",
         _shape_order,
+        needs=_over_sizes,
     ),
     Quantity(
         "mode.bracket",
         "Hz",
         "Two-sided bound on the exact frequency: segments below, Hermite above.",
         BracketAt,
-        lambda a, s: _solved("mean", a.count, a.mode, a.settings),
+        "modes",
         lambda a, s, bench: bench.bracket(a.mode, a.count, a.settings),
+        needs=lambda a, s: _solved(MEAN, a.count, a.mode, a.settings),
     ),
     Quantity(
         "mode.count_needed",
         "1",
         "Segments or elements from which on the frequency error stays within `error`, or the least that happen to.",
         ToError,
-        _count_guess,
+        "modes",
         _count_needed,
+        needs=_count_guess,
     ),
     Quantity(
         "drive.rule_frequency",
         "Hz",
         "Root mean square of two exact neighbours: where both answer alike.",
         NeighbourModes,
-        lambda a, s: (),
+        "closed form",
         _rule_frequency,
     ),
     Quantity(
@@ -217,7 +227,7 @@ MODE_QUANTITIES = (
         "m",
         "A quarter of the bending wavelength: a force's distance from its end.",
         AtFrequency,
-        lambda a, s: (),
+        "closed form",
         _quarter_wavelength,
     ),
 )

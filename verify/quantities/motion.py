@@ -54,8 +54,8 @@ def _decrement(a: Oscillator, scene: "Scene", bench: Workbench) -> float:
 
 def _terminal_speed(a: OnWave, scene: "Scene", bench: Workbench) -> float:
     from verify.motion.pure_wave import terminal_speed
+    from verify.quantities.cases import drive_frequency
     from verify.slider import Slider
-    from verify.waves.driven import drive_frequency
 
     slider = Slider(mass=1.0, mu=a.mu, slope=a.slope, kinematics=a.kinematics, gravity=a.gravity)
     return terminal_speed(scene.beam, slider, a.amplitude, drive_frequency(a, scene))
@@ -105,18 +105,13 @@ def _deflection(a: DeflectionAt, scene: "Scene", bench: Workbench) -> float:
     return float(without_slider(a, scene, bench).deflection[-1, 0])
 
 
-def _nothing(a: Any, scene: "Scene") -> tuple[()]:
-    """Motion in time brings its own modes."""
-    return ()
-
-
-MOTION_QUANTITIES = (
+MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "friction.free_decay",
         "m/s",
         "Speed left after a time on a surface at rest, tanh friction.",
         FreeDecay,
-        _nothing,
+        "in time",
         _free_decay,
     ),
     Quantity(
@@ -124,7 +119,7 @@ MOTION_QUANTITIES = (
         "m/s",
         "Speed under a constant pull below the friction's limit, tanh friction.",
         Creep,
-        _nothing,
+        "in time",
         _creep_speed,
     ),
     Quantity(
@@ -132,16 +127,16 @@ MOTION_QUANTITIES = (
         "s",
         "Time a spring-held mass rides on a belt, Coulomb friction.",
         OnBelt,
-        _nothing,
+        "in time",
         _belt(0),
     ),
-    Quantity("friction.belt_slip_time", "s", "Time it slips back.", OnBelt, _nothing, _belt(1)),
+    Quantity("friction.belt_slip_time", "s", "Time it slips back.", OnBelt, "in time", _belt(1)),
     Quantity(
         "friction.coulomb_decrement",
         "m",
         "Amplitude an oscillator with Coulomb friction loses in a cycle.",
         Oscillator,
-        _nothing,
+        "in time",
         _decrement,
     ),
     Quantity(
@@ -149,11 +144,11 @@ MOTION_QUANTITIES = (
         "m/s",
         "Settled mean speed along +x on a pure wave towards +x.",
         OnWave,
-        _nothing,
+        "in time",
         _terminal_speed,
     ),
     *(
-        Quantity(name, figure.unit, figure.summary, SliderInTime, _nothing, _slider(figure))
+        Quantity(name, figure.unit, figure.summary, SliderInTime, "in time", _slider(figure))
         for name, figure in RUN_FIGURES.items()
     ),
     Quantity(
@@ -161,7 +156,7 @@ MOTION_QUANTITIES = (
         "1",
         "Observed order of the slider's displacement in the size or in the step.",
         SliderOrder,
-        _nothing,
+        "in time",
         _order,
     ),
     Quantity(
@@ -169,7 +164,7 @@ MOTION_QUANTITIES = (
         "m",
         "Of the beam at a place and time while the slider is on it.",
         SliderDeflection,
-        _nothing,
+        "in time",
         _deflection_under,
     ),
     Quantity(
@@ -177,7 +172,7 @@ MOTION_QUANTITIES = (
         "1",
         "What of the slider the beam may feel: full friction, or its inertia.",
         CouplingSize,
-        _nothing,
+        "in time",
         _coupling_size,
     ),
     Quantity(
@@ -185,8 +180,8 @@ MOTION_QUANTITIES = (
         "m",
         "Complex, of the steady beam that carries the slider's mass at rest.",
         LoadedDeflection,
-        _nothing,
+        "in time",
         _loaded,
     ),
-    Quantity("motion.deflection", "m", "Of the driven beam at a place and time.", DeflectionAt, _nothing, _deflection),
+    Quantity("motion.deflection", "m", "Of the driven beam at a place and time.", DeflectionAt, "in time", _deflection),
 )

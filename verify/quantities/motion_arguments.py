@@ -1,11 +1,21 @@
 """The typed arguments of figures in time: friction alone, sliders on a beam, the beam itself."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.quantities.kind import Arguments, Size, Sizes, check_count
+from verify.models.catalogue import MODELS
+from verify.quantities.kind import (
+    Arguments,
+    AtFrequency,
+    DriveArguments,
+    FieldModel,
+    MovingModel,
+    Size,
+    Sizes,
+    check_count,
+)
 from verify.slider import GRAVITY
 
 Positive = Annotated[float, Meta(gt=0)]
@@ -51,23 +61,22 @@ class Oscillator(Arguments, frozen=True, kw_only=True):
     force: Annotated[float, Meta(gt=0, description="friction, newton")]
 
 
-class OnWave(Arguments, frozen=True, kw_only=True):
+class OnWave(AtFrequency, frozen=True, kw_only=True):
     """A slider on a pure travelling wave."""
 
     amplitude: Annotated[float, Meta(gt=0, description="of the wave, metres")]
     slope: Slope
     mu: Friction
-    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
     kinematics: Annotated[
         Literal["tangential", "following"], Meta(description="following: its path is that of the surface, exactly")
     ] = "tangential"
     gravity: Gravity = GRAVITY
 
 
-class InTime(Arguments, frozen=True, kw_only=True):
+class InTime(DriveArguments, frozen=True, kw_only=True):
     """A driven beam in time: what is not given is the scene's."""
 
-    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "segment"
+    model: MovingModel = "segment"
     count: Size | None = None
     time: Annotated[float, Meta(gt=0, description="seconds; default: the scene's motion.duration")] | None = None
     start: Annotated[Literal["rest", "steady"], Meta(description="default: the scene's motion.start")] | None = None
@@ -76,18 +85,11 @@ class InTime(Arguments, frozen=True, kw_only=True):
     ) = None
     modal_damping: Annotated[float, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
     modes: Annotated[int, Meta(ge=1, description="the exact beam keeps from rest; default 400")] | None = None
-    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
-    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
-    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
     force: Annotated[float, Meta(ge=0, description="of every force, newton; default: the scene's")] | None = None
 
     def __post_init__(self) -> None:
-        if (self.model == "analytic") != (self.count is None):
-            raise InputError(
-                f"count = {self.count!r} does not fit model = {self.model}: give fem and segment a count, "
-                "the exact beam none"
-            )
-        if self.modes is not None and self.model != "analytic":
+        check_count(self.model, self.count)
+        if self.modes is not None and self.count is not None:
             raise InputError(
                 f"modes = {self.modes!r} is for model = analytic: {self.model} keeps all it has, leave it out"
             )
@@ -101,6 +103,8 @@ class DeflectionAt(InTime, frozen=True, kw_only=True):
 
 class SliderInTime(InTime, frozen=True, kw_only=True):
     """The scene's slider, with what is given instead of its own."""
+
+    slides: ClassVar[bool] = True
 
     step: Annotated[float, Meta(gt=0, description="seconds; default: as the start asks for")] | None = None
     mu: Friction | None = None
@@ -129,14 +133,13 @@ class SliderDeflection(SliderInTime, frozen=True, kw_only=True):
     x: Annotated[float, Meta(description="metres from the left end")]
 
 
-class Steady(Arguments, frozen=True, kw_only=True):
+class Steady(DriveArguments, frozen=True, kw_only=True):
     """The driven beam in its steady state with the slider on it: what is not given is the scene's."""
 
-    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    slides: ClassVar[bool] = True
+
+    model: FieldModel = "analytic"
     count: Size | None = None
-    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
-    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
-    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
     mass: Annotated[float, Meta(gt=0, description="kg")] | None = None
     slider_position: Annotated[float, Meta(description="where it stands, metres")] | None = None
 
@@ -180,5 +183,5 @@ class SliderOrder(SliderInTime, frozen=True, kw_only=True):
             raise InputError(f"step = {self.step!r}: slider.order over steps takes its steps from there, leave it out")
         if self.counts is None:
             super().__post_init__()
-        elif self.count is not None or self.model == "analytic":
+        elif self.count is not None or not MODELS.named(self.model).sized:
             raise InputError("slider.order over counts is for fem and segment and takes no count: leave it out")

@@ -1,24 +1,34 @@
 """Simulations that arguments and a scene describe, kept on the bench."""
 
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 from verify.beam import PointForce
 from verify.errors import InputError
+from verify.models.catalogue import MODELS
+from verify.motion.case import MotionCase
 from verify.motion.request import STEPS_PER_PERIOD
 from verify.motion.result import Motion
-from verify.motion.simulate import simulate
-from verify.quantities.motion_arguments import SliderInTime
+from verify.quantities.cases import drive_forces, drive_frequency
+from verify.quantities.motion_arguments import (
+    CouplingSize,
+    DeflectionAt,
+    InTime,
+    LoadedDeflection,
+    SliderInTime,
+    SliderOrder,
+    Steady,
+)
 from verify.slider import Slider
-from verify.waves.driven import drive_forces, drive_frequency, solve_by_model
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import Any
 
-    from verify.beam import PointForce
     from verify.judge.workbench import Workbench
+    from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
 
 MODES = 400
@@ -36,19 +46,20 @@ _OWN = {
     "slider_position": "position",
     "slider_speed": "speed",
 }
+"""Which of the slider's own fields an argument stands for."""
 MOST_SAMPLES = 1_000_000
 
 
-def slider_of(a: Any, scene: "Scene") -> Slider:
+def slider_of(a: InTime | Steady, scene: "Scene") -> Slider:
     """The scene's slider with what is given instead. Raises InputError where there is none."""
     if scene.slider is None:
         raise InputError("the scene has no slider: add [slider] with mass and mu")
-    given = {own: getattr(a, name) for name, own in _OWN.items() if getattr(a, name, None) is not None}
-    return replace(scene.slider, **given)
+    given = asdict(a)
+    return replace(scene.slider, **{own: given[name] for name, own in _OWN.items() if given.get(name) is not None})
 
 
-def described(a: Any, scene: "Scene") -> dict[str, Any]:
-    """Keyword arguments of `simulate` other than slider, points and samples. Raises InputError."""
+def motion_case(a: InTime, scene: "Scene") -> MotionCase:
+    """The driven beam in time that arguments describe. Raises InputError."""
     motion = scene.motion
     time = a.time if a.time is not None else (motion.duration if motion else None)
     if time is None:
@@ -58,18 +69,19 @@ def described(a: Any, scene: "Scene") -> dict[str, Any]:
     soft = a.soft_start_periods
     if soft is None:
         soft = motion.soft_start_periods if motion and start == "rest" else 0.0
-    damping = a.modal_damping if a.modal_damping is not None else (motion.modal_damping if motion else None)
-    return {
-        "forces": drive_forces(a, scene),
-        "frequency_hz": drive_frequency(a, scene),
-        "duration": time,
-        "model": a.model,
-        "count": a.count,
-        "modes": a.modes or MODES,
-        "start": start,
-        "soft_start_periods": soft,
-        "modal_damping": damping,
-    }
+    forces = drive_forces(a, scene)
+    return MotionCase(
+        beam=scene.beam,
+        forces=forces if a.force is None else tuple(replace(one, amplitude=a.force) for one in forces),
+        frequency_hz=drive_frequency(a, scene),
+        duration=time,
+        model=a.model,
+        count=a.count,
+        modes=a.modes or MODES,
+        start=start,
+        soft_start_periods=soft,
+        modal_damping=a.modal_damping if a.modal_damping is not None else (motion.modal_damping if motion else None),
+    )
 
 
 def _check_forced(scene: "Scene", what: str) -> None:
@@ -84,10 +96,9 @@ def turned(forces: "Sequence[PointForce]") -> "tuple[PointForce, ...]":
 
 
 def with_slider(
-    a: Any,
+    a: SliderInTime,
     scene: "Scene",
     bench: "Workbench",
-    ledger: bool = False,
     *,
     sampled: bool = False,
     back: bool = False,
@@ -97,63 +108,70 @@ def with_slider(
 
     Raises InputError where it does not reach its end.
     """
-    asked, slider = described(a, scene), slider_of(a, scene)
-    asked["forces"] = turned(asked["forces"]) if back else asked["forces"]
+    case, slider = motion_case(a, scene), slider_of(a, scene)
+    case = replace(case, forces=turned(case.forces)) if back else case
     steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
-    longest = a.step or 1.0 / (steps * asked["frequency_hz"])
-    samples = ceil(min(asked["duration"] / longest, MOST_SAMPLES)) + 1 if sampled else 2
-    key = ("slider", scene.beam, slider, a.step, steps, samples, ledger, at, *asked.values())
+    longest = a.step or 1.0 / (steps * case.frequency_hz)
+    samples = ceil(min(case.duration / longest, MOST_SAMPLES)) + 1 if sampled else 2
+    key = ("slider", case, slider, a.step, steps, samples, at)
     if key not in bench.motions:
-        bench.motions[key] = simulate(
-            scene.beam,
+        bench.motions[key] = case.run(
             slider=slider,
             step=a.step,
             steps_per_period=steps,
             samples=samples,
-            ledger=ledger,
             at=at,
             progress=bench.tell,
             patient=False,
-            **asked,
         )
-    found: Motion = bench.motions[key]
+    found = bench.motions[key]
+    _check_ended(found, case.duration)
+    _check_modes(a, case.start, bool(found.coupling and found.coupling.two_way))
+    return found
+
+
+def _check_ended(found: Motion, duration: float) -> None:
+    """Raise InputError for a run that did not reach its end, and KeyboardInterrupt for one that was broken off."""
     if found.statistics.stopped == "interrupted":
         raise KeyboardInterrupt
     if found.statistics.stopped != "end":
         raise InputError(
-            f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {asked['duration']!r} s: "
+            f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {duration!r} s: "
             "shorten time or start it elsewhere"
         )
-    _check_modes(a, asked["start"], bool(found.coupling and found.coupling.two_way))
-    return found
 
 
-def _check_modes(a: Any, start: str, felt: bool) -> None:
+def _check_modes(a: InTime, start: str, felt: bool) -> None:
     """Raise InputError for a number of modes where no mode is taken."""
     if a.modes is not None and start == "steady" and not felt:
         raise InputError(f"modes = {a.modes!r}: a steady beam that feels no slider is one field, leave it out")
 
 
-def without_slider(a: Any, scene: "Scene", bench: "Workbench") -> Motion:
+def without_slider(a: DeflectionAt, scene: "Scene", bench: "Workbench") -> Motion:
     """The beam alone at the times 0 and `time`, at x."""
-    asked = described(a, scene)
-    _check_modes(a, asked["start"], felt=False)
-    key = ("beam", scene.beam, a.x, *asked.values())
+    case = motion_case(a, scene)
+    _check_modes(a, case.start, felt=False)
+    key = ("beam", case, a.x)
     if key not in bench.motions:
-        bench.motions[key] = simulate(scene.beam, at=[a.x], samples=2, ledger=False, **asked)
-    found: Motion = bench.motions[key]
-    return found
+        bench.motions[key] = case.run(at=[a.x])
+    return bench.motions[key]
 
 
-def coupling_size(a: Any, scene: "Scene") -> float:
+def _fields(a: Steady, scene: "Scene") -> "tuple[Slider, float, float, HarmonicField, HarmonicField]":
+    """(slider, its place, Hz, driven field, field under a unit force at its place). Raises InputError."""
+    _check_forced(scene, "a slider's beam")
+    slider, frequency, model = slider_of(a, scene), drive_frequency(a, scene), MODELS.named(a.model)
+    place = slider.start_on(scene.beam)
+    drive = model.solve_harmonic(scene.beam, drive_forces(a, scene), frequency, a.count)
+    unit = model.solve_harmonic(scene.beam, (PointForce(position=place),), frequency, a.count)
+    return slider, place, frequency, drive, unit
+
+
+def coupling_size(a: CouplingSize, scene: "Scene") -> float:
     """The size of a slider's friction or of its inertia at its place, by one model. Raises InputError."""
     from verify.motion.contact import coupling_of, surface_speed
 
-    _check_forced(scene, "a slider's beam")
-    slider, frequency = slider_of(a, scene), drive_frequency(a, scene)
-    x = slider.start_on(scene.beam)
-    drive = solve_by_model(a.model, scene.beam, drive_forces(a, scene), frequency, a.count, {})
-    unit = solve_by_model(a.model, scene.beam, (PointForce(position=x),), frequency, a.count, {})
+    slider, x, frequency, drive, unit = _fields(a, scene)
     found = coupling_of(slider, scene.beam, frequency, surface_speed(drive, x), unit.deflection([x])[0])
     if a.of == "normal":
         return found.normal_size
@@ -162,22 +180,18 @@ def coupling_size(a: Any, scene: "Scene") -> float:
     return found.friction_size
 
 
-def loaded_deflection(a: Any, scene: "Scene") -> complex:
+def loaded_deflection(a: LoadedDeflection, scene: "Scene") -> complex:
     """At x, of the steady beam that carries the slider's mass at rest, by one model. Raises InputError.
 
     W = W_0 + m omega^2 W(x_s) G(x, x_s), and W(x_s) = W_0(x_s) / (1 - m omega^2 G(x_s, x_s)).
     """
-    _check_forced(scene, "a slider's beam")
-    slider, frequency = slider_of(a, scene), drive_frequency(a, scene)
-    place = slider.start_on(scene.beam)
-    drive = solve_by_model(a.model, scene.beam, drive_forces(a, scene), frequency, a.count, {})
-    unit = solve_by_model(a.model, scene.beam, (PointForce(position=place),), frequency, a.count, {})
+    slider, place, _, drive, unit = _fields(a, scene)
     inertia = slider.mass * drive.omega**2
     under = drive.deflection([place])[0] / (1.0 - inertia * unit.deflection([place])[0])
     return complex(drive.deflection([a.x])[0] + inertia * under * unit.deflection([a.x])[0])
 
 
-def slider_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
+def slider_order(a: SliderOrder, scene: "Scene", bench: "Workbench") -> float:
     """Observed order of the slider's displacement. Raises InputError.
 
     Over counts against the exact beam, over steps against one sixteen times finer than the finest.
@@ -186,13 +200,13 @@ def slider_order(a: Any, scene: "Scene", bench: "Workbench") -> float:
 
     given = {name: getattr(a, name) for name in SliderInTime.__struct_fields__}
 
-    def displacement(**other: Any) -> float:
+    def displacement(**other: "Any") -> float:
         return with_slider(SliderInTime(**{**given, **other}), scene, bench).displacement
 
     if a.counts is not None:
         exact = displacement(model="analytic", count=None)
         found = [displacement(count=n, modes=None) for n in a.counts]
         return observed_order(a.counts, [abs(relative_error(one, exact)) for one in found])
-    exact = displacement(step=min(a.steps) / 16.0)
-    errors = [abs(relative_error(displacement(step=dt), exact)) for dt in a.steps]
-    return observed_order([round(max(a.steps) / dt * 1e6) for dt in a.steps], errors)
+    exact = displacement(step=min(a.steps or ()) / 16.0)
+    errors = [abs(relative_error(displacement(step=dt), exact)) for dt in a.steps or ()]
+    return observed_order([round(max(a.steps or ()) / dt * 1e6) for dt in a.steps or ()], errors)

@@ -5,25 +5,25 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.quantities.kind import Arguments, Size, Sizes, check_count
+from verify.models.catalogue import MODELS
+from verify.quantities.kind import AtFrequency, DiscreteField, DriveArguments, FieldModel, Size, Sizes, check_count
 
 Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
 
 
-class Driven(Arguments, frozen=True, kw_only=True):
+Loss = Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")]
+Imposed = Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")]
+
+
+class Driven(DriveArguments, frozen=True, kw_only=True):
     """A driven beam: what is not given is the scene's."""
 
-    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    model: FieldModel = "analytic"
     count: Size | None = None
-    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
-    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
-    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
-    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    loss_factor: Loss | None = None
     modal_damping: Annotated[float, Meta(description="ratio of every mode; fem and segment")] = 0.0
     joint_dashpot: Annotated[float, Meta(description="N m s at every joint; segment")] = 0.0
-    drive: (
-        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
-    ) = None
+    drive: Imposed | None = None
     load: Annotated[Literal["reciprocal", "lever"], Meta(description="how a force is shared among joints; segment")] = (
         "reciprocal"
     )
@@ -37,12 +37,14 @@ class Driven(Arguments, frozen=True, kw_only=True):
 
     def check_settings(self) -> None:
         """Raise InputError for a setting that the model does not have."""
-        own = {"joint_dashpot": 0.0, "load": "reciprocal", "reading": "corrected"}
-        for name, default in own.items():
-            if self.model != "segment" and getattr(self, name) != default:
-                raise InputError(f"{name} = {getattr(self, name)!r} is for model = segment, not for {self.model}")
-        if self.model == "analytic" and self.modal_damping:
-            raise InputError("modal_damping is for model = fem or segment: the analytic field takes a loss_factor")
+        known = MODELS.named(self.model).field_settings
+        for name, value in self.settings:
+            if name in known:
+                continue
+            if not MODELS[self.model].sized and name == "modal_damping":
+                raise InputError("modal_damping is for model = fem or segment: the analytic field takes a loss_factor")
+            able = " or ".join(m.name for m in MODELS.values() if name in m.field_settings)
+            raise InputError(f"{name} = {value!r} is for model = {able}, not for {self.model}")
 
     @property
     def settings(self) -> tuple[tuple[str, Any], ...]:
@@ -89,7 +91,7 @@ class AxisRatio(InWindow, frozen=True, kw_only=True):
 class WaveOrder(InWindow, frozen=True, kw_only=True):
     """A figure of a discrete model over several sizes."""
 
-    model: Annotated[Literal["fem", "segment"], Meta(description="which discrete model")]
+    model: DiscreteField
     counts: Sizes
     count: Annotated[int, Meta(ge=1, description="refused here: give counts")] | None = None
     of: Annotated[
@@ -114,13 +116,12 @@ class BestFrequency(InWindow, frozen=True, kw_only=True):
     span: Annotated[float, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = 0.015
 
 
-class Receptance(Arguments, frozen=True, kw_only=True):
+class Receptance(AtFrequency, frozen=True, kw_only=True):
     """One place under a unit force at another."""
 
-    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    model: FieldModel = "analytic"
     count: Size | None = None
-    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
-    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
+    loss_factor: Loss | None = None
     position: Annotated[float, Meta(ge=0, description="of the force, metres from the left end")]
     x: Annotated[float, Meta(ge=0, description="metres from the left end")]
 
@@ -128,18 +129,13 @@ class Receptance(Arguments, frozen=True, kw_only=True):
         check_count(self.model, self.count)
 
 
-class Sensitivity(Arguments, frozen=True, kw_only=True):
+class Sensitivity(DriveArguments, frozen=True, kw_only=True):
     """The reflection about a point of frequency and phase, in the middle half of the beam."""
 
-    model: Annotated[Literal["analytic", "fem", "segment"], Meta(description="which model")] = "analytic"
+    model: FieldModel = "analytic"
     count: Size | None = None
-    frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
-    phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
-    position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
-    loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
-    drive: (
-        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
-    ) = None
+    loss_factor: Loss | None = None
+    drive: Imposed | None = None
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)

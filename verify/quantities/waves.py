@@ -1,13 +1,16 @@
 """Named figures of the driven beam: deflection, wave quality, surface ellipses, power."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from verify.judge.workbench import Workbench
+from verify.quantities.cases import drive_frequency, driven_beam, driven_case
 from verify.quantities.kind import Quantity
 from verify.quantities.wave_arguments import (
     At,
     AxisRatio,
     BestFrequency,
+    Driven,
     InWindow,
     Power,
     Receptance,
@@ -21,30 +24,30 @@ if TYPE_CHECKING:
     from verify.waves.measures import WaveMeasures
 
 
-def field_of(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> "HarmonicField":
+def field_of(a: Driven, scene: "Scene", bench: Workbench) -> "HarmonicField":
     """The field that arguments describe. Raises InputError."""
     from verify.waves.driven import driven
 
-    return driven(a, scene, bench, count if count is not None else a.count)
+    return driven(driven_case(a, scene), bench)
 
 
-def measured(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> "WaveMeasures":
+def measured(a: InWindow, scene: "Scene", bench: Workbench) -> "WaveMeasures":
     """The wave measures that arguments describe. Raises InputError."""
     from verify.waves.driven import measures
 
-    return measures(field_of(a, scene, bench, count), a.window)
+    return measures(field_of(a, scene, bench), a.window)
 
 
 def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
     return complex(field_of(a, scene, bench).deflection(a.x)[0])
 
 
-def _axis_ratio(a: Any, scene: "Scene", bench: Workbench, count: int | None = None) -> float:
-    if getattr(a, "x", None) is None:
-        return measured(a, scene, bench, count).mean_axis_ratio
+def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
+    if a.x is None:
+        return measured(a, scene, bench).mean_axis_ratio
     from verify.waves.measures import ellipse, surface_motion
 
-    field = field_of(a, scene, bench, count)
+    field = field_of(a, scene, bench)
     return float(ellipse(surface_motion(field.beam, field.slope(a.x)), field.deflection(a.x))[0][0])
 
 
@@ -58,67 +61,63 @@ def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:
 def _best_frequency(a: BestFrequency, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.driven import best_frequency
 
-    return best_frequency(a, scene, bench)
+    return best_frequency(driven_case(a, scene), a.span, a.window, bench)
 
 
 def _order(a: WaveOrder, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.driven import wave_order
 
-    return wave_order(a, scene, bench)
+    return wave_order(driven_case(a, scene), a.counts, a.window, a.of, bench)
 
 
 def _receptance(a: Receptance, scene: "Scene", bench: Workbench) -> complex:
-    from verify.waves.driven import drive_frequency, driven_beam
     from verify.waves.unit_waves import receptance
 
     return receptance(a.model, driven_beam(a, scene), a.position, drive_frequency(a, scene), a.x, a.count)
 
 
-def _sensitivity(name: str) -> Any:
+def _sensitivity(name: str) -> Callable[[Sensitivity, "Scene", Workbench], float]:
     """One sensitivity of the operating point at which the scene drives."""
 
     def evaluate(a: Sensitivity, scene: "Scene", bench: Workbench) -> float:
         from verify.waves.operating_point import driven_point
 
-        return float(getattr(driven_point(a, scene), name))
+        return float(getattr(driven_point(driven_case(a, scene)), name))
 
     return evaluate
 
 
-def _figure(name: str) -> Any:
+def _figure(name: str) -> Callable[[InWindow, "Scene", Workbench], float]:
     """One attribute of the measures."""
     return lambda a, scene, bench: float(getattr(measured(a, scene, bench), name))
 
 
-def _nothing(a: Any, scene: "Scene") -> tuple[()]:
-    """A driven field takes no modes."""
-    return ()
-
-
-WAVE_QUANTITIES = (
-    Quantity("wave.deflection", "m", "Complex deflection, e^{+i omega t}.", At, _nothing, _deflection),
+WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
+    Quantity("wave.deflection", "m", "Complex deflection, e^{+i omega t}.", At, "harmonic", _deflection),
     Quantity(
         "wave.standing_wave_ratio",
         "1",
         "(1 + Gamma)/(1 - Gamma) of the two waves fitted in the mean square over the window.",
         InWindow,
-        _nothing,
+        "harmonic",
         _figure("standing_wave_ratio"),
+        superposed="standing_wave_ratio",
     ),
     Quantity(
         "wave.reflection",
         "1",
         "Gamma, the weaker wave over the stronger, at the middle of the window.",
         InWindow,
-        _nothing,
+        "harmonic",
         _figure("reflection"),
+        superposed="reflection",
     ),
     Quantity(
         "wave.envelope",
         "1",
         "(max - min)/(max + min) of |w| over the window, at any place; Gamma for two waves.",
         InWindow,
-        _nothing,
+        "harmonic",
         _figure("envelope"),
     ),
     Quantity(
@@ -126,7 +125,7 @@ WAVE_QUANTITIES = (
         "1",
         "1/cond([Re w, Im w]) over the window's whole half wavelengths: (1 - Gamma)/(1 + Gamma) for two waves.",
         InWindow,
-        _nothing,
+        "harmonic",
         _figure("travelling_index"),
     ),
     Quantity(
@@ -134,7 +133,7 @@ WAVE_QUANTITIES = (
         "1",
         "Signed axis ratio of the surface ellipse at x, else the mean over whole half waves; below 0 towards +x.",
         AxisRatio,
-        _nothing,
+        "harmonic",
         _axis_ratio,
     ),
     Quantity(
@@ -142,7 +141,7 @@ WAVE_QUANTITIES = (
         "1",
         "(max - min)/|mean| of the ellipses' signed area over the window, at any place.",
         InWindow,
-        _nothing,
+        "harmonic",
         _figure("signed_area_spread"),
     ),
     Quantity(
@@ -150,23 +149,25 @@ WAVE_QUANTITIES = (
         "m/s",
         "Speed of the surface at the crests, along +x.",
         InWindow,
-        _nothing,
+        "harmonic",
         _figure("crest_speed"),
+        superposed="crest_speed",
     ),
     Quantity(
         "wave.energy_flux",
         "W",
         "Power carried towards +x through the middle of the window.",
         InWindow,
-        _nothing,
+        "harmonic",
         _figure("energy_flux"),
+        superposed="energy_flux",
     ),
     Quantity(
         "wave.power_imbalance",
         "1",
         "Input of the left force less losses less flux, up to the window's middle.",
         Power,
-        _nothing,
+        "harmonic",
         _power_imbalance,
     ),
     Quantity(
@@ -174,7 +175,7 @@ WAVE_QUANTITIES = (
         "Hz",
         "Frequency of least reflection near the drive's, all else as it is.",
         BestFrequency,
-        _nothing,
+        "harmonic",
         _best_frequency,
     ),
     Quantity(
@@ -182,7 +183,7 @@ WAVE_QUANTITIES = (
         "1",
         "Observed order of a wave figure's error against the exact field.",
         WaveOrder,
-        _nothing,
+        "harmonic",
         _order,
     ),
     Quantity(
@@ -190,7 +191,7 @@ WAVE_QUANTITIES = (
         "m/N",
         "Deflection at one place under a unit force at another, by all modes at once.",
         Receptance,
-        _nothing,
+        "harmonic",
         _receptance,
     ),
     Quantity(
@@ -198,7 +199,7 @@ WAVE_QUANTITIES = (
         "1/Hz",
         "Change of the reflection over half a hertz, mean of both sides.",
         Sensitivity,
-        _nothing,
+        "harmonic",
         _sensitivity("per_hertz"),
     ),
     Quantity(
@@ -206,7 +207,7 @@ WAVE_QUANTITIES = (
         "1/degree",
         "Change over half a degree of phase, mean of both sides.",
         Sensitivity,
-        _nothing,
+        "harmonic",
         _sensitivity("per_degree"),
     ),
 )

@@ -4,24 +4,23 @@ import json
 import os
 import platform
 import sys
+from collections.abc import Iterator
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from verify.errors import InputError
 from verify.files import write_whole
-from verify.report.axial_charts import NAMES, axial_charts
-from verify.report.charts import charts_of
-from verify.report.motion_charts import motion_charts
 from verify.report.plain import finite
-from verify.report.reading_charts import reading_charts
-from verify.report.wave_charts import wave_charts
-from verify.studies import claim_words
-from verify.words import figure, percent, seconds_in_words, work_in_words
+from verify.studies.catalogue import STUDIES
+from verify.words import cell, figure, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
     from verify.run.runner import RunResult
+    from verify.studies.kind import Table
 
 _PACKAGES = ("fem-segment-verify", "numpy", "scipy", "scikit-fem", "plotly")
 
@@ -35,31 +34,63 @@ def page(result: "RunResult", command: str) -> str:
     """The whole HTML page, plotly's script included."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    from verify.motion.contact import FELT
-
     loader = PackageLoader("verify", "report")
     templates = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    templates.filters |= {"figure": figure, "percent": percent, "duration": seconds_in_words}
-    charts = charts_of(result) + (wave_charts(result.wave) if result.wave else [])
-    charts += motion_charts(result.motion) if result.motion else []
-    charts += reading_charts(result.readings) if result.readings else []
-    charts += axial_charts(result.axial_inertia) if result.axial_inertia else []
+    templates.filters |= {"figure": figure, "duration": seconds_in_words}
+    charts = [chart for found in result.found.values() for chart in found.charts()]
     return templates.get_template("page.html.j2").render(
         result=result,
-        work=work_in_words(result),
+        work=work_in_words(len(result.solves), result.n_fields, result.n_motions),
         failed=[gate for gate in result.gates if not gate.passed],
         charts=charts,
-        model_names=NAMES,
-        words=claim_words,
-        felt=FELT,
-        notes=dict.fromkeys(note for row in result.convergence or () for note in row.notes),
-        figures=_safe_json({chart["id"]: chart["figure"] for chart in charts}),
+        sections=list(sections_of(result)),
+        figures=_safe_json({chart.id: {"data": chart.data, "layout": chart.layout} for chart in charts}),
         plotly=_plotly_script() if charts else "",
         environment=environment(),
         command=command,
     )
+
+
+class Section(msgspec.Struct, frozen=True):
+    """What one study tells on the page, beside its charts."""
+
+    name: str
+    title: str
+    facts: tuple[str, ...]
+    tables: tuple[dict[str, Any], ...]
+
+
+def sections_of(result: "RunResult") -> Iterator[Section]:
+    """Every study that has words or tables for the page."""
+    for name, found in result.found.items():
+        tables = tuple(_on_page(table) for table in found.tables() if table.shown != "terminal")
+        if facts := found.facts():
+            facts = tuple(fact[:1].upper() + fact[1:] for fact in facts)
+        if facts or tables:
+            yield Section(name, STUDIES[name].title or name, facts, tables)
+
+
+def _on_page(table: "Table") -> dict[str, Any]:
+    """A table with its figures written out: heads with their side, rows of cells, sentences before and after."""
+    sides = ["" if column.left else "n" for column in table.columns]
+    rows = [
+        [
+            (side, cell(value, column.form, column.factor, column.unit))
+            for side, value, column in zip(sides, row, table.columns, strict=True)
+        ]
+        for row in table.rows
+    ]
+    heads = [(side, column.head) for side, column in zip(sides, table.columns, strict=True)]
+    return {
+        "title": table.title,
+        "before": table.before,
+        "heads": heads,
+        "rows": rows,
+        "notes": table.notes,
+        "folded": table.folded,
+    }
 
 
 def environment() -> dict[str, str]:

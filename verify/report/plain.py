@@ -1,25 +1,21 @@
 """Results as plain data and text: JSON, CSV, Markdown."""
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from verify.errors import InputError
-from verify.scenes.scene import literal
+from verify.scenes.toml import literal
+from verify.studies.catalogue import STUDIES
 
 if TYPE_CHECKING:
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
-    from verify.motion.result import Motion
     from verify.run.runner import RunResult
-    from verify.studies.axial_inertia import AxialStudy
-    from verify.studies.modes import Row
-    from verify.studies.readings import Reading, ReadingsStudy
-    from verify.studies.slider import MotionStudy
-    from verify.studies.wave import WaveStudy
-    from verify.studies.work_precision import Work
+    from verify.studies.kind import Found
 
 
 def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
@@ -28,105 +24,50 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
         "scene": result.scene.name,
         "passed": result.passed,
         "gates": msgspec.to_builtins(result.gates),
-        "spectrum": msgspec.to_builtins(result.spectrum),
-        "convergence": [flat_row(row) for row in result.convergence or ()],
-        "sensitivity": msgspec.to_builtins(result.sensitivity),
-        "wave": wave_as_plain(result.wave) if result.wave else None,
-        "motion": motion_as_plain(result.motion) if result.motion else None,
-        "readings": readings_as_plain(result.readings) if result.readings else None,
-        "claims": [msgspec.to_builtins(one) | {"departure": one.departure} for one in result.claims],
-        "axial_inertia": axial_as_plain(result.axial_inertia) if result.axial_inertia else None,
+        **dict(_studies_as_plain(result)),
         "solves": msgspec.to_builtins(result.solves),
         "seconds": result.seconds,
         "report": str(report) if report else None,
     }
 
 
-def wave_as_plain(study: "WaveStudy") -> dict[str, Any]:
-    """A wave study: the motor's rows and operating points."""
-    return {
-        "rows": msgspec.to_builtins(study.rows),
-        "points": msgspec.to_builtins(study.points),
-        "notes": list(study.notes),
-    }
+def _studies_as_plain(result: "RunResult") -> Iterator[tuple[str, Any]]:
+    """Every study by its name, what it says of nothing where the scene did not ask for it."""
+    for name in STUDIES.own():
+        yield name, result.found[name].plain() if name in result.found else STUDIES[name].nothing
 
 
-def motion_as_plain(study: "MotionStudy") -> dict[str, Any]:
-    """A slider study: displacements and margins by model, findings, work against error."""
-    runs = {
-        model: {
-            "displacement": run.displacement,
-            "mean_speed": run.mean_speed,
-            "largest_friction": largest(run),
-            "condition": msgspec.to_builtins(study.conditions[model]),
-            "figures": study.figures[model],
-            "coupling": msgspec.to_builtins(run.coupling),
-            "margins": msgspec.to_builtins(run.margins),
-            "ledger": msgspec.to_builtins(run.ledger),
-            "statistics": msgspec.to_builtins(run.statistics),
-            "notes": list(run.notes),
-        }
-        for model, run in study.runs.items()
-    }
-    return {"runs": runs, "findings": msgspec.to_builtins(study.findings)} | work_as_plain(study.work)
+def text_of(found: "Found", layout: str) -> str:
+    """What a study found as json, csv or markdown, ending in a newline."""
+    if layout == "json":
+        import json
+
+        return json.dumps(finite(found.plain()), indent=2, allow_nan=False) + "\n"
+    return rows_as_text(found.records(), layout)
 
 
-def work_as_plain(work: "Work") -> dict[str, Any]:
-    """Run time against error, and both models at one error or why they are not compared."""
-    from verify.studies.work_precision import Comparison, at_equal_error
+def rows_as_text(rows: list[dict[str, Any]], layout: str) -> str:
+    """Rows as csv or markdown, an infinite ratio in a word; notes are left to JSON."""
+    if not rows:
+        raise InputError(f"--{layout}: the study has no table, ask for --json")
+    columns = [name for name in rows[0] if name != "notes"]
+    cells = [[_cell(row[name]) for name in columns] for row in rows]
+    if layout == "csv":
+        import csv
+        from io import StringIO
 
-    answer = at_equal_error(work)
-    plain: dict[str, Any] = msgspec.to_builtins(answer)
-    if isinstance(answer, Comparison):
-        plain |= {"ratio": answer.ratio, "whole_ratio": answer.whole_ratio}
-    return {"work": msgspec.to_builtins(work.rows), "step_floor": work.step_floor, "answer": plain}
-
-
-def readings_as_plain(study: "ReadingsStudy") -> dict[str, Any]:
-    """All readings with their conditions, figures and verdicts; the best of each group on the exact beam beside."""
-    claims = [claim.id for claim in study.claims]
-
-    def plain(reading: "Reading | None") -> dict[str, Any] | None:
-        found: dict[str, Any] | None = msgspec.to_builtins(reading)
-        return found and found | {"met": dict(zip(claims, found["met"], strict=True))}
-
-    groups = [
-        {"readings": [plain(one) for one in group.readings], "best": plain(group.best), "exact": plain(group.exact)}
-        for group in study.groups
-    ]
-    return {
-        "claims": claims,
-        "searched": study.searched,
-        "n_runs": study.n_runs,
-        "groups": groups,
-        "turns": msgspec.to_builtins(study.turns),
-        "bounds": msgspec.to_builtins(study.bounds),
-    }
+        text = StringIO()
+        csv.writer(text, lineterminator="\n").writerows([columns, *cells])
+        return text.getvalue()
+    rule = ["---:"] * len(columns)
+    return "".join("| " + " | ".join(line) + " |\n" for line in [columns, rule, *cells])
 
 
-def axial_as_plain(study: "AxialStudy") -> dict[str, Any]:
-    """A study of a chain's axial inertia: departures over the force, models side by side at one of them."""
-    return {
-        "count": study.count,
-        "duration": study.duration,
-        "x": study.x,
-        "rows": msgspec.to_builtins(study.rows),
-        "shown": study.shown,
-        "beside": msgspec.to_builtins(study.beside),
-    }
-
-
-def largest(run: "Motion") -> float:
-    """The largest friction force of a run, newton."""
-    return float(abs(run.friction).max())
-
-
-def flat_row(row: "Row") -> dict[str, Any]:
-    """One row of the convergence table with one level of names."""
-    flat: dict[str, Any] = {"mode": row.mode, "count": row.count, "exact_hz": row.exact_hz}
-    for model in ("segment", "fem"):
-        flat |= {f"{model}_{name}": value for name, value in msgspec.to_builtins(getattr(row, model)).items()}
-    return flat | {"bracket_width": row.bracket_width, "mean_error": row.mean_error, "notes": list(row.notes)}
+def _cell(value: Any) -> str:
+    """A figure with all its digits; nothing where there is none."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return f"{'-' * (value < 0)}infinity" if isinstance(value, float) and math.isinf(value) else str(value)
 
 
 def finite(data: Any) -> Any:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities.catalogue import arguments_of, as_plain, evaluate, in_words, needs_of, quantity
+from verify.quantities.catalogue import arguments_of, as_plain, evaluate, in_words, quantity
 from verify.quantities.kind import Quantity
 from verify.scenes.scene import Complex
 
 if TYPE_CHECKING:
-    from verify.judge.workbench import Need, Workbench
+    from verify.judge.workbench import Workbench
     from verify.scenes.scene import Gate, Scene
 
 
@@ -45,12 +45,6 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     reason: str
     """Why it failed; empty where it passed."""
     seconds: float
-
-
-def gate_needs(gate: "Gate", scene: "Scene") -> "tuple[Need, ...]":
-    """The solves a gate will ask for. Raises InputError where the gate itself is wrong."""
-    found = quantity(gate.quantity)
-    return needs_of(found, arguments_of(found, gate.arguments), scene)
 
 
 def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
@@ -88,7 +82,7 @@ def given_band(gate: "Gate") -> Band:
     return Band(expect=gate.expect, within=gate.within, at_least=gate.at_least, at_most=gate.at_most)
 
 
-def _evaluated(found: Quantity, gate: "Gate", scene: "Scene", bench: "Workbench") -> Any:
+def _evaluated(found: Quantity[Any], gate: "Gate", scene: "Scene", bench: "Workbench") -> Any:
     return evaluate(found, arguments_of(found, gate.arguments), scene, bench)
 
 

@@ -1,314 +1,110 @@
-"""How linear a chain of rigid links is: its axial inertia over the force, beside linear models and the beam.
+"""How far a chain of rigid links departs from the linear one through its axial inertia, over the force."""
 
-Rigid links cannot stretch, so that bending draws the tip in and takes the mass of the chain along: an inertia of
-relative size (kL)^2 <theta^2>, which grows with the square of the force, whatever the amplitude is in thicknesses.
-Links that stretch as the beam does (EA / l) keep a part of it. Everything here starts from rest and is undamped; all
-forces have one amplitude.
-"""
-
-from collections.abc import Callable
-from math import ceil
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
-import numpy as np
-from msgspec.structs import replace
+from msgspec import Meta
 
-from verify.beam import Beam, PointForce
-from verify.chain.dynamics import at_rest
-from verify.chain.problems import Progress, transient, unheard
-from verify.chain.splitting import linear_deflection, modal_basis
-from verify.chain.stepping import ChainMotion
-from verify.chain.stretching import simulate_elastic
-from verify.chain.system import axial_stiffness, build_system
-from verify.chain.work import MOST, check_kept, check_modes_of
+from verify.beam import Beam, check_number
 from verify.errors import InputError
-from verify.models.division import Array
-from verify.motion.simulate import simulate
-from verify.motion.validity import NONLINEAR, axial_inertia_size
+from verify.models.catalogue import discrete
+from verify.studies.kind import Found, Progress, Study
 
 if TYPE_CHECKING:
-    from verify.scenes.scene import Scene
+    from verify.judge.workbench import Workbench
+    from verify.scenes.scene import Drive, Scene
+    from verify.studies.axial_figures import AxialFound
 
-Links = Literal["full", "transverse", "elastic"]
-"""Rigid links; rigid links without inertia along x; links of the beam's own EA / l."""
-SAMPLES, SAMPLES_PER_PERIOD = 1001, 40
-"""Kept at least, and in a period of the drive."""
-TOLERANCE = 1e-10
-"""Of the adaptive step: the smallest departure asked for lies far above what it leaves."""
-
-STILL = 1e-9
-"""A place moves less than this share of the free beam's answer as a whole, 1 / (m omega^2), by rounding alone."""
-
-TENTHS = 10
-"""Parts of the beam, between which the departure is read too."""
-
-TURNED = 0.3
-"""Radians in the rms: links that turn further are no driven beam."""
+STEPS_PER_RADIAN = 15
+"""Of a chain's fastest mode, which the tolerance of the study takes."""
+STEPPED, BESIDE = 3, 6
+"""Nonlinear chains under each force; models side by side, three of which are linear and are not stepped."""
 
 
-class Departure(msgspec.Struct, frozen=True, kw_only=True):
-    """How far a chain's deflection lies from the linear chain's at one place, over the linear one's rms there."""
+class AxialInertia(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask how far a chain of rigid links departs from the linear one through its axial inertia, over the force."""
 
-    at_end: float
-    """At the end of the run."""
-    rms: float
-    """Over the run."""
+    forces: Annotated[tuple[float, ...], Meta(min_length=1)] = (0.1, 1.0, 10.0, 30.0)
+    """Newton: amplitudes that all forces of the drive take in turn."""
+    shown: float = 10.0
+    """Newton: the amplitude at which all models stand side by side."""
+    count: Annotated[int, Meta(ge=2, le=250)] = 49
+    """Links, and elements beside them; an adaptive step costs O(N^3) over a given time."""
+    duration: float = 1e-3
+    """Seconds from rest."""
+    x: float | None = None
+    """Metres from the left end where the deflection is read; mid-span unless given."""
 
+    def __post_init__(self) -> None:
+        for i, force in enumerate(self.forces):
+            check_number(f"axial_inertia.forces[{i}]", force, "newton", above=0)
+        check_number("axial_inertia.shown", self.shown, "newton", above=0)
+        check_number("axial_inertia.duration", self.duration, "seconds", above=0, below=0.1)
+        if self.x is not None:
+            check_number("axial_inertia.x", self.x, "metres", above=0)
 
-class ForceRow(msgspec.Struct, frozen=True, kw_only=True):
-    """One amplitude of the forces."""
-
-    force: float
-    """Newton."""
-    deflection_rms: float
-    """Of the chain of rigid links at the place read, metres."""
-    size: float
-    """(kL)^2 <theta^2>, the mean over the links and the run."""
-    linear: bool
-    """Whether that number lets the linear chain stand for it."""
-    full: Departure
-    transverse: Departure
-    elastic: Departure
-    along: tuple[float, float]
-    """Least and largest `full.at_end` at the tenths of the beam and at the place read."""
-
-
-class Beside(msgspec.Struct, frozen=True, kw_only=True):
-    """One model at the force of the comparison."""
-
-    model: str
-    error: float
-    """Rms of the difference to the exact field over the exact field's rms."""
-    at_end: float
-    """Deflection at the end of the run, metres."""
-
-
-class AxialStudy(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Everything the report shows of a chain's axial inertia."""
-
-    rows: tuple[ForceRow, ...]
-    beside: tuple[Beside, ...]
-    """Exact field, Hermite elements, linear chain, nonlinear chains."""
-    times: tuple[float, ...]
-    lines: dict[str, tuple[float, ...]]
-    """Deflection by model as in `beside`, metres."""
-    shown: float
-    """Newton: the force of the comparison."""
-    count: int
-    duration: float
-    x: float
-    """Metres from the left end: the place read."""
+    def check_on(self, beam: Beam, drive: "Drive | None") -> None:
+        """Raise InputError unless the beam is a chain with a tip that slides, undamped and driven by forces."""
+        if drive is None or drive.kind != "force" or not drive.force:
+            raise InputError("axial_inertia: the chain is driven by forces, give the scene a [drive] of kind force")
+        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or beam.stepped:
+            raise InputError(
+                f"axial_inertia with beam.supports = {list(beam.supports)!r}: give a uniform beam that is pinned or "
+                "clamped on the left and pinned, or free behind a clamp, on the right"
+            )
+        if beam.loss_factor:
+            raise InputError(
+                f"axial_inertia with beam.loss_factor = {beam.loss_factor!r}: its chains move undamped, give 0"
+            )
+        if self.x is not None and self.x > beam.length:
+            raise InputError(f"axial_inertia.x = {self.x!r} lies off the beam: give up to {beam.length!r} m")
 
 
-class Driven(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A chain from rest under harmonic forces, read at one place."""
+class AxialInertiaStudy(Study[AxialInertia, "AxialFound"]):
+    """Three nonlinear chains under every force, and all models beside one another at one of them."""
 
-    beam: Beam
-    forces: tuple[PointForce, ...]
-    """Their amplitudes are those of each run."""
-    frequency_hz: float
-    count: int
-    x: float
-    """Metres from the left end."""
-    times: Array
-    """(n,), evenly from 0, seconds."""
+    name, section, work = "axial_inertia", AxialInertia, "in time"
+    title = "How linear the chain of rigid links is"
 
-    def under(self, force: float) -> tuple[PointForce, ...]:
-        """The forces with an amplitude in newton."""
-        return tuple(replace(one, amplitude=force) for one in self.forces)
+    def check_on(self, asked: AxialInertia, scene: "Scene") -> None:
+        """Raise InputError unless the beam is a chain with a tip that slides, undamped and driven by forces."""
+        asked.check_on(scene.beam, scene.drive)
 
+    def models(self, asked: AxialInertia, scene: "Scene") -> tuple[str, ...]:
+        """All that can."""
+        return tuple(model.name for model in discrete("time_basis"))
 
-def point_forces(scene: "Scene", who: str) -> tuple[PointForce, ...]:
-    """The scene's driving forces.
+    def choices(self, asked: AxialInertia, scene: "Scene") -> tuple[tuple[str, str], ...]:
+        """Up to which force the linear chain will do: linear or nonlinear is decided by its axial inertia."""
+        from verify.studies.axial_figures import linear_up_to
 
-    Raises InputError where it drives nothing, or by displacements, and for a [motion] that a chain from rest, undamped
-    and under forces of full size does not make.
-    """
-    if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
-        raise InputError(f"{who}: the scene has no drive by forces; give it a [drive] of kind force")
-    if scene.motion is not None:
-        for name, rest in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
-            if (value := getattr(scene.motion, name)) not in (rest, None):
-                raise InputError(
-                    f"motion.{name} = {value!r}: {who} is from rest, undamped, under forces of full size; give {rest!r}"
-                )
-    return scene.forces
+        return linear_up_to(asked, scene)
 
+    def told(self, asked: AxialInertia, scene: "Scene") -> str:
+        """What is run, and how long."""
+        fastest = 4.0 * 3.0**0.5 * (asked.count / scene.beam.length) ** 2 * scene.beam.wave_constant
+        forces = ", ".join(f"{force:g}" for force in asked.forces)
+        steps = max(STEPS_PER_RADIAN * fastest * asked.duration, 1.0)
+        stepped = STEPPED * (len(asked.forces) + 1)
+        return (
+            f"rigid, massless along x and stretching links at {forces} N, all models at {asked.shown:g} N: "
+            f"{self.n_motions(asked, scene)} motions of N = {asked.count}, {stepped} of them in about {steps:.2g} "
+            "steps each"
+        )
 
-def driven_chain(scene: "Scene", who: str, count: int, duration: float, x: float | None) -> Driven:
-    """The scene's beam as a chain for `duration` seconds, read at mid-span unless `x` is given. Raises InputError."""
-    forces = point_forces(scene, who)
-    assert scene.drive is not None
-    frequency = scene.drive.frequency_hz
-    n = max(SAMPLES, ceil(SAMPLES_PER_PERIOD * frequency * duration) + 1)
-    check_kept(n, count, f"time = {duration!r} s at drive.frequency_hz = {frequency!r}")
-    check_modes_of(count, 2 if scene.beam.supports[1] == "pinned" else 1)
-    place = 0.5 * scene.beam.length if x is None else x
-    if place > scene.beam.length:
-        raise InputError(f"x = {x!r} lies off the beam: give a place between 0 and {scene.beam.length!r} m")
-    return Driven(
-        beam=scene.beam,
-        forces=forces,
-        frequency_hz=frequency,
-        count=count,
-        x=place,
-        times=np.linspace(0.0, duration, n),
-    )
+    def n_steps(self, asked: AxialInertia, scene: "Scene") -> int:
+        """A step for each force, and the models side by side."""
+        return len(asked.forces) + 1
 
+    def n_motions(self, asked: AxialInertia, scene: "Scene") -> int:
+        """Stepped and closed form alike."""
+        return STEPPED * len(asked.forces) + BESIDE
 
-def linear_chain(driven: Driven) -> Array:
-    """Deflection of the linear chain for 1 N, exact in time, (n,), metres. Raises InputError where it is none."""
-    system = build_system(driven.beam, driven.count, driven.under(1.0), driven.frequency_hz)
-    found = linear_deflection(modal_basis(system), at_rest(system), driven.times, driven.x)
-    if not _moves(driven, found):
-        raise InputError(f"x = {driven.x!r}: the beam does not move there under these forces; give another place")
-    return found
+    def run(
+        self, asked: AxialInertia, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
+    ) -> "AxialFound":
+        """See `axial_study`."""
+        from verify.studies.axial_figures import axial_study
 
-
-def _moves(driven: Driven, unit: Array) -> bool:
-    """Whether a deflection for 1 N is more than rounding."""
-    mass = sum(piece.mass_per_length * piece.length for piece in driven.beam.pieces)
-    return rms(unit) >= STILL / (mass * (2.0 * np.pi * driven.frequency_hz) ** 2)
-
-
-def rigid_chain(
-    driven: Driven, force: float, *, axial_inertia: bool = True, progress: Progress = unheard
-) -> ChainMotion:
-    """The nonlinear chain of rigid links, converged in time. Raises InputError."""
-    motion = transient(
-        driven.beam,
-        driven.under(force),
-        driven.frequency_hz,
-        driven.times.tolist(),
-        driven.count,
-        axial_inertia=axial_inertia,
-        tolerance=TOLERANCE,
-        progress=progress,
-    )
-    turned = rms(motion.directions())
-    if turned > TURNED:
-        raise InputError(f"under {force!r} N the links turn by {turned:.2g} rad in the rms: give a smaller force")
-    return motion
-
-
-def elastic_chain(driven: Driven, force: float) -> Array:
-    """Deflection of the chain whose links stretch as the beam does, (n,), metres. Raises InputError."""
-    system = build_system(driven.beam, driven.count, driven.under(force), driven.frequency_hz)
-    motion = simulate_elastic(system, axial_stiffness(driven.beam, driven.count), driven.times, most=MOST)
-    if motion.stopped != "finished":
-        raise InputError(f"the stretching chain under {force!r} N {motion.stopped}: give a smaller force")
-    return np.asarray(motion.deflection([driven.x])[:, 0])
-
-
-def chain_deflection(driven: Driven, force: float, links: Links, progress: Progress = unheard) -> Array:
-    """Deflection of one nonlinear chain, (n,), metres. Raises InputError."""
-    if links == "elastic":
-        return elastic_chain(driven, force)
-    motion = rigid_chain(driven, force, axial_inertia=links == "full", progress=progress)
-    return np.asarray(motion.deflection([driven.x])[:, 0])
-
-
-def departure(driven: Driven, force: float, links: Links, progress: Progress = unheard) -> Departure:
-    """How far one nonlinear chain lies from the linear one. Raises InputError."""
-    return departure_of(chain_deflection(driven, force, links, progress), force * linear_chain(driven))
-
-
-def along_the_beam(driven: Driven, motion: ChainMotion, force: float) -> tuple[float, float]:
-    """Least and largest departure at the end of a motion, at the tenths of the beam that move. Raises InputError."""
-    places = [driven.x, *(np.arange(1, TENTHS) * driven.beam.length / TENTHS).tolist()]
-    system = build_system(driven.beam, driven.count, driven.under(1.0), driven.frequency_hz)
-    basis, start = modal_basis(system), at_rest(system)
-    units = [linear_deflection(basis, start, driven.times, x) for x in places]
-    found = [
-        departure_of(line, force * unit).at_end
-        for line, unit in zip(motion.deflection(places).T, units, strict=True)
-        if _moves(driven, unit)
-    ]
-    return min(found), max(found)
-
-
-def departure_of(deflection: Array, linear: Array) -> Departure:
-    """The difference of two deflections (n,) at the end and in the rms, over the second's rms.
-
-    Raises InputError where the second is nothing that squares can be made of.
-    """
-    gap, scale = deflection - linear, rms(linear)
-    if not scale:
-        raise InputError("force: under it the linear chain does not move where it is read, give a larger force or x")
-    return Departure(at_end=float(abs(gap[-1])) / scale, rms=rms(gap) / scale)
-
-
-def force_row(driven: Driven, force: float, unit: Array) -> ForceRow:
-    """Every chain under one force; `unit` is the linear chain's deflection for 1 N, (n,). Raises InputError."""
-    motion, linear = rigid_chain(driven, force), force * unit
-    size = axial_inertia_size(driven.beam, driven.frequency_hz, rms(motion.directions()) ** 2)
-    rigid = np.asarray(motion.deflection([driven.x])[:, 0])
-    return ForceRow(
-        force=force,
-        deflection_rms=rms(rigid),
-        size=size,
-        linear=size <= NONLINEAR,
-        full=departure_of(rigid, linear),
-        transverse=departure_of(chain_deflection(driven, force, "transverse"), linear),
-        elastic=departure_of(elastic_chain(driven, force), linear),
-        along=along_the_beam(driven, motion, force),
-    )
-
-
-def side_by_side(driven: Driven, force: float, unit: Array) -> dict[str, Array]:
-    """Deflections (n,) of every model, the exact field first, metres. Raises InputError."""
-    lines = {name: _linear_beam(driven, force, model) for name, model in (("exact", "analytic"), ("fem", "fem"))}
-    lines["linear"] = force * unit
-    chains: tuple[Links, ...] = ("full", "transverse", "elastic")
-    return lines | {links: chain_deflection(driven, force, links) for links in chains}
-
-
-def _linear_beam(driven: Driven, force: float, model: str) -> Array:
-    """Of the exact beam or of as many Hermite elements as links, undamped, exact in time."""
-    motion = simulate(
-        driven.beam,
-        driven.under(force),
-        driven.frequency_hz,
-        float(driven.times[-1]),
-        model=model,  # type: ignore[arg-type]
-        count=driven.count if model == "fem" else None,
-        modal_damping=0.0,
-        at=[driven.x],
-        samples=len(driven.times),
-        ledger=False,
-    )
-    return np.asarray(motion.deflection[:, 0])
-
-
-def axial_study(scene: "Scene", progress: Callable[[str], None] = lambda step: None) -> AxialStudy:
-    """Everything an [axial_inertia] of a scene asks for. Raises InputError."""
-    asked = scene.axial_inertia
-    assert asked is not None
-    driven = driven_chain(scene, "axial_inertia", asked.count, asked.duration, asked.x)
-    unit, rows = linear_chain(driven), []
-    for force in asked.forces:
-        progress(f"axial inertia, {force:g} N")
-        rows.append(force_row(driven, force, unit))
-    progress("axial inertia, models side by side")
-    lines = side_by_side(driven, asked.shown, unit)
-    exact = lines["exact"]
-    beside = tuple(
-        Beside(model=model, error=rms(line - exact) / rms(exact), at_end=float(line[-1]))
-        for model, line in lines.items()
-    )
-    return AxialStudy(
-        rows=tuple(rows),
-        beside=beside,
-        times=tuple(driven.times.tolist()),
-        shown=asked.shown,
-        count=asked.count,
-        lines={model: tuple(line.tolist()) for model, line in lines.items()},
-        duration=asked.duration,
-        x=driven.x,
-    )
-
-
-def rms(values: Array) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(values**2)))
+        return axial_study(scene, asked, step)

@@ -1,18 +1,23 @@
 """Published claims beside what is found, with the condition under which it was found. They are shown, not judged."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from verify.errors import InputError
 from verify.quantities.catalogue import arguments_of, evaluate, needs_of, quantity
 from verify.scenes.claims import READ, Claim
+from verify.studies.kind import Column, Found, Progress, Study, Table
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Need, Workbench
     from verify.scenes.scene import Scene
-    from verify.studies.slider import MotionStudy
+    from verify.studies.slider_figures import SliderFound
+
+VERDICT = {True: "holds", False: "fails", None: "unknown"}
+LEAST_SHOWN = 1e-4
 
 
 class ClaimResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -55,28 +60,117 @@ def is_of_study(claim: Claim, scene: "Scene") -> bool:
     return claim.of_run and scene.slider is not None and scene.motion is not None
 
 
-def claim_results(
-    scene: "Scene", bench: "Workbench", study: "MotionStudy | None", progress: Callable[[str], None]
-) -> tuple[ClaimResult, ...]:
-    """Every claim of a scene. One that cannot be evaluated says why."""
-    found = []
-    for claim in scene.claim:
-        progress(f"claim {claim.id}")
-        of_run = study is not None and is_of_study(claim, scene)
-        found.append(_on_the_run(claim, study) if study and of_run else _alone(claim, scene, bench))
-    return tuple(found)
+class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
+    """Every claim of a scene."""
+
+    claims: tuple[ClaimResult, ...]
+
+    def tables(self) -> tuple[Table, ...]:
+        """A short one for the terminal, a wide one for the page."""
+        return (*self._short(), self._wide())
+
+    def _short(self) -> tuple[Table, ...]:
+        """One for each condition."""
+        return tuple(
+            Table(
+                title=f"published claims{f', found with {condition}' if condition else ''}",
+                columns=(Column("", left=True), Column("", left=True)),
+                rows=tuple(
+                    (VERDICT[c.holds], f"{c.id}: {claimed_words(c)}; found {found_words(c)}\n{c.source} ({c.read})")
+                    for c in group
+                ),
+                shown="terminal",
+            )
+            for condition, group in groupby(self.claims, key=lambda claim: claim.condition)
+        )
+
+    def _wide(self) -> Table:
+        return Table(
+            columns=(
+                Column("", left=True),
+                Column("claim", left=True),
+                Column("claimed", left=True),
+                Column("found", left=True),
+                Column("exact beam", left=True),
+                Column("source", left=True),
+            ),
+            rows=tuple(_page_cells(claim) for claim in self.claims),
+            notes=(
+                "Claims are shown beside what is found; the verdict of the run is that of its gates. Each holds or "
+                "does not under the condition in its row and no other.",
+            ),
+        )
+
+    def plain(self) -> Any:
+        """Each with its departure from the exact beam's."""
+        return [msgspec.to_builtins(one) | {"departure": one.departure} for one in self.claims]
+
+    def records(self) -> list[dict[str, Any]]:
+        """The same."""
+        found: list[dict[str, Any]] = self.plain()
+        return found
 
 
-def _on_the_run(claim: Claim, study: "MotionStudy") -> ClaimResult:
+def _page_cells(claim: ClaimResult) -> tuple[str, ...]:
+    off, other = off_words(claim), other_verdict(claim)
+    beside = [value_words(claim.exact, claim.unit), *([f"found is {off}"] if off else []), *([other] if other else [])]
+    source = f"{claim.source} ({claim.read})."
+    source += f" Found with {claim.condition}." if claim.condition else ""
+    return (
+        VERDICT[claim.holds],
+        f"{claim.id}, {claim.quantity}",
+        claimed_words(claim),
+        "–" if claim.found is None else value_words(claim.found, claim.unit),
+        "; ".join(beside),
+        source + (f" Cannot be evaluated: {claim.reason}" if claim.reason else ""),
+    )
+
+
+class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
+    """Those about the slider's run are found on the runs of its study, others as `verify measure` finds them."""
+
+    name, title = "claims", "Published claims"
+    nothing = ()
+
+    def asked(self, scene: "Scene") -> tuple[Claim, ...] | None:
+        """The scene's claims."""
+        return scene.claim or None
+
+    def skipped(self, scene: "Scene") -> str:
+        """Without any."""
+        return "the scene has no [[claim]]"
+
+    def n_steps(self, asked: tuple[Claim, ...], scene: "Scene") -> int:
+        """A step for each."""
+        return len(asked)
+
+    def run(
+        self, asked: tuple[Claim, ...], scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
+    ) -> ClaimsFound:
+        """Every claim of a scene. One that cannot be evaluated says why."""
+        from verify.studies.slider_figures import SliderFound
+
+        slid = next((found for found in done.values() if isinstance(found, SliderFound)), None)
+        results = []
+        for claim in asked:
+            step(f"claim {claim.id}")
+            of_run = slid is not None and is_of_study(claim, scene)
+            results.append(_on_the_run(claim, slid) if slid and of_run else _alone(claim, scene, bench))
+        return ClaimsFound(claims=tuple(results))
+
+
+def _on_the_run(claim: Claim, study: "SliderFound") -> ClaimResult:
     """On the scene's own slider: the chain's figure, the exact beam's beside it."""
-    chain, exact = (study.figures[model].get(claim.quantity) for model in ("segment", "analytic"))
+    from verify.models.catalogue import bounding
+
+    chain, exact = (study.figures[model].get(claim.quantity) for model in (bounding()[0].name, "analytic"))
     ended = chain is not None
     return _result(
         claim,
         quantity(claim.quantity).unit,
         chain,
         exact,
-        study.conditions["segment"].words,
+        study.condition.words,
         "" if ended else "the slider did not reach the end of the run",
     )
 
@@ -115,3 +209,42 @@ def _result(
         condition=condition,
         reason=reason,
     )
+
+
+def value_words(value: float | None, unit: str) -> str:
+    """A figure with its unit."""
+    return "–" if value is None else f"{value:+.5g}" + unit_words(unit)
+
+
+def unit_words(unit: str) -> str:
+    """A unit behind a number; nothing where there is none."""
+    return "" if unit in ("", "1") else f" {unit}"
+
+
+def claimed_words(claim: "ClaimResult") -> str:
+    """What is claimed, with its unit where it is a number."""
+    return claim.claimed + ("" if claim.claimed in ("negative", "positive") else unit_words(claim.unit))
+
+
+def off_words(claim: "ClaimResult") -> str:
+    """How far what is found lies from the exact beam's; nothing where it does not."""
+    far = claim.departure is not None and abs(claim.departure) >= LEAST_SHOWN
+    return f"{100 * claim.departure:+.2g} % off" if claim.departure is not None and far else ""
+
+
+def other_verdict(claim: "ClaimResult") -> str:
+    """What the exact beam says of a claim, where it says otherwise."""
+    if claim.exact_holds is None or claim.exact_holds == claim.holds:
+        return ""
+    return "there it holds" if claim.exact_holds else "there it does not hold"
+
+
+def found_words(claim: "ClaimResult") -> str:
+    """What was found, with the exact beam's beside it and the distance between them."""
+    if claim.found is None:
+        return f"cannot be evaluated: {claim.reason}"
+    text = value_words(claim.found, claim.unit)
+    if claim.exact is None:
+        return text
+    beside = (value_words(claim.exact, claim.unit), off_words(claim), other_verdict(claim))
+    return f"{text} (exact beam {', '.join(part for part in beside if part)})"

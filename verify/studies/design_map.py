@@ -5,9 +5,8 @@ each frequency serves every phase. Other axes are evaluated point by point. A po
 resonance, a mesh too coarse for the wave, a field that is zero) is a gap.
 """
 
-from collections.abc import Callable
 from itertools import product
-from math import prod
+from math import isfinite, prod
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -15,10 +14,14 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.errors import InputError, NoFigureError, near_name
-from verify.exact.error_laws import PARTS
+from verify.models.catalogue import MODELS
 from verify.models.fields import Array
+from verify.quantities.cases import driven_case
+from verify.quantities.kind import Quantity
+from verify.quantities.wave_arguments import Driven, InWindow
+from verify.studies.kind import Column, Found, Progress, Table
 from verify.waves.measures import middle_half
-from verify.waves.unit_waves import FAST, Gaps, UnitDrive, superposed
+from verify.waves.unit_waves import Gaps, UnitDrive, superposed
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -32,6 +35,8 @@ AXES = {
     "count": "49:98:50",
 }
 """What a map can run over, each with an example."""
+COARSE = (13, 7)
+"""Rows and columns of a map that are shown at most."""
 MOST_STEPS, MOST_POINTS = 10_000, 4_000_000
 """Of an axis, and of a map: 64 MB of figures."""
 
@@ -43,7 +48,7 @@ class Axis(msgspec.Struct, frozen=True):
     values: tuple[float, ...]
 
 
-class DesignMap(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class DesignMap(Found, frozen=True, eq=False, kw_only=True):
     """A figure over one or two axes."""
 
     quantity: str
@@ -57,6 +62,72 @@ class DesignMap(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Whose: '49 segments, scene paper'."""
     reasons: tuple[str, ...] = ()
     """Why values are missing: for each kind of reason how many and the first of them."""
+
+    def facts(self) -> tuple[str, ...]:
+        """Whose it is, its extremes, and how many points it has."""
+        finite = np.isfinite(self.values)
+        if not finite.any():
+            return f"{self.quantity} of {self.of}", "no point has a finite figure", self._how()
+        extremes = (("least", np.argmin, np.inf), ("largest", np.argmax, -np.inf))
+        places = [
+            self._extreme(word, int(pick(np.where(finite, self.values, other)))) for word, pick, other in extremes
+        ]
+        return (f"{self.quantity} of {self.of}", *places, self._how())
+
+    def _how(self) -> str:
+        return f"{self.values.size} points, {self.method}; --json and --csv give them all"
+
+    def _extreme(self, word: str, index: int) -> str:
+        at = np.unravel_index(index, self.values.shape)
+        place = ", ".join(f"{axis.name} = {axis.values[i]:g}" for axis, i in zip(self.axes, at, strict=True))
+        unit = f" {self.unit}" if self.unit != "1" else ""
+        return f"{word} {self.quantity} = {self.values[at]:.6g}{unit} at {place}"
+
+    def tables(self) -> tuple[Table, ...]:
+        """A coarse look: at most 13 by 7 of the values."""
+        first, *second = self.axes
+        grid = self.values.reshape(len(first.values), -1)
+        rows, columns = (_spread(n, most) for n, most in zip(grid.shape, COARSE, strict=True))
+        heads = [f"{second[0].values[j]:g}" if second else self.quantity for j in columns]
+        return (
+            Table(
+                columns=(Column(" \\ ".join(axis.name for axis in self.axes), "g"), *(Column(h, "4") for h in heads)),
+                rows=tuple((first.values[i], *(float(v) for v in grid[i, columns])) for i in rows),
+                notes=self.reasons,
+            ),
+        )
+
+    def records(self) -> list[dict[str, Any]]:
+        """Every point."""
+        names = [axis.name for axis in self.axes]
+        points = product(*(axis.values for axis in self.axes))
+        return [
+            {**dict(zip(names, point, strict=True)), self.quantity: finite_or_none(float(value))}
+            for point, value in zip(points, self.values.ravel(), strict=True)
+        ]
+
+    def plain(self) -> dict[str, Any]:
+        """Axes and values, nested as the axes are."""
+        rows = self.values.tolist()
+        flat = self.values.ndim == 1
+        return {
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "axes": msgspec.to_builtins(self.axes),
+            "values": [finite_or_none(v) if flat else [finite_or_none(one) for one in v] for v in rows],
+            "method": self.method,
+            "reasons": list(self.reasons),
+        }
+
+
+def _spread(n: int, most: int) -> "list[int]":
+    """At most so many of n places, evenly."""
+    return [int(i) for i in np.unique(np.linspace(0, n - 1, most).round().astype(int))]
+
+
+def finite_or_none(value: float) -> float | None:
+    """A figure, or None where there is none."""
+    return value if isfinite(value) else None
 
 
 def parse_axis(text: str) -> Axis:
@@ -89,55 +160,57 @@ def design_map(
     axes: tuple[Axis, ...],
     scene: "Scene",
     bench: "Workbench",
-    progress: Callable[[str], None] = lambda step: None,
+    progress: Progress = lambda step: None,
 ) -> DesignMap:
     """Evaluate a wave quantity over its axes; `arguments` are its others. Raises InputError."""
     from verify.quantities.catalogue import arguments_of
     from verify.quantities.catalogue import quantity as named
 
     found = named(quantity)
-    if not quantity.startswith("wave.") or not 1 <= len(axes) <= 2 or len({a.name for a in axes}) != len(axes):
+    mapped = issubclass(found.arguments, Driven)
+    if not mapped or not 1 <= len(axes) <= 2 or len({a.name for a in axes}) != len(axes):
         raise InputError(f"quantity = {quantity!r}: a map takes a wave quantity and one or two different --sweep axes")
     n_points = prod(len(axis.values) for axis in axes)
     if n_points > MOST_POINTS:
         raise InputError(f"--sweep: the axes span {n_points} points, give at most {MOST_POINTS}")
     first = {axis.name: int(v) if axis.name == "count" else v for axis in axes for v in axis.values[:1]}
     asked = arguments_of(found, arguments | first)
-    if quantity in FAST and {a.name for a in axes} <= {"frequency_hz", "phase_deg"} and _superposes(asked, scene):
+    if found.superposed and {a.name for a in axes} <= {"frequency_hz", "phase_deg"} and _superposes(asked, scene):
         return _superposed(found, asked, axes, scene)
     return _pointwise(found, asked, axes, scene, bench, progress)
 
 
-def _superposes(asked: Any, scene: "Scene") -> bool:
+def _superposes(asked: Driven, scene: "Scene") -> bool:
     """Whether the drive is two forces or displacements without settings that only a single solve knows."""
     return not asked.settings and len(scene.forces) == 2
 
 
-def _whose(asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> str:
+def _whose(asked: Driven, axes: tuple[Axis, ...], scene: "Scene") -> str:
     """Model, count and scene of a map in words."""
-    model = "exact beam" if asked.model == "analytic" else PARTS[asked.model]
-    counted = asked.model == "analytic" or "count" in {axis.name for axis in axes}
-    return f"{model if counted else f'{asked.count} {model}'}, scene {scene.name}"
+    parts = MODELS[asked.model].parts
+    counted = asked.count is None or "count" in {axis.name for axis in axes}
+    return f"{parts if counted else f'{asked.count} {parts}'}, scene {scene.name}"
 
 
-def _superposed(found: Any, asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> DesignMap:
-    from verify.waves.driven import drive_forces, drive_frequency, drive_kind, driven_beam
-
-    beam, forces = driven_beam(asked, scene), drive_forces(asked, scene)
+def _superposed(found: Quantity[InWindow], asked: InWindow, axes: tuple[Axis, ...], scene: "Scene") -> DesignMap:
+    case = driven_case(asked, scene)
+    forces = case.forces
     spans = {axis.name: np.array(axis.values) for axis in axes}
-    frequencies = spans.get("frequency_hz", np.array([drive_frequency(asked, scene)]))
+    frequencies = spans.get("frequency_hz", np.array([case.frequency_hz]))
     phases = np.deg2rad(spans.get("phase_deg", np.array([forces[1].phase_deg])))
     drive = UnitDrive(
-        beam=beam,
-        model=asked.model,
-        count=asked.count,
-        kind=drive_kind(asked, scene),
+        beam=case.beam,
+        model=case.model,
+        count=case.count,
+        kind=case.kind,
         places=tuple(f.position for f in forces),
-        window=asked.window or middle_half(beam),
+        window=asked.window or middle_half(case.beam),
     )
     first = forces[0].amplitude * np.exp(1j * np.deg2rad(forces[0].phase_deg))
     gaps = Gaps()
-    (values,) = superposed(drive, (found.name,), frequencies, first, forces[1].amplitude * np.exp(1j * phases), gaps)
+    (values,) = superposed(
+        drive, (found.superposed,), frequencies, first, forces[1].amplitude * np.exp(1j * phases), gaps
+    )
     reasons = gaps.reasons(values.size)
     if axes[0].name == "phase_deg":
         values = values.T
@@ -153,7 +226,7 @@ def _superposed(found: Any, asked: Any, axes: tuple[Axis, ...], scene: "Scene") 
     )
 
 
-def _check_points(asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> None:
+def _check_points(asked: Driven, axes: tuple[Axis, ...], scene: "Scene") -> None:
     """Raise InputError where the solves behind all points would take too long."""
     from verify.waves.driven import check_fields
 
@@ -163,12 +236,12 @@ def _check_points(asked: Any, axes: tuple[Axis, ...], scene: "Scene") -> None:
 
 
 def _pointwise(
-    found: Any,
-    asked: Any,
+    found: Quantity[Any],
+    asked: Driven,
     axes: tuple[Axis, ...],
     scene: "Scene",
     bench: "Workbench",
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> DesignMap:
     _check_points(asked, axes, scene)
     shape = [len(axis.values) for axis in axes]

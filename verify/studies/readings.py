@@ -1,301 +1,231 @@
-"""Which published claims about a slider hold under which reading of what their source leaves open. Nothing is tuned."""
+"""Which published claims about a slider hold under which reading of what their source leaves open."""
 
-from collections.abc import Callable, Iterator, Sequence
-from itertools import product
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from math import prod
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import msgspec
-from msgspec.structs import replace
+from msgspec import Meta
 
+from verify.beam import check_number
 from verify.errors import InputError
-from verify.motion.figures import Condition, condition_of
-from verify.scenes.claims import Claim, ReadingsAsk, asks_for_turned
-from verify.studies.chain_readings import Chains
-from verify.studies.slider import every_step, figures_of, reversed_scene
-from verify.studies.work_precision import run_once
+from verify.models.catalogue import MODELS
+from verify.quantities.kind import Among, model_meta
+from verify.scenes.claims import asks_for_turned
+from verify.slider import NormalChoice
+from verify.studies.kind import Found, Progress, Study
 
 if TYPE_CHECKING:
+    from verify.judge.workbench import Workbench
     from verify.scenes.scene import Scene
+    from verify.studies.reading_figures import ReadingsFound
 
-LISTS = ("kinematics", "normal", "soft_start_periods", "positions", "forces", "mu", "slope")
-"""What is varied, the slowest first."""
-GROUPED_BY = LISTS[:4]
-"""A row of the table is one of each of these."""
-NAMES = {
-    "kinematics": "kinematics",
-    "normal": "normal",
-    "soft_start_periods": "start",
-    "positions": "place",
-    "forces": "force",
-    "mu": "mu",
-    "slope": "slope K",
-}
+MOST_READINGS = 10_000
+MOST_LINKS = 250
+MOST_WORK = 1e10
+"""Rows advanced times steps of all readings: about a minute."""
 
 
-class Reading(msgspec.Struct, frozen=True, kw_only=True):
-    """One combination, run on one model."""
+class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask which of the scene's claims about its slider hold, over what its source leaves open. Nothing is tuned.
 
-    condition: Condition
-    mass: float
-    """kg."""
-    figures: dict[str, float]
-    """By quantity; empty where the run did not reach its end."""
-    met: tuple[bool, ...]
-    """Whether each claim about the run holds, in their order."""
-    lift_off: float | None
-    """Acceleration of the surface over what presses the slider on; above 1 a real slider lifts off. None on a chain."""
-    nonlinearity: float | None
-    """(kL)^2 <theta^2>, which the linear model leaves out; None on the nonlinear chain."""
-    stopped: str = "end"
+    Every combination of the lists is run; a list that is left out has the scene's own value alone.
+    """
 
-    @property
-    def n_met(self) -> int:
-        """How many claims hold."""
-        return sum(self.met)
+    kinematics: tuple[Literal["tangential", "following"], ...] = ()
+    normal: tuple[NormalChoice, ...] = ()
+    """Whether the beam carries the slider's weight and inertia."""
+    soft_start_periods: tuple[float, ...] = ()
+    """From rest; 0 is a step load, because cos(0) = 1."""
+    forces: tuple[float, ...] = ()
+    """Newton: amplitudes that all forces of the drive take in turn."""
+    mu: tuple[float, ...] = ()
+    slope: tuple[float, ...] = ()
+    """K, s/m."""
+    positions: tuple[float, ...] = ()
+    """Metres from the left end, where the slider starts."""
+    saturation: float | None = None
+    """Newton: mu N, if the mass is to follow from every mu; else the mass is the scene's."""
+    model: Annotated[str, model_meta("of the readings", "time_basis", sized=True)] = "segment"
+    count: Annotated[int, Meta(ge=1)] | None = None
+    """Segments or elements; the motion's unless given."""
+    duration: float | None = None
+    """Seconds; the motion's unless given."""
+    chain: bool = False
+    """Whether those whose forces act at once are run on the nonlinear chain of as many rigid links as well."""
+    shown: Annotated[int, Meta(ge=0, le=50)] = 8
+    """On how many rows of the table the best reading is run on the exact beam as well."""
 
-    @property
-    def speed(self) -> float | None:
-        """Mean speed, m/s; None where the run did not reach its end."""
-        return self.figures.get("slider.mean_speed")
-
-
-class Group(msgspec.Struct, frozen=True, kw_only=True):
-    """All readings of one model, one kinematics, one start and one place."""
-
-    readings: tuple[Reading, ...]
-    best: Reading
-    """The first of those that meet most claims."""
-    exact: Reading | None
-    """That one on the exact beam; None where it was not run there."""
-
-    @property
-    def speeds(self) -> tuple[float, float] | None:
-        """From the lowest to the highest mean speed, m/s."""
-        found = [one.speed for one in self.readings if one.speed is not None]
-        return (min(found), max(found)) if found else None
-
-    def n_meeting(self, claim: int) -> int:
-        """How many of them meet a claim, counted from 0."""
-        return sum(one.met[claim] for one in self.readings)
-
-
-class Turn(msgspec.Struct, frozen=True, kw_only=True):
-    """How often a claim's verdict turns with one thing alone."""
-
-    claim: str
-    by: str
-    pairs: int
-    """Neighbouring readings that differ in that alone."""
-    turned: int
-
-
-class Bound(msgspec.Struct, frozen=True, kw_only=True):
-    """What friction alone can give a slider from rest, held against a claimed mean speed."""
-
-    claimed: float
-    least_mu: float
-    """Below it the claim cannot hold in the tangential kinematics from rest: 2 |v| m / (N t)."""
-    n_above: int
-    """Tangential readings with mu from there on."""
-    fastest: float | None
-    """The largest mean speed of those towards the claimed side, m/s; None without any."""
-
-
-class ReadingsStudy(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything the report shows of the readings."""
-
-    claims: tuple[Claim, ...]
-    """About the slider's run."""
-    groups: tuple[Group, ...]
-    turns: tuple[Turn, ...]
-    bounds: tuple[Bound, ...]
-    searched: dict[str, tuple[float | str, ...]]
-    """The lists, whole."""
-    n_runs: int
+    def __post_init__(self) -> None:
+        for name, unit, bound in (
+            ("soft_start_periods", "periods", {"at_least": 0}),
+            ("forces", "newton", {"above": 0}),
+            ("mu", "coefficient of friction", {"above": 0}),
+            ("slope", "s/m", {"above": 0}),
+            ("positions", "metres", {"at_least": 0}),
+        ):
+            for i, value in enumerate(getattr(self, name)):
+                check_number(f"readings.{name}[{i}]", value, unit, **bound)
+        for name in ("kinematics", "normal", "soft_start_periods", "forces", "mu", "slope", "positions"):
+            values = getattr(self, name)
+            if len(set(values)) < len(values):
+                raise InputError(f"readings.{name} = {list(values)!r} holds a value twice: give each once")
+        for name, unit in (("saturation", "newton"), ("duration", "seconds")):
+            if (value := getattr(self, name)) is not None:
+                check_number(f"readings.{name}", value, unit, above=0)
 
     @property
-    def readings(self) -> tuple[Reading, ...]:
-        """All of them, in the order of the lists."""
-        return tuple(one for group in self.groups for one in group.readings)
+    def n_readings(self) -> int:
+        """Combinations of the lists."""
+        return self.n_groups * prod(max(len(values), 1) for values in (self.forces, self.mu, self.slope))
+
+    @property
+    def n_groups(self) -> int:
+        """Combinations of kinematics, normal, start and place, each a row of the table."""
+        lists = (self.kinematics, self.normal, self.soft_start_periods, self.positions)
+        return prod(max(len(values), 1) for values in lists)
+
+    def check_on(self, scene: "Scene") -> None:
+        """Raise InputError where the scene has nothing to read, or where the search would take too long."""
+        Among("time_basis", sized=True).check(self.model, "readings.model")
+        slider, motion, drive = scene.slider, scene.motion, scene.drive
+        if slider is None or motion is None or drive is None or drive.kind != "force":
+            raise InputError(
+                "readings: they are runs of a slider under forces, give the scene a [slider], a [motion] and a [drive] "
+                "of kind force"
+            )
+        if self.soft_start_periods and motion.start != "rest":
+            raise InputError(
+                f"readings.soft_start_periods = {list(self.soft_start_periods)!r} with motion.start = "
+                f"{motion.start!r}: a steady beam has no start, leave it out"
+            )
+        if self.slope and slider.law == "coulomb":
+            raise InputError(
+                f"readings.slope = {list(self.slope)!r} is of law = 'tanh': Coulomb's has none, leave it out"
+            )
+        for i, x in enumerate(self.positions):
+            if x > scene.beam.length:
+                raise InputError(
+                    f"readings.positions[{i}] = {x!r} lies off the beam: give a place up to {scene.beam.length!r} m"
+                )
+        for i, periods in enumerate(self.soft_start_periods):
+            if periods / drive.frequency_hz > (seconds := self.duration or motion.duration):
+                raise InputError(
+                    f"readings.soft_start_periods[{i}] = {periods!r} take longer than the {seconds!r} s of a run: "
+                    "shorten them or lengthen readings.duration"
+                )
+        if self.chain:
+            self._check_chain(scene)
+        self._check_masses(slider.preload, slider.gravity, self.mu or (slider.mu,))
+        self._check_work(scene)
+
+    def _check_chain(self, scene: "Scene") -> None:
+        """Raise InputError for what the nonlinear chain does not know."""
+        beam, motion, slider = scene.beam, scene.motion, scene.slider
+        assert motion is not None
+        assert slider is not None
+        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or beam.stepped:
+            raise InputError(
+                f"readings.chain with beam.supports = {list(beam.supports)!r}: give a uniform beam, pinned or clamped "
+                "on the left and pinned, or free behind a clamp, on the right, or leave it out"
+            )
+        if motion.start != "rest" or beam.loss_factor or motion.modal_damping or slider.coupling == "two-way":
+            raise InputError(
+                "readings.chain: the chain starts from rest, is undamped and carries a slider one way; leave it out, "
+                "or motion.start, damping and slider.coupling"
+            )
+        if "massless" not in (self.normal or (slider.normal,)):
+            raise InputError(
+                "readings.chain: the nonlinear chain carries a slider that puts nothing on it, give slider.normal = "
+                "'massless', or readings.chain = false"
+            )
+        if (self.count or motion.count) > MOST_LINKS:
+            raise InputError(
+                f"readings.chain: {self.count or motion.count} links are more than {MOST_LINKS}, give a smaller count"
+            )
+
+    def _check_masses(self, preload: float, gravity: float, mus: tuple[float, ...]) -> None:
+        if self.saturation is None:
+            return
+        for mu in mus:
+            if gravity == 0.0 or self.saturation / mu <= preload:
+                raise InputError(
+                    f"readings.saturation = {self.saturation!r} leaves no weight at mu = {mu!r}: give slider.gravity, "
+                    "and a slider.preload below saturation / mu"
+                )
+
+    def _check_work(self, scene: "Scene") -> None:
+        if self.n_readings > MOST_READINGS:
+            raise InputError(
+                f"readings: the lists make {self.n_readings} readings, shorten them to at most {MOST_READINGS}"
+            )
+        runs, steps, rows = self.n_runs(scene), self.n_steps(scene), self.n_rows(scene)
+        if runs * steps * rows > MOST_WORK:
+            raise InputError(
+                f"readings: {runs} runs of about {steps:.3g} steps of {rows} modes, multiplied, are more than the "
+                f"{MOST_WORK:g} that are run at most: shorten the lists, the duration or count"
+            )
+
+    def n_chain(self, scene: "Scene") -> int:
+        """How many readings the nonlinear chain takes: those without a soft start."""
+        assert scene.motion is not None
+        starts = self.soft_start_periods or (scene.motion.soft_start_periods,)
+        return self.n_readings // len(starts) * starts.count(0.0) if self.chain else 0
+
+    def n_runs(self, scene: "Scene") -> int:
+        """How many runs of model and chain: each again with its phases turned round where a claim asks for it."""
+        return (self.n_readings + self.n_chain(scene)) * (2 if asks_for_turned(scene.claim) else 1)
+
+    def n_steps(self, scene: "Scene") -> float:
+        """About how many steps a run takes."""
+        assert scene.motion is not None
+        assert scene.drive is not None
+        seconds = self.duration or scene.motion.duration
+        return min(max(seconds * scene.drive.frequency_hz * scene.motion.steps_per_period, 1.0), 1e15)
+
+    def n_rows(self, scene: "Scene") -> int:
+        """About how many modes a run advances in a step."""
+        assert scene.motion is not None
+        return (self.count or scene.motion.count) * MODELS[self.model].unknowns_per_part
 
 
-def searched_of(scene: "Scene") -> dict[str, tuple[float | str, ...]]:
-    """What each thing is varied over, the scene's own value where no list is given."""
-    asked, slider, motion = scene.readings, scene.slider, scene.motion
-    assert asked is not None
-    assert slider is not None
-    assert motion is not None
-    soft = motion.soft_start_periods if motion.start == "rest" else None
-    own: dict[str, float | str | None] = {
-        "kinematics": slider.kinematics,
-        "normal": slider.normal,
-        "soft_start_periods": soft,
-        "positions": slider.start_on(scene.beam),
-        "forces": None,
-        "mu": slider.mu,
-        "slope": slider.slope,
-    }
-    return {name: tuple(getattr(asked, name)) or (() if own[name] is None else (own[name],)) for name in LISTS}  # type: ignore[misc]
+class ReadingsStudy(Study[ReadingsAsk, "ReadingsFound"]):
+    """Every combination of the lists, run and held against the claims."""
 
+    name, section, work = "readings", ReadingsAsk, "in time"
+    slides = True
+    title = "Which reading of the claims fits"
 
-def readings_study(scene: "Scene", progress: Callable[[str], None] = lambda step: None) -> ReadingsStudy:
-    """Run every reading, judge the claims, run the best on the exact beam. Raises InputError."""
-    asked = scene.readings
-    assert asked is not None
-    claims = tuple(claim for claim in scene.claim if claim.of_run)
-    searched = searched_of(scene)
-    drawn: dict[tuple[float | str | None, ...], list[tuple[Scene, Reading]]] = {}
-    for number, values in enumerate(product(*(searched[name] or (None,) for name in LISTS))):
-        progress(f"reading {number + 1} of {asked.n_readings}")
-        read = read_as(scene, asked, dict(zip(LISTS, values, strict=True)))
-        found = reading(read, claims, asked.model, read.motion.count)  # type: ignore[union-attr]
-        drawn.setdefault(values[: len(GROUPED_BY)], []).append((read, found))
-    best = {key: max(rows, key=lambda row: row[1].n_met) for key, rows in drawn.items()}
-    shown = sorted(best, key=lambda key: -best[key][1].n_met)[: asked.shown]
-    exact: dict[tuple[float | str | None, ...], Reading] = {}
-    for number, key in enumerate(shown):
-        progress(f"exact beam beside the best readings, {number + 1}")
-        exact[key] = reading(best[key][0], claims, "analytic", None)
-    groups = tuple(
-        Group(readings=tuple(one for _, one in rows), best=best[key][1], exact=exact.get(key))
-        for key, rows in drawn.items()
-    )
-    every = [one for group in groups for one in group.readings]
-    chained = _on_the_chain([row for rows in drawn.values() for row in rows], claims, progress) if asked.chain else ()
-    riding = [one for group in chained for one in group.readings]
-    runs = (2 if asks_for_turned(claims) else 1) * (len(every) + len(exact) + len(riding))
-    return ReadingsStudy(
-        claims=claims,
-        groups=(*groups, *chained),
-        turns=tuple(_turns(claims, every, searched)),
-        bounds=tuple(_bounds(scene, claims, every + riding)),
-        searched=searched,
-        n_runs=runs,
-    )
+    def check_on(self, asked: ReadingsAsk, scene: "Scene") -> None:
+        """Raise InputError where the scene has nothing to read, or where the search would take too long."""
+        asked.check_on(scene)
 
+    def models(self, asked: ReadingsAsk, scene: "Scene") -> tuple[str, ...]:
+        """The one of the readings."""
+        return (asked.model,)
 
-def _on_the_chain(
-    rows: "Sequence[tuple[Scene, Reading]]", claims: Sequence[Claim], progress: Callable[[str], None]
-) -> tuple[Group, ...]:
-    """Those readings of a massless slider whose forces act at once, on the nonlinear chain of as many links."""
-    chains, drawn = Chains({}), dict[tuple[str, float], list[Reading]]()
-    at_once = [row for row in rows if not row[1].condition.soft_start_periods and row[1].condition.normal == "massless"]
-    for number, (scene, linear) in enumerate(at_once):
-        progress(f"reading {number + 1} of {len(at_once)} on the nonlinear chain")
-        how = linear.condition
-        drawn.setdefault((how.kinematics, how.position), []).append(chain_reading(scene, claims, chains))
-    return tuple(
-        Group(readings=tuple(found), best=max(found, key=lambda one: one.n_met), exact=None) for found in drawn.values()
-    )
-
-
-def chain_reading(scene: "Scene", claims: Sequence[Claim], chains: Chains) -> Reading:
-    """One combination on the nonlinear chain; one on which it breaks off says so."""
-    slider, motion = scene.slider, scene.motion
-    assert slider is not None
-    assert motion is not None
-    stopped, figures = "end", {}
-    try:
-        run = chains.ride(scene, motion.count)
-        back = chains.ride(reversed_scene(scene), motion.count) if asks_for_turned(tuple(claims)) else None
-        stopped = next((one.stopped for one in (run, back) if one is not None and one.stopped != "end"), "end")
-        figures = figures_of(run, back) if stopped == "end" else {}
-    except InputError as error:
-        stopped = str(error)
-    return Reading(
-        condition=condition_of(scene, "chain", motion.count),
-        mass=slider.mass,
-        figures=figures,
-        met=_verdicts(claims, figures),
-        lift_off=None,
-        nonlinearity=None,
-        stopped=stopped,
-    )
-
-
-def _verdicts(claims: Sequence[Claim], figures: dict[str, float]) -> tuple[bool, ...]:
-    return tuple(bool(figures) and claim.holds(figures[claim.quantity]) for claim in claims)
-
-
-def read_as(scene: "Scene", asked: ReadingsAsk, values: "dict[str, float | str | None]") -> "Scene":
-    """The scene with one combination in place of its own slider, start and forces."""
-    slider, motion, drive = scene.slider, scene.motion, scene.drive
-    assert slider is not None
-    assert motion is not None
-    assert drive is not None
-    force, mu = values["forces"], values["mu"]
-    mass = slider.mass
-    if asked.saturation is not None:
-        mass = (asked.saturation / float(mu or slider.mu) - slider.preload) / slider.gravity
-    own = {
-        "kinematics": values["kinematics"],
-        "normal": values["normal"],
-        "position": values["positions"],
-        "slope": values["slope"],
-        "mu": mu,
-    }
-    forces = drive.force if force is None else tuple(replace(one, amplitude=float(force)) for one in drive.force)
-    return replace(
-        scene,
-        readings=None,
-        gate=(),
-        drive=replace(drive, force=forces),
-        slider=replace(slider, mass=mass, **own),
-        motion=replace(
-            motion,
-            soft_start_periods=values["soft_start_periods"] or 0.0,
-            count=asked.count or motion.count,
-            duration=asked.duration or motion.duration,
-        ),
-    )
-
-
-def reading(scene: "Scene", claims: Sequence[Claim], model: str, count: int | None) -> Reading:
-    """One combination on one model, with every figure that claims may ask for. Raises InputError."""
-    assert scene.slider is not None
-    run = run_once(scene, model, count, samples=every_step(scene))
-    back = run_once(reversed_scene(scene), model, count) if asks_for_turned(tuple(claims)) else None
-    ends = {one.statistics.stopped for one in (run, back) if one is not None} - {"end"}
-    figures = {} if ends else figures_of(run, back)
-    return Reading(
-        condition=condition_of(scene, model, count),
-        mass=scene.slider.mass,
-        figures=figures,
-        met=_verdicts(claims, figures),
-        lift_off=run.margins.lift_off,
-        nonlinearity=run.margins.nonlinearity,
-        stopped=" and ".join(sorted(ends)) or "end",
-    )
-
-
-def _turns(
-    claims: Sequence[Claim], readings: Sequence[Reading], searched: dict[str, tuple[float | str, ...]]
-) -> Iterator[Turn]:
-    """For every claim and everything varied: neighbours in that list alone whose verdicts differ."""
-    sizes = [max(len(searched[name]), 1) for name in LISTS]
-    for i, claim in enumerate(claims):
-        stride = len(readings)
-        for name, size in zip(LISTS, sizes, strict=True):
-            stride //= size
-            pairs = [(j, j + stride) for j in range(len(readings)) if (j // stride) % size < size - 1]
-            if pairs:
-                turned = sum(readings[a].met[i] != readings[b].met[i] for a, b in pairs)
-                yield Turn(claim=claim.id, by=NAMES[name], pairs=len(pairs), turned=turned)
-
-
-def _bounds(scene: "Scene", claims: Sequence[Claim], readings: Sequence[Reading]) -> Iterator[Bound]:
-    """Of every mean speed that is claimed as a number; none for a slider that is pressed on or moves already."""
-    slider = scene.slider
-    assert slider is not None
-    tangential = [one for one in readings if one.condition.kinematics == "tangential" and one.speed is not None]
-    if slider.preload or slider.speed or not tangential or slider.law != "tanh":
-        return
-    for claim in claims:
-        if claim.quantity != "slider.mean_speed" or not claim.number:
-            continue
-        least = 2.0 * abs(claim.number) / (slider.gravity * tangential[0].condition.duration)
-        side = 1.0 if claim.number > 0 else -1.0
-        above = [side * one.speed for one in tangential if one.speed is not None and one.condition.mu >= least]
-        yield Bound(
-            claimed=claim.number, least_mu=least, n_above=len(above), fastest=side * max(above) if above else None
+    def told(self, asked: ReadingsAsk, scene: "Scene") -> str:
+        """How many, on what."""
+        assert scene.motion is not None
+        chain = f" and {asked.n_chain(scene)} on the nonlinear chain" if asked.chain else ""
+        return (
+            f"{asked.n_readings} readings of the slider{chain}, {asked.n_runs(scene)} runs of {asked.model} "
+            f"at N = {asked.count or scene.motion.count} of about {asked.n_steps(scene):.3g} steps, "
+            f"{min(asked.shown, asked.n_groups)} on the exact beam beside"
         )
+
+    def n_steps(self, asked: ReadingsAsk, scene: "Scene") -> int:
+        """A step for each reading."""
+        return asked.n_readings + asked.n_chain(scene) + min(asked.shown, asked.n_groups)
+
+    def n_motions(self, asked: ReadingsAsk, scene: "Scene") -> int:
+        """Of each reading, those on the exact beam among them, again where a claim asks for phases turned round."""
+        return self.n_steps(asked, scene) * (2 if asks_for_turned(scene.claim) else 1)
+
+    def run(
+        self, asked: ReadingsAsk, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
+    ) -> "ReadingsFound":
+        """See `readings_study`."""
+        from verify.studies.reading_figures import readings_study
+
+        return readings_study(scene, asked, step)

@@ -1,27 +1,26 @@
 """Run time against error of a slider's displacement: segments and elements with the same contact code."""
 
-from collections.abc import Callable
 from math import exp, log
 from statistics import median
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.compare import check_reference, relative_error
-from verify.motion.figures import MODELS
-from verify.motion.simulate import simulate
+from verify.models.catalogue import bounding, discrete
 from verify.motion.stepping import slider_seconds
 from verify.patience import check_work
 from verify.quantities.motion_arguments import SliderInTime
-from verify.quantities.simulated import described, slider_of
+from verify.quantities.simulated import motion_case, slider_of
+from verify.studies.kind import Found, Progress, Table
+from verify.studies.slider import EXACT, ROUNDS
 
 if TYPE_CHECKING:
     from verify.motion.result import Motion
     from verify.scenes.scene import Scene
 
-ROUNDS = 7
 ORDER, ASTRAY = 4.0, 1.0
 """Of both models' errors in the size, and how far an observed order may lie from it for times to be compared."""
 ABOVE_FLOOR = 3.0
@@ -53,6 +52,36 @@ class Work(msgspec.Struct, frozen=True, kw_only=True):
     """Relative change of the exact beam's displacement when the step is halved."""
     duration: float
     """Of the motion, seconds."""
+    n_runs: int
+    """Simulations that were done."""
+
+
+class WorkFound(Found, frozen=True, eq=False, kw_only=True):
+    """Run time against error alone."""
+
+    work: Work
+
+    def tables(self) -> tuple[Table, ...]:
+        """The one."""
+        from verify.studies.slider_tables import work_table
+
+        return (work_table(self.work),)
+
+    def facts(self) -> tuple[str, ...]:
+        """Both models at one error, or why they are not compared."""
+        return (answer_in_words(at_equal_error(self.work)),)
+
+    def records(self) -> list[dict[str, Any]]:
+        """Rows with one level of names."""
+        return [msgspec.to_builtins(row) for row in self.work.rows]
+
+    def plain(self) -> dict[str, Any]:
+        """Rows, and both models at one error or why they are not compared."""
+        answer = at_equal_error(self.work)
+        plain: dict[str, Any] = msgspec.to_builtins(answer)
+        if isinstance(answer, Comparison):
+            plain |= {"ratio": answer.ratio, "whole_ratio": answer.whole_ratio}
+        return {"work": self.records(), "step_floor": self.work.step_floor, "answer": plain}
 
 
 class Cost(msgspec.Struct, frozen=True, kw_only=True):
@@ -92,12 +121,12 @@ class NotCompared(msgspec.Struct, frozen=True, kw_only=True):
     remedy: str
 
 
-def work_of(scene: "Scene", counts: tuple[int, ...], progress: Callable[[str], None] = lambda step: None) -> Work:
+def work_of(scene: "Scene", counts: tuple[int, ...], progress: Progress = lambda step: None) -> Work:
     """Both models at every size; the exact beam is the reference. Raises InputError."""
     _check_rounds(scene, counts)
     exact, floor = _exact(scene)
     check_reference(exact)
-    cases = [(model, n) for model in MODELS for n in sorted(set(counts))]
+    cases = [(model.name, n) for model in discrete("time_basis") for n in sorted(set(counts))]
     runs: dict[tuple[str, int], list[Motion]] = {case: [] for case in cases}
     for number in range(ROUNDS):
         progress(f"slider, work against error, round {number + 1}")
@@ -108,7 +137,8 @@ def work_of(scene: "Scene", counts: tuple[int, ...], progress: Callable[[str], N
     for (model, n), found in runs.items():
         before = rows[-1] if rows and rows[-1].model == model else None
         rows.append(_row(model, n, found, exact, before))
-    return Work(rows=tuple(rows), step_floor=floor, duration=scene.motion.duration)
+    n_runs = EXACT + ROUNDS * len(cases)
+    return Work(rows=tuple(rows), step_floor=floor, duration=scene.motion.duration, n_runs=n_runs)
 
 
 def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
@@ -126,7 +156,7 @@ def _exact(scene: "Scene") -> tuple[float, float]:
     finer = replace(scene.motion, steps_per_period=2 * scene.motion.steps_per_period)
     way, finer_way = (
         run_once(one, "analytic", None, coupling="one-way").displacement
-        for one in (scene, replace(scene, motion=finer, readings=None))
+        for one in (scene, replace(scene.bare, motion=finer))
     )
     if way == 0.0:
         raise InputError("the slider does not move on the exact beam: no error can be relative to that, drive it")
@@ -144,16 +174,9 @@ def run_once(
 ) -> "Motion":
     """The scene's slider on one model, coupled as it says unless told otherwise."""
     a = SliderInTime(model=model, count=count, coupling=coupling)  # type: ignore[arg-type]
-    asked = described(a, scene)
     per_period = scene.motion.steps_per_period if scene.motion else 64
-    found = simulate(
-        scene.beam,
-        slider=slider_of(a, scene),
-        steps_per_period=per_period,
-        samples=samples,
-        ledger=ledger,
-        patient=False,
-        **asked,
+    found = motion_case(a, scene).run(
+        slider=slider_of(a, scene), steps_per_period=per_period, samples=samples, ledger=ledger, patient=False
     )
     if found.statistics.stopped == "interrupted":
         raise KeyboardInterrupt
@@ -177,8 +200,10 @@ def _row(model: str, count: int, found: "list[Motion]", exact: float, before: Wo
 
 def at_equal_error(work: Work) -> Comparison | NotCompared:
     """Both models at the smallest error that both reach, by logarithms, where errors fall at their order."""
-    lines = {model: [row for row in work.rows if row.model == model] for model in MODELS}
-    problem = next((found for model, line in lines.items() if (found := _unfit(MODELS[model], line, work))), None)
+    both = bounding()
+    lines = {model.name: [row for row in work.rows if row.model == model.name] for model in both}
+    unfit = (_unfit(model.parts, lines[model.name], work) for model in both)
+    problem = next((found for found in unfit if found), None)
     if problem is not None:
         return problem
     spans = [(abs(line[-1].error), abs(line[0].error)) for line in lines.values()]
@@ -186,11 +211,11 @@ def at_equal_error(work: Work) -> Comparison | NotCompared:
     if error > min(high for _, high in spans):
         words = ", ".join(
             f"{name} {100 * low:.3g} to {100 * high:.3g} %"
-            for name, (low, high) in zip(MODELS.values(), spans, strict=True)
+            for name, (low, high) in zip((model.parts for model in both), spans, strict=True)
         )
         return NotCompared(why=f"the models share no error ({words})", remedy="give counts that overlap in error")
-    costs = {model: _cost_at(line, error) for model, line in lines.items()}
-    return Comparison(error=error, segment=costs["segment"], fem=costs["fem"], duration=work.duration)
+    segment, fem = (_cost_at(line, error) for line in lines.values())
+    return Comparison(error=error, segment=segment, fem=fem, duration=work.duration)
 
 
 def _unfit(name: str, line: list[WorkRow], work: Work) -> NotCompared | None:
@@ -230,3 +255,16 @@ def _cost_at(line: list[WorkRow], error: float) -> Cost:
         return exp(log(start) + part * log(end / start))
 
     return Cost(run_ms_per_ms=between("run_ms_per_ms"), set_up_ms=between("set_up_ms"))
+
+
+def answer_in_words(answer: "Comparison | NotCompared") -> str:
+    """Both models at one error, loop and set-up; or why nothing is compared, and what to change."""
+    if isinstance(answer, NotCompared):
+        return f"run times at equal error are not compared: {answer.why}; {answer.remedy}"
+    fem, segment = answer.fem, answer.segment
+    return (
+        f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take {answer.ratio:.2f} times "
+        f"as long as segments in the loop ({fem.run_ms_per_ms:.3g} and {segment.run_ms_per_ms:.3g} ms for a simulated "
+        f"ms), after a set-up of {fem.set_up_ms:.3g} and {segment.set_up_ms:.3g} ms: {answer.whole_ratio:.2f} times "
+        f"for the whole run of {1e3 * answer.duration:g} ms"
+    )

@@ -1,20 +1,15 @@
 """Where to drive: the frequency of least reflection, and the fastest crests under a limit on the reflection."""
 
-from typing import TYPE_CHECKING, Any
-
 import msgspec
 import numpy as np
-from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.models.fields import Array
-from verify.waves.driven import drive_forces, drive_frequency, drive_kind, driven_beam, quietest
+from verify.waves.case import DrivenCase
+from verify.waves.driven import quietest
 from verify.waves.measures import middle_half
 from verify.waves.unit_waves import Gaps, UnitDrive, superposed
-
-if TYPE_CHECKING:
-    from verify.scenes.scene import Scene
 
 
 class OperatingPoint(msgspec.Struct, frozen=True, kw_only=True):
@@ -56,7 +51,7 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
             window=middle_half(self.beam),
         )
         turned = np.asarray(second.amplitude * np.exp(1j * np.deg2rad(phases_deg)), dtype=complex)
-        gaps, figures = Gaps(), ("wave.reflection", "wave.crest_speed")
+        gaps, figures = Gaps(), ("reflection", "crest_speed")
         reflection, speed = superposed(drive, figures, frequencies, complex(first.amplitude), turned, gaps)
         gaps.reasons(reflection.size)
         return np.where(np.isnan(reflection), 1.0, reflection), np.nan_to_num(speed)  # a gap attracts nobody
@@ -99,19 +94,21 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
         return self.point(frequency, phase, f"largest crest speed with a reflection up to {limit:g}", note)
 
 
-def driven_point(a: Any, scene: "Scene") -> OperatingPoint:
-    """The point at which `wave_arguments.Sensitivity` arguments drive. Raises InputError without two forces."""
-    forces = drive_forces(a, scene)
-    if len(forces) != 2:
-        raise InputError(f"the reflection has a phase between two forces, the scene has {len(forces)}: give it two")
-    land = Landscape(
-        beam=driven_beam(a, scene),
-        forces=(forces[0], forces[1]),
-        model=a.model,
-        count=a.count,
-        kind=drive_kind(a, scene),
-    )
-    return land.point(drive_frequency(a, scene), forces[1].phase_deg - forces[0].phase_deg, "as driven")
+def driven_point(case: DrivenCase) -> OperatingPoint:
+    """The point at which a case drives. Raises InputError without two forces."""
+    land = landscape(case)
+    first, second = case.forces
+    return land.point(case.frequency_hz, second.phase_deg - first.phase_deg, "as driven")
+
+
+def landscape(case: DrivenCase) -> Landscape:
+    """Over frequency and phase around a case. Raises InputError without two forces."""
+    if len(case.forces) != 2:
+        raise InputError(
+            f"the reflection has a phase between two forces, the scene has {len(case.forces)}: give it two"
+        )
+    first, second = case.forces
+    return Landscape(beam=case.beam, forces=(first, second), model=case.model, count=case.count, kind=case.kind)
 
 
 def edge_note(what: str, frequency: float) -> str:
@@ -119,21 +116,15 @@ def edge_note(what: str, frequency: float) -> str:
     return f"{what} at the edge of the search, {frequency:.6g} Hz: not an optimum but where the search ends"
 
 
-def operating_points(
-    scene: "Scene", model: str, count: int | None, limit: float = 0.1, loss_factor: float | None = None
-) -> tuple[tuple[OperatingPoint, ...], tuple[InputError, ...]]:
-    """(least reflection at the scene's phase; largest crest speed with a reflection up to `limit` over both).
+def operating_points(case: DrivenCase, limit: float = 0.1) -> tuple[tuple[OperatingPoint, ...], tuple[InputError, ...]]:
+    """(least reflection at the case's phase; largest crest speed with a reflection up to `limit` over both).
 
-    Within 1.5 % of the drive's frequency and phases of 5 to 175 degrees in size; beside them the reasons for those
-    that do not exist. Raises InputError for a scene without two forces.
+    Within 1.5 % of its frequency and phases of 5 to 175 degrees in size; beside them the reasons for those that do
+    not exist. Raises InputError for a case without two forces.
     """
-    if scene.drive is None or len(scene.forces) != 2:
-        raise InputError("an operating point takes a scene with two forces: add them to its [drive]")
-    beam = scene.beam if loss_factor is None else replace(scene.beam, loss_factor=loss_factor)
-    first, second = scene.forces
-    land = Landscape(beam=beam, forces=(first, second), model=model, count=count, kind=scene.drive.kind)
-    phase = second.phase_deg - first.phase_deg
-    frequencies = np.linspace(0.985, 1.015, 121) * scene.drive.frequency_hz
+    land = landscape(case)
+    phase = case.forces[1].phase_deg - case.forces[0].phase_deg
+    frequencies = np.linspace(0.985, 1.015, 121) * case.frequency_hz
     points, problems = [], []
     for find in (land.quiet_point, lambda f, p: land.fast_point(f, p, limit)):
         try:
@@ -141,16 +132,6 @@ def operating_points(
         except InputError as error:
             problems.append(error)
     return tuple(points), tuple(problems)
-
-
-def best_points(
-    scene: "Scene", model: str, count: int | None, limit: float = 0.1, loss_factor: float | None = None
-) -> tuple[OperatingPoint, ...]:
-    """Both of `operating_points`. Raises InputError where either does not exist."""
-    points, problems = operating_points(scene, model, count, limit, loss_factor)
-    if problems:
-        raise problems[0]
-    return points
 
 
 def fastest(land: Landscape, frequencies: Array, phase_deg: float, limit: float) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """Waves under unit forces or unit displacements, superposed to the figures that a map takes from them."""
 
-from typing import Any
+from collections.abc import Callable
 
 import msgspec
 import numpy as np
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.errors import InputError, NoFigureError, ResonanceError
-from verify.exact.error_laws import discrete_wavenumber
+from verify.models.catalogue import MODELS
 from verify.models.fields import Array, ComplexArray, unit_response, wavenumber
 from verify.waves.imposed import held_units
 from verify.waves.measures import (
@@ -25,7 +25,6 @@ from verify.waves.measures import (
 BoolArray = NDArray[np.bool_]
 MOST_READINGS = 50_000_000
 """Complex deflections that a map holds at once: 0.8 GB, and as much again twice while waves are fitted."""
-FAST = ("wave.reflection", "wave.standing_wave_ratio", "wave.crest_speed", "wave.energy_flux")
 
 
 class Gaps:
@@ -104,7 +103,7 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
             raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
         if self.count is None:
             return wavenumber(self.beam, frequency)
-        return discrete_wavenumber(self.model, self.beam, self.count, frequency)
+        return MODELS.named(self.model).wavenumber(self.beam, self.count, frequency)
 
     def _responses(self, frequencies: Array, x: Array) -> ComplexArray:
         """Deflection at x, (n, n_places, len(x))."""
@@ -123,13 +122,7 @@ def unit_fields(
 
     NaN at undamped resonances. Raises InputError.
     """
-    if count is None:
-        from verify.exact.modes import unit_responses
-
-        return unit_responses(beam, places, frequencies, x)
-    from verify.judge.workbench import model_module
-
-    return np.asarray(model_module(model).unit_responses(beam, places, frequencies, x, count))
+    return MODELS.named(model).unit_responses(beam, places, frequencies, x, count)
 
 
 def receptance(model: str, beam: Beam, place: float, frequency_hz: float, x: float, count: int | None) -> complex:
@@ -150,25 +143,32 @@ def resonant(model: str, frequency_hz: float, held: str = "") -> ResonanceError:
     )
 
 
-def wave_figure(name: str, beam: Beam, frequency: Array, k: ComplexArray, forward: Any, backward: Any) -> Array:
-    """One of the FAST figures from two amplitudes, of their shape."""
-    omega = 2.0 * np.pi * frequency
-    if name == "wave.crest_speed":
-        return np.asarray(crest_speed(beam, omega, k, forward, backward))
-    if name == "wave.energy_flux":
-        return np.asarray(energy_flux(beam, omega, k, forward, backward))
+def _reflection(beam: Beam, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray) -> Array:
     sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
-    gamma = sizes[0] / sizes[1]
-    if name == "wave.reflection":
-        return np.asarray(gamma)
+    return np.asarray(sizes[0] / sizes[1])
+
+
+def _standing_wave_ratio(
+    beam: Beam, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray
+) -> Array:
+    gamma = _reflection(beam, omega, k, forward, backward)
     travelling = gamma < 1.0 - STANDING
     return np.where(travelling, (1.0 + gamma) / np.where(travelling, 1.0 - gamma, 1.0), np.inf)
+
+
+FIGURES: dict[str, Callable[[Beam, Array, ComplexArray, ComplexArray, ComplexArray], Array]] = {
+    "reflection": _reflection,
+    "standing_wave_ratio": _standing_wave_ratio,
+    "crest_speed": crest_speed,
+    "energy_flux": energy_flux,
+}
+"""Figures of two waves from their amplitudes: (beam, omega, wavenumber, A+, A-) -> (n, p)."""
 
 
 def superposed(
     drive: UnitDrive, names: tuple[str, ...], frequencies: Array, first: complex, second: ComplexArray, gaps: Gaps
 ) -> list[Array]:
-    """FAST figures under complex amplitudes of the first and, (p,), of the second drive, (n, p) each.
+    """`FIGURES` by name under complex amplitudes of the first and, (p,), of the second drive, (n, p) each.
 
     NaN where there is none, counted by `gaps`. Raises InputError where the model or the window is none.
     """
@@ -184,6 +184,7 @@ def superposed(
     found = []
     for name in names:
         values = np.full((len(frequencies), len(second)), np.nan)
-        values[waves.known] = np.where(still, np.nan, wave_figure(name, drive.beam, f, k, forward, backward))
+        figure = FIGURES[name](drive.beam, 2.0 * np.pi * f, k, forward, backward)
+        values[waves.known] = np.where(still, np.nan, figure)
         found.append(values)
     return found

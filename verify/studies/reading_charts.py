@@ -1,26 +1,27 @@
 """The readings of a slider as plain plotly figure data."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from verify.report.charts import COLOUR, GREY, Figure, axes, chart
-from verify.studies.claim_words import met_words, start_words
+from verify.studies.charting import GREY, LOG, Figure, axes
+from verify.studies.kind import Chart
+from verify.studies.reading_words import met_words, start_words
 
 if TYPE_CHECKING:
-    from verify.studies.readings import Reading, ReadingsStudy
+    from verify.studies.reading_figures import Reading, ReadingsFound
 
-_COLOURS = (COLOUR["segment"], COLOUR["fem"], "#2a9d5c", "#8f5bd1", "#b8860b", GREY)
+_COLOURS = ("#2f80ed", "#e8760c", "#2a9d5c", "#8f5bd1", "#b8860b", GREY)
 
 BESIDE = 1.09
 """From one colour's place to the next, as a factor of the force."""
 
 
-def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
+def reading_charts(study: "ReadingsFound") -> tuple[Chart, ...]:
     """Mean speed over the force, one colour for kinematics and start, towards -x full and towards +x open."""
     ways: dict[tuple[str, str], list[Reading]] = {}
     for one in study.readings:
         how = one.condition
         start = "steady" if how.start == "steady" else start_words(how.soft_start_periods)
-        ways.setdefault((how.kinematics, "nonlinear chain" if how.model == "chain" else start), []).append(one)
+        ways.setdefault((how.kinematics, "nonlinear chain" if how.nonlinear else start), []).append(one)
     data = [
         _way(name, readings, _COLOURS[i % len(_COLOURS)], BESIDE ** (i - 0.5 * (len(ways) - 1)))
         for i, (name, readings) in enumerate(ways.items())
@@ -38,23 +39,20 @@ def reading_charts(study: "ReadingsStudy") -> list[dict[str, Any]]:
                 "line": {"color": GREY, "width": 2, "dash": "dash"},
             }
         )
-    log = {"type": "log", "exponentformat": "none"}
-    return [
-        chart(
+    return (
+        Chart(
             "slider-readings",
             f"Readings of the slider: size of the mean speed over the force, {_model(study)}",
             "Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods over "
             "which the forces grow), drawn a little beside its force. Points of a colour above one another differ in "
             "place, mu and K. On hover: the claims that hold, by letter.",
             data,
-            axes(
-                "force, N", "size of the mean speed, cm/s", xaxis=log, yaxis={"type": "log", "exponentformat": "power"}
-            ),
-        )
-    ]
+            axes("force, N", "size of the mean speed, cm/s", xaxis=LOG | {"exponentformat": "none"}, yaxis=LOG),
+        ),
+    )
 
 
-def _model(study: "ReadingsStudy") -> str:
+def _model(study: "ReadingsFound") -> str:
     return study.readings[0].condition.model_words
 
 

@@ -1,53 +1,48 @@
 """Charts of the driven beam as plain plotly figure data."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.report.charts import COLOUR, GREY, NAME, Figure, axes, chart
+from verify.models.catalogue import MODELS
+from verify.studies.charting import LOG, Figure, axes, model_line, plain_line, sizes_axis
+from verify.studies.kind import Chart
 
 if TYPE_CHECKING:
-    from verify.studies.wave import WaveStudy
+    from verify.studies.wave_figures import Operation, WaveFound
 
+_ELLIPSE, _POINT = "#2f80ed", "#e8760c"
 CLIPPED = 10.0
 """The largest standing-wave ratio that a map tells from larger ones."""
 
 
-def wave_charts(study: "WaveStudy") -> list[dict[str, Any]]:
+def wave_charts(study: "WaveFound") -> tuple[Chart, ...]:
     """Envelopes, ellipses, map, figures over sizes."""
-    return [_envelopes(study), _ellipses(study), _map(study), _sizes(study)]
+    return _envelopes(study), _ellipses(study), _map(study), _sizes(study)
 
 
-def _damping(study: "WaveStudy") -> str:
+def _damping(study: "WaveFound") -> str:
     return "Undamped. " if study.undamped else "With the beam's loss factor. "
 
 
-def _envelopes(study: "WaveStudy") -> dict[str, Any]:
-    names = {"analytic": "exact", "segment": NAME["segment"], "fem": NAME["fem"]}
-    colours = {"analytic": GREY, **COLOUR}
+def _envelopes(study: "WaveFound") -> Chart:
     x = [1e3 * v for v in study.x]
-    data: list[Figure] = [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": names[model],
-            "x": x,
-            "y": [1e6 * v for v in values],
-            "line": {"color": colours[model], "width": 4 if model == "analytic" else 1.6},
-        }
-        for model, values in study.envelopes.items()
-    ]
-    return chart(
+    return Chart(
         "wave-envelopes",
         f"Envelope of the wave, N = {study.count}",
         _damping(study) + "A pure travelling wave has a flat envelope; ripples are reflection. Near the ends the "
         "standing wave of each actuator remains.",
-        data,
+        [_envelope(model, x, [1e6 * v for v in values]) for model, values in study.envelopes.items()],
         axes("x, mm", "amplitude, µm"),
     )
 
 
-def _ellipses(study: "WaveStudy") -> dict[str, Any]:
+def _envelope(name: str, x: list[float], y: list[float]) -> Figure:
+    model = MODELS[name]
+    return plain_line(model.title, model.colour, x, y, 1.6 if model.sized else 4)
+
+
+def _ellipses(study: "WaveFound") -> Chart:
     """Paths of surface points, drawn where they are; across enlarged against up, and saying so."""
     across = max(max(map(abs, e.across)) for e in study.ellipses)
     up = max(max(map(abs, e.up)) for e in study.ellipses)
@@ -65,7 +60,7 @@ def _ellipses(study: "WaveStudy") -> dict[str, Any]:
                 "y": y,
                 "showlegend": False,
                 "hoverinfo": "skip",
-                "line": {"color": COLOUR["segment"]},
+                "line": {"color": _ELLIPSE},
             }
         )
         data.append(
@@ -76,11 +71,11 @@ def _ellipses(study: "WaveStudy") -> dict[str, Any]:
                 "y": y[:1],
                 "showlegend": False,
                 "name": f"x = {1e3 * e.x:.1f} mm",
-                "marker": {"color": COLOUR["fem"], "size": 6},
+                "marker": {"color": _POINT, "size": 6},
             }
         )
     ratio = across / up
-    return chart(
+    return Chart(
         "wave-ellipses",
         "Surface ellipses along the beam, exact field",
         f"Drawn to scale they are slivers ({ratio:.3f} as wide as high): motion along the beam is magnified "
@@ -90,7 +85,7 @@ def _ellipses(study: "WaveStudy") -> dict[str, Any]:
     )
 
 
-def _map(study: "WaveStudy") -> dict[str, Any]:
+def _map(study: "WaveFound") -> Chart:
     found = study.map
     name = found.quantity.removeprefix("wave.").replace("_", " ").capitalize()
     values = np.clip(found.values.T, None, CLIPPED) if found.quantity == "wave.standing_wave_ratio" else found.values.T
@@ -124,7 +119,7 @@ def _map(study: "WaveStudy") -> dict[str, Any]:
                 },
             }
         )
-    return chart(
+    return Chart(
         "wave-map",
         f"{name} over frequency and phase, {study.map.of}",
         _map_caption(study),
@@ -133,7 +128,7 @@ def _map(study: "WaveStudy") -> dict[str, Any]:
     )
 
 
-def _map_caption(study: "WaveStudy") -> str:
+def _map_caption(study: "WaveFound") -> str:
     """Window, damping, what is clipped or missing, and where the wave would be pure if this drive makes it so."""
     clipped = study.map.quantity == "wave.standing_wave_ratio"
     return " ".join(
@@ -153,34 +148,31 @@ def _map_caption(study: "WaveStudy") -> str:
     )
 
 
-def _sizes(study: "WaveStudy") -> dict[str, Any]:
-    exact = study.rows[0]
-    data: list[Figure] = []
-    for model in ("segment", "fem"):
+def _sizes(study: "WaveFound") -> Chart:
+    exact, models = study.rows[0], dict.fromkeys(row.model for row in study.rows if row.count)
+    data = []
+    for model in models:
         rows = [row for row in study.rows if row.model == model]
-        for name, dash, pick in (("at the drive", "solid", "drive"), ("at its own best frequency", "dot", "best")):
-            known = [row for row in rows if getattr(row, pick) and getattr(exact, pick)]
-            excess = [
-                abs(getattr(row, pick).standing_wave_ratio - getattr(exact, pick).standing_wave_ratio) for row in known
-            ]
-            data.append(
-                {
-                    "type": "scatter",
-                    "mode": "lines+markers",
-                    "name": f"{NAME[model]}, {name}",
-                    "x": [row.count for row in known],
-                    "y": excess,
-                    "line": {"color": COLOUR[model], "dash": dash},
-                }
-            )
-    log = {"type": "log", "exponentformat": "power"}
-    counts = sorted({row.count for row in study.rows if row.count})
-    ticks = {"type": "log", "tickvals": counts, "ticktext": [str(n) for n in counts]}
-    return chart(
+        drives = [(row.count, _apart(row.drive, exact.drive)) for row in rows]
+        bests = [(row.count, _apart(row.best, exact.best)) for row in rows]
+        for name, dash, points in (("at the drive", "solid", drives), ("at its own best frequency", "dot", bests)):
+            known = [(count, y) for count, y in points if y is not None]
+            trace = model_line(model, [count for count, _ in known], [y for _, y in known], line={"dash": dash})
+            data.append(trace | {"name": f"{trace['name']}, {name}"})
+    return Chart(
         "wave-sizes",
         "Error of the standing-wave ratio over N",
         "A small error of frequency spoils the wave at a fixed drive; driven at its own best frequency a coarse model "
         "carries nearly as pure a wave as the exact beam.",
         data,
-        axes("segments or elements N", "difference to exact", xaxis=ticks, yaxis=log),
+        axes(
+            "segments or elements N",
+            "difference to exact",
+            xaxis=sizes_axis(row.count for row in study.rows if row.count),
+            yaxis=LOG,
+        ),
     )
+
+
+def _apart(one: "Operation | None", other: "Operation | None") -> float | None:
+    return abs(one.standing_wave_ratio - other.standing_wave_ratio) if one and other else None

@@ -1,0 +1,159 @@
+"""The three models that come with the package, as the registry holds them: verbs, words, and the laws known of them."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from verify.models.kind import Model
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from verify.beam import Beam, PointForce
+    from verify.models.fields import Array, ComplexArray, HarmonicField
+    from verify.models.modes import Modes
+    from verify.models.time_basis import TimeBasis
+
+
+class Exact(Model):
+    """The exact Euler-Bernoulli beam, which has no parts."""
+
+    name = "analytic"
+    parts = title = "exact beam"
+    colour = "#8a8f98"
+    sized = False
+
+    def solve_modes(self, beam: "Beam", n_modes: int, count: int | None = None, **settings: Any) -> "Modes":
+        """In closed form."""
+        from verify.exact.modes import solve_modes
+
+        return solve_modes(beam, n_modes)
+
+    def solve_harmonic(
+        self, beam: "Beam", forces: "Sequence[PointForce]", frequency_hz: float, count: int | None, **settings: Any
+    ) -> "HarmonicField":
+        """In closed form."""
+        from verify.exact.harmonic import solve_harmonic
+
+        return solve_harmonic(beam, forces, frequency_hz)
+
+    def unit_responses(
+        self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
+    ) -> "ComplexArray":
+        """In closed form."""
+        from verify.exact.harmonic import unit_responses
+
+        return unit_responses(beam, positions, frequencies_hz, x)
+
+    def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
+        """The first modes, the rest following at once."""
+        from verify.exact.in_time import time_basis
+
+        return time_basis(beam, modes)
+
+
+class Discrete(Model):
+    """A model of parts whose verbs are the functions of a module, and whose dispersion is known."""
+
+    home: str
+    """The module of modes and fields."""
+
+    @property
+    def verbs(self) -> "ModuleType":
+        """That module, imported when first asked for."""
+        from importlib import import_module
+
+        return import_module(self.home)
+
+    def check(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> None:
+        """Raise InputError for modes that it cannot solve."""
+        self.verbs.check(beam, n_modes, count, **settings)
+
+    def n_elastic(self, beam: "Beam", count: int) -> int:
+        """How many elastic modes it has."""
+        return int(self.verbs.n_elastic(beam, count))
+
+    def unknowns(self, beam: "Beam", count: int) -> int:
+        """How many unknowns are solved for."""
+        return int(self.verbs.unknowns(beam, count))
+
+    def method(self, beam: "Beam", n_modes: int, count: int) -> str:
+        """How its eigenvectors are found."""
+        return str(self.verbs.method(beam, n_modes, count))
+
+    def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
+        """The first elastic modes."""
+        found: Modes = self.verbs.solve_modes(beam, n_modes, count, **settings)
+        return found
+
+    def solve_harmonic(
+        self, beam: "Beam", forces: "Sequence[PointForce]", frequency_hz: float, count: int | None, **settings: Any
+    ) -> "HarmonicField":
+        """The steady field under harmonic forces."""
+        found: HarmonicField = self.verbs.solve_harmonic(beam, forces, frequency_hz, count, **settings)
+        return found
+
+    def unit_responses(
+        self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
+    ) -> "ComplexArray":
+        """By all modes at once."""
+        found: ComplexArray = self.verbs.unit_responses(beam, positions, frequencies_hz, x, count)
+        return found
+
+    def wavenumber(self, beam: "Beam", count: int, frequency_hz: float) -> complex:
+        """By its discrete dispersion."""
+        from verify.exact.error_laws import discrete_wavenumber
+
+        return discrete_wavenumber(self.name, beam, count, frequency_hz)
+
+    def check_carried(self, beam: "Beam", count: int, frequency_hz: float) -> None:
+        """Raise CutOffError beyond the end of its dispersion."""
+        from verify.exact.error_laws import check_carried
+
+        check_carried(self.name, beam, count, frequency_hz)
+
+    @property
+    def error_law(self) -> "Callable[[Beam, int, int], float]":
+        """By its dispersion where a sine fits the ends, else the leading law."""
+        from verify.exact.error_laws import expected_error
+
+        return lambda beam, mode, count: expected_error(self.name, beam, mode, count)
+
+
+class Segments(Discrete):
+    """Rigid links and joint springs."""
+
+    name, home = "segment", "verify.segments.linear"
+    parts = title = "segments"
+    colour = "#2f80ed"
+    bounds = "below"
+    fewest = 2
+    modal_settings = ("wall", "joints", "grading")
+    field_settings = ("modal_damping", "joint_dashpot", "load", "reading")
+    lines = ("spline", "raw")
+
+    def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
+        """All its modes."""
+        from verify.segments.in_time import time_basis
+
+        assert count is not None
+        return time_basis(beam, count, line=line)  # type: ignore[arg-type]
+
+
+class Elements(Discrete):
+    """Hermite beam elements."""
+
+    name, home = "fem", "verify.elements.hermite"
+    parts, title = "elements", "Hermite elements"
+    colour = "#e8760c"
+    bounds = "above"
+    modal_settings = ("grading",)
+    field_settings = ("modal_damping",)
+    unknowns_per_part = 2
+    library = "scikit-fem"
+
+    def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
+        """All its modes."""
+        from verify.elements.in_time import time_basis
+
+        assert count is not None
+        return time_basis(beam, count)

@@ -1,0 +1,109 @@
+"""What a model of a vibrating beam is: a name, words, a colour, and the verbs that it has."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.beam import Beam, PointForce
+    from verify.models.fields import Array, ComplexArray, HarmonicField
+    from verify.models.modes import Modes
+    from verify.models.time_basis import TimeBasis
+
+Setting = str | float
+
+
+class Model:
+    """A model: a subclass with a `name` and the verbs that it has. A verb that it has not is refused by name.
+
+    One is registered by `MODELS.register(Mine())` or as an entry point of the group `verify.models`. `count` is the
+    number of its parts; None, and nothing else, for a model that has none.
+    """
+
+    name: str
+    """As a scene or a command line says it."""
+    parts: str = "parts"
+    """What a count of it counts: 'segments'."""
+    title: str = ""
+    """What a chart or a table calls it; `parts` unless given."""
+    colour: str = "#8f5bd1"
+    """Of its lines in charts."""
+    sized: bool = True
+    """Whether it has parts."""
+    bounds: Literal["below", "above"] | None = None
+    """On which side of the exact frequencies it is known to lie, uniform beams without a clamped end."""
+    fewest: int = 1
+    """Parts that it has at least."""
+    modal_settings: tuple[str, ...] = ()
+    """Keywords of its `solve_modes`: of wall, joints, grading."""
+    field_settings: tuple[str, ...] = ()
+    """Keywords of its `solve_harmonic`: of modal_damping, joint_dashpot, load, reading."""
+    lines: tuple[str, ...] = ("spline",)
+    """Contact lines that a slider may run on."""
+    unknowns_per_part: int = 1
+    """About."""
+    library: str = ""
+    """What it needs beside numpy and scipy, which a scene that does not ask for it does not load."""
+
+    def can(self, verb: str) -> bool:
+        """Whether it has a verb of its own."""
+        return getattr(type(self), verb) is not getattr(Model, verb)
+
+    def check(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> None:
+        """Raise InputError for modes that it cannot solve, before any work on them."""
+        if n_modes > self.n_elastic(beam, count):
+            raise InputError(
+                f"mode = {n_modes}: the {self.name} model at count = {count} has {self.n_elastic(beam, count)} elastic "
+                "modes, raise count"
+            )
+
+    def n_elastic(self, beam: "Beam", count: int) -> int:
+        """How many elastic modes it has; rigid motions are none."""
+        return self.unknowns(beam, count) - beam.rigid_motions
+
+    def unknowns(self, beam: "Beam", count: int) -> int:
+        """How many unknowns are solved for."""
+        return self.unknowns_per_part * count
+
+    def method(self, beam: "Beam", n_modes: int, count: int) -> str:
+        """How its eigenvectors are found, in a word or two."""
+        return self.title or self.parts
+
+    def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
+        """The first elastic modes. Raises InputError."""
+        raise self._has_no("modes")
+
+    def solve_harmonic(
+        self, beam: "Beam", forces: "Sequence[PointForce]", frequency_hz: float, count: int | None, **settings: Any
+    ) -> "HarmonicField":
+        """The steady field under harmonic forces. Raises InputError."""
+        raise self._has_no("harmonic fields")
+
+    def unit_responses(
+        self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
+    ) -> "ComplexArray":
+        """Deflection at x under a unit force at each position, (n_f, n_positions, len(x)), m/N. Raises InputError."""
+        raise self._has_no("harmonic fields")
+
+    def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
+        """Its free modes for motion in time; an endless model keeps the first `modes`. Raises InputError."""
+        raise self._has_no("motion in time")
+
+    def wavenumber(self, beam: "Beam", count: int, frequency_hz: float) -> complex:
+        """At which waves run in it, 1/m; that of the beam itself unless a model knows its own. Raises InputError."""
+        from verify.models.fields import wavenumber
+
+        return wavenumber(beam, frequency_hz)
+
+    def check_carried(self, beam: "Beam", count: int, frequency_hz: float) -> None:
+        """Raise CutOffError for a frequency at which no wave runs along its parts."""
+
+    @property
+    def error_law(self) -> "Callable[[Beam, int, int], float] | None":
+        """(beam, mode, count) -> the relative frequency error to expect; None where nobody knows."""
+        return None
+
+    def _has_no(self, what: str) -> InputError:
+        able = "another one"
+        return InputError(f"model = {self.name!r} has no {what}: choose {able}")

@@ -1,0 +1,54 @@
+"""A driven beam in time as one value: what moves, under what, for how long."""
+
+from collections.abc import Callable, Sequence
+from typing import Literal
+
+import msgspec
+from msgspec.structs import asdict
+
+from verify.beam import Beam, PointForce
+from verify.motion.request import STEPS_PER_PERIOD
+from verify.motion.result import Motion
+from verify.motion.simulate import simulate
+from verify.slider import Slider
+
+
+class MotionCase(msgspec.Struct, frozen=True, kw_only=True):
+    """One model's beam in time under forces; see `simulate` for what each means."""
+
+    beam: Beam
+    forces: tuple[PointForce, ...]
+    frequency_hz: float
+    duration: float
+    """Seconds."""
+    model: str
+    count: int | None
+    modes: int
+    start: Literal["rest", "steady"]
+    soft_start_periods: float
+    modal_damping: float | None
+
+    def run(
+        self,
+        *,
+        slider: Slider | None = None,
+        at: Sequence[float] = (),
+        samples: int = 2,
+        step: float | None = None,
+        steps_per_period: int = STEPS_PER_PERIOD,
+        ledger: bool = False,
+        progress: Callable[[float], None] = lambda part: None,
+        patient: bool = True,
+    ) -> Motion:
+        """The motion, kept at `samples` times and, of the beam, at the places `at`. Raises InputError."""
+        return simulate(
+            **asdict(self),
+            slider=slider,
+            at=at,
+            samples=samples,
+            step=step,
+            ledger=ledger,
+            progress=progress,
+            patient=patient,
+            steps_per_period=steps_per_period,
+        )

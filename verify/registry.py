@@ -1,0 +1,116 @@
+"""What there is to choose from, by name: what the package brings, what was registered, what others installed."""
+
+from collections.abc import Iterable, Iterator, Mapping, MutableMapping
+from contextlib import contextmanager
+from typing import Any, Protocol, TypeVar
+
+from verify.errors import InputError, near_name
+
+
+class Named(Protocol):
+    """Anything with a name."""
+
+    @property
+    def name(self) -> str:
+        """By which it is asked for."""
+
+
+T = TypeVar("T", bound=Named)
+
+
+class Registry(MutableMapping[str, T]):
+    """Things of one kind by their names; each is imported when it is first asked for.
+
+    Entry points of other packages are looked up only where a name is not known here, or where all are asked for.
+    """
+
+    def __init__(self, what: str, group: str, own: Iterable[T] = (), homes: Mapping[str, str] | None = None) -> None:
+        """`what` a message calls one; `group` of entry points; `own` by value, `homes` by 'module:attribute'."""
+        self._what, self._group = what, group
+        self._found: dict[str, T] = {one.name: one for one in own}
+        self._homes = dict(homes or {})
+        self._names = [*self._found, *self._homes]
+        self._outside: bool | None = None
+
+    def named(self, name: str, field: str = "") -> T:
+        """The one of that name. Raises InputError, with the nearest name, for one that nobody has."""
+        try:
+            return self[name]
+        except KeyError:
+            raise InputError(f"{field or self._what} = {name!r} is not known: {near_name(name, tuple(self))}") from None
+
+    def register(self, one: T) -> T:
+        """Add one from outside the package, or put another in the place of one; returns it."""
+        self[one.name] = one
+        return one
+
+    @contextmanager
+    def registered(self, *ones: T) -> Iterator[None]:
+        """The same for a while."""
+        held = {one.name: self.get(one.name) for one in ones}
+        for one in ones:
+            self.register(one)
+        try:
+            yield
+        finally:
+            for name, before in held.items():
+                if before is None:
+                    del self[name]
+                else:
+                    self[name] = before
+
+    def own(self) -> tuple[str, ...]:
+        """The names of what is known without looking into other packages."""
+        return tuple(self._names)
+
+    def __getitem__(self, name: str) -> T:
+        if name not in self._names:
+            self._look_outside()
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._found:
+            self._found[name] = _imported(self._homes[name])
+        return self._found[name]
+
+    def __setitem__(self, name: str, one: T) -> None:
+        if name not in self._names:
+            self._names.append(name)
+        self._found[name] = one
+
+    def __delitem__(self, name: str) -> None:
+        self._names.remove(name)
+        self._found.pop(name, None)
+
+    def __iter__(self) -> Iterator[str]:
+        self._look_outside()
+        return iter(tuple(self._names))
+
+    def __len__(self) -> int:
+        self._look_outside()
+        return len(self._names)
+
+    def __contains__(self, name: object) -> bool:
+        if name not in self._names:
+            self._look_outside()
+        return name in self._names
+
+    def _look_outside(self) -> None:
+        """Take up what other packages have declared as entry points; a name of our own stays ours."""
+        if self._outside:
+            return
+        self._outside = True
+        from importlib.metadata import entry_points
+
+        for point in entry_points(group=self._group):
+            if point.name not in self._names:
+                self._homes[point.name] = point.value
+                self._names.append(point.name)
+
+
+def _imported(home: str) -> Any:
+    """What stands at 'module:attribute'; a class is called for its one instance."""
+    from importlib import import_module
+
+    module, _, attribute = home.partition(":")
+    found = getattr(import_module(module), attribute)
+    return found() if isinstance(found, type) else found

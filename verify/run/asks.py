@@ -1,0 +1,107 @@
+"""Who wants figures of a scene: its gates, its claims and its studies, each with the work and the solves behind it."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from verify.errors import InputError
+from verify.judge.workbench import Need
+from verify.quantities.catalogue import arguments_of, needs_of, quantity
+from verify.quantities.kind import Work
+from verify.studies.catalogue import asked_of
+from verify.studies.claims import claim_needs
+
+if TYPE_CHECKING:
+    from verify.scenes.claims import Claim
+    from verify.scenes.scene import Gate, Scene
+
+
+class Ask(msgspec.Struct, frozen=True, kw_only=True):
+    """Somebody who wants figures."""
+
+    kind: str
+    """gate, claim or study."""
+    name: str
+    told: str = ""
+    """What a study will do."""
+    work: Work = "closed form"
+    needs: tuple[Need, ...] = ()
+    models: tuple[str, ...] = ()
+    """Models that are used beside the needs, by name."""
+    slides: bool = False
+    """Whether the scene's slider is run."""
+    motions: int = 0
+    """Simulations in time that a study will do."""
+    problem: str = ""
+    """Why it cannot be evaluated; empty where it can."""
+
+    @property
+    def who(self) -> str:
+        """'gate swr-law', 'wave (...)'."""
+        if self.kind == "study":
+            return f"{self.name} ({self.told})" if self.told else self.name
+        return f"{self.kind} {self.name}"
+
+    @property
+    def short(self) -> str:
+        """The same where many stand in a row: a gate by its name alone."""
+        return self.name if self.kind == "gate" else self.who
+
+    @property
+    def closed_form(self) -> bool:
+        """Whether nothing is solved for it: the exact beam's modes are closed forms."""
+        return not self.problem and not self.needs and self.work in ("closed form", "modes")
+
+
+def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
+    """Everything in a scene that wants a figure."""
+    gates = [_figure_ask("gate", gate, scene) for gate in scene.gate]
+    if gates_only:
+        return gates
+    return [*gates, *(_figure_ask("claim", claim, scene) for claim in scene.claim), *_study_asks(scene)]
+
+
+def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
+    """A figure that a gate or a claim names."""
+    try:
+        found = quantity(one.quantity)
+        arguments = arguments_of(found, one.arguments)
+        needs = claim_needs(one, scene) if kind == "claim" else needs_of(found, arguments, scene)  # type: ignore[arg-type]
+    except InputError as error:
+        return Ask(kind=kind, name=one.id, problem=str(error))
+    return Ask(
+        kind=kind,
+        name=one.id,
+        work=found.work,
+        needs=needs,
+        models=(arguments.model,) if hasattr(arguments, "model") else (),
+        slides=found.arguments.slides,
+    )
+
+
+def _study_asks(scene: "Scene") -> Iterable[Ask]:
+    """Those that are not told figure by figure, as claims are."""
+    for study, asked in asked_of(scene):
+        if study.section is None and study.work == "closed form":
+            continue
+        yield Ask(
+            kind="study",
+            name=study.name,
+            told=study.told(asked, scene),
+            work=study.work,
+            needs=study.needs(asked, scene),
+            models=study.models(asked, scene),
+            slides=study.slides,
+            motions=study.n_motions(asked, scene),
+        )
+
+
+def kinds_of_work(asks: Iterable[Ask]) -> dict[Any, tuple[Ask, ...]]:
+    """Asks without a problem by what is done for them."""
+    able = [ask for ask in asks if not ask.problem]
+    found: dict[Any, tuple[Ask, ...]] = {}
+    for ask in able:
+        work = "closed form" if ask.closed_form else ask.work
+        found[work] = (*found.get(work, ()), ask)
+    return found

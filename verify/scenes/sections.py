@@ -1,0 +1,40 @@
+"""Which sections a scene may have beside what exists: one for every study, each declared with it."""
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import msgspec
+
+from verify.registry import Registry
+
+if TYPE_CHECKING:
+    from verify.scenes.scene import Scene
+
+
+class Section(Protocol):
+    """What reading a scene needs to know of a study."""
+
+    name: str
+    section: type[msgspec.Struct] | None
+
+    def asked(self, scene: "Scene") -> Any:
+        """What the scene asks of it; None where nothing."""
+
+    def check_on(self, asked: Any, scene: "Scene") -> None:
+        """Raise InputError where the scene has not what it takes."""
+
+
+SECTIONS: Registry[Section] = Registry(
+    "study",
+    "verify.studies",
+    homes={
+        "spectrum": "verify.studies.spectrum:SpectrumStudy",
+        "convergence": "verify.studies.convergence:ConvergenceStudy",
+        "sensitivity": "verify.studies.sensitivity:SensitivityStudy",
+        "wave": "verify.studies.wave:WaveStudy",
+        "motion": "verify.studies.slider:SliderStudy",
+        "readings": "verify.studies.readings:ReadingsStudy",
+        "claims": "verify.studies.claims:ClaimsStudy",
+        "axial_inertia": "verify.studies.axial_inertia:AxialInertiaStudy",
+    },
+)
+"""Run in this order."""

@@ -1,0 +1,106 @@
+"""TOML read and overridden: plain tables, before anything is made of them."""
+
+from pathlib import Path
+from typing import Any
+
+from verify.errors import InputError, near_name, shown
+from verify.files import exists
+
+_LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
+    import tomllib
+
+    exists(path, "scene")
+    try:
+        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in data.items()}
+    except OSError as error:
+        raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
+    except InputError:
+        raise
+    except ValueError:  # Python reads no whole number of more than 4300 digits
+        raise InputError(f"scene file {str(path)!r} has a number of thousands of digits: {_LARGE}") from None
+
+
+def _whole(data: Any, where: str) -> Any:
+    """The same data. Raises InputError for a whole number beyond TOML's 64 bits, named by its key."""
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            _whole(value, f"{where}[{key}]" if isinstance(data, list) else f"{where}.{key}")
+    if isinstance(data, int) and not -(2**63) <= data < 2**63:
+        raise InputError(f"{where} = {shown(data)}: {_LARGE}")
+    return data
+
+
+def literal(text: str, field: str = "value") -> Any:
+    """A TOML literal; a bare word is a string; comma-separated values are a list. Raises InputError.
+
+    `field` is what messages call it.
+    """
+    import tomllib
+
+    try:
+        return _whole(tomllib.loads(f"value = {text}")["value"], field)
+    except InputError:
+        raise
+    except (ValueError, KeyError, RecursionError):  # tomllib's own, and Python's for more than 4300 digits
+        if "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
+            return [literal(part.strip(), field) for part in text.split(",") if part.strip()]
+        return text
+
+
+def split_assignment(text: str) -> tuple[str, Any]:
+    """'key=value' as key and literal. Raises InputError where there is no '='."""
+    key, equals, value = text.partition("=")
+    if not equals or not key.strip() or not value.strip():
+        raise InputError(f"{text!r} is not an assignment: write key=value, for instance mode=22")
+    return key.strip(), literal(value.strip(), key.strip())
+
+
+def given_arguments(assignments: tuple[str, ...]) -> dict[str, Any]:
+    """'key=value' words as a dict. Raises InputError where a key stands twice."""
+    given: dict[str, Any] = {}
+    for text in assignments:
+        key, value = split_assignment(text)
+        if key in given:
+            raise InputError(f"{key} is given twice, as {given[key]!r} and {value!r}: give it once")
+        given[key] = value
+    return given
+
+
+def override(data: dict[str, Any], assignment: str) -> None:
+    """Set one value of a scene's tables in place: 'beam.length=0.4', 'gate.ID.within=1e-6'."""
+    key, value = split_assignment(assignment)
+    *parents, last = key.split(".")
+    here: Any = data
+    for depth, step in enumerate(parents):
+        here = _entry(here, step, ".".join(parents[: depth + 1]))
+    if isinstance(here, list):
+        here[_position(here, last, key)] = value
+    else:
+        here[last] = value
+
+
+def _entry(here: Any, step: str, field: str) -> Any:
+    """The table or list below `here`; a missing table is made, so that the checker can name it."""
+    here = here[_position(here, step, field)] if isinstance(here, list) else here.setdefault(step, {})
+    if not isinstance(here, dict | list):
+        raise InputError(f"--set {field} is a value, not a table: set {field} itself")
+    return here
+
+
+def _position(entries: list[Any], step: str, field: str) -> int:
+    """Where in a list an entry stands: by its id, or by its number from 0."""
+    numbers = [str(i) for i in range(len(entries))]
+    names = [str(e.get("id", i)) if isinstance(e, dict) else i for i, e in zip(numbers, entries, strict=True)]
+    for known in (names, numbers):
+        if step in known:
+            return known.index(step)
+    raise InputError(f"--set {field} names no entry: {near_name(step, names) if names else 'the list is empty'}")

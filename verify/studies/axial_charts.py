@@ -1,0 +1,157 @@
+"""Charts of a chain's axial inertia as plain plotly figure data."""
+
+from typing import TYPE_CHECKING
+
+from verify.motion.validity import NONLINEAR
+from verify.studies.charting import GREY, LOG, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, Figure, axes, thinned
+from verify.studies.kind import Chart, Column, Table
+
+if TYPE_CHECKING:
+    from verify.studies.axial_figures import AxialFound
+
+NAMES = {
+    "exact": "exact field",
+    "fem": "Hermite elements",
+    "linear": "linear chain",
+    "full": "chain of rigid links",
+    "transverse": "rigid links without axial inertia",
+    "elastic": "links that stretch by EA/l",
+}
+_COLOURS = {
+    "exact": GREY,
+    "fem": "#e8760c",
+    "linear": MEAN_COLOUR,
+    "full": "#2f80ed",
+    "transverse": RAYLEIGH,
+    "elastic": TIMOSHENKO,
+}
+
+
+def axial_charts(study: "AxialFound") -> tuple[Chart, ...]:
+    """Every model at one force in time, and the departure from the linear chain over the force."""
+    return _lines(study), _departures(study)
+
+
+def _lines(study: "AxialFound") -> Chart:
+    times = [1e3 * t for t in thinned(study.times)]
+    data: list[Figure] = [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": NAMES[model],
+            "x": times,
+            "y": [1e6 * w for w in thinned(line)],
+            "line": {
+                "color": _COLOURS[model],
+                "width": 4 if model == "exact" else 1.6,
+                "dash": "dot" if model in ("transverse", "elastic") else "solid",
+            },
+        }
+        for model, line in study.lines.items()
+    ]
+    return Chart(
+        "axial-models",
+        f"Deflection at x = {study.x:g} m under {study.shown:g} N, N = {study.count}",
+        "From rest, undamped. Chains without axial inertia, or with links that stretch, lie on the linear chain; what "
+        "separates it from the exact field is the division into links, not the nonlinearity.",
+        data,
+        axes("time, ms", "deflection, µm"),
+    )
+
+
+def _departures(study: "AxialFound") -> Chart:
+    rows = sorted(study.rows, key=lambda row: row.force)
+    forces = [row.force for row in rows]
+    data: list[Figure] = [
+        {
+            "type": "scatter",
+            "mode": "lines+markers",
+            "name": f"{NAMES[links]}, {word}",
+            "x": forces,
+            "y": [getattr(getattr(row, links), of) for row in rows],
+            "line": {"color": _COLOURS[links], "dash": "solid" if of == "at_end" else "dash"},
+        }
+        for links in ("full", "transverse", "elastic")
+        for of, word in (("at_end", "at the end"), ("rms", "rms"))
+    ]
+    data.append(
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": "(kL)² ⟨θ²⟩",
+            "x": forces,
+            "y": [row.size for row in rows],
+            "line": {"color": GREY, "width": 4},
+        }
+    )
+    return Chart(
+        "axial-departures",
+        f"Departure from the linear chain at x = {study.x:g} m over the force, N = {study.count}",
+        "Over the linear chain's rms deflection: at the end of the run, and as rms over the run. Grey: the number that "
+        f"decides between linear and nonlinear, felt from {NONLINEAR:g} on.",
+        data,
+        axes("force, N", "departure, relative", xaxis=LOG | {"exponentformat": "none"}, yaxis=LOG),
+    )
+
+
+def axial_tables(study: "AxialFound") -> tuple[Table, ...]:
+    """Departures over the force, and models side by side."""
+    return _forces_table(study), _beside_table(study)
+
+
+def _forces_table(study: "AxialFound") -> Table:
+    return Table(
+        before="Rigid links cannot stretch: bending draws the sliding tip in and takes the mass of the chain along. "
+        "This axial inertia, of relative size (kL)² ⟨θ²⟩, makes the chain nonlinear, not the amplitude over the "
+        "thickness. Below, how far each chain lies from the linear chain of as many links, over the linear chain's rms "
+        f"deflection at x = {study.x:g} m: at the end of {1e3 * study.duration:g} ms from rest (at end), and as rms "
+        "over that time (rms). Other places depart by more or less: beside it the range of the rigid links' figure at "
+        "the end over the tenths of the beam.",
+        columns=(
+            Column("force", "g", unit=" N"),
+            Column("rms deflection, µm", ".3g", 1e6),
+            Column("(kL)² ⟨θ²⟩", ".1e"),
+            Column("decides for", left=True),
+            Column("rigid links, at end", ".2e"),
+            Column("rms", ".2e"),
+            Column("tenths from", ".1e"),
+            Column("to", ".1e"),
+            Column("no axial inertia, at end", ".2e"),
+            Column("rms", ".2e"),
+            Column("links EA/l, at end", ".2e"),
+            Column("rms", ".2e"),
+        ),
+        rows=tuple(
+            (
+                row.force,
+                row.deflection_rms,
+                row.size,
+                "linear" if row.linear else "nonlinear",
+                row.full.at_end,
+                row.full.rms,
+                *row.along,
+                row.transverse.at_end,
+                row.transverse.rms,
+                row.elastic.at_end,
+                row.elastic.rms,
+            )
+            for row in study.rows
+        ),
+    )
+
+
+def _beside_table(study: "AxialFound") -> Table:
+    return Table(
+        title="Chains, elements and the exact field side by side",
+        columns=(
+            Column(f"model at {study.shown:g} N, N = {study.count}", left=True),
+            Column("rms of the difference to the exact field over its rms", "size"),
+            Column(f"deflection at {1e3 * study.duration:g} ms, µm", "+.4f", 1e6),
+        ),
+        rows=tuple((NAMES[row.model], row.error or None, row.at_end) for row in study.beside),
+        notes=(
+            "The exact field is linear Euler-Bernoulli from rest, undamped like all the others. The beam itself "
+            "stretches by its EA, as the links EA/l do: most of the rigid links' nonlinearity is a property of the "
+            "model, not of the beam.",
+        ),
+    )

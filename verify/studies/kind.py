@@ -1,0 +1,151 @@
+"""What a study is, and how what it finds is told: tables, charts and facts as plain values."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
+
+import msgspec
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from verify.judge.workbench import Need, Workbench
+    from verify.quantities.kind import Work
+    from verify.scenes.scene import Scene
+
+Progress: TypeAlias = Callable[[str], None]
+"""Told each step before it starts."""
+
+
+class Column(msgspec.Struct, frozen=True):
+    """One column of a table."""
+
+    head: str
+    """What stands above it, with its unit."""
+    form: str = ""
+    """How a number is written: a format such as '+.4f', or 'percent', 'bare percent', 'duration', 'ratio', 'speed'."""
+    factor: float = 1.0
+    """By which it is multiplied before."""
+    unit: str = ""
+    """Behind each number."""
+    left: bool = False
+    """Words stand left, numbers right."""
+    wide: bool = False
+    """Left out where there is no room."""
+
+
+class Table(msgspec.Struct, frozen=True, kw_only=True):
+    """Rows for a person; None is a figure that there is not."""
+
+    title: str = ""
+    before: str = ""
+    """A sentence above it."""
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Any, ...], ...]
+    notes: tuple[str, ...] = ()
+    """Sentences below it."""
+    shown: Literal["both", "page", "terminal"] = "page"
+    """Where a run shows it; `verify table` shows it anyway."""
+    folded: bool = False
+    """On the page: behind its title until it is opened."""
+
+
+class Chart(msgspec.Struct, frozen=True):
+    """One chart of the page as plain plotly data, so that building it costs little and needs no import."""
+
+    id: str
+    title: str
+    caption: str
+    data: list[dict[str, Any]]
+    layout: dict[str, Any]
+
+
+class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What a study found. It tells itself; terminal, page, CSV, Markdown and JSON show what it tells."""
+
+    def tables(self) -> tuple[Table, ...]:
+        """Tables for a person."""
+        return ()
+
+    def charts(self) -> tuple[Chart, ...]:
+        """Charts for the page."""
+        return ()
+
+    def facts(self) -> tuple[str, ...]:
+        """Sentences, each with the condition under which it holds."""
+        return ()
+
+    def plain(self) -> Any:
+        """For JSON."""
+        return msgspec.to_builtins(self)
+
+    def records(self) -> list[dict[str, Any]]:
+        """Rows with one level of names, for CSV and Markdown: those of the first table unless a study knows better."""
+        first = next(iter(self.tables()), Table(columns=(), rows=()))
+        return [dict(zip((column.head for column in first.columns), row, strict=True)) for row in first.rows]
+
+    def motions(self) -> int:
+        """How many simulations in time were done for it."""
+        return 0
+
+
+Asked = TypeVar("Asked")
+Out = TypeVar("Out", bound=Found)
+
+
+class Study(Generic[Asked, Out]):
+    """What a scene can ask for in a section of its own: a subclass with a name, that section's type, and `run`.
+
+    One is registered by `STUDIES.register(Mine())` or as an entry point of the group `verify.studies`. What it
+    imports at its top is paid for by every command that reads a scene.
+    """
+
+    name: ClassVar[str]
+    """Of its section in a scene, of its key in JSON."""
+    title: ClassVar[str] = ""
+    """Above its part of the page; the name unless given."""
+    section: ClassVar[type[msgspec.Struct] | None] = None
+    """The type of its section; None where it stands on what a scene has anyway."""
+    work: "ClassVar[Work]" = "closed form"
+    slides: ClassVar[bool] = False
+    """Whether it runs the scene's slider."""
+    nothing: ClassVar[Any] = None
+    """In JSON where the scene does not ask for it."""
+
+    def asked(self, scene: "Scene") -> Asked | None:
+        """What the scene asks of it; None where nothing."""
+        return getattr(scene, self.name, None)
+
+    def skipped(self, scene: "Scene") -> str:
+        """Why it is left out where the scene asks nothing of it."""
+        return f"the scene has no [{self.name}]"
+
+    def check_on(self, asked: Asked, scene: "Scene") -> None:
+        """Raise InputError where the scene has not what it takes."""
+
+    def needs(self, asked: Asked, scene: "Scene") -> "tuple[Need, ...]":
+        """Solves that it will ask for."""
+        return ()
+
+    def models(self, asked: Asked, scene: "Scene") -> tuple[str, ...]:
+        """Models that it uses beside its `needs`, by name."""
+        return ()
+
+    def choices(self, asked: Asked, scene: "Scene") -> tuple[tuple[str, str], ...]:
+        """(which simpler model will do, why, with the size of what it neglects), for the plan."""
+        return ()
+
+    def told(self, asked: Asked, scene: "Scene") -> str:
+        """What it will do, in a few words, for the plan."""
+        return ""
+
+    def n_steps(self, asked: Asked, scene: "Scene") -> int:
+        """How often it reports progress."""
+        return 1
+
+    def n_motions(self, asked: Asked, scene: "Scene") -> int:
+        """How many simulations in time it will do."""
+        return 0
+
+    def run(self, asked: Asked, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress) -> Out:
+        """Do it; `done` has what the studies before it found. Raises InputError."""
+        raise NotImplementedError(f"the study {self.name} does not say how it is run")

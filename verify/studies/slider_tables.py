@@ -1,0 +1,82 @@
+"""Tables of the slider: how far its runs can be believed, and run time against error."""
+
+from typing import TYPE_CHECKING
+
+from verify.models.catalogue import MODELS
+from verify.motion.contact import FELT
+from verify.studies.kind import Column, Table
+
+if TYPE_CHECKING:
+    from verify.motion.result import Motion
+    from verify.studies.slider_figures import SliderFound
+    from verify.studies.work_precision import Work
+
+
+def margins_table(study: "SliderFound") -> Table:
+    """Every run with its coupling, its margins and its books."""
+    return Table(
+        title="How far these runs can be believed",
+        before=f"{study.condition.words.capitalize()}; elements and the exact beam under the same condition.",
+        columns=(
+            Column("model", left=True),
+            Column("displacement, nm", "+.4g", 1e9),
+            Column("steps"),
+            Column("coupling", left=True),
+            Column("lift-off", ".3g"),
+            Column("nonlinearity", ".1e"),
+            Column("theory", "percent"),
+            Column("division", "percent"),
+            Column("energy left over", ".1e"),
+        ),
+        rows=tuple((MODELS[model].title, *_margins(run)) for model, run in study.runs.items()),
+        notes=(
+            "Lift-off is the largest acceleration of the surface over what presses the slider on: above 1 a real "
+            "slider leaves the surface, which this law forbids it. Nonlinearity is (kL)² ⟨θ²⟩, the axial inertia of a "
+            "roller-ended chain. Theory is Timoshenko against Euler-Bernoulli, division the discrete frequency error, "
+            "both at the mode nearest the drive. The coupling is one-way where the larger of the two sizes that act, "
+            f"of friction and of the inertia of a slider held on the surface, is below {FELT:g}, unless the scene says "
+            "which.",
+        ),
+    )
+
+
+def _margins(run: "Motion") -> tuple[str | float | None, ...]:
+    coupling, margins, ledger = run.coupling, run.margins, run.ledger
+    assert coupling is not None
+    how = ("two-way: " if coupling.two_way else "one-way: ") + coupling.told
+    return (
+        run.displacement,
+        run.statistics.steps,
+        f"{how}; {coupling.simplified}" if coupling.simplified else how,
+        margins.lift_off,
+        margins.nonlinearity,
+        margins.model_form,
+        margins.discretisation,
+        ledger.residual / ledger.work_in if ledger and ledger.work_in else None,
+    )
+
+
+def work_table(work: "Work") -> Table:
+    """Displacement, error and run time of every model at every size."""
+    return Table(
+        title="Run time against error",
+        columns=(
+            Column("model", left=True),
+            Column("N"),
+            Column("modes"),
+            Column("displacement, nm", "+.6f", 1e9),
+            Column("error %", "bare percent"),
+            Column("order", ".2f"),
+            Column("ms per ms", ".3g"),
+            Column("set-up ms", ".3g"),
+        ),
+        rows=tuple(
+            (r.model, r.count, r.rows, r.displacement, r.error, r.order, r.run_ms_per_ms, r.set_up_ms)
+            for r in work.rows
+        ),
+        notes=(
+            "Errors against the exact beam at the same step, half of which changes it by "
+            f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond and set-up, medians of "
+            "interleaved rounds.",
+        ),
+    )
