@@ -59,7 +59,7 @@ def mac(reference: Array, shapes: Array) -> Array:
     """
     cross = reference @ shapes.T
     squares = np.einsum("ij,ij->i", reference, reference)[:, None] * np.einsum("ij,ij->i", shapes, shapes)
-    return np.asarray(cross**2 / squares)
+    return np.divide(cross**2, squares, out=np.zeros_like(cross), where=squares > 0.0)  # one at rest is like none
 
 
 def pair_modes(likeness: Array) -> tuple[NDArray[np.intp], Array]:

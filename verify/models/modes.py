@@ -20,7 +20,7 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """
 
     model: str
-    """analytic, fem or segment."""
+    """Its name."""
     count: int | None
     """Elements or segments; None for the exact beam."""
     length: float
@@ -43,6 +43,35 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg))."""
     method: str = "closed form"
     """How the eigenvalues were found."""
+
+    @classmethod
+    def of_shapes(
+        cls,
+        model: str,
+        count: int | None,
+        frequencies_hz: Array,
+        nodes: Array,
+        shapes: Callable[[Array, int], Array],
+        method: str = "closed form",
+    ) -> "Modes":
+        """Modes of a model that knows its shapes anywhere, with as many derivatives: (x, derivative) -> (n, len(x)).
+
+        `nodes` (n_nodes,) are the ends of its parts, both ends of the beam included, evenly spaced.
+        """
+        return cls(
+            model=model,
+            count=count,
+            length=float(nodes[-1]),
+            frequencies_hz=frequencies_hz,
+            shapes=shapes,
+            nodes=nodes,
+            readings={"shapes": lambda: shapes(nodes, 0)},
+            points=nodes,
+            sampled=lambda: shapes(nodes, 0),
+            curvature_points=nodes,
+            curvatures=lambda: shapes(nodes, 2),
+            method=method,
+        )
 
     @property
     def n_modes(self) -> int:

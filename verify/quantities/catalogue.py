@@ -104,10 +104,15 @@ def described() -> list[dict[str, Any]]:
             "quantity": q.name,
             "unit": q.unit,
             "summary": q.summary,
-            "arguments": [_described_argument(f) for f in msgspec.structs.fields(q.arguments)],
+            "arguments": [_described_argument(f) for f in sorted(msgspec.structs.fields(q.arguments), key=_place)],
         }
         for q in QUANTITIES.values()
     ]
+
+
+def _place(field: msgspec.structs.FieldInfo) -> int:
+    """Which model and how many parts first."""
+    return {"model": 0, "count": 1}.get(field.name, 2)
 
 
 def _described_argument(field: Any) -> dict[str, Any]:

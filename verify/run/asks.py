@@ -9,11 +9,11 @@ from verify.errors import InputError
 from verify.judge.workbench import Need
 from verify.quantities.catalogue import arguments_of, needs_of, quantity
 from verify.quantities.kind import Work
+from verify.scenes.claims import Claim
 from verify.studies.catalogue import asked_of
-from verify.studies.claims import claim_needs
+from verify.studies.claims import is_of_study
 
 if TYPE_CHECKING:
-    from verify.scenes.claims import Claim
     from verify.scenes.scene import Gate, Scene
 
 
@@ -66,8 +66,10 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
     """A figure that a gate or a claim names."""
     try:
         found = quantity(one.quantity)
+        if isinstance(one, Claim) and is_of_study(one, scene):
+            return Ask(kind=kind, name=one.id, work=found.work, slides=True)
         arguments = arguments_of(found, one.arguments)
-        needs = claim_needs(one, scene) if kind == "claim" else needs_of(found, arguments, scene)  # type: ignore[arg-type]
+        needs = needs_of(found, arguments, scene)
     except InputError as error:
         return Ask(kind=kind, name=one.id, problem=str(error))
     return Ask(

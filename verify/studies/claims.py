@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities.catalogue import arguments_of, evaluate, needs_of, quantity
+from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.scenes.claims import READ, Claim
 from verify.studies.kind import Column, Found, Progress, Study, Table
 
 if TYPE_CHECKING:
-    from verify.judge.workbench import Need, Workbench
+    from verify.judge.workbench import Workbench
     from verify.scenes.scene import Scene
     from verify.studies.slider_figures import SliderFound
 
@@ -47,12 +47,6 @@ class ClaimResult(msgspec.Struct, frozen=True, kw_only=True):
         if self.found is None or not self.exact:
             return None
         return self.found / self.exact - 1.0
-
-
-def claim_needs(claim: Claim, scene: "Scene") -> "tuple[Need, ...]":
-    """The solves a claim will ask for; a run of the slider brings its own. Raises InputError where it is wrong."""
-    found = quantity(claim.quantity)
-    return () if is_of_study(claim, scene) else needs_of(found, arguments_of(found, claim.arguments), scene)
 
 
 def is_of_study(claim: Claim, scene: "Scene") -> bool:

@@ -1,0 +1,243 @@
+"""A model, a quantity and a study from outside the package are worth as much as those inside it.
+
+Each is a dozen lines below; nothing else in the suite knows of them, and CONTRIBUTING.md shows the same lines.
+"""
+
+import json
+import re
+import sys
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from verify import load_scene, run_scene
+from verify.cli import status_of
+from verify.errors import InputError
+from verify.models.catalogue import MODELS
+from verify.models.kind import Model
+from verify.models.modes import Modes
+from verify.quantities.catalogue import QUANTITIES
+from verify.quantities.kind import Arguments, Quantity
+from verify.report.html import page
+from verify.run.plan import plan_scene
+from verify.studies.catalogue import STUDIES
+from verify.studies.kind import Chart, Column, Found, Study, Table
+
+SCENE = """
+name = "toy"
+
+[beam]
+length = 0.73
+width = 0.031
+thickness = 0.0023
+youngs_modulus = 113e9
+density = 4470.0
+
+[spectrum]
+modes = 3
+count = 11
+
+[heaviness]
+over = 2.0
+
+[[gate]]
+id = "toy-mode-2"
+quantity = "mode.frequency_error"
+arguments = { model = "sine", mode = 2, count = 11 }
+expect = 0.02
+within = 1e-9
+why = "2 % high by construction"
+
+[[gate]]
+id = "weight"
+quantity = "toy.weight"
+arguments = { gravity = 9.0 }
+expect = 2.09393127
+within = 1e-6
+why = "4470 * 0.031 * 0.0023 * 0.73 kg times 9"
+"""
+
+
+# the lines of CONTRIBUTING.md: model
+class Sine(Model):
+    """Modes of a pinned beam, each two per cent too high."""
+
+    name, parts, title = "sine", "sines", "Sines"
+
+    def solve_modes(self, beam, n_modes, count, **settings):
+        n = np.arange(1, n_modes + 1)
+        x = np.linspace(0.0, beam.length, count + 1)
+        mass = sum(piece.mass_per_length * piece.length for piece in beam.pieces)
+
+        def shapes(at, derivative):
+            k = np.pi * n[:, None] / beam.length
+            return np.sqrt(2.0 / mass) * k**derivative * np.sin(k * at + derivative * np.pi / 2.0)
+
+        hertz = 1.02 * n**2 * np.pi / 2.0 * beam.wave_constant / beam.length**2
+        return Modes.of_shapes(self.name, count, hertz, x, shapes)
+
+
+# quantity
+class Weight(Arguments, frozen=True, kw_only=True):
+    """Where it is weighed."""
+
+    gravity: float = 9.81
+
+
+def weight(a, scene, bench):
+    return a.gravity * sum(piece.mass_per_length * piece.length for piece in scene.beam.pieces)
+
+
+WEIGHT = Quantity("toy.weight", "N", "What the beam weighs.", Weight, "closed form", weight)
+
+
+# study
+class Heaviness(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask how heavy the beam is."""
+
+    over: float = 1.0
+
+
+class HeavinessFound(Found, frozen=True, eq=False, kw_only=True):
+    """How heavy it is."""
+
+    newton: float
+
+    def facts(self):
+        return (f"the beam weighs {self.newton:.3f} N",)
+
+    def tables(self):
+        return (Table(columns=(Column("beam", left=True), Column("N", ".3f")), rows=(("this one", self.newton),)),)
+
+    def charts(self):
+        bar = {"type": "bar", "x": ["beam"], "y": [self.newton]}
+        return (Chart("heaviness", "Weight", "Of the beam.", [bar], {}),)
+
+
+class HeavinessStudy(Study[Heaviness, HeavinessFound]):
+    """Weighs the beam."""
+
+    name, section, title = "heaviness", Heaviness, "How heavy"
+
+    def run(self, asked, scene, bench, done, step):
+        step("weighing")
+        return HeavinessFound(newton=asked.over * weight(Weight(), scene, bench))
+
+
+@pytest.fixture
+def toys():
+    with MODELS.registered(Sine()), QUANTITIES.registered(WEIGHT), STUDIES.registered(HeavinessStudy()):
+        yield
+
+
+@pytest.fixture
+def scene(tmp_path, toys):
+    path = tmp_path / "toy.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    return path
+
+
+def test_the_plan_knows_them(scene):
+    plan = plan_scene(load_scene(scene))
+    assert any(solve.model == "sine" and solve.count == 11 for solve in plan.solves)
+    assert {"gate weight", "heaviness"} <= set(plan.closed_forms)
+    assert plan.problems == ()
+
+
+def test_a_run_judges_and_studies_them(scene):
+    result = run_scene(scene)
+    assert [gate.passed for gate in result.gates] == [True, True]
+    assert result.found["heaviness"].newton == pytest.approx(2.0 * 9.81 * 4470 * 0.031 * 0.0023 * 0.73)
+    assert result.found["spectrum"].errors["sine"] == pytest.approx((0.02, 0.02, 0.02))
+
+
+def test_json_terminal_and_page_tell_of_them(scene, capsys):
+    assert status_of(["run", str(scene), "--no-report", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["heaviness"]["newton"] == pytest.approx(4.5647, rel=1e-4)
+    assert told["spectrum"]["sine"][1] == pytest.approx(0.02)
+    assert status_of(["run", str(scene), "--no-report"]) == 0
+    assert "the beam weighs 4.565 N" in capsys.readouterr().out
+    shown = page(run_scene(scene), "verify run toy.toml")
+    assert 'id="chart-heaviness"' in shown
+    assert "How heavy" in shown
+    assert Sine.title in shown
+
+
+def test_tables_have_a_column_for_them(scene, capsys):
+    assert status_of(["table", str(scene), "--of", "heaviness", "--csv"]) == 0
+    assert capsys.readouterr().out.startswith("beam,N\nthis one,4.56")
+    assert status_of(["table", str(scene), "--counts", "7,9", "--modes", "2", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["sine_error"] for row in rows] == pytest.approx([0.02, 0.02])
+    assert status_of(["table", str(scene), "--counts", "7,9", "--modes", "2"]) == 0
+    assert "Sines" in capsys.readouterr().out
+
+
+def test_they_are_measured_chosen_and_listed_by_name(toys, capsys):
+    assert status_of(["measure", "mode.frequency_error", "model=sine", "mode=3", "count=9", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["value"] == pytest.approx(0.02)
+    assert status_of(["choose", "--mode", "2", "--error", "3%", "--json"]) == 0
+    chosen = {one["model"]: one["count"] for one in json.loads(capsys.readouterr().out)["choices"]}
+    assert set(chosen) == {"segment", "fem", "sine"}
+    assert status_of(["quantities"]) == 0
+    assert "toy.weight" in (listed := capsys.readouterr().out)
+    assert "fem | segment | sine" in listed
+
+
+def test_a_verb_that_a_model_lacks_is_refused_by_name(toys, capsys):
+    assert status_of(["measure", "wave.crest_speed", "model=sine", "count=9", "--scene", "paper-wave"]) == 2
+    assert "model = 'sine' is not known" in capsys.readouterr().err
+    with pytest.raises(InputError, match="sine.*no harmonic fields"):
+        MODELS["sine"].solve_harmonic(load_scene("paper").beam, (), 433.0, 9)
+
+
+def test_pytest_collects_their_gates(pytester):
+    """In a process of its own, where a conftest registers them."""
+    pytester.makefile(".toml", toy=SCENE)
+    pytester.makeconftest(
+        f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
+        "from test_kinds import WEIGHT, HeavinessStudy, Sine\n"
+        "from verify.models.catalogue import MODELS\nfrom verify.quantities.catalogue import QUANTITIES\n"
+        "from verify.studies.catalogue import STUDIES\n"
+        "MODELS.register(Sine()); QUANTITIES.register(WEIGHT); STUDIES.register(HeavinessStudy())\n"
+    )
+    done = pytester.runpytest_subprocess("toy.toml", "-q")
+    done.assert_outcomes(passed=2)
+
+
+def test_they_are_gone_when_nobody_holds_them_any_more(tmp_path):
+    path = tmp_path / "toy.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    with pytest.raises(InputError, match="heaviness is not a known key"):
+        load_scene(path)
+    assert "sine" not in MODELS
+    assert "toy.weight" not in QUANTITIES
+
+
+def test_entry_points_of_other_packages_are_taken_up(tmp_path, pytester, monkeypatch):
+    """A package that declares one of each is installed beside this one: nobody imports it, a name does."""
+    info = tmp_path / "toys-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: toys\nVersion: 1.0\n", encoding="utf-8")
+    (info / "entry_points.txt").write_text(
+        "[verify.models]\nsine = test_kinds:Sine\n[verify.quantities]\ntoy.weight = test_kinds:WEIGHT\n"
+        "[verify.studies]\nheaviness = test_kinds:HeavinessStudy\n",
+        encoding="utf-8",
+    )
+    path = tmp_path / "toy.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}:{Path(__file__).parent}:{Path(__file__).parent.parent}")
+    done = pytester.run(sys.executable, "-m", "verify", "run", str(path), "--no-report")
+    done.stdout.fnmatch_lines(["*all 2 gates passed*"])
+
+
+def test_the_guide_for_contributors_shows_these_lines():
+    """Every line of the guide's examples stands in this file, but for what shortens it."""
+    guide = (Path(__file__).parent.parent / "CONTRIBUTING.md").read_text("utf-8")
+    own = {re.sub(r"\s+", " ", line).strip() for line in Path(__file__).read_text("utf-8").splitlines()}
+    shown = [line.strip() for block in re.findall(r"```python\n(.*?)```", guide, re.S) for line in block.splitlines()]
+    assert len(shown) > 20
+    assert [line for line in shown if line and line not in own] == []
