@@ -7,6 +7,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify import load_scene, run_scene
+from verify.chain.departure import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.exact.modes import solve_harmonic
@@ -15,8 +16,7 @@ from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.report.plain import run_as_plain
 from verify.run.plan import plan_scene
 from verify.run.runner import n_steps, workbench_for
-from verify.studies import axial_inertia as axial_study
-from verify.studies.axial_inertia import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
+from verify.studies import axial_figures
 from verify.words import work_in_words
 
 SMALL = (
@@ -32,9 +32,13 @@ def small(*more):
     return load_scene("chain", (*SMALL, *more))
 
 
+def studied(scene, **more):
+    return axial_figures.axial_study(scene, scene.axial_inertia, **more)
+
+
 @pytest.fixture(scope="module")
 def study():
-    return axial_study.axial_study(small())
+    return studied(small())
 
 
 def driven(count=21, duration=4e-4, x=0.13, **more):
@@ -79,7 +83,7 @@ def test_side_by_side_the_exact_field_is_the_beams_and_finer_chains_come_nearer(
     errors = []
     for count in (49, 98):
         scene = small(f"axial_inertia.count={count}")
-        rows = {row.model: row for row in axial_study.axial_study(scene).beside}
+        rows = {row.model: row for row in studied(scene).beside}
         assert list(rows) == ["exact", "fem", "linear", "full", "transverse", "elastic"]
         assert rows["exact"].error == 0.0
         errors.append([rows[model].error for model in ("fem", "linear", "transverse")])
@@ -114,15 +118,15 @@ def test_the_quantity_is_the_studys_figure(study):
 
 def test_every_force_of_the_drive_takes_the_amplitude(study):
     """Amplitudes of the scene do not count; places and phases do."""
-    other = axial_study.axial_study(small("drive.force.0.amplitude=3.0"))
+    other = studied(small("drive.force.0.amplitude=3.0"))
     assert other.rows[0] == study.rows[0]
-    moved = axial_study.axial_study(small("drive.force.0.phase_deg=20.0"))
+    moved = studied(small("drive.force.0.phase_deg=20.0"))
     assert moved.rows[0].full.rms != pytest.approx(study.rows[0].full.rms, rel=1e-3)
 
 
 def test_a_clamped_and_free_chain_departs_too():
     scene = small("beam.supports=clamped,free")
-    row = axial_study.axial_study(scene).rows[1]
+    row = studied(scene).rows[1]
     assert row.full.rms > 10 * row.transverse.rms
 
 
@@ -150,7 +154,7 @@ def test_the_plan_says_up_to_which_force_the_linear_chain_will_do():
     assert axial_inertia_size(scene.beam, 4276.0, 0.5 * float((slopes**2).mean())) == pytest.approx(NONLINEAR, rel=0.05)
     assert choice.what.endswith("N, nonlinear above")
     assert "decided by the axial inertia" in choice.why
-    assert any(who.startswith("axial_inertia (") and "15 runs of N = 49" in who for who in plan.stepped)
+    assert any(who.startswith("axial_inertia (") and "18 motions of N = 49, 15 of them" in who for who in plan.stepped)
     assert "scikit-fem" not in {one.what for one in plan.skipped}
 
 
@@ -171,10 +175,10 @@ def test_a_run_carries_the_study_in_plain_data_and_counts_its_motions():
     result = run_scene(scene, steps.append)
     assert len(steps) == n_steps(scene) == 3
     assert result.n_motions == 2 * 3 + 6
-    assert "12 motions in time" in work_in_words(result)
+    assert "12 motions in time" in work_in_words(0, 0, result.n_motions)
     plain = json.loads(json.dumps(run_as_plain(result, None)))["axial_inertia"]
     assert [row["force"] for row in plain["rows"]] == [2.0, 6.0]
-    assert plain["rows"][1]["full"]["at_end"] == result.axial_inertia.rows[1].full.at_end
+    assert plain["rows"][1]["full"]["at_end"] == result.found["axial_inertia"].rows[1].full.at_end
     assert plain["beside"][3]["model"] == "full"
     assert (plain["count"], plain["x"], plain["duration"], plain["shown"]) == (21, 0.13, 4e-4, 6.0)
 
@@ -215,7 +219,7 @@ def test_a_scene_that_cannot_be_asked_is_refused(override, message):
 def test_a_place_that_does_not_move_is_refused():
     """Equal forces in opposite phase leave the middle at rest."""
     with pytest.raises(InputError, match=r"x = 0.25: the beam does not move there"):
-        axial_study.axial_study(small("axial_inertia.x=0.25", "drive.force.0.phase_deg=180.0"))
+        studied(small("axial_inertia.x=0.25", "drive.force.0.phase_deg=180.0"))
 
 
 def test_a_place_off_the_chain_is_refused_to_a_quantity_too():
@@ -226,7 +230,7 @@ def test_a_place_off_the_chain_is_refused_to_a_quantity_too():
 
 def test_a_force_that_turns_the_links_about_is_refused():
     with pytest.raises(InputError, match=r"under 50000.0 N the links turn by .* rad in the rms: give a smaller force"):
-        axial_study.axial_study(small("axial_inertia.forces=[2.0, 5e4]"))
+        studied(small("axial_inertia.forces=[2.0, 5e4]"))
 
 
 def test_long_runs_keep_enough_samples_of_every_period():
@@ -239,7 +243,7 @@ def test_departures_along_the_beam_range_as_far_as_independent_equations_say():
     """Dense multiplier equations by DOP853 less the dense modal sum, at 10 N after 1 ms, at the tenths of the beam."""
     by_tenths = [1.3270, 3.70659, 4.05710, 4.927033, 3.8963973, 2.52522, 0.501337, 1.71129, 1.41796]
     case = driven_chain(load_scene("chain"), "test", 49, 1e-3, None)
-    row = axial_study.force_row(case, 10.0, linear_chain(case))
+    row = axial_figures.force_row(case, 10.0, linear_chain(case))
     assert 100 * np.array(row.along) == pytest.approx([min(by_tenths), max(by_tenths)], rel=1e-4)
     assert 100 * row.full.at_end == pytest.approx(by_tenths[4], rel=1e-5)
     near_the_end = driven_chain(load_scene("chain"), "test", 49, 1e-3, 0.006)
@@ -250,7 +254,7 @@ def test_the_range_leaves_out_what_does_not_move():
     """Equal forces in opposite phase leave the middle at rest."""
     scene = small("axial_inertia.x=0.13", "drive.force.0.phase_deg=180.0")
     case = driven_chain(scene, "test", 21, 4e-4, 0.13)
-    low, high = axial_study.force_row(case, 2.0, linear_chain(case)).along
+    low, high = axial_figures.force_row(case, 2.0, linear_chain(case)).along
     assert 0.0 < low < high < 0.1
 
 

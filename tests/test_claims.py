@@ -16,8 +16,16 @@ from verify.report.html import page
 from verify.run.plan import plan_scene
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
-from verify.studies.claim_words import answer_in_words, found_words
-from verify.studies.work_precision import Comparison, NotCompared, Work, WorkRow, at_equal_error, work_of
+from verify.studies.claims import found_words
+from verify.studies.work_precision import (
+    Comparison,
+    NotCompared,
+    Work,
+    WorkRow,
+    answer_in_words,
+    at_equal_error,
+    work_of,
+)
 
 STRANGER = """
 name = "mine"
@@ -113,7 +121,7 @@ def result():
 
 
 def test_each_claim_stands_beside_what_is_found_under_a_condition_that_is_named(result):
-    by_id = {claim.id: claim for claim in result.claims}
+    by_id = {claim.id: claim for claim in result.found["claims"].claims}
     assert {name: claim.holds for name, claim in by_id.items()} == {
         "to-the-left": True,
         "mean-speed": False,
@@ -167,7 +175,7 @@ value = "positive"
 read = "stated"
 """
     path = stranger(tmp_path, text)
-    found = run_scene(path).claims
+    found = run_scene(path).found["claims"].claims
     assert [claim.holds for claim in found] == [None, None]
     assert "slider.mean_speed" in found[0].reason
     assert "mode" in found[1].reason
@@ -179,7 +187,7 @@ def test_a_plan_counts_readings_and_says_when_there_are_none(tmp_path):
     planned = plan_scene(load_scene("paper-slider"))
     assert any("320 readings of the slider and 160 on the nonlinear chain, 960 runs" in who for who in planned.stepped)
     alone = {skipped.what for skipped in plan_scene(load_scene(stranger(tmp_path))).skipped}
-    assert {"readings study", "published claims"} <= alone
+    assert {"readings study", "claims study"} <= alone
 
 
 # --- A stranger's motor --------------------------------------------------------------------------------------------
@@ -258,7 +266,7 @@ def rows(segment, fem, times=(1.0, 2.0, 4.0)):
                 )
             )
             before = error
-    return Work(rows=tuple(made), step_floor=1e-7, duration=2e-3)
+    return Work(rows=tuple(made), step_floor=1e-7, duration=2e-3, n_runs=0)
 
 
 GOOD = (-0.16, -0.01, -0.000625)
@@ -343,21 +351,21 @@ read = "stated"
 
 
 def test_friction_that_sticks_allows_what_mu_static_does(tmp_path):
-    from verify.studies.slider import motion_study
+    from verify.studies.slider_figures import slider_study
 
     path = stranger(tmp_path)
     path.write_text(path.read_text("utf-8").replace("slope = 300", 'law = "coulomb"\nmu_static = 0.9'), "utf-8")
-    found = {finding.what: finding.found for finding in motion_study(load_scene(path)).findings}
+    found = {finding.what: finding.found for finding in slider_study(load_scene(path)).findings}
     assert "mu_static N = 17.66 mN" in found["largest friction in that run"]
     assert "mu_static N t / 2m = 0.883 cm/s" in found["what friction alone allows"]
 
 
 def test_a_slider_that_leaves_the_steady_wave_has_no_mean_speed_there(tmp_path):
-    from verify.studies.slider import motion_study
+    from verify.studies.slider_figures import slider_study
 
     path = stranger(tmp_path)
     path.write_text(path.read_text("utf-8").replace("slope = 300", "slope = 300\nspeed = 3.0"), "utf-8")
-    (found,) = (one.found for one in motion_study(load_scene(path)).findings if "steady wave" in one.what)
+    (found,) = (one.found for one in slider_study(load_scene(path)).findings if "steady wave" in one.what)
     assert found.count("none, the slider left the beam after 0.07") == 2
     assert "m/s" not in found
 

@@ -15,9 +15,9 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
-from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
+from verify.quantities.catalogue import QUANTITIES, among_of, arguments_of, evaluate
 from verify.scenes.checked import checked
-from verify.scenes.scene import Scene
+from verify.scenes.scene import scene_type
 
 FORCES = [
     {"position": 0.0411, "measured_from": "left", "amplitude": 1.3, "phase_deg": 17.0},
@@ -564,6 +564,8 @@ def words_of(kind):
     """The words a type allows, or none."""
     if get_origin(kind) is Literal:
         return list(get_args(kind))
+    if among := among_of(kind):
+        return [name for name in among.names() if name in ("analytic", "fem", "segment", "mean")]
     return next((found for arm in get_args(kind) if (found := words_of(arm))), [])
 
 
@@ -633,14 +635,14 @@ def joined(base, change):
 
 def asked_of(name, case):
     """A case with everything stated, defaults and all."""
-    scene = plain(checked(joined(BASE, case.scene), Scene))
+    scene = plain(checked(joined(BASE, case.scene), scene_type()))
     return Asked(name, plain(arguments_of(QUANTITIES[name], case.arguments)), scene)
 
 
 def figure(asked, scene=None, arguments=None):
     """The figure, everything solved afresh, as a tuple of numbers."""
     found = QUANTITIES[asked.quantity]
-    given = checked(scene or asked.scene, Scene)
+    given = checked(scene or asked.scene, scene_type())
     stated = {k: v for k, v in (arguments or asked.arguments).items() if v is not None}
     value = evaluate(found, arguments_of(found, stated), given, Workbench(given.beam))
     return (value.lower, value.upper) if hasattr(value, "lower") else (value,)
@@ -650,7 +652,7 @@ def all_inputs(asked):
     """{dotted name: (whether of the scene, path, values to turn it to)}."""
     found = {}
     for scene, kind, data in (
-        (True, Scene, asked.scene),
+        (True, scene_type(), asked.scene),
         (False, QUANTITIES[asked.quantity].arguments, asked.arguments),
     ):
         for path, name, type_ in inputs_of(kind, data):
@@ -802,5 +804,5 @@ def test_every_entry_of_the_table_speaks_of_some_input_of_some_case():
 def test_the_base_has_every_part_that_a_scene_can_have():
     """A new part of scenes is turned as well, or this says so."""
     assert set(BASE) | {"title", "description", "axial_inertia", "readings"} == {
-        f.name for f in msgspec.structs.fields(Scene)
+        f.name for f in msgspec.structs.fields(scene_type())
     }

@@ -8,6 +8,7 @@ import pytest
 from msgspec import structs
 
 from verify.beam import Beam
+from verify.chain import departure as axial_study
 from verify.chain import dynamics as chain_dynamics
 from verify.chain import kernels as chain_kernels
 from verify.chain import problems as chain_studies
@@ -27,6 +28,7 @@ from verify.models import driven_pencil as harmonic_solvers
 from verify.motion import carried, contact, forcing, pure_wave, request, rigid_surface, simulate
 from verify.motion import figures as slider_figures
 from verify.motion import kernels as contact_kernels
+from verify.quantities import cases
 from verify.quantities import simulated as motions
 from verify.quantities.catalogue import QUANTITIES, Quantity
 from verify.run.gates import expectation, judge
@@ -38,10 +40,9 @@ from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 from verify.segments import links as chain
 from verify.segments import walls as chain_walls
-from verify.studies import axial_inertia as axial_study
-from verify.waves import operating_point
 from verify.waves import driven as waves
 from verify.waves import measures as travelling_wave
+from verify.waves import operating_point
 
 PAPER = load_scene("paper")
 
@@ -329,13 +330,13 @@ def phase_of_the_wrong_sign(patch):
 
 
 def second_force_a_tenth_nearer(patch):
-    true = waves.drive_forces
+    true = cases.drive_forces
 
     def moved(a, scene):
         first, second = true(a, scene)
         return first, structs.replace(second, position=0.9 * second.position)
 
-    patch.setattr(waves, "drive_forces", moved)
+    patch.setattr(cases, "drive_forces", moved)
 
 
 def load_on_the_next_joint(patch):

@@ -24,7 +24,8 @@ from verify.motion import rigid_surface
 from verify.quantities.catalogue import QUANTITIES, in_words
 from verify.run import gates
 from verify.scenes.checked import checked
-from verify.scenes.scene import Gate, literal, load_scene
+from verify.scenes.scene import Gate, load_scene
+from verify.scenes.toml import literal
 from verify.segments import linear as segment_model
 from verify.words import figure, number
 
@@ -575,7 +576,7 @@ def test_any_order_of_words_is_a_command_or_one_refusal(folder, words):
 
 @pytest.mark.parametrize("layout", ["csv", "markdown"])
 def test_an_endless_ratio_is_a_word_in_every_layout(layout):
-    from verify.run.tables import rows_as_text
+    from verify.report.plain import rows_as_text
 
     told = rows_as_text([{"ratio": float("inf"), "way": -float("inf"), "none": None, "size": 0.3}], layout)
     cells = told.splitlines()[-1].strip("| ").replace(" ", "").replace("|", ",").split(",")

@@ -307,7 +307,7 @@ SHARED = [
     Shared(
         "exact.error_laws",
         "waves of the links a thousandth too short",
-        ("waves.driven.discrete_wavenumber",),
+        ("exact.error_laws.discrete_wavenumber",),
         after(lambda k: 1.001 * k),
         "paper-wave",
         ("segment-49-ratio",),

@@ -7,13 +7,13 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
+from verify.models.catalogue import MODELS
 from verify.motion.kernels import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
 from verify.run.runner import workbench_for
 from verify.scenes.scene import load_scene
 from verify.slider import Slider
-from verify.waves.driven import solve_by_model
 
 HELD = Slider(mass=0.04, mu=0.3, slope=300.0, position=0.19, coupling="two-way")
 DURATION = 2.5e-3
@@ -81,8 +81,8 @@ def test_a_mass_at_rest_stays_in_the_steady_state_of_the_beam_that_carries_it(mo
         samples=51,
         steps_per_period=400,
     )
-    drive = solve_by_model(model, PAPER, paper_forces(), 4276.0, count, {})
-    unit = solve_by_model(model, PAPER, (PointForce(position=place),), 4276.0, count, {})
+    drive = MODELS[model].solve_harmonic(PAPER, paper_forces(), 4276.0, count)
+    unit = MODELS[model].solve_harmonic(PAPER, (PointForce(position=place),), 4276.0, count)
     inertia = 1.3e-3 * omega**2
     under = drive.deflection([place])[0] / (1 - inertia * unit.deflection([place])[0])
     steady = drive.deflection([x])[0] + inertia * under * unit.deflection([x])[0]
@@ -222,7 +222,7 @@ def test_a_mass_in_resonance_with_an_undamped_drive_is_refused():
     places = np.linspace(0.24, 0.26, 21)
     felt = basis.shapes(places, 0).T ** 2 @ (1 / (basis.omegas**2 - omega**2))
     place, most = places[felt.argmax()], felt.max()
-    unit = solve_by_model("fem", PAPER, (PointForce(position=place),), 4450.0, 49, {})
+    unit = MODELS["fem"].solve_harmonic(PAPER, (PointForce(position=place),), 4450.0, 49)
     assert unit.deflection([place])[0].real == pytest.approx(most, rel=1e-6)
     slider = Slider(mass=1 / (omega**2 * most), mu=0.1, position=place, coupling="two-way")
     with pytest.raises(InputError, match="resonance"):

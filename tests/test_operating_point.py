@@ -5,8 +5,9 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import PointForce
+from verify.models.catalogue import MODELS
 from verify.waves import measures as travelling_wave
-from verify.waves.driven import own_wavenumber, solve_by_model
+from verify.waves.driven import own_wavenumber
 from verify.waves.operating_point import Landscape
 
 WINDOW = (0.1825, 0.5475)
@@ -75,7 +76,7 @@ def test_a_point_reads_what_the_field_itself_measures(titanium_strip, model, cou
 
     def measured(frequency, phase):
         turned = (drives[0], replace(drives[1], phase_deg=phase))
-        field = solve_by_model(model, beam, turned, frequency, count, {})
+        field = MODELS[model].solve_harmonic(beam, turned, frequency, count)
         return travelling_wave.measure(field, WINDOW, own_wavenumber(field))
 
     direct = measured(frequency, 68.0)

@@ -11,11 +11,15 @@ from verify.chain.stretching import simulate_elastic
 from verify.chain.system import build_system
 from verify.errors import InputError
 from verify.motion.figures import mean
-from verify.studies.chain_readings import Chains
-from verify.studies.readings import chain_reading, reading, readings_study
+from verify.studies.chain_rides import Chains
+from verify.studies.reading_figures import chain_reading, reading, readings_study
 
 SCENE = load_scene("paper-slider")
 LENGTH, PLACES = 0.5, (0.0116, 0.5 - 0.0116)
+
+
+def studied(scene, *progress):
+    return readings_study(scene, scene.readings, *progress)
 
 
 def as_read(kinematics="tangential", soft=0.0, force=1.0, mu=0.2, slope=1e4, place=0.25, per_period=128):
@@ -156,7 +160,7 @@ def test_a_chain_under_small_forces_reads_as_the_linear_one():
 def test_means_are_the_balances_of_the_run():
     """Mean friction is m dv / t in the tangential kinematics, the slope at the end the mean of the surface's speed."""
     from verify.motion.figures import RUN_FIGURES
-    from verify.studies.slider import every_step
+    from verify.studies.slider_figures import every_step
     from verify.studies.work_precision import run_once
 
     scene = as_read(slope=70.0, mu=0.3, place=0.231, soft=2.0)
@@ -189,7 +193,7 @@ def small(**asked):
 @pytest.fixture(scope="module")
 def study():
     told = []
-    found = readings_study(small(), told.append)
+    found = studied(small(), told.append)
     from verify.run.runner import n_steps
 
     assert len(told) == n_steps(small()) - n_steps(replace(small(), readings=None))
@@ -228,24 +232,24 @@ def test_a_verdict_turns_with_what_the_pairs_say(study):
 
 
 def test_the_bound_is_that_of_friction_from_rest_and_is_held_against_tangential_readings_alone():
-    found = readings_study(small(mu=(3.0, 3.2), positions=(0.25,), shown=0)).bounds[0]
+    found = studied(small(mu=(3.0, 3.2), positions=(0.25,), shown=0)).bounds[0]
     assert found.least_mu == pytest.approx(2 * 0.015 / (9.81 * 1e-3))
     assert found.n_above == 2
     assert found.fastest == pytest.approx(-0.00025, rel=0.05)
-    assert not readings_study(small(mu=(), kinematics=("following",), positions=(), shown=0)).bounds
+    assert not studied(small(mu=(), kinematics=("following",), positions=(), shown=0)).bounds
 
 
 def test_a_slider_that_leaves_the_beam_is_no_reading_of_anything():
     slider = replace(SCENE.slider, speed=-2.0)
     scene = replace(small(positions=(0.001,), mu=(), kinematics=(), soft_start_periods=(), shown=0), slider=slider)
-    one = readings_study(scene).readings[0]
+    one = studied(scene).readings[0]
     assert (one.stopped, one.figures, one.n_met) == ("left the beam", {}, 0)
 
 
 def test_readings_without_claims_are_figures_without_verdicts():
-    from verify.studies.claim_words import met_words, searched_words, turn_words
+    from verify.studies.reading_words import met_words, searched_words, turn_words
 
-    found = readings_study(replace(small(positions=(), shown=0), claim=()))
+    found = studied(replace(small(positions=(), shown=0), claim=()))
     assert found.n_runs == len(found.readings) == 8
     assert all(one.met == () and one.speed for one in found.readings)
     assert not found.turns
@@ -288,12 +292,12 @@ def test_too_many_readings_are_counted_before_they_are_refused():
 
 
 def test_a_steady_beam_has_no_start_among_what_is_searched():
-    from verify.studies.claim_words import searched_words
-    from verify.studies.readings import searched_of
+    from verify.studies.reading_figures import searched_of
+    from verify.studies.reading_words import searched_words
 
     scene = small(positions=(), mu=(), kinematics=(), soft_start_periods=(), forces=(), chain=False, shown=0)
     steady = replace(scene, motion=replace(scene.motion, start="steady", soft_start_periods=0.0))
-    assert searched_of(steady)["soft_start_periods"] == ()
-    found = readings_study(steady)
+    assert searched_of(steady, steady.readings)["soft_start_periods"] == ()
+    found = studied(steady)
     assert "start 0 periods" not in searched_words(found)
     assert found.readings[0].condition.start == "steady"

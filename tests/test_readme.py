@@ -17,7 +17,8 @@ from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.report.plain import run_as_plain
 from verify.run.gates import judge
 from verify.run.runner import run_scene, workbench_for
-from verify.scenes.scene import given_arguments, load_scene, packaged_scenes
+from verify.scenes.scene import load_scene, packaged_scenes
+from verify.scenes.toml import given_arguments
 
 README = Path(__file__).parent.parent / "README.md"
 FACTORS = {"": 1.0, "%": 100.0, "Hz": 1.0, "mm": 1e3, "cm/s": 100.0, "nm": 1e9, "µm": 1e6, "ms": 1e3}

@@ -79,7 +79,7 @@ def test_a_title_cannot_break_out_of_the_page(result):
 def test_a_scene_without_studies_or_gates_still_has_a_page(result):
     from msgspec.structs import replace
 
-    bare = replace(result, gates=(), spectrum=None, convergence=None, sensitivity=None)
+    bare = replace(result, gates=(), found={})
     text = page(bare, "verify run x")
     assert "No gates" in text
     assert "Plotly" not in text
@@ -102,7 +102,11 @@ def wave_html(wave_result):
 def test_the_report_of_a_wave_shows_envelopes_ellipses_map_and_the_motor_over_sizes(wave_html):
     figures = json.loads(re.search(r'id="figures">(.*?)</script>', wave_html, re.DOTALL)[1])
     assert set(figures) == {"wave-envelopes", "wave-ellipses", "wave-map", "wave-sizes"}
-    assert [trace["name"] for trace in figures["wave-envelopes"]["data"]] == ["exact", "segments", "Hermite elements"]
+    assert [trace["name"] for trace in figures["wave-envelopes"]["data"]] == [
+        "exact beam",
+        "segments",
+        "Hermite elements",
+    ]
     heat = figures["wave-map"]["data"][0]
     assert (len(heat["z"]), len(heat["z"][0])) == (91, 121)
     assert "magnified" in wave_html
@@ -112,16 +116,16 @@ def test_the_report_of_a_wave_shows_envelopes_ellipses_map_and_the_motor_over_si
 
 def wave_map(study):
     """The map's chart: (caption, axis of phases, its traces)."""
-    from verify.report.wave_charts import wave_charts
+    from verify.studies.wave_charts import wave_charts
 
-    found = next(chart for chart in wave_charts(study) if chart["id"] == "wave-map")
-    return found["caption"], found["figure"]["layout"]["yaxis"], found["figure"]["data"]
+    found = next(chart for chart in wave_charts(study) if chart.id == "wave-map")
+    return found.caption, found.layout["yaxis"], found.data
 
 
 def small_study(*overrides):
     from verify import load_scene
     from verify.judge.workbench import Workbench
-    from verify.studies.wave import wave_study
+    from verify.studies.wave_figures import wave_study
 
     scene = load_scene(
         "paper-wave", ("wave.counts=[49]", "wave.frequency_hz=4200,4300,11", "wave.phase_deg=0,180,13", *overrides)
@@ -171,10 +175,10 @@ def test_what_is_missing_in_a_wave_report_is_said(wave_result):
     from msgspec.structs import replace
 
     study = small_study("drive.force.1.phase_deg=0", "wave.phase_deg=0,0.5,3")
-    text = page(replace(wave_result, gates=(), wave=study), "verify run x")
+    text = page(replace(wave_result, gates=(), found={"wave": study}), "verify run x")
     assert "the wave stands at every frequency" in text
     study = small_study("wave.counts=[30]", "wave.count=30")
-    assert "at the edge of the search" in page(replace(wave_result, gates=(), wave=study), "verify run x")
+    assert "at the edge of the search" in page(replace(wave_result, gates=(), found={"wave": study}), "verify run x")
 
 
 @pytest.fixture(scope="module")
@@ -200,8 +204,8 @@ def test_the_report_of_a_chain_shows_all_models_side_by_side_and_departures_over
         "7.86e-03",
         "side by side",
         "links that stretch by EA/l",
-        "<td>linear</td>",
-        "<td>nonlinear</td>",
+        ">linear</td>",
+        ">nonlinear</td>",
     ):
         assert words in text, words
 
@@ -229,9 +233,8 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
 
 def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(titanium_strip):
     from verify.judge.workbench import Workbench
-    from verify.report.charts import mean_in_words
-    from verify.scenes.scene import Convergence
-    from verify.studies.modes import convergence
+    from verify.studies.convergence import Convergence, convergence
+    from verify.studies.mode_charts import mean_in_words
 
     bench = Workbench(titanium_strip)
     low = convergence(bench, Convergence(modes=(3, 7), counts=(12, 24)))

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from verify import load_scene
 from verify.errors import InputError
-from verify.scenes.scene import STARTER, literal, packaged_scenes, split_assignment
+from verify.scenes.scene import STARTER, packaged_scenes
+from verify.scenes.toml import literal, split_assignment
 
 BEAM = """
 [beam]
@@ -213,10 +214,10 @@ TREES = st.recursive(
 )
 def test_no_tree_of_values_gives_anything_but_a_scene_or_a_sentence(tree):
     from verify.scenes.checked import checked
-    from verify.scenes.scene import Scene
+    from verify.scenes.scene import scene_type
 
     try:
-        checked(tree, Scene)
+        checked(tree, scene_type())
     except InputError as error:
         assert str(error)
 
@@ -241,13 +242,13 @@ WAVES = st.fixed_dictionaries(
 @given(WAVES, st.dictionaries(st.sampled_from(["frequency_hz", "kind", "force"]), TREES))
 def test_no_wave_table_gives_anything_but_a_scene_or_a_sentence(wave, drive):
     from verify.scenes.checked import checked
-    from verify.scenes.scene import Scene
+    from verify.scenes.scene import scene_type
 
     beam = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470}
     two = {"frequency_hz": 433.0, "force": [{"position": 0.02}, {"position": 0.7}]}
     for shaken in (two, two | drive):
         try:
-            scene = checked({"name": "s", "beam": beam, "drive": shaken, "wave": wave}, Scene)
+            scene = checked({"name": "s", "beam": beam, "drive": shaken, "wave": wave}, scene_type())
         except InputError as error:
             assert str(error)
             assert "\n" not in str(error)

@@ -143,7 +143,7 @@ def test_a_slider_at_rest_on_a_beam_at_rest_sticks_from_the_start():
         ({"duration": -1.0}, "duration = -1.0"),
         ({"count": None}, "count is missing"),
         ({"count": 2.5}, "n_segments = 2.5"),
-        ({"count": 11, "model": "analytic"}, "count = 11 is for fem and segment"),
+        ({"count": 11, "model": "analytic"}, "count = 11 is for models of parts"),
         ({"model": "segmnt"}, "model = 'segmnt'"),
         ({"start": "soft"}, "start = 'soft'"),
         ({"samples": 1}, "samples = 1"),

@@ -7,7 +7,8 @@ from verify.beam import Section
 from verify.errors import InputError
 from verify.exact import error_laws
 from verify.judge import sizing
-from verify.judge.workbench import Workbench, model_module
+from verify.judge.workbench import Workbench
+from verify.models.catalogue import MODELS
 from verify.scenes.scene import load_scene
 
 
@@ -104,7 +105,7 @@ def test_elements_near_their_cut_off_happen_to_do(titanium_strip, mode, error):
 def test_the_law_is_kept_from_there_on_and_not_before(titanium_strip, supports, model, error):
     beam = replace(titanium_strip, supports=supports)
     found = error_laws.parts_from_here_on(model, beam, 2, error)
-    sizes = range(error_laws.smallest_count(model, beam, 2), 12_000)
+    sizes = range(error_laws.smallest_count(beam, 2), 12_000)
     failing = [n for n in sizes if abs(error_laws.expected_error(model, beam, 2, n)) > error]
     assert found == max(failing, default=sizes[0] - 1) + 1
     assert found < 12_000
@@ -123,7 +124,7 @@ def test_a_size_beyond_reach_is_refused_and_a_large_one_goes_by_the_law(titanium
 
 def test_sizes_are_solved_once(titanium_strip, monkeypatch):
     beam = replace(titanium_strip, supports=("clamped", "free"))
-    module, solved = model_module("segment"), []
+    module, solved = MODELS.named("segment"), []
     true = module.solve_modes
     monkeypatch.setattr(
         module, "solve_modes", lambda beam, n, count, **s: solved.append(count) or true(beam, n, count, **s)

@@ -144,7 +144,7 @@ def test_a_beam_that_can_drift_away_is_refused(model, count, supports):
 
 
 def test_what_does_not_fit_a_model_is_refused_in_a_sentence():
-    with pytest.raises(InputError, match="count = 9 is for fem and segment"):
+    with pytest.raises(InputError, match="count = 9 is for models of parts"):
         basis_of(STRIP, "analytic", 9, 20)
     with pytest.raises(InputError, match="count is missing"):
         basis_of(STRIP, "fem", None, 20)
@@ -185,10 +185,10 @@ def test_the_pieces_a_slider_sees_are_the_shapes(model, count, start):
             basis, FORCES, 2 * np.pi * FREQUENCY, 0.01, [Growth(Steps(1, 1e-4, 1), SMOOTH_STEP)], 0.0
         )[0]
     else:
-        from verify.waves.driven import solve_by_model
+        from verify.models.catalogue import MODELS
 
         stage = steady_stage(
-            solve_by_model(model, beam, FORCES, FREQUENCY, count, {}), Steps(1, 1e-4, 1), 0.0, basis, 0.0
+            MODELS[model].solve_harmonic(beam, FORCES, FREQUENCY, count), Steps(1, 1e-4, 1), 0.0, basis, 0.0
         )
     assert stage.edges[-1] == beam.length
     table = taylor_table(stage.rows, stage.edges, 0, len(stage.edges) - 1, stage.degree)

@@ -15,13 +15,16 @@ from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
 from verify.judge.workbench import Workbench
 from verify.models import intervals
+from verify.models.catalogue import MODELS
 from verify.models.fields import HarmonicField, wavenumber
+from verify.quantities.cases import driven_case
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
+from verify.quantities.wave_arguments import Sensitivity
 from verify.segments import linear as segment_model
 from verify.studies.design_map import Axis, design_map, parse_axis
-from verify.studies.wave import motor_row
+from verify.studies.wave_figures import motor_row
 from verify.waves import measures as travelling_wave
-from verify.waves.driven import own_wavenumber, solve_by_model
+from verify.waves.driven import own_wavenumber
 from verify.waves.imposed import driven_field
 from verify.waves.measures import (
     ellipse,
@@ -32,7 +35,7 @@ from verify.waves.measures import (
     phasors,
     surface_motion,
 )
-from verify.waves.operating_point import best_points, operating_points
+from verify.waves.operating_point import operating_points
 
 PAPER = load_scene("paper")
 BEAM = PAPER.beam
@@ -56,6 +59,11 @@ def two_waves(forward, backward, k=135.2):
         shapes=shapes,
         forces=(PointForce(position=0.01), PointForce(position=0.49)),
     )
+
+
+def points_of(scene, model, count):
+    """(operating points with a loss factor of 1e-3, reasons for those that are missing)."""
+    return operating_points(driven_case(Sensitivity(model=model, count=count, loss_factor=1e-3), scene))
 
 
 def driven(phase=90.0, d=0.0116, eta=0.0, frequency=4276.0):
@@ -178,7 +186,7 @@ def test_no_figure_of_a_wave_depends_on_points(monkeypatch, model, count, phase,
     """Other points, of the fit, of the means and around extremes, move them by less than 2e-6."""
     beam = replace(BEAM, loss_factor=eta)
     forces = (PointForce(position=0.0116), PointForce(position=0.4884, phase_deg=phase))
-    field = solve_by_model(model, beam, forces, 4276.0, count, {})
+    field = MODELS[model].solve_harmonic(beam, forces, 4276.0, count)
     coarse = index_figures(measure(field, WINDOW, own_wavenumber(field)))
     monkeypatch.setattr(travelling_wave, "SHARPNESS", 83)
     monkeypatch.setattr(travelling_wave, "HILLS_OF_A_PART", 29)
@@ -356,7 +364,7 @@ def test_two_drives_in_phase_have_no_best_frequency():
     row = motor_row(standing, Workbench(BEAM), "segment", 49)
     assert row.best is None
     assert "the wave stands" in row.note
-    points, problems = operating_points(standing, "segment", 49, loss_factor=1e-3)
+    points, problems = points_of(standing, "segment", 49)
     assert [p.what[:7] for p in points] == ["largest"]
     assert "the wave stands" in str(problems[0])
 
@@ -366,9 +374,9 @@ def test_a_motor_or_an_operating_point_at_the_edge_says_so():
     row = motor_row(far, Workbench(BEAM), "analytic", None)
     assert row.best.frequency_hz == pytest.approx(4263.0, abs=0.1)
     assert "at the edge of the search" in row.note
-    quiet, _ = best_points(far, "analytic", None, loss_factor=1e-3)
+    quiet, _ = points_of(far, "analytic", None)[0]
     assert "at the edge of the search" in quiet.note
-    inside = best_points(PAPER, "analytic", None, loss_factor=1e-3)[0]
+    inside = points_of(PAPER, "analytic", None)[0][0]
     assert inside.note == ""
 
 
@@ -535,7 +543,7 @@ def test_a_map_of_imposed_displacements_is_superposed_and_is_its_single_solves(m
 
 def test_imposed_displacements_have_operating_points():
     scene = load_scene("paper", ("drive.kind=displacement", "drive.frequency_hz=4340"))
-    quiet, fast = best_points(scene, "analytic", None, loss_factor=1e-3)
+    quiet, fast = points_of(scene, "analytic", None)[0]
     around = [
         measure(field, WINDOW, field.wavenumber).reflection
         for field in (
@@ -589,7 +597,7 @@ def test_a_map_of_too_many_points_is_refused_before_it_is_allocated():
     ("model", "count", "best"), [("analytic", None, 4269.07), ("segment", 49, 4252.71), ("fem", 49, 4279.22)]
 )
 def test_the_best_frequency_is_where_kl_is_an_odd_number_of_quarter_turns(model, count, best):
-    quiet, fast = best_points(PAPER, model, count, limit=0.1, loss_factor=1e-3)
+    quiet, fast = points_of(PAPER, model, count)[0]
     assert quiet.frequency_hz == pytest.approx(best, abs=0.05)
     assert quiet.reflection < 0.01
     assert fast.reflection <= 0.1 + 1e-6
@@ -598,7 +606,7 @@ def test_the_best_frequency_is_where_kl_is_an_odd_number_of_quarter_turns(model,
 
 def test_the_papers_rule_lies_seven_hertz_above_the_best_frequency():
     """4276 Hz answers both modes equally; the least reflection is where cos kL = 0, at 4269.07 Hz."""
-    quiet, _ = best_points(PAPER, "analytic", None, loss_factor=1e-3)
+    quiet, _ = points_of(PAPER, "analytic", None)[0]
     at_rule = measure(driven(eta=1e-3), WINDOW).reflection
     assert 4276.0 - quiet.frequency_hz == pytest.approx(6.93, abs=0.02)
     assert at_rule > 3 * quiet.reflection

@@ -19,10 +19,15 @@ GIVEN = {
 """Figures in the words of a report that no run gives, and why they may stand there."""
 
 
+EXAMPLES = ("plain.py", "design_map.py")
+"""Whose figures are examples of what a user may type."""
+
+
 def words_of_the_report():
     """(where, text) of every sentence that is printed: constants of the code, docstrings apart, and the template."""
     package = Path(verify.__file__).parent
-    for path in [*(package / "report").glob("*.py"), *(package / "studies").glob("*.py"), package / "words.py"]:
+    shown = [*(package / "report").glob("*.py"), *(package / "studies").glob("*.py"), package / "words.py"]
+    for path in (path for path in shown if path.name not in EXAMPLES):
         tree = ast.parse(path.read_text("utf-8"))
         specs = {
             id(part)

@@ -41,12 +41,12 @@ def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     data = {k: [v] if k in lists and not isinstance(v, list) else v for k, v in given.items()}
     data = _one_name(data, {f.name for f in fields})
     for field in fields:
-        if (among := _among(field.type)) and isinstance(name := data.get(field.name), str):
+        if (among := among_of(field.type)) and isinstance(name := data.get(field.name), str):
             among.check(name, field.name)
     return checked(data, found.arguments)
 
 
-def _among(kind: Any) -> Among | None:
+def among_of(kind: Any) -> Among | None:
     """Which models an argument may name; None where it names none."""
     parts = (kind, *get_args(kind))
     extras = [meta.extra for part in parts for meta in getattr(part, "__metadata__", ()) if meta.extra]
@@ -132,7 +132,7 @@ def _described_argument(field: Any) -> dict[str, Any]:
 
 def _type_words(kind: Any) -> str:
     """A type as a user would say it."""
-    if among := _among(kind):
+    if among := among_of(kind):
         return " | ".join(among.names())
     if hasattr(kind, "__metadata__"):
         return _type_words(get_args(kind)[0])
