@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Keyword settings of a model's solve_modes other than their defaults, for instance (("wall", "half"),)."""
 
-_MODULES = {"fem": "verify.elements.hermite", "segment": "verify.segments.linear"}
+_MODULES = {"fem": "verify.elements.linear", "segment": "verify.segments.linear"}
 
 
 class Need(msgspec.Struct, frozen=True):

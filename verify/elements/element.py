@@ -1,0 +1,141 @@
+"""What scikit-fem is given: the cubic Hermite element, a line of them, and the two forms of a bending beam.
+
+Imports scikit-fem, so it is itself imported in functions alone. scikit-fem's own ElementLineHermite is the same
+element found by inverting a Vandermonde matrix in global coordinates, which costs it digits (`stock`).
+"""
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from skfem import BilinearForm, CellBasis
+from skfem.element import DiscreteField
+from skfem.element.element import Element
+from skfem.mesh import MeshLine1
+from skfem.refdom import RefLine
+
+from verify.models.eigen import Array
+
+SIMPSON = (np.array([[0.0, 0.5, 1.0]]), np.array([1.0, 4.0, 1.0]) / 6.0)
+"""Points and weights on [0, 1], exact for cubics. Its points are floats: of equal elements K comes out in integers."""
+_MIDDLE = (np.array([[0.5]]), np.array([1.0]))
+
+_Polynomials = tuple[Callable[[Array], Any], ...]
+_CUBICS: tuple[_Polynomials, ...] = (
+    (
+        lambda xi: (1.0 - xi) ** 2 * (1 + 2 * xi),
+        lambda xi: xi * (1.0 - xi) ** 2,
+        lambda xi: xi**2 * (3 - 2 * xi),
+        lambda xi: -(xi**2) * (1.0 - xi),
+    ),
+    (
+        lambda xi: 6.0 * xi * (xi - 1.0),
+        lambda xi: (1 - xi) * (1 - 3 * xi),
+        lambda xi: -(6.0 * xi * (xi - 1.0)),
+        lambda xi: xi * (3 * xi - 2),
+    ),
+    (lambda xi: 12 * xi - 6, lambda xi: 6 * xi - 4, lambda xi: 6 - 12 * xi, lambda xi: 6 * xi - 2),
+    tuple(lambda xi, value=value: np.full_like(xi, value) for value in (12.0, 6.0, -12.0, 6.0)),
+)
+
+
+def cubic(xi: Array, i: int, derivative: int = 0) -> Array:
+    """Hermite polynomial i of (w_0, w_0', w_1, w_1') on [0, 1] or a derivative, shaped as xi."""
+    return np.asarray(_CUBICS[derivative][i](xi) if derivative < len(_CUBICS) else np.zeros_like(xi))
+
+
+class HermiteLine(Element):  # type: ignore[misc]
+    """The cubic C1 element: deflection `u` and slope `u_x` at its ends, mapped from the reference cell.
+
+    Slopes are those of the mesh's coordinate, so that their polynomials carry the length of the cell.
+    """
+
+    nodal_dofs = 2
+    maxdeg = 3
+    dofnames = ("u", "u_x")
+    doflocs = np.array([[0.0], [0.0], [1.0], [1.0]])
+    refdom = RefLine
+
+    def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:  # noqa: N803
+        """Value, grad and hess of basis function i at local points X of the cells `tind`."""
+        value, slope, bend = (self._mapped(mapping, X, i, tind, order) for order in range(3))
+        return (DiscreteField(value=value, grad=slope[None], hess=bend[None, None]),)
+
+    @staticmethod
+    def _mapped(mapping: Any, X: Array, i: int, tind: Any, order: int) -> Array:  # noqa: N803
+        scale = mapping.invDF(X, tind)[0, 0] ** order
+        if i % 2:
+            scale = scale * mapping.DF(X, tind)[0, 0]
+        return np.asarray(cubic(X[0], i, order) * scale)
+
+
+class HermiteDerivative(HermiteLine):
+    """The same element, whose values are a derivative of it: what `probes` is to read."""
+
+    def __init__(self, order: int) -> None:
+        """`order` of the derivative, 0 the deflection itself."""
+        self.order = order
+
+    def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:  # noqa: N803
+        """The derivative of basis function i at local points X of the cells `tind`, as the value of a field."""
+        return (DiscreteField(value=self._mapped(mapping, X, i, tind, self.order)),)
+
+
+class Line(MeshLine1):  # type: ignore[misc]
+    """Cells from left to right between ascending nodes."""
+
+    def element_finder(self, mapping: Any = None) -> Callable[[Array], Any]:
+        """The cell of every point, at a node the one on its right; rounding beyond the ends is taken inside.
+
+        scikit-fem's own finder compares every point with every cell, points times cells in memory.
+        """
+        nodes = self.p[0]
+        return lambda x: np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, len(nodes) - 2).astype(np.int32)
+
+
+class LineBasis(CellBasis):  # type: ignore[misc]
+    """Hermite elements on a line, with those of its own kin that are made when first asked for."""
+
+    @cached_property
+    def at_simpson(self) -> Any:
+        """The same basis at Simpson's points, for forms of curvatures."""
+        return self._beside(self.elem, SIMPSON)
+
+    @cached_property
+    def _derivatives(self) -> dict[int, Any]:
+        return {0: self}
+
+    def derivative(self, order: int) -> Any:
+        """The basis whose values are a derivative of this one's."""
+        if order not in self._derivatives:
+            self._derivatives[order] = self._beside(HermiteDerivative(order), _MIDDLE)
+        return self._derivatives[order]
+
+    def _beside(self, element: Element, quadrature: tuple[Array, Array]) -> Any:
+        return CellBasis(
+            self.mesh, element, mapping=self.mapping, quadrature=quadrature, dofs=self.dofs, disable_doflocs=True
+        )
+
+
+def line_basis(nodes: Array) -> LineBasis:
+    """Hermite elements between nodes, (N + 1,) ascending, at the Gauss points of their mass."""
+    number = np.arange(len(nodes) - 1)
+    return LineBasis(Line(nodes[None], np.array([number, number + 1])), HermiteLine(), intorder=6)
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def bending(u: Any, v: Any, w: Any) -> Any:
+    """EI u'' v''."""
+    return w.stiffness * u.hess[0, 0] * v.hess[0, 0]
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def inertia(u: Any, v: Any, w: Any) -> Any:
+    """rho A u v."""
+    return w.mass * u * v
+
+
+def per_cell(values: Array, basis: Any) -> DiscreteField:
+    """A property of each cell, (N,), as a field at the points of a basis."""
+    return DiscreteField(np.broadcast_to(values[:, None], basis.dx.shape))
