@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
 from verify.errors import InputError
 from verify.exact import error_laws
 from verify.judge.extended_precision import chain_bands, count_below, eigenvalue_error, hermite_bands

@@ -36,7 +36,12 @@ _CUBICS: tuple[_Polynomials, ...] = (
         lambda xi: xi * (3 * xi - 2),
     ),
     (lambda xi: 12 * xi - 6, lambda xi: 6 * xi - 4, lambda xi: 6 - 12 * xi, lambda xi: 6 * xi - 2),
-    tuple(lambda xi, value=value: np.full_like(xi, value) for value in (12.0, 6.0, -12.0, 6.0)),
+    (
+        lambda xi: np.full_like(xi, 12.0),
+        lambda xi: np.full_like(xi, 6.0),
+        lambda xi: np.full_like(xi, -12.0),
+        lambda xi: np.full_like(xi, 6.0),
+    ),
 )
 
 
@@ -45,11 +50,15 @@ def cubic(xi: Array, i: int, derivative: int = 0) -> Array:
     return np.asarray(_CUBICS[derivative][i](xi) if derivative < len(_CUBICS) else np.zeros_like(xi))
 
 
-class HermiteLine(Element):  # type: ignore[misc]
-    """The cubic C1 element: deflection `u` and slope `u_x` at its ends, mapped from the reference cell.
+def mapped(mapping: Any, X: Array, i: int, tind: Any, orders: tuple[int, ...]) -> list[Array]:  # noqa: N803
+    """Derivatives of basis function i by the mesh's coordinate, each (cells, points): slopes are slopes there too."""
+    shrink = mapping.invDF(X, tind)[0, 0]
+    length = mapping.DF(X, tind)[0, 0] if i % 2 else 1.0
+    return [cubic(X[0], i, order) * (length * shrink**order) for order in orders]
 
-    Slopes are those of the mesh's coordinate, so that their polynomials carry the length of the cell.
-    """
+
+class HermiteLine(Element):  # type: ignore[misc]
+    """The cubic C1 element: deflection `u` and slope `u_x` at its ends, mapped from the reference cell."""
 
     nodal_dofs = 2
     maxdeg = 3
@@ -59,15 +68,8 @@ class HermiteLine(Element):  # type: ignore[misc]
 
     def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:  # noqa: N803
         """Value, grad and hess of basis function i at local points X of the cells `tind`."""
-        value, slope, bend = (self._mapped(mapping, X, i, tind, order) for order in range(3))
+        value, slope, bend = mapped(mapping, X, i, tind, (0, 1, 2))
         return (DiscreteField(value=value, grad=slope[None], hess=bend[None, None]),)
-
-    @staticmethod
-    def _mapped(mapping: Any, X: Array, i: int, tind: Any, order: int) -> Array:  # noqa: N803
-        scale = mapping.invDF(X, tind)[0, 0] ** order
-        if i % 2:
-            scale = scale * mapping.DF(X, tind)[0, 0]
-        return np.asarray(cubic(X[0], i, order) * scale)
 
 
 class HermiteDerivative(HermiteLine):
@@ -79,7 +81,7 @@ class HermiteDerivative(HermiteLine):
 
     def gbasis(self, mapping: Any, X: Array, i: int, tind: Any = None) -> Any:  # noqa: N803
         """The derivative of basis function i at local points X of the cells `tind`, as the value of a field."""
-        return (DiscreteField(value=self._mapped(mapping, X, i, tind, self.order)),)
+        return (DiscreteField(value=mapped(mapping, X, i, tind, (self.order,))[0]),)
 
 
 class Line(MeshLine1):  # type: ignore[misc]
@@ -95,7 +97,7 @@ class Line(MeshLine1):  # type: ignore[misc]
 
 
 class LineBasis(CellBasis):  # type: ignore[misc]
-    """Hermite elements on a line, with those of its own kin that are made when first asked for."""
+    """Hermite elements on a line, with what is made of them when first asked for and kept."""
 
     @cached_property
     def at_simpson(self) -> Any:
@@ -104,13 +106,25 @@ class LineBasis(CellBasis):  # type: ignore[misc]
 
     @cached_property
     def _derivatives(self) -> dict[int, Any]:
-        return {0: self}
+        return {}
+
+    @cached_property
+    def _unheld(self) -> dict[Any, Array]:
+        return {}
 
     def derivative(self, order: int) -> Any:
         """The basis whose values are a derivative of this one's."""
         if order not in self._derivatives:
             self._derivatives[order] = self._beside(HermiteDerivative(order), _MIDDLE)
         return self._derivatives[order]
+
+    def unheld(self, held: tuple[tuple[str, ...], tuple[str, ...]]) -> Array:
+        """Degrees of freedom that are left where both ends hold those of the given names, ascending."""
+        if held not in self._unheld:
+            ends = zip((0, self.mesh.nelements), held, strict=True)
+            fixed = [self.get_dofs(nodes=np.array([end])).all(list(names)) for end, names in ends]
+            self._unheld[held] = self.complement_dofs(*fixed)
+        return self._unheld[held]
 
     def _beside(self, element: Element, quadrature: tuple[Array, Array]) -> Any:
         return CellBasis(
@@ -126,13 +140,13 @@ def line_basis(nodes: Array) -> LineBasis:
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def bending(u: Any, v: Any, w: Any) -> Any:
-    """EI u'' v''."""
+    """Of bending, EI u'' v''; `w.stiffness` is EI."""
     return w.stiffness * u.hess[0, 0] * v.hess[0, 0]
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def inertia(u: Any, v: Any, w: Any) -> Any:
-    """rho A u v."""
+    """Of inertia, rho A u v; `w.mass` is rho A."""
     return w.mass * u * v
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.elements.linear import check
-from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, point_load, stiffness_matrix
+from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, point_loads, stiffness_matrix
 from verify.elements.pencil import curvature_weights, element_pencil
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense
@@ -34,7 +34,7 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
     parts, basis = elements.parts, elements.basis
 
     def loads(position: float) -> Array:
-        weights = point_load(basis, position / parts.unit).reshape(-1, 2)
+        weights = point_loads(basis, np.array([position / parts.unit])).reshape(-1, 2)
         near = np.flatnonzero(weights.any(axis=1))
         w, slope = nodal(near)
         return np.asarray(weights[near, 0] @ w.T + weights[near, 1] @ slope.T)

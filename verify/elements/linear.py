@@ -6,7 +6,7 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
-from verify.elements.mesh import Elements, build_elements, interpolate, point_load
+from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import element_pencil
 from verify.models.division import Parts, check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
@@ -84,8 +84,11 @@ def _inside(parts: Parts, xi: Array) -> Array:
 
 def _sign(elements: Elements, nodal: Array) -> Array:
     """+-1 for each mode, (k,): by the first of deflection, slope, curvature that the left end leaves free."""
-    derivative = {"free": 0, "guided": 0, "pinned": 1, "clamped": 2}[elements.beam.supports[0]]
-    return np.where(interpolate(elements.basis, nodal, np.zeros(1), derivative)[:, 0] < 0, -1.0, 1.0)
+    if elements.beam.supports[0] == "clamped":
+        leading = interpolate(elements.basis, nodal, np.zeros(1), 2)[:, 0]
+    else:
+        leading = nodal[:, elements.free[0]]
+    return np.where(leading < 0, -1.0, 1.0)
 
 
 def solve_harmonic(
@@ -111,7 +114,8 @@ def solve_harmonic(
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * unit**4
     if not (beam.loss_factor or modal_damping):
         refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, solve_modes, n_elements)
-    total = sum(phasor(force) * point_load(basis, force.position / unit) for force in forces)
+    unit_loads = point_loads(basis, np.array([force.position for force in forces]) / unit)
+    total = sum(phasor(force) * load for force, load in zip(forces, unit_loads, strict=True))
     loads = np.array(total, dtype=np.complex128)[elements.free, None] * (unit**3 / beam.bending_stiffness)
     stiffness: ComplexArray = np.asarray(pencil.stiffness * (1.0 + 1j * beam.loss_factor), dtype=complex)
     nodal = elements.all_values(damped_response(pencil, loads, omega2, stiffness, modal_damping))
@@ -136,10 +140,10 @@ def unit_responses(
     check(beam, 1, n_elements)
     elements = build_elements(beam, n_elements)
     pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit
-    weights = np.array([point_load(basis, p / unit)[elements.free] for p in positions]).T
+    weights = point_loads(basis, np.array(positions) / unit)[:, elements.free].T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
-    shapes = interpolate(basis, elements.all_values(modes), x / unit)
+    shapes: Array = interpolate(basis, elements.all_values(modes), x / unit)
     return np.asarray(receptance @ shapes) * (unit**3 / beam.bending_stiffness)
 
 

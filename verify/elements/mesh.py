@@ -18,7 +18,7 @@ from verify.models.eigen import Array
 KEPT = 4000
 """Nodes up to which a basis is kept for who asks next: about a kilobyte each."""
 
-_HELD = {"pinned": ["u"], "clamped": ["u", "u_x"], "guided": ["u_x"], "free": []}
+_HELD = {"pinned": ("u",), "clamped": ("u", "u_x"), "guided": ("u_x",), "free": ()}
 """What a support holds, in scikit-fem's names of the degrees of freedom."""
 
 
@@ -67,9 +67,8 @@ def _kept(nodes: bytes) -> Any:
 
 def free_unknowns(basis: Any, supports: tuple[str, str]) -> NDArray[np.intp]:
     """Which degrees of freedom the supports leave, (n,) ascending."""
-    ends = (0, basis.mesh.nelements)
-    held = [basis.get_dofs(nodes=np.array([end])).all(_HELD[name]) for end, name in zip(ends, supports, strict=True)]
-    return np.asarray(basis.complement_dofs(*held))
+    left, right = supports
+    return np.asarray(basis.unheld((_HELD[left], _HELD[right])))
 
 
 def stiffness_matrix(basis: Any, stiffness: Array) -> Any:
@@ -87,9 +86,9 @@ def mass_matrix(basis: Any, mass: Array) -> Any:
     return inertia.assemble(basis, mass=per_cell(mass, basis))
 
 
-def point_load(basis: Any, x: float) -> Array:
-    """What a unit force at x (in units from the left end) does to every degree of freedom, (2N + 2,)."""
-    return np.asarray(basis.point_source(np.array([x])))
+def point_loads(basis: Any, x: Array) -> Array:
+    """Unit forces at x (in units from the left end) on every degree of freedom, (len(x), 2N + 2)."""
+    return np.asarray(basis.derivative(0).probes(x[None]).toarray())
 
 
 def interpolate(basis: Any, nodal: Any, x: Array, derivative: int = 0) -> Any:

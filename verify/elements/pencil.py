@@ -11,6 +11,7 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.elements.mesh import Elements, build_elements, mass_matrix, stiffness_matrix
+from verify.models.driven_pencil import check_dense
 from verify.models.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
 
 
@@ -78,13 +79,14 @@ def curvature_matrix(lengths: Array) -> Any:
 
 
 def factor_difference(beam: Beam, n_elements: int, grading: float = 1.0) -> float:
-    """The largest entry of B^T diag(d) B - K over the free unknowns, relative to the diagonal: |.|_ij / sqrt(K_ii K_jj).
+    """How far B^T diag(d) B is from the assembled K: the largest entry of the difference over sqrt(K_ii K_jj).
 
-    Takes B as the sparse array and as the differences that read the eigenvalues, the worse of both. Raises
-    InputError where the beam cannot be divided so.
+    Over the free unknowns, with B as the sparse array and as the differences that read the eigenvalues, the worse
+    of both. Raises InputError where the beam cannot be divided so, and beyond the dense size.
     """
     elements = build_elements(beam, n_elements, grading)
     pencil = element_pencil(elements)
+    check_dense(pencil, "the factored stiffness against the assembled one")
     assembled = stiffness_matrix(elements.basis, elements.parts.stiffnesses)[elements.free][:, elements.free].toarray()
     scale = np.sqrt(assembled.diagonal())
     factors = (pencil.strain(np.eye(pencil.n)), pencil.strain_matrix().toarray())

@@ -154,6 +154,20 @@ class FirstModes(Arguments, frozen=True, kw_only=True):
     modes: Annotated[int, Meta(ge=1, description="how many modes, from the first")] = 22
 
 
+class Elements(Arguments, frozen=True, kw_only=True):
+    """A mesh of Hermite elements."""
+
+    count: Size
+    grading: Grading = 1.0
+
+
+class StockMode(Arguments, frozen=True, kw_only=True):
+    """One mode of equal Hermite elements, by stock scikit-fem and by ours."""
+
+    mode: Mode
+    count: Size
+
+
 class ToError(Divided, frozen=True, kw_only=True):
     """An accuracy wanted of one mode of one discrete model."""
 
