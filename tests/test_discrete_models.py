@@ -277,7 +277,7 @@ def test_the_memory_guard_counts_more_than_a_driven_field_takes(titanium_strip, 
         "    {0}.solve_harmonic(beam, [PointForce(position=0.1)], 433.0, n)\n"
         "    peaks.append(1024 * int(re.search(r'VmHWM:\\s+(\\d+) kB', open('/proc/self/status').read())[1]))\n"
         "print(peaks[1] - peaks[0])"
-    ).format(MODELS[model].__name__.split(".")[1])
+    ).format({"segment": "segment_model", "fem": "fem_beam"}[model])
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     counted = eigen.required_bytes(MODELS[model].unknowns(titanium_strip, 100_000), 1)
     assert 0.3 * counted < int(done.stdout) < counted

@@ -10,7 +10,6 @@ from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
 from verify.errors import InputError
-from verify.models.division import divide
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, refuse_near_resonance
 from verify.models.eigen import forced_response
 from verify.segments import linear as segment_model

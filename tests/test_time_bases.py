@@ -13,7 +13,6 @@ from verify.elements.mesh import build_elements, point_loads
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.exact.in_time import MOST
-from verify.models.division import divide
 from verify.models.fields import phasor
 from verify.models.time_basis import taylor_table
 from verify.motion.forcing import SMOOTH_STEP

@@ -13,12 +13,17 @@ from skfem import BilinearForm, CellBasis
 from skfem.element import DiscreteField
 from skfem.element.element import Element
 from skfem.mesh import MeshLine1
+from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
+from verify.elements.mesh import KEPT
 from verify.models.eigen import Array
 
-SIMPSON = (np.array([[0.0, 0.5, 1.0]]), np.array([1.0, 4.0, 1.0]) / 6.0)
-"""Points and weights on [0, 1], exact for cubics. Its points are floats: of equal elements K comes out in integers."""
+_RULES = {
+    "gauss": get_quadrature(RefLine, 6),
+    "simpson": (np.array([[0.0, 0.5, 1.0]]), np.array([1.0, 4.0, 1.0]) / 6.0),
+}
+"""Points and weights on [0, 1]. Simpson's are exact for the squares of curvatures and lie on floats."""
 _MIDDLE = (np.array([[0.5]]), np.array([1.0]))
 
 _Polynomials = tuple[Callable[[Array], Any], ...]
@@ -97,34 +102,37 @@ class Line(MeshLine1):  # type: ignore[misc]
 
 
 class LineBasis(CellBasis):  # type: ignore[misc]
-    """Hermite elements on a line, with what is made of them when first asked for and kept."""
+    """Hermite elements on a line at one point each, with what is made of them when first asked for.
 
-    @cached_property
-    def at_simpson(self) -> Any:
-        """The same basis at Simpson's points, for forms of curvatures."""
-        return self._beside(self.elem, SIMPSON)
+    Of small meshes it is kept for the next time; of large ones it would stand beside a solve in memory.
+    """
 
-    @cached_property
-    def _derivatives(self) -> dict[int, Any]:
-        return {}
-
-    @cached_property
-    def _unheld(self) -> dict[Any, Array]:
-        return {}
+    def at(self, points: str) -> Any:
+        """The same elements at the points of a rule, "gauss" (of degree 6) or "simpson"."""
+        return self._made(points, lambda: self._beside(self.elem, _RULES[points]))
 
     def derivative(self, order: int) -> Any:
         """The basis whose values are a derivative of this one's."""
-        if order not in self._derivatives:
-            self._derivatives[order] = self._beside(HermiteDerivative(order), _MIDDLE)
-        return self._derivatives[order]
+        return self._made(order, lambda: self._beside(HermiteDerivative(order), _MIDDLE))
 
-    def unheld(self, held: tuple[tuple[str, ...], tuple[str, ...]]) -> Array:
+    def unheld(self, held: tuple[tuple[str, ...], tuple[str, ...]]) -> Any:
         """Degrees of freedom that are left where both ends hold those of the given names, ascending."""
-        if held not in self._unheld:
+
+        def find() -> Any:
             ends = zip((0, self.mesh.nelements), held, strict=True)
-            fixed = [self.get_dofs(nodes=np.array([end])).all(list(names)) for end, names in ends]
-            self._unheld[held] = self.complement_dofs(*fixed)
-        return self._unheld[held]
+            return self.complement_dofs(*(self.get_dofs(nodes=np.array([end])).all(list(names)) for end, names in ends))
+
+        return self._made(held, find)
+
+    @cached_property
+    def _kept(self) -> dict[Any, Any]:
+        return {}
+
+    def _made(self, key: Any, make: Callable[[], Any]) -> Any:
+        found = self._kept[key] if key in self._kept else make()
+        if self.mesh.nelements < KEPT:
+            self._kept[key] = found
+        return found
 
     def _beside(self, element: Element, quadrature: tuple[Array, Array]) -> Any:
         return CellBasis(
@@ -133,9 +141,9 @@ class LineBasis(CellBasis):  # type: ignore[misc]
 
 
 def line_basis(nodes: Array) -> LineBasis:
-    """Hermite elements between nodes, (N + 1,) ascending, at the Gauss points of their mass."""
+    """Hermite elements between nodes, (N + 1,) ascending."""
     number = np.arange(len(nodes) - 1)
-    return LineBasis(Line(nodes[None], np.array([number, number + 1])), HermiteLine(), intorder=6)
+    return LineBasis(Line(nodes[None], np.array([number, number + 1])), HermiteLine(), quadrature=_MIDDLE)
 
 
 @BilinearForm  # type: ignore[untyped-decorator]

@@ -75,7 +75,7 @@ def stiffness_matrix(basis: Any, stiffness: Array) -> Any:
     """K over all degrees of freedom by scikit-fem, (2N + 2, 2N + 2) sparse; `stiffness` is EI of each element, (N,)."""
     from verify.elements.element import bending, per_cell
 
-    points = basis.at_simpson
+    points = basis.at("simpson")
     return bending.assemble(points, stiffness=per_cell(stiffness, points))
 
 
@@ -83,7 +83,8 @@ def mass_matrix(basis: Any, mass: Array) -> Any:
     """The consistent M over all degrees of freedom by scikit-fem, likewise; `mass` is rho A of each element, (N,)."""
     from verify.elements.element import inertia, per_cell
 
-    return inertia.assemble(basis, mass=per_cell(mass, basis))
+    points = basis.at("gauss")
+    return inertia.assemble(points, mass=per_cell(mass, points))
 
 
 def point_loads(basis: Any, x: Array) -> Array:
