@@ -43,8 +43,8 @@ from verify.segments import links as chain
 from verify.segments import walls as chain_walls
 from verify.studies import axial_inertia as axial_study
 from verify.waves import operating_point
-from verify.waves.driven import driven as waves
-from verify.waves.driven import measures as travelling_wave
+from verify.waves import driven as waves
+from verify.waves import measures as travelling_wave
 
 PAPER = load_scene("paper")
 

@@ -205,3 +205,14 @@ def test_it_is_the_stock_frequency_that_is_off_counted_in_fifty_digits():
 def test_what_the_stock_solve_does_not_have_is_refused_in_a_sentence(beam, mode, count, message):
     with pytest.raises(InputError, match=message):
         stock_frequency_hz(beam, mode, count)
+
+
+@pytest.mark.parametrize("left", ["pinned", "clamped", "guided", "free"])
+@pytest.mark.parametrize("right", ["pinned", "clamped", "guided", "free"])
+def test_unknowns_counted_without_scikit_fem_are_those_it_leaves(left, right):
+    """A plan counts them without loading it; the first free one of the left end is what a mode's sign is taken by."""
+    beam = replace(STRIP, supports=(left, right))
+    free = mesh.build_elements(beam, 7).free
+    assert linear.unknowns(beam, 7) == len(free)
+    held = {"pinned": {0}, "clamped": {0, 1}, "guided": {1}, "free": set()}
+    assert set(range(16)) - set(free.tolist()) == held[left] | {14 + j for j in held[right]}
