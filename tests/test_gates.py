@@ -42,9 +42,9 @@ from verify.segments import linear as segment_model
 from verify.segments import links as chain
 from verify.segments import walls as chain_walls
 from verify.studies import axial_inertia as axial_study
-from verify.waves import operating_point
 from verify.waves import driven as waves
 from verify.waves import measures as travelling_wave
+from verify.waves import operating_point
 
 PAPER = load_scene("paper")
 
