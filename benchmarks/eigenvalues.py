@@ -13,10 +13,11 @@ from time import perf_counter
 from scipy.sparse.linalg import splu
 
 from verify.beam import Beam
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
+from verify.elements.mesh import build_elements
+from verify.elements.pencil import element_pencil
 from verify.judge.extended_precision import eigenvalue_error
 from verify.models import eigen
-from verify.models.division import divide
 from verify.segments import linear as segment_model
 
 SUPPORTS = (("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "free"), ("free", "free"))
@@ -28,8 +29,7 @@ def pencil_of(model: str, beam: Beam, count: int) -> eigen.FactoredPencil:
     """The factored pencil that a model solves."""
     if model == "segment":
         return segment_model.chain_pencil(segment_model.build_chain(beam, count))
-    free = fem_beam.free_unknowns(beam.supports, count)
-    return fem_beam.element_pencil(beam, divide(beam, count), free)
+    return element_pencil(build_elements(beam, count))
 
 
 def times(*jobs: Callable[[], object], rounds: int) -> list[float]:

@@ -10,7 +10,9 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import PointForce
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
+from verify.elements import pencil
+from verify.elements.mesh import basis_between, mass_matrix, stiffness_matrix
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
@@ -119,7 +121,8 @@ def test_runs_repeat_to_the_last_bit(titanium_strip, model):
 
 def test_scikit_fems_assembly_equals_the_textbook_matrices_on_unequal_elements():
     lengths, stiffness, mass = np.array([0.7, 1.9, 1.1]), np.array([2.0, 0.3, 5.0]), np.array([1.2, 0.4, 3.0])
-    found_k, found_m = (a.toarray() for a in fem_beam.assemble(lengths, stiffness, mass))
+    basis = basis_between(np.append(0.0, np.cumsum(lengths)))
+    found_k, found_m = stiffness_matrix(basis, stiffness).toarray(), mass_matrix(basis, mass).toarray()
     k, m = np.zeros((8, 8)), np.zeros((8, 8))
     for e, h in enumerate(lengths):
         scale = np.diag([1, h, 1, h])
@@ -134,11 +137,12 @@ def test_scikit_fems_assembly_equals_the_textbook_matrices_on_unequal_elements()
 
 def test_the_factored_curvatures_are_scikit_fems_stiffness():
     lengths, stiffness = np.array([0.7, 1.9, 1.1]), np.array([2.0, 0.3, 5.0])
-    assembled = fem_beam.assemble(lengths, stiffness, np.ones(3))[0].toarray()
-    rows = fem_beam.curvature_matrix(lengths).toarray()
-    weights = np.concatenate([stiffness / lengths, 3 * stiffness / lengths])
-    assert rows.T @ (weights[:, None] * rows) == pytest.approx(assembled, rel=1e-13, abs=1e-13)
-    assert fem_beam.element_curvatures(lengths, np.eye(8)) == pytest.approx(rows, abs=1e-15)
+    assembled = stiffness_matrix(basis_between(np.append(0.0, np.cumsum(lengths))), stiffness)
+    rows = pencil.curvature_matrix(lengths).toarray()
+    weights = pencil.curvature_weights(lengths, assembled)
+    assert weights == pytest.approx(np.concatenate([stiffness / lengths, 3 * stiffness / lengths]), rel=1e-14)
+    assert rows.T @ (weights[:, None] * rows) == pytest.approx(assembled.toarray(), rel=1e-13, abs=1e-13)
+    assert pencil.element_curvatures(lengths, np.eye(8)) == pytest.approx(rows, abs=1e-15)
 
 
 @pytest.mark.parametrize("count", [3, 300])

@@ -167,6 +167,8 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "segment", "mode": 3, "error": 1e-6}, on("clamped", "clamped")),
         Case({"model": "fem", "mode": 6, "error": 3e-3}),
     ],
+    "mode.stock_difference": [Case({"mode": 3, "count": 17}, on("clamped", "free"))],
+    "mode.stiffness_difference": [Case({"count": 17, "grading": 1.7}, stepped("clamped", "free"))],
     "drive.rule_frequency": [Case({"mode": 5}, on("clamped", "free"))],
     "drive.quarter_wavelength": [Case({"frequency_hz": 310.0}), Case({})],
     "wave.deflection": [
@@ -361,6 +363,7 @@ DEAD = [
     ),
     Dead("mode.node_position", "beam.thickness beam.youngs_modulus beam.density", "a shape is geometry", uniform),
     Dead("mode.dispersion_error", "*", "rounding, whatever the beam and the size: that is what it says"),
+    Dead("mode.st*_difference", "*", "rounding, whatever the beam and the size: that is what they say"),
     Dead("mode.*", "arguments.wall", "no clamped end has a joint", unclamped),
     Dead("mode.*", "arguments.joints", "both forms of Eq. (1) are one where E and I do not change", uniform),
     Dead(
@@ -671,7 +674,12 @@ def all_inputs(asked):
 
 STILL_BELOW, MOVED_ABOVE = 1e-10, 1e-9
 """Relative changes of a figure: rounding, and anything else. Between them a case is too weak to tell."""
-SCALE = {"mode.dispersion_error": 1e-3, "wave.best_frequency": 1e6}
+SCALE = {
+    "mode.dispersion_error": 1e-3,
+    "mode.stiffness_difference": 1e-3,
+    "mode.stock_difference": 1.0,
+    "wave.best_frequency": 1e6,
+}
 """What a change is held against where a figure is rounding itself, or is searched for to 1e-5 Hz."""
 
 

@@ -15,8 +15,11 @@ from verify.chain import problems as chain_studies
 from verify.chain import splitting as chain_modal
 from verify.chain import statics as chain_statics
 from verify.chain import system as chain_system
-from verify.elements import hermite as fem_beam
 from verify.elements import in_time as fem_motion
+from verify.elements import linear as fem_beam
+from verify.elements import mesh as element_mesh
+from verify.elements import pencil as element_pencil
+from verify.elements import stock
 from verify.errors import InputError
 from verify.exact import closed_forms, section_minors
 from verify.exact import harmonic as analytic_harmonic
@@ -65,7 +68,8 @@ def joint_stiffness_doubled(patch):
 def lumped_element_mass(patch):
     from scipy.sparse import diags_array
 
-    def lumped(lengths, mass):
+    def lumped(basis, mass):
+        lengths = np.diff(basis.mesh.p[0])
         nodal = np.zeros(2 * len(lengths) + 2)
         nodal[:-2:2] += mass * lengths / 2
         nodal[2::2] += mass * lengths / 2
@@ -73,12 +77,40 @@ def lumped_element_mass(patch):
         nodal[3::2] += mass * lengths**3 / 24
         return diags_array(nodal).tocsc()
 
-    patch.setattr(fem_beam, "assemble_mass", lumped)
+    for module in (element_pencil, fem_motion):
+        patch.setattr(module, "mass_matrix", lumped)
 
 
 def slope_polynomials_without_their_element_length(patch):
-    true = fem_beam.element_curvatures
-    patch.setattr(fem_beam, "element_curvatures", lambda lengths, nodal: true(1.001 * lengths, nodal))
+    true = element_pencil.element_curvatures
+    patch.setattr(element_pencil, "element_curvatures", lambda lengths, nodal: true(1.001 * lengths, nodal))
+
+
+def curvatures_of_another_weight(patch):
+    """The gradient's share of K a millionth short, as if scikit-fem's K had been misread."""
+    true = element_pencil.curvature_weights
+    patch.setattr(
+        element_pencil,
+        "curvature_weights",
+        lambda lengths, stiffness: true(lengths, stiffness) * np.repeat([1.0, 1.0 - 1e-6], len(lengths)),
+    )
+
+
+def lengths_of_the_mesh_in_the_wrong_order(patch):
+    true = element_mesh.Elements.lengths.fget
+    patch.setattr(element_mesh.Elements, "lengths", property(lambda elements: true(elements)[::-1]))
+
+
+def stock_elements_one_too_few(patch):
+    true = stock._solved
+    patch.setattr(stock, "_solved", lambda beam, mode, n: true(beam, mode, n - 1))
+
+
+def stock_beam_of_a_billionth_more_stiffness(patch):
+    true = stock._solved
+    patch.setattr(
+        stock, "_solved", lambda beam, mode, n: true(replace(beam, youngs_modulus=70e9 * (1 + 1e-9)), mode, n)
+    )
 
 
 def modes_21_and_22_exchanged(patch):
@@ -217,9 +249,9 @@ def mirrored(beam):
 
 
 def clamped_end_on_the_wrong_side(patch):
-    true_chain, true_free = segment_model.build_chain, fem_beam.free_unknowns
+    true_chain, true_free = segment_model.build_chain, element_mesh.free_unknowns
     patch.setattr(segment_model, "build_chain", lambda beam, *given, **more: true_chain(mirrored(beam), *given, **more))
-    patch.setattr(fem_beam, "free_unknowns", lambda supports, n: true_free(supports[::-1], n))
+    patch.setattr(element_mesh, "free_unknowns", lambda basis, supports: true_free(basis, supports[::-1]))
 
 
 def section_order_reversed(patch):
@@ -229,7 +261,7 @@ def section_order_reversed(patch):
         return true(structs.replace(beam, section=beam.section[::-1]), *given)
 
     patch.setattr(chain, "divide", reversed_sections)
-    patch.setattr(fem_beam, "divide", reversed_sections)
+    patch.setattr(element_mesh, "divide", reversed_sections)
 
 
 def sections_carried_in_the_wrong_order(patch):
@@ -254,13 +286,13 @@ def series_form_for_the_printed_equation(patch):
 
 
 def elements_that_ignore_the_step(patch):
-    true = fem_beam.divide
+    true = element_mesh.divide
 
     def uniform(beam, *given):
         parts = true(beam, *given)
         return structs.replace(parts, moduli=np.ones_like(parts.moduli))
 
-    patch.setattr(fem_beam, "divide", uniform)
+    patch.setattr(element_mesh, "divide", uniform)
 
 
 def grading_that_stretches_the_last_part_alone(patch):
@@ -295,7 +327,7 @@ def grading_over_one_part_too_many(patch):
 
 def sections_of_the_mean_thickness(patch):
     """Each part keeps its material and gets the thickness of the whole."""
-    for module in (chain, fem_beam):
+    for module in (chain, element_mesh):
         true = module.divide
 
         def even(beam, *given, true=true):
@@ -345,8 +377,8 @@ def load_on_the_next_joint(patch):
 
 
 def load_on_the_next_node(patch):
-    true = fem_beam.nodal_weights
-    patch.setattr(fem_beam, "nodal_weights", lambda parts, x: np.roll(true(parts, x), 2))
+    true = fem_beam.point_loads
+    patch.setattr(fem_beam, "point_loads", lambda basis, x: np.roll(true(basis, x), 2, axis=1))
 
 
 def mid_line_instead_of_surface(patch):
@@ -722,20 +754,8 @@ def load_in_time_on_the_next_joint(patch):
 
 
 def load_in_time_on_the_next_node(patch):
-    true = fem_motion.nodal_weights
-    patch.setattr(fem_motion, "nodal_weights", lambda parts, x: np.roll(true(parts, x), 2))
-
-
-def lumped_element_mass_in_time(patch):
-    true = fem_motion.assemble
-
-    def lumped(lengths, *given):
-        stiffness, _ = true(lengths, *given)
-        with pytest.MonkeyPatch.context() as inner:
-            lumped_element_mass(inner)
-            return stiffness, fem_beam.assemble_mass(lengths, given[-1])
-
-    patch.setattr(fem_motion, "assemble", lumped)
+    true = fem_motion.point_loads
+    patch.setattr(fem_motion, "point_loads", lambda basis, x: np.roll(true(basis, x), 2, axis=1))
 
 
 def link_inertia_left_out_in_time(patch):
@@ -879,7 +899,7 @@ FAULTS_ELSEWHERE = {
         },
         load_in_time_on_the_next_joint: {"slider-segments", "slider-order-segment", "slider-felt", "beam-segments"},
         load_in_time_on_the_next_node: {"slider-elements", "slider-order-fem", "beam-elements"},
-        lumped_element_mass_in_time: {"slider-elements", "slider-order-fem", "beam-elements"},
+        lumped_element_mass: {"slider-elements", "slider-order-fem", "beam-elements"},
         link_inertia_left_out_in_time: {
             "slider-segments",
             "slider-order-segment",
@@ -1090,6 +1110,8 @@ FAULTS_ELSEWHERE = {
         printed_equation_for_the_series_form: {"series-order", "series-error", "graded-segments"},
         series_form_for_the_printed_equation: {"printed-order"},
         elements_that_ignore_the_step: {"fem-order", "fem-error", "graded-elements"},
+        curvatures_of_another_weight: {"factored-stiffness"},
+        lengths_of_the_mesh_in_the_wrong_order: {"factored-stiffness"},
         lumped_element_mass: {"fem-order", "fem-error", "graded-elements"},
         clamped_end_on_the_wrong_side: {"series-order", "series-error", "fem-error", "printed-order"},
     },
@@ -1119,6 +1141,15 @@ FAULTS = {
         "fem-shape-22",
     },
     slope_polynomials_without_their_element_length: {"fem-dispersion", "fem-mode-22", "fem-order", "mean-mode-22"},
+    curvatures_of_another_weight: {
+        "factored-stiffness",
+        "factored-stiffness-graded",
+        "fem-dispersion",
+        "stock-mode-22",
+    },
+    lengths_of_the_mesh_in_the_wrong_order: {"factored-stiffness-graded"},
+    stock_elements_one_too_few: {"stock-mode-22", "stock-mode-1"},
+    stock_beam_of_a_billionth_more_stiffness: {"stock-mode-22"},
     modes_21_and_22_exchanged: {"segment-mode-22", "fem-mode-22"},
     joints_read_raw: {"segment-shape-22"},
     shapes_with_unit_amplitude_instead_of_unit_mass: {"segment-shape-22", "segment-raw-shape-22", "fem-shape-22"},

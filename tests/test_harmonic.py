@@ -8,7 +8,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import SUPPORTS, PointForce
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes

@@ -6,9 +6,10 @@ from msgspec.structs import replace
 from scipy.linalg import eigh
 
 from verify.beam import Beam
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
+from verify.elements.mesh import build_elements
+from verify.elements.pencil import element_pencil
 from verify.errors import InputError
-from verify.models.division import divide
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, refuse_near_resonance
 from verify.models.eigen import forced_response
 from verify.segments import linear as segment_model
@@ -19,8 +20,7 @@ CLAMPED = replace(STRIP, supports=("clamped", "free"))
 
 
 def pencils(beam, n):
-    parts, chain = divide(beam, n), chain_pencil(build_chain(beam, n))
-    return {"segment": chain, "fem": fem_beam.element_pencil(beam, parts, fem_beam.free_unknowns(beam.supports, n))}
+    return {"segment": chain_pencil(build_chain(beam, n)), "fem": element_pencil(build_elements(beam, n))}
 
 
 def matrices(pencil):

@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from verify import patience
 from verify.beam import Beam, PointForce, Section, check_frequency
 from verify.cli import status_of
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
 from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
 from verify.exact import modes as analytic_modes
 from verify.judge.compare import observed_order, relative_error

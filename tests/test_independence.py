@@ -183,7 +183,7 @@ def heavier(values_and_vectors):
     return 1.0002 * values, vectors
 
 
-MODELS = ("segments.linear", "elements.hermite")
+MODELS = ("segments.linear", "elements.linear")
 SHARED = [
     Shared(
         "beam",
@@ -206,7 +206,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the stiffness of its neighbour",
-        ("segments.links.divide", "elements.hermite.divide"),
+        ("segments.links.divide", "elements.mesh.divide"),
         after(lambda parts: replace(parts, moduli=np.roll(parts.moduli, 1))),
         "patched-strip",
         ("elements-at-24",),
@@ -215,7 +215,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the mass of its neighbour",
-        ("segments.links.divide", "elements.hermite.divide"),
+        ("segments.links.divide", "elements.mesh.divide"),
         after(lambda parts: replace(parts, masses_per_length=np.roll(parts.masses_per_length, 1))),
         "patched-strip",
         ("segments-at-24",),
@@ -289,7 +289,7 @@ SHARED = [
     Shared(
         "models.fields",
         "forces that lag instead of lead",
-        ("exact.harmonic.phasor", "elements.hermite.phasor", "segments.linear.phasor"),
+        ("exact.harmonic.phasor", "elements.linear.phasor", "segments.linear.phasor"),
         after(np.conj),
         "paper-wave",
         ("loss-on-elements",),
@@ -517,7 +517,7 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
     """`errors` carries sentences and `patience` refusals: no figures, as the test above holds."""
     faces = (
         ("exact.modes", "exact.in_time"),
-        ("elements.hermite", "elements.in_time"),
+        ("elements.linear", "elements.in_time", "elements.stock"),
         ("segments.linear", "segments.in_time"),
     )
     behind = [set().union(*(imported(face, set()) for face in pair)) for pair in faces]

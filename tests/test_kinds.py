@@ -190,7 +190,7 @@ def test_they_are_measured_chosen_and_listed_by_name(toys, capsys):
 def test_a_verb_that_a_model_lacks_is_refused_by_name(toys, capsys):
     assert status_of(["measure", "wave.crest_speed", "model=sine", "count=9", "--scene", "paper-wave"]) == 2
     assert "model = 'sine' is not known" in capsys.readouterr().err
-    with pytest.raises(InputError, match="sine.*no harmonic fields"):
+    with pytest.raises(InputError, match=r"sine.*no harmonic fields"):
         MODELS["sine"].solve_harmonic(load_scene("paper").beam, (), 433.0, 9)
 
 

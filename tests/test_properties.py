@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from verify.beam import SUPPORTS, Beam, Section
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
+from verify.elements.mesh import build_elements
+from verify.elements.pencil import element_pencil
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts
@@ -76,8 +78,7 @@ def test_elastic_eigenvalues_of_both_models_add_up_to_the_trace(ends, count):
     beam = replace(BASE, supports=ends)
     chain = segment_model.build_chain(beam, count)
     pencils = [segment_model.chain_pencil(chain)]
-    free = fem_beam.free_unknowns(ends, count)
-    pencils.append(fem_beam.element_pencil(beam, fem_beam.divide(beam, count), free))
+    pencils.append(element_pencil(build_elements(beam, count)))
     for pencil in pencils:
         strain = pencil.strain(np.eye(pencil.n))
         stiffness = strain.T @ (pencil.stiffness[:, None] * strain)

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from scipy.linalg import eigh
 
 from verify.beam import Beam, Section
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
 from verify.errors import InputError
 from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes

@@ -7,7 +7,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import SUPPORTS
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes

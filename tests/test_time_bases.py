@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP
 
 from verify.beam import Beam, Section
-from verify.elements import hermite as fem_beam
 from verify.elements import in_time as fem_motion
+from verify.elements import linear as fem_beam
+from verify.elements.mesh import build_elements, point_loads
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.exact.in_time import MOST
-from verify.models.division import divide
 from verify.models.fields import phasor
 from verify.models.time_basis import taylor_table
 from verify.motion.forcing import SMOOTH_STEP
@@ -60,21 +60,21 @@ def test_modes_of_equal_links_in_closed_form_are_those_of_the_dense_solve(n, par
 def test_modes_of_equal_elements_in_closed_form_are_those_of_the_dense_solve(n, part, derivative):
     """Two branches may share a frequency; what they add up to in a response does not depend on the choice."""
     basis = fem_motion.time_basis(STRIP, n)
-    omegas, nodal, _ = fem_motion._dense(STRIP, n)
+    elements = build_elements(STRIP, n)
+    omegas, nodal, _ = fem_motion._dense(elements)
     assert basis.omegas == pytest.approx(omegas, rel=1e-11)
     x, place = np.array([part * STRIP.length * (1 - 1e-9)]), 0.31 * STRIP.length
-    dense_loads = fem_beam.nodal_weights(divide(STRIP, n), place / (STRIP.length / n)).reshape(-1, 2)
+    dense_loads = point_loads(elements.basis, np.array([place / (STRIP.length / n)])).reshape(-1, 2)
     w, slope = nodal(np.arange(n + 1))
     modal = dense_loads[:, 0] @ w.T + dense_loads[:, 1] @ slope.T
     element = min(int(x[0] / STRIP.length * n), n - 1)
     h = STRIP.length / n
-    weights = fem_beam.hermite(np.array([x[0] / h - element]), derivative)[:, 0] / h**derivative
-    shape = (
-        weights[0] * w[:, element]
-        + weights[1] * slope[:, element]
-        + weights[2] * w[:, element + 1]
-        + weights[3] * slope[:, element + 1]
-    )
+    s = x[0] / h - element
+    weights = [(1 - s) ** 2 * (1 + 2 * s), s * (1 - s) ** 2, s**2 * (3 - 2 * s), s**2 * (s - 1)]
+    if derivative:
+        weights = [6 * s * (s - 1) / h, (1 - s) * (1 - 3 * s) / h, 6 * s * (1 - s) / h, s * (3 * s - 2) / h]
+    ends = (w[:, element], slope[:, element], w[:, element + 1], slope[:, element + 1])
+    shape = sum(weight * value for weight, value in zip(weights, ends, strict=True))
     kernel = 1.0 / (omegas**2 + omegas[0] ** 2)
     expected = (modal * shape) @ kernel
     found = (basis.loads(place) * basis.shapes(x, derivative)[:, 0]) @ (1.0 / (basis.omegas**2 + basis.omegas[0] ** 2))

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from verify import load_scene
 from verify.beam import PointForce
-from verify.elements import hermite as fem_beam
+from verify.elements import linear as fem_beam
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam
-from verify.elements.hermite import assemble, check, element_pencil, free_unknowns, hermite, nodal_weights
-from verify.models.division import divide
+from verify.elements.linear import check
+from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, point_loads, stiffness_matrix
+from verify.elements.pencil import curvature_weights, element_pencil
+from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.time_basis import Array, TimeBasis, check_held
@@ -22,27 +24,28 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
 
     Raises InputError for rigid motions and meshes beyond the dense size.
     """
+    from scipy.sparse import coo_array
+
     check(beam, 1, n_elements)
     check_held(beam)
     uniform = beam.supports == ("pinned", "pinned") and not beam.section and n_elements > 1
-    omegas, nodal, method = _pinned(beam, n_elements) if uniform else _dense(beam, n_elements)
-    parts = divide(beam, n_elements)
+    elements = build_elements(beam, n_elements)
+    omegas, nodal, method = _pinned(beam, n_elements) if uniform else _dense(elements)
+    parts, basis = elements.parts, elements.basis
 
     def loads(position: float) -> Array:
-        weights = nodal_weights(parts, position / parts.unit).reshape(-1, 2)
+        weights = point_loads(basis, np.array([position / parts.unit])).reshape(-1, 2)
         near = np.flatnonzero(weights.any(axis=1))
         w, slope = nodal(near)
         return np.asarray(weights[near, 0] @ w.T + weights[near, 1] @ slope.T)
 
-    nodes, lengths = parts.nodes, parts.lengths
-
     def shapes(x: Array, derivative: int) -> Array:
-        place = np.asarray(x) / parts.unit
-        element = np.clip(np.searchsorted(nodes * parts.unit, x, side="right") - 1, 0, n_elements - 1)
-        h = lengths[element]
-        weights = hermite((place - nodes[element]) / h, derivative) / (h * parts.unit) ** derivative
-        (w0, s0), (w1, s1) = nodal(element), nodal(element + 1)
-        return np.asarray(w0 * weights[0] + s0 * h * weights[1] + w1 * weights[2] + s1 * h * weights[3])
+        probes = basis.derivative(derivative).probes(_on_mesh(parts, x)[None])
+        near, place = np.unique(probes.col // 2, return_inverse=True)
+        values = np.stack(nodal(near), axis=2).reshape(len(omegas), -1)
+        entries = (probes.data / parts.unit**derivative, (probes.row, 2 * place + probes.col % 2))
+        read = coo_array(entries, shape=(len(x), values.shape[1]))
+        return np.ascontiguousarray((read @ values.T).T)
 
     return TimeBasis(
         model="fem",
@@ -51,21 +54,28 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
         omegas=omegas,
         shapes=shapes,
         loads=loads,
-        edges=nodes * parts.unit,
+        edges=parts.nodes * parts.unit,
         degree=3,
         method=method,
     )
 
 
-def _dense(beam: Beam, n_elements: int) -> tuple[Array, Nodal, str]:
-    parts, free = divide(beam, n_elements), free_unknowns(beam.supports, n_elements)
-    pencil = element_pencil(beam, parts, free)
+def _on_mesh(parts: Parts, x: Array) -> Array:
+    """Metres -> the mesh's unit; a position at a node stays on its right, where rounding would put it on its left."""
+    ends = parts.nodes * parts.unit
+    element = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
+    return np.maximum(np.asarray(x) / parts.unit, parts.nodes[element])
+
+
+def _dense(elements: Elements) -> tuple[Array, Nodal, str]:
+    beam, unit = elements.beam, elements.parts.unit
+    pencil = element_pencil(elements)
     check_dense(pencil, "motion in time")
     values, vectors = modal_basis(pencil)
-    everywhere = np.zeros((len(values), 2 * n_elements + 2))
-    everywhere[:, free] = vectors.T / np.sqrt(beam.mass_per_length * parts.unit)
-    omegas = np.sqrt(values) * beam.wave_constant / parts.unit**2
-    return omegas, lambda i: (everywhere[:, 2 * i], everywhere[:, 2 * i + 1]), "dense eigenvalues"
+    deflections, slopes = elements.basis.nodal_dofs
+    everywhere = elements.all_values(vectors / np.sqrt(beam.mass_per_length * unit))
+    omegas = np.sqrt(values) * beam.wave_constant / unit**2
+    return omegas, lambda i: (everywhere[:, deflections[i]], everywhere[:, slopes[i]]), "dense eigenvalues"
 
 
 def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
@@ -91,7 +101,10 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
 
 def _branches(n: int) -> tuple[Array, Array, Array, Array]:
     """(mu, W, T, lambda) of all 2 N modes, ascending, each (2N,); W and T of unit mass per element."""
-    stiffness, mass = (matrix.toarray()[2:4, :6] for matrix in assemble(np.ones(3), np.ones(3), np.ones(3)))
+    one, basis = np.ones(3), basis_between(np.arange(4.0))
+    assembled = stiffness_matrix(basis, one)
+    mean, gradient = curvature_weights(one, assembled).reshape(2, -1)[:, 0]
+    stiffness, mass = (matrix.toarray()[2:4, :6] for matrix in (assembled, mass_matrix(basis, one)))
     inner = pi * np.arange(1, n) / n
     shapes = _two_by_two(_symbol(stiffness, inner), _symbol(mass, inner))
     ends = np.array([0.0, pi])
@@ -100,7 +113,7 @@ def _branches(n: int) -> tuple[Array, Array, Array, Array]:
     w = np.concatenate([shapes[:, 0, 0], shapes[:, 0, 1], [0.0, 0.0]])
     slope = np.concatenate([shapes[:, 1, 0], shapes[:, 1, 1], 1.0 / np.sqrt(mass_ends)])
     s, c = np.sin(0.5 * mu), np.cos(0.5 * mu)
-    values = 4.0 * (s * slope) ** 2 + 3.0 * (2.0 * c * slope - 4.0 * s * w) ** 2
+    values = mean * 4.0 * (s * slope) ** 2 + gradient * (2.0 * c * slope - 4.0 * s * w) ** 2
     order = np.argsort(values)
     return mu[order], w[order], slope[order], values[order]
 

@@ -142,7 +142,7 @@ class Segments(Discrete):
 class Elements(Discrete):
     """Hermite beam elements."""
 
-    name, home = "fem", "verify.elements.hermite"
+    name, home = "fem", "verify.elements.linear"
     parts, title = "elements", "Hermite elements"
     colour = "#e8760c"
     bounds = "above"

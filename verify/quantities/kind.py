@@ -14,9 +14,9 @@ from verify.models.catalogue import MODELS
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
-Work: TypeAlias = Literal["closed form", "modes", "harmonic", "equilibrium", "in time"]
-"""What is done for a figure: nothing but arithmetic; eigenvalues (of models of parts; the exact beam's are closed
-forms); driven fields; equilibria and modes of the nonlinear chain; motion in time."""
+Work: TypeAlias = Literal["closed form", "matrices", "modes", "harmonic", "equilibrium", "in time"]
+"""What is done for a figure: nothing but arithmetic; matrices, of which nothing is solved; eigenvalues (of models of
+parts; the exact beam's are closed forms); driven fields; equilibria and modes of the nonlinear chain; motion in time."""
 
 
 class Among(msgspec.Struct, frozen=True):
@@ -194,6 +194,20 @@ class FirstModes(Arguments, frozen=True, kw_only=True):
     modes: Annotated[int, Meta(ge=1, description="how many modes, from the first")] = 22
 
 
+class Elements(Arguments, frozen=True, kw_only=True):
+    """A mesh of Hermite elements."""
+
+    count: Size
+    grading: Grading = 1.0
+
+
+class StockMode(Arguments, frozen=True, kw_only=True):
+    """One mode of equal Hermite elements, by stock scikit-fem and by ours."""
+
+    mode: Mode
+    count: Size
+
+
 class ToError(Divided, frozen=True, kw_only=True):
     """An accuracy wanted of one mode of one discrete model."""
 
@@ -248,5 +262,7 @@ class Quantity(msgspec.Struct, Generic[A], frozen=True):
     """A real or complex number, or a bracket. Raises InputError."""
     needs: Callable[[A, "Scene"], tuple[Need, ...]] = no_needs
     """What has to be solved for it, as far as can be known beforehand. Raises InputError where it cannot be."""
+    models: tuple[str, ...] = ()
+    """Models that it uses beside the one its arguments name and those of its needs."""
     superposed: str = ""
     """Of a figure that a map over frequency and phase superposes from two unit drives: which of theirs it is."""

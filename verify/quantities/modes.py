@@ -11,6 +11,7 @@ from verify.quantities.kind import (
     AtSize,
     BracketAt,
     DiscreteAtSize,
+    Elements,
     FirstModes,
     NeighbourModes,
     NodeAt,
@@ -18,6 +19,7 @@ from verify.quantities.kind import (
     Quantity,
     ShapeAt,
     ShapesOverSizes,
+    StockMode,
     ToError,
 )
 
@@ -108,6 +110,18 @@ def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:
     if a.node > len(positions):
         raise InputError(f"node = {a.node}: mode {a.mode} has {len(positions)} nodes between the ends")
     return float(positions[a.node - 1])
+
+
+def _stock_difference(a: StockMode, scene: "Scene", bench: Workbench) -> float:
+    from verify.elements.stock import stock_frequency_hz
+
+    return stock_frequency_hz(scene.beam, a.mode, a.count) / bench.frequency_hz("fem", a.count, a.mode) - 1.0
+
+
+def _stiffness_difference(a: Elements, scene: "Scene", bench: Workbench) -> float:
+    from verify.elements.pencil import factor_difference
+
+    return factor_difference(scene.beam, a.count, a.grading)
 
 
 def _rule_frequency(a: NeighbourModes, scene: "Scene", bench: Workbench) -> float:
@@ -213,6 +227,24 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "modes",
         _count_needed,
         needs=_count_guess,
+    ),
+    Quantity(
+        "mode.stock_difference",
+        "1",
+        "Frequency by stock scikit-fem, its own Hermite element and solve, relative to that of our elements.",
+        StockMode,
+        "modes",
+        _stock_difference,
+        needs=lambda a, s: _solved("fem", a.count, a.mode),
+    ),
+    Quantity(
+        "mode.stiffness_difference",
+        "1",
+        "Largest entry of the elements' factored stiffness minus scikit-fem's assembled one, over sqrt(K_ii K_jj).",
+        Elements,
+        "matrices",
+        _stiffness_difference,
+        models=("fem",),
     ),
     Quantity(
         "drive.rule_frequency",

@@ -171,6 +171,8 @@ def print_plan(plan: "Plan") -> None:
         console.print(table)
     if plan.closed_forms:
         console.print(f"closed forms, for {_who(plan.closed_forms)}")
+    if plan.assembled:
+        console.print(f"matrices assembled, for {_who(plan.assembled)}")
     if plan.harmonic:
         console.print(f"harmonic fields, for {_who(plan.harmonic)}")
     if plan.compiled:

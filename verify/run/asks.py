@@ -77,7 +77,7 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
         name=one.id,
         work=found.work,
         needs=needs,
-        models=(arguments.model,) if hasattr(arguments, "model") else (),
+        models=(*found.models, *([arguments.model] if hasattr(arguments, "model") else [])),
         slides=found.arguments.slides,
     )
 

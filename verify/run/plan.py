@@ -56,6 +56,8 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True):
     problems: tuple[Problem, ...]
     compiled: tuple[str, ...] = ()
     """Who asks for equilibria or modes of the nonlinear chain."""
+    assembled: tuple[str, ...] = ()
+    """Who asks for matrices of which nothing is solved."""
     motions: int = 0
     """Simulations in time that the studies will do."""
 
@@ -78,6 +80,7 @@ def plan_scene(scene: "Scene") -> Plan:
         harmonic=by_work.get("harmonic", ()),
         stepped=by_work.get("in time", ()),
         compiled=by_work.get("equilibrium", ()),
+        assembled=by_work.get("matrices", ()),
         chosen=_chosen(scene, asks),
         skipped=_skipped(scene, asks),
         problems=tuple(Problem(*pair) for pair in problems),

@@ -1,0 +1,218 @@
+"""What scikit-fem does in the elements, held to be its doing, and its own element as a subject beside ours."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify.beam import Beam, PointForce, Section
+from verify.elements import linear, mesh, pencil
+from verify.elements.in_time import time_basis
+from verify.elements.stock import stock_frequency_hz
+from verify.errors import InputError
+from verify.judge.extended_precision import eigenvalue_error
+from verify.scenes.scene import load_scene
+
+PAPER = load_scene("paper").beam
+STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)
+STEPS = (Section(length=0.16), Section(length=0.04, thickness=0.0031), Section(length=0.23, youngs_modulus=61e9))
+STEPPED = replace(STRIP, section=STEPS, supports=("clamped", "guided"))
+FORCES = [PointForce(position=0.0137), PointForce(position=0.2911, amplitude=0.7, phase_deg=63.0)]
+UNEQUAL = np.array([0.0, 0.3, 1.7, 2.2, 4.9, 5.3])
+
+
+def works():
+    """Everything the model is asked for, by name."""
+    return {
+        "modes": lambda: linear.solve_modes(STRIP, 5, 23).frequencies_hz,
+        "modes of many elements": lambda: linear.solve_modes(STEPPED, 5, 300, grading=1.4).frequencies_hz,
+        "field": lambda: linear.solve_harmonic(STRIP, FORCES, 777.0, 23).deflection([0.1417]),
+        "unit responses": lambda: linear.unit_responses(STRIP, [0.1], np.array([777.0]), np.array([0.1417]), 23),
+        "motion on equal elements": lambda: time_basis(STRIP, 23).omegas,
+        "motion on a stepped beam": lambda: time_basis(STEPPED, 23).omegas,
+    }
+
+
+@pytest.fixture
+def unkept():
+    """No basis is kept from before, nor afterwards."""
+    mesh._kept.cache_clear()
+    yield
+    mesh._kept.cache_clear()
+
+
+def raising(*_, **__):
+    raise ZeroDivisionError("scikit-fem's is gone")
+
+
+@pytest.mark.parametrize("work", works())
+@pytest.mark.parametrize("form", ["bending", "inertia"])
+def test_without_scikit_fems_assembly_there_is_no_model(form, work, monkeypatch):
+    from verify.elements import element
+
+    monkeypatch.setattr(getattr(element, form), "_kernel", raising)
+    with pytest.raises(ZeroDivisionError):
+        works()[work]()
+
+
+@pytest.mark.parametrize("work", works())
+def test_frequencies_and_answers_follow_scikit_fems_stiffness(work, monkeypatch):
+    """Every entry of K 1.21 times as large: frequencies rise by 1.1; a driven beam, no frequency, answers otherwise."""
+    from verify.elements import element
+
+    here, true = works()[work](), element.bending._kernel
+    monkeypatch.setattr(element.bending, "_kernel", lambda *given: 1.21 * true(*given))
+    found = works()[work]()
+    if np.iscomplexobj(here):
+        assert abs(found / here - 1).min() > 0.02
+    else:
+        assert found == pytest.approx(1.1 * here, rel=1e-12)
+
+
+@pytest.mark.parametrize("work", works())
+def test_without_scikit_fems_degrees_of_freedom_no_support_is_held(work, monkeypatch, unkept):
+    from skfem import CellBasis
+
+    monkeypatch.setattr(CellBasis, "get_dofs", raising)
+    with pytest.raises(ZeroDivisionError):
+        works()[work]()
+
+
+@pytest.mark.parametrize("work", works())
+def test_without_scikit_fems_mapping_there_is_no_model(work, monkeypatch, unkept):
+    from skfem.mapping import MappingAffine
+
+    monkeypatch.setattr(MappingAffine, "invDF", raising)
+    with pytest.raises(ZeroDivisionError):
+        works()[work]()
+
+
+def test_forces_act_and_shapes_are_read_through_scikit_fems_probes(monkeypatch):
+    from skfem import CellBasis
+
+    modes, basis = linear.solve_modes(STEPPED, 3, 23), time_basis(STRIP, 23)
+    monkeypatch.setattr(CellBasis, "probes", raising)
+    for work in (
+        works()["field"],
+        works()["unit responses"],
+        modes.sampled,
+        modes.curvatures,
+        lambda: modes.slope([0.1]),
+        lambda: basis.loads(0.1),
+        lambda: basis.shapes(np.array([0.1]), 1),
+    ):
+        with pytest.raises(ZeroDivisionError):
+            work()
+
+
+def test_the_mesh_has_the_beams_own_coordinates():
+    elements = mesh.build_elements(STEPPED, 43, 1.7)
+    nodes = elements.basis.mesh.p[0] * elements.parts.unit
+    assert nodes[[0, -1]] == pytest.approx([0.0, 0.43], abs=1e-15)
+    for step in (0.16, 0.20):
+        assert abs(nodes - step).min() < 1e-15
+    first = np.diff(nodes)[: int(np.searchsorted(nodes, 0.16 - 1e-9))]
+    assert first[-1] / first[0] == pytest.approx(1.7, rel=1e-12)
+    assert elements.basis.mapping.detDF(np.zeros((1, 1)))[:, 0] == pytest.approx(elements.lengths, rel=1e-15)
+
+
+@pytest.mark.parametrize("form", ["bending", "inertia"])
+def test_our_element_assembles_what_scikit_fems_own_does_on_unequal_cells(form):
+    """Of the same degrees of freedom in the same order."""
+    from skfem import Basis, ElementLineHermite, MeshLine
+
+    from verify.elements import element
+
+    weights = np.array([2.0, 0.3, 5.0, 1.1, 0.7])
+    make = mesh.stiffness_matrix if form == "bending" else mesh.mass_matrix
+    stock = Basis(MeshLine(UNEQUAL), ElementLineHermite(), intorder=6)
+    field = {"stiffness" if form == "bending" else "mass": element.per_cell(weights, stock)}
+    expected = getattr(element, form).assemble(stock, **field).toarray()
+    found = make(mesh.basis_between(UNEQUAL), weights).toarray()
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-10 * abs(expected).max())
+
+
+def test_our_probes_read_what_scikit_fems_own_element_does():
+    from skfem import Basis, ElementLineHermite, MeshLine
+
+    x = np.array([0.0, 0.11, 0.3, 1.69, 3.3, 5.3])
+    stock = Basis(MeshLine(UNEQUAL), ElementLineHermite()).probes(x[None]).toarray()
+    basis = mesh.basis_between(UNEQUAL)
+    assert mesh.point_loads(basis, x) == pytest.approx(stock, abs=1e-11)
+    nodal = np.random.default_rng(3).standard_normal((4, basis.N))
+    assert mesh.interpolate(basis, nodal, x) == pytest.approx(nodal @ stock.T, abs=1e-10)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_derivative_probed_is_the_field_that_scikit_fem_interpolates(order):
+    basis = mesh.basis_between(UNEQUAL)
+    nodal = np.random.default_rng(4).standard_normal(basis.N)
+    points = basis.at("gauss")
+    field, places = points.interpolate(nodal), np.array(points.global_coordinates())[0].ravel()
+    expected = (field.grad[0] if order == 1 else field.hess[0, 0]).ravel()
+    assert mesh.interpolate(basis, nodal[None], places, order)[0] == pytest.approx(expected, abs=1e-10)
+
+
+def test_our_finder_finds_the_cells_that_scikit_fems_does():
+    from skfem.mesh import MeshLine1
+
+    line = mesh.basis_between(UNEQUAL).mesh
+    x = np.concatenate([UNEQUAL, np.random.default_rng(5).uniform(0.0, 5.3, 200)])
+    assert (line.element_finder()(x) == MeshLine1.element_finder(line)(x)).all()
+
+
+def test_factors_read_off_the_stiffness_of_equal_elements_are_the_textbooks_with_no_rounding():
+    """EI/l and 3 EI/l, at any size: Simpson's points are floats, those of Gauss are not."""
+    found = mesh.stiffness_matrix(mesh.basis_between(np.arange(1001.0)), np.ones(1000))
+    assert pencil.curvature_weights(np.ones(1000), found).tolist() == [1.0] * 1000 + [3.0] * 1000
+
+
+@pytest.mark.parametrize("supports", [("pinned", "pinned"), ("clamped", "free"), ("guided", "clamped")])
+@pytest.mark.parametrize("grading", [1.0, 2.3, 0.02])
+@pytest.mark.parametrize("section", [(), STEPS])
+def test_the_factored_stiffness_is_the_assembled_one(supports, grading, section):
+    beam = replace(STRIP, supports=supports, section=section)
+    assert pencil.factor_difference(beam, 61, grading) < 2e-15
+
+
+def test_a_factored_stiffness_too_large_to_write_out_is_refused():
+    with pytest.raises(InputError, match="lower count"):
+        pencil.factor_difference(STRIP, 700)
+
+
+@pytest.mark.parametrize("beam", [PAPER, STRIP, replace(STRIP, supports=("clamped", "free"))], ids=str)
+@pytest.mark.parametrize(("count", "least", "most"), [(49, 1e-13, 1e-9), (400, 3e-11, 1e-6), (3000, 3e-7, 3e-3)])
+def test_scikit_fems_own_element_loses_digits_with_the_size(beam, count, least, most):
+    """Mode 1 of the paper's beam: 1e-11, 7e-9, 3e-5. Rounding, so that the bands are wide; it grows about like N^4."""
+    off = stock_frequency_hz(beam, 1, count) / linear.solve_modes(beam, 1, count).frequencies_hz[0] - 1
+    assert least < abs(off) < most
+
+
+def test_it_is_the_stock_frequency_that_is_off_counted_in_fifty_digits():
+    beam = replace(STRIP, supports=("clamped", "free"))
+    assert eigenvalue_error(beam, "fem", 400, 1, linear.solve_modes(beam, 1, 400).frequencies_hz[0]) <= 1e-14
+    assert 1e-10 < eigenvalue_error(beam, "fem", 400, 1, stock_frequency_hz(beam, 1, 400)) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("beam", "mode", "count", "message"),
+    [
+        (STEPPED, 1, 20, "sections"),
+        (replace(STRIP, supports=("free", "pinned")), 1, 20, "rigid motions"),
+        (STRIP, 10, 5, "one short"),
+        (STRIP, 11, 5, "more than the 10"),
+    ],
+)
+def test_what_the_stock_solve_does_not_have_is_refused_in_a_sentence(beam, mode, count, message):
+    with pytest.raises(InputError, match=message):
+        stock_frequency_hz(beam, mode, count)
+
+
+@pytest.mark.parametrize("left", ["pinned", "clamped", "guided", "free"])
+@pytest.mark.parametrize("right", ["pinned", "clamped", "guided", "free"])
+def test_unknowns_counted_without_scikit_fem_are_those_it_leaves(left, right):
+    """A plan counts them without loading it; the first free one of the left end is what a mode's sign is taken by."""
+    beam = replace(STRIP, supports=(left, right))
+    free = mesh.build_elements(beam, 7).free
+    assert linear.unknowns(beam, 7) == len(free)
+    held = {"pinned": {0}, "clamped": {0, 1}, "guided": {1}, "free": set()}
+    assert set(range(16)) - set(free.tolist()) == held[left] | {14 + j for j in held[right]}

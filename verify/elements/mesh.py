@@ -1,0 +1,97 @@
+"""A beam's line of Hermite elements: scikit-fem's mesh, degrees of freedom, assembly, point sources and probes.
+
+Lengths are in mean element lengths L/N, stiffnesses and masses in those of the beam; the nodes are real
+coordinates in that unit, so that those of equal elements are whole numbers, exact at any size.
+"""
+
+from functools import lru_cache
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from verify.beam import Beam
+from verify.models.division import Parts, divide
+from verify.models.eigen import Array
+
+KEPT = 4000
+"""Nodes up to which a basis is kept for who asks next: about a kilobyte each."""
+
+_HELD = {"pinned": ("u",), "clamped": ("u", "u_x"), "guided": ("u_x",), "free": ()}
+"""What a support holds, in scikit-fem's names of the degrees of freedom."""
+
+
+class Elements(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A beam divided into Hermite elements."""
+
+    beam: Beam
+    parts: Parts
+    basis: Any
+    """verify.elements.element.LineBasis."""
+    free: NDArray[np.intp]
+    """Degrees of freedom that the supports leave, (n,) ascending."""
+
+    @property
+    def lengths(self) -> Array:
+        """Of the elements as the mesh has them, (N,)."""
+        return np.diff(self.basis.mesh.p[0])
+
+    def all_values(self, vectors: Any) -> Any:
+        """Values of all degrees of freedom, (k, 2N + 2), from those of the free ones, (n, k)."""
+        nodal = np.zeros((vectors.shape[1], self.basis.N), dtype=vectors.dtype)
+        nodal[:, self.free] = vectors.T
+        return nodal
+
+
+def build_elements(beam: Beam, n_elements: int, grading: float = 1.0) -> Elements:
+    """The elements of a beam. Raises InputError where it cannot be divided so."""
+    parts = divide(beam, n_elements, grading)
+    basis = basis_between(parts.nodes)
+    return Elements(beam=beam, parts=parts, basis=basis, free=free_unknowns(basis, beam.supports))
+
+
+def basis_between(nodes: Array) -> Any:
+    """scikit-fem's basis of Hermite elements between nodes, (N + 1,) ascending; small ones are kept."""
+    from verify.elements.element import line_basis
+
+    return _kept(nodes.tobytes()) if len(nodes) <= KEPT else line_basis(nodes)
+
+
+@lru_cache(maxsize=16)
+def _kept(nodes: bytes) -> Any:
+    from verify.elements.element import line_basis
+
+    return line_basis(np.frombuffer(nodes))
+
+
+def free_unknowns(basis: Any, supports: tuple[str, str]) -> NDArray[np.intp]:
+    """Which degrees of freedom the supports leave, (n,) ascending."""
+    left, right = supports
+    return np.asarray(basis.unheld((_HELD[left], _HELD[right])))
+
+
+def stiffness_matrix(basis: Any, stiffness: Array) -> Any:
+    """K over all degrees of freedom by scikit-fem, (2N + 2, 2N + 2) sparse; `stiffness` is EI of each element, (N,)."""
+    from verify.elements.element import bending, per_cell
+
+    points = basis.at("simpson")
+    return bending.assemble(points, stiffness=per_cell(stiffness, points))
+
+
+def mass_matrix(basis: Any, mass: Array) -> Any:
+    """The consistent M over all degrees of freedom by scikit-fem, likewise; `mass` is rho A of each element, (N,)."""
+    from verify.elements.element import inertia, per_cell
+
+    points = basis.at("gauss")
+    return inertia.assemble(points, mass=per_cell(mass, points))
+
+
+def point_loads(basis: Any, x: Array) -> Array:
+    """Unit forces at x (in units from the left end) on every degree of freedom, (len(x), 2N + 2)."""
+    return np.asarray(basis.derivative(0).probes(x[None]).toarray())
+
+
+def interpolate(basis: Any, nodal: Any, x: Array, derivative: int = 0) -> Any:
+    """The elements' cubics or a derivative at x (in units from the left end), (k, len(x)); nodal is (k, 2N + 2)."""
+    return np.ascontiguousarray((basis.derivative(derivative).probes(x[None]) @ nodal.T).T)
