@@ -15,7 +15,8 @@ from verify.chain.stepping import ChainMotion
 from verify.chain.stretching import ElasticMotion
 from verify.errors import InputError
 from verify.models.division import Array
-from verify.motion.contact import law_entries
+from verify.motion.contact import law_of
+from verify.motion.records import Given, Rider
 from verify.motion.stepping import contact_space, fresh_motion
 from verify.slider import Slider
 
@@ -78,10 +79,8 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
     local, along, edges = _surface(chain, start)
     n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
     kept = np.zeros((n_steps + 1, 4))
-    motion = fresh_motion(slider.speed)
-    done = kernels.slide_given(
-        n_steps, dt, local, along, edges - start, motion, law_entries(slider, beam), kept, *contact_space()
-    )
+    rider = Rider(fresh_motion(slider.speed), law_of(slider, beam), two_way=False)
+    done = kernels.slide_given(n_steps, dt, Given(local, along, edges - start), rider, kept, contact_space())
     return ChainRide(
         chain=chain,
         times=times[: 2 * done + 1 : 2],

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.models.time_basis import Array, TimeBasis
-from verify.motion.carried import begin, coupling_on, slide, steady_field, times_of
+from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance
 from verify.motion.margins import margins_of
@@ -79,7 +79,16 @@ def simulate(
     stages, basis, coupling = _prepare(request)
     if slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
-    return slide(request, slider, stages, basis, coupling, began, _notes(request, basis), progress, patient)
+    laid = Laid(
+        request=request,
+        slider=slider,
+        stages=stages,
+        basis=basis,
+        coupling=coupling,
+        began=began,
+        notes=_notes(request, basis),
+    )
+    return slide(laid, progress, patient)
 
 
 def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling | None]:
