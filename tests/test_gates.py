@@ -24,7 +24,17 @@ from verify.judge import compare, sizing, workbench
 from verify.judge.compare import Bracket
 from verify.models import division, eigen
 from verify.models import driven_pencil as harmonic_solvers
-from verify.motion import carried, contact, forcing, pure_wave, request, rigid_surface, simulate
+from verify.motion import (
+    carried,
+    contact,
+    forcing,
+    friction_kernels,
+    pure_wave,
+    records,
+    request,
+    rigid_surface,
+    simulate,
+)
 from verify.motion import figures as slider_figures
 from verify.motion import kernels as contact_kernels
 from verify.quantities import simulated as motions
@@ -601,35 +611,32 @@ def links_that_do_not_shorten_where_they_turn(patch):
 def surface_lever_forgotten(patch):
     """The slider feels the mid-line, whose first-order speed is across."""
     for module in (carried, pure_wave):
-        true = module.law_entries
-        patch.setattr(module, "law_entries", lambda *given, true=true: entries_with(true(*given), HALF=1e-9))
+        true = module.law_of
+        patch.setattr(module, "law_of", lambda *given, true=true: law_with(true(*given), half=1e-9))
 
 
-def entries_with(law, **factors):
-    """Entries of a law times factors."""
-    for name, factor in factors.items():
-        law[getattr(contact_kernels, name)] *= factor
-    return law
+def law_with(law, **factors):
+    """A law with fields times factors; a field that it does not have is an error."""
+    return law._replace(**{name: getattr(law, name) * factor for name, factor in factors.items()})
 
 
 def surface_lever_doubled(patch):
-    true = pure_wave.law_entries
-    patch.setattr(pure_wave, "law_entries", lambda *given: entries_with(true(*given), HALF=2.0))
+    true = pure_wave.law_of
+    patch.setattr(pure_wave, "law_of", lambda *given: law_with(true(*given), half=2.0))
 
 
 def friction_that_pushes(patch):
     """What friction adds to the speed in every step, with its sign turned round."""
-    true, true_belt = contact_kernels.slide, contact_kernels.slide_on_belt
+    true, true_belt = contact_kernels.slide, friction_kernels.slide_on_belt
 
-    def slide(n_steps, *given):
-        motion = given[5]
+    def slide(n_steps, dt, surface, rider, *given):
         for _ in range(n_steps):
-            before = motion[contact_kernels.V]
-            why = true(1, *given)
-            if why != contact_kernels.DONE:
+            before = rider.motion[records.V]
+            why = true(1, dt, surface, rider, *given)
+            if why != records.DONE:
                 return why
-            motion[contact_kernels.V] = 2 * before - motion[contact_kernels.V]
-        return contact_kernels.DONE
+            rider.motion[records.V] = 2 * before - rider.motion[records.V]
+        return records.DONE
 
     def slide_on_belt(n_steps, dt, law, belt, stiffness, pull, state, events):
         for _ in range(n_steps):
@@ -639,7 +646,7 @@ def friction_that_pushes(patch):
         return 0
 
     patch.setattr(contact_kernels, "slide", slide)
-    patch.setattr(contact_kernels, "slide_on_belt", slide_on_belt)
+    patch.setattr(friction_kernels, "slide_on_belt", slide_on_belt)
 
 
 def one_way_for_two_way(patch):
@@ -649,19 +656,13 @@ def one_way_for_two_way(patch):
 
 def held_slider_without_inertia(patch):
     """Nor weight: only friction is given back to the beam."""
-    true = carried.law_entries
-
-    def light(*given):
-        law = true(*given)
-        law[contact_kernels.HELD] = 0.0
-        return law
-
-    patch.setattr(carried, "law_entries", light)
+    true = carried.law_of
+    patch.setattr(carried, "law_of", lambda *given: true(*given)._replace(held=False))
 
 
 def weight_of_another_load(patch):
-    true = carried.law_entries
-    patch.setattr(carried, "law_entries", lambda *given: entries_with(true(*given), LOAD=1.001))
+    true = carried.law_of
+    patch.setattr(carried, "law_of", lambda *given: law_with(true(*given), load=1.001))
 
 
 def steady_start_without_the_mass(patch):
@@ -744,19 +745,13 @@ def link_inertia_left_out_in_time(patch):
 
 def drift_of_second_order_dropped(patch):
     """What rises and falls carries a point that follows it: 219 of 220 parts of the drift are gone."""
-    true = pure_wave.law_entries
-
-    def followed(*given):
-        law = true(*given)
-        law[contact_kernels.FOLLOWING] = 1.0
-        return law
-
-    patch.setattr(pure_wave, "law_entries", followed)
+    true = pure_wave.law_of
+    patch.setattr(pure_wave, "law_of", lambda *given: true(*given)._replace(following=True))
 
 
 def following_taken_for_tangential(patch):
-    true = pure_wave.law_entries
-    patch.setattr(pure_wave, "law_entries", lambda *given: entries_with(true(*given), FOLLOWING=0.0))
+    true = pure_wave.law_of
+    patch.setattr(pure_wave, "law_of", lambda *given: true(*given)._replace(following=False))
 
 
 def standing_wave_for_a_travelling_one(patch):
@@ -780,10 +775,9 @@ def surface_seen_half_a_step_late(patch):
     """Of first order in the step."""
     true = contact_kernels.slide
 
-    def slide(n_steps, dt, modes, drive, *given):
-        late = drive.copy()
-        late[contact_kernels.ORIGIN] -= 0.5 * dt
-        return true(n_steps, dt, modes, late, *given)
+    def slide(n_steps, dt, surface, *given):
+        late = surface.drive._replace(origin=surface.drive.origin - 0.5 * dt)
+        return true(n_steps, dt, surface._replace(drive=late), *given)
 
     patch.setattr(contact_kernels, "slide", slide)
 

@@ -20,7 +20,6 @@ from scipy.optimize import brentq
 from test_stepped_beams import written_out
 
 import verify
-from verify.motion.kernels import HALF
 from verify.run.gates import judge
 from verify.run.runner import workbench_for
 from verify.scenes.scene import Complex, load_scene
@@ -406,8 +405,8 @@ SHARED = [
     Shared(
         "motion.contact",
         "a lever forty times as long",
-        ("motion.carried.law_entries",),
-        after(lambda law: law * np.where(np.arange(len(law)) == HALF, 40.0, 1.0)),
+        ("motion.carried.law_of",),
+        after(lambda law: law._replace(half=40.0 * law.half)),
         "paper-slider",
         ("slider-against-the-wave",),
         drift_against_the_wave,

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-from verify.motion.kernels import SLIPS, STICKS
+from verify.motion.records import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
 from verify.run.runner import workbench_for

@@ -23,7 +23,6 @@ from verify.motion.records import (
     SURFACE,
     TURNS,
     Law,
-    Rider,
     Space,
     V,
     X,
@@ -225,23 +224,21 @@ def slip(v: float, stuck: bool, push: float, half: float, full: float, law: Law,
 
 
 @lean()
-def give(dt: float, space: Space) -> None:
+def give(dt: float, seen: Array, took: Array) -> None:
     """What everything but friction adds to the speed by the middle and the end of a step."""
-    seen, took = space.seen, space.slip
     took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
     took[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
 
 
 @lean()
-def advance(dt: float, rate: float, rider: Rider, space: Space) -> float:
+def advance(dt: float, rate: float, motion: Array, law: Law, seen: Array, took: Array) -> float:
     """Move the slider to the end of a step; the distance that its own speed made. `rate` was its acceleration."""
-    motion, seen, took = rider.motion, space.seen, space.slip
     v = motion[V]
     v1 = v + took[GIVEN_END] + took[CHANGE]
     if took[STICKING] > 0.0:
         v1, rate1 = seen[2, SURFACE], rate
     else:
-        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], rider.law)
+        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], law)
     moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
     motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
     motion[V], motion[STUCK] = v1, took[STICKING]

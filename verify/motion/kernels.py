@@ -135,13 +135,13 @@ def _step(
         _see(row, (number + 0.5 * row) * dt, x1, v1, piece, True, surface, law, books, space)
         if rider.two_way and row == 1:
             here = set_levers(surface, piece, space.local, x1, law.half)
-    give(dt, space)
+    give(dt, seen, space.slip)
     if rider.two_way:
         pressed, lifted = _answer((number + 1) * dt, dt, x1, v1, here, surface, rider, books, space)
     else:
         feel(dt, rider, seen)
         slip(v, stuck, 0.0, 0.0, 0.0, law, dt, space)
-    moved = advance(dt, rate, rider, space)
+    moved = advance(dt, rate, motion, law, seen, space.slip)
     if books.open:
         account(v, moved, pressed, dt, rider, books, seen)
         books.ledger[LIFTED] += lifted
@@ -224,9 +224,9 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
             t, half = 0.5 * row * dt, 2 * number + row
             touch(given.local[half], edges, 0, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
             seen[row, SURFACE] += given.along[half]
-        give(dt, space)
+        give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law, dt, space)
-        advance(dt, rate, rider, space)
+        advance(dt, rate, motion, law, seen, space.slip)
     return n_steps
 
 
