@@ -9,8 +9,8 @@ from msgspec import structs
 
 from verify.beam import Beam
 from verify.chain import dynamics as chain_dynamics
-from verify.chain import kernels as chain_kernels
 from verify.chain import problems as chain_studies
+from verify.chain import records as chain_records
 from verify.chain import splitting as chain_modal
 from verify.chain import statics as chain_statics
 from verify.chain import system as chain_system
@@ -548,8 +548,8 @@ def axial_spring_of_half_the_section(patch):
 
 
 def recursion_with_another_inertia_than_the_energy(patch):
-    true = chain_kernels.mobilities
-    patch.setattr(chain_kernels, "mobilities", lambda half, masses, inertias: true(half, masses, 1.01 * inertias))
+    true = chain_records.mobilities
+    patch.setattr(chain_records, "mobilities", lambda half, masses, inertias: true(half, masses, 1.01 * inertias))
 
 
 def forces_that_lag_instead_of_lead(patch):

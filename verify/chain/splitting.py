@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from verify.beam import check_number
-from verify.chain import kernels
+from verify.chain import kernels, records, splitting_kernels
 from verify.chain.dynamics import at_rest, flatten, linearise, project, workspace
 from verify.chain.modes import lowest_modes
 from verify.chain.stepping import ChainMotion, Statistics, checked_times, how_started
@@ -248,13 +248,13 @@ def _turns(omega: Array, times: Array) -> Array:
     return np.stack([c, sinc, -omega * s], axis=2)
 
 
-def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kicks: int) -> kernels.Modal:
+def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kicks: int) -> records.Modal:
     """The splitting as the kernels see it."""
     flows, weights = SCHEMES[kicks]
     omega, m, n = basis.omega[chosen], len(chosen), basis.system.n_links
     gaps = np.diff(samples)
     even = len(gaps) > 1 and np.ptp(gaps) < 1e-9 * gaps[0]
-    return kernels.Modal(
+    return records.Modal(
         kicks=np.array(weights),
         shares_of_step=np.array(flows),
         omega=omega,
@@ -298,12 +298,12 @@ class _Modal:
         """Step until every sample is kept; why it stopped."""
         try:
             while True:
-                status = kernels.march_modal(
+                status = splitting_kernels.march_modal(
                     self.flat, self.modal, self.clock, self.counts, self.samples, self.kept, 256, self.free, self.work
                 )
-                if status == kernels.DONE:
+                if status == records.DONE:
                     return "finished"
-                if status == kernels.DIVERGED:
+                if status == records.DIVERGED:
                     return f"diverged at t = {self.clock[0]:.6g} s with a step of {self.clock[1]:.3g} s"
         except KeyboardInterrupt:
             return f"interrupted at t = {self.clock[0]:.6g} s"

@@ -9,15 +9,9 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from verify.beam import check_number
-from verify.chain import kernels
-from verify.chain.dynamics import (
-    PIVOT_LOSS,
-    flatten,
-    held_rows,
-    keep_pivots,
-    project,
-    workspace,
-)
+from verify.chain import kernels, records
+from verify.chain.dynamics import PIVOT_LOSS, flatten, held_rows, keep_pivots, project, workspace
+from verify.chain.recursion_kernels import hub_motion
 from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem, link_at
 from verify.chain.work import fixed_steps, per_evaluation, refuse_work
@@ -149,7 +143,7 @@ class ChainMotion:
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), radians."""
         hub = flatten(self.system).numbers
-        turned = np.array([kernels.hub_motion(hub, t)[0] for t in self.times]) if hub[:3].any() else np.zeros(1)
+        turned = np.array([hub_motion(hub, t)[0] for t in self.times]) if hub[:3].any() else np.zeros(1)
         return np.asarray(np.cumsum(self.angles, axis=1) + turned[:, None])
 
 
@@ -239,7 +233,7 @@ class _Run:
         fastest = 0.0 if step else highest_rate(system, start)
         first = step or min(0.1 / max(fastest, 1e-12), max(samples[-1] - start.time, 1e-12))
         floor = 1e-3 * tolerance**1.5
-        self.m = kernels.March(
+        self.m = records.March(
             a=table.a,
             c=table.c,
             weights=table.weights,
@@ -265,7 +259,7 @@ class _Run:
         try:
             while True:
                 status = kernels.march(self.flat, self.m, budget, self.work)
-                if status != kernels.RUNNING:
+                if status != records.RUNNING:
                     return self.ended(status)
                 progress(pace.part())
                 if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
@@ -283,10 +277,10 @@ class _Run:
 
     def ended(self, status: int) -> str:
         """The end in words."""
-        if status == kernels.DONE:
+        if status == records.DONE:
             return "finished"
         at = f"at t = {self.m.clock[0]:.6g} s with a step of {self.m.clock[1]:.3g} s"
-        return f"diverged {at}" if status == kernels.DIVERGED else f"stopped {at}, too small to go on"
+        return f"diverged {at}" if status == records.DIVERGED else f"stopped {at}, too small to go on"
 
     def motion(self, method: str, seconds: float, stopped: str, started: str) -> ChainMotion:
         """What was kept."""
