@@ -86,20 +86,26 @@ def simulate_elastic(
     flat, diagonal, coupling = _flattened(system, axial_stiffness, immovable)
     u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
     u[:, 1] = 0.0 if deflected is None else deflected
-    steps = int(np.ceil(spacing / step - 1e-9))
-    k, w = np.zeros((4, *u.shape)), np.zeros((2, *u.shape))
-    kept, stopped = [(u.copy(), v.copy())], "finished"
-    try:
-        for t in samples[:-1]:
-            if not kernels.march(flat, t, spacing / steps, steps, u, v, k, w):
-                stopped = f"diverged before t = {t + spacing:.6g} s"
-                break
-            kept.append((u.copy(), v.copy()))
-    except KeyboardInterrupt:
-        stopped = f"interrupted after t = {samples[len(kept) - 1]:.6g} s"
+    kept, stopped = _march(flat, samples, int(np.ceil(spacing / step - 1e-9)), u, v)
     energies = np.array([kernels.energy(flat, diagonal, coupling, *state) for state in kept])
     places, speeds = (np.array([state[part] for state in kept]) for part in range(2))
     return ElasticMotion(system, samples[: len(kept)], places, speeds, energies, stopped)
+
+
+def _march(
+    flat: kernels.Elastic, samples: Array, steps: int, u: Array, v: Array
+) -> tuple[list[tuple[Array, Array]], str]:
+    """(displacements, velocities) at the samples reached, so many steps apart, and why it stopped."""
+    k, w = np.zeros((4, *u.shape)), np.zeros((2, *u.shape))
+    spacing, kept = float(samples[1] - samples[0]), [(u.copy(), v.copy())]
+    try:
+        for t in samples[:-1]:
+            if not kernels.march(flat, t, spacing / steps, steps, u, v, k, w):
+                return kept, f"diverged before t = {t + spacing:.6g} s"
+            kept.append((u.copy(), v.copy()))
+    except KeyboardInterrupt:
+        return kept, f"interrupted after t = {samples[len(kept) - 1]:.6g} s"
+    return kept, "finished"
 
 
 def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) -> Array:

@@ -12,7 +12,7 @@ from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field,
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance
 from verify.motion.margins import margins_of
-from verify.motion.request import STEPS_PER_PERIOD, Envelope, Request, requested
+from verify.motion.request import STEPS_PER_PERIOD, Driven, Envelope, Modelled, Request, Started, Watched, requested
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
 from verify.slider import Slider
@@ -57,31 +57,23 @@ def simulate(
     """
     began = perf_counter()
     request = requested(
-        beam,
-        tuple(forces),
-        frequency_hz,
-        duration,
-        model,
-        count,
-        modes,
-        start,
-        soft_start_periods,
-        envelope,
-        modal_damping,
+        Driven(beam, tuple(forces), frequency_hz, duration),
+        Modelled(model, count, modes, modal_damping),
+        Started(start, soft_start_periods, envelope, continue_from),
+        Watched(at, samples, step, steps_per_period, ledger),
         slider,
-        at,
-        samples,
-        step,
-        steps_per_period,
-        ledger,
-        continue_from,
     )
+    return _run(request, began, progress, patient)
+
+
+def _run(request: Request, began: float, progress: Callable[[float], None], patient: bool) -> Motion:
+    """What a checked request gives; `began` is the wall clock at its start, seconds. Raises InputError."""
     stages, basis, coupling = _prepare(request)
-    if slider is None or coupling is None:
+    if request.slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
     laid = Laid(
         request=request,
-        slider=slider,
+        slider=request.slider,
         stages=stages,
         basis=basis,
         coupling=coupling,

@@ -10,7 +10,7 @@ from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.errors import InputError, near_name
 from verify.models.division import check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import Array, ComplexArray, Eigenpairs, check_size, lowest, method_name
+from verify.models.eigen import Array, ComplexArray, Eigenpairs, FactoredPencil, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
 from verify.segments.links import (
@@ -163,11 +163,8 @@ def solve_harmonic(
     if not (beam.loss_factor or modal_damping or joint_dashpot):
         refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve_modes, n_segments)
     loads = _loads(chain, forces, load) * (chain.unit**3 / beam.bending_stiffness)
-    dashpot = 2.0 * pi * frequency_hz * joint_dashpot * chain.unit / beam.bending_stiffness
-    damped = pencil.stiffness * (1.0 + 1j * beam.loss_factor) + 1j * dashpot
-    stiffness: ComplexArray = np.asarray(damped, dtype=complex)
-    free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
-    raw = with_ends(chain, free).T
+    stiffness = _damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
+    raw = with_ends(chain, damped_response(pencil, loads, omega2, stiffness, modal_damping)).T
     return HarmonicField(
         model="segment",
         count=n_segments,
@@ -176,6 +173,12 @@ def solve_harmonic(
         forces=tuple(forces),
         shapes=_field_shapes(chain, raw, reading),
     )
+
+
+def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:
+    """The stiffness with the beam's loss factor and dashpots of omega c, N m, at every joint."""
+    lossy = pencil.stiffness * (1.0 + 1j * beam.loss_factor) + 1j * (dashpots * chain.unit / beam.bending_stiffness)
+    return np.asarray(lossy, dtype=complex)
 
 
 def _check_harmonic(
