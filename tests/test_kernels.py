@@ -1,5 +1,6 @@
 """What numba keeps on disk is used again, and is thrown away when a kernel that it was made of is edited."""
 
+import os
 import subprocess
 import sys
 
@@ -22,7 +23,8 @@ TRUE = {"kernels": (9.81 * 1.7 + 0.5, 1.62 * 1.7 + 0.5), "records": (1.7, 1.7)}
 def outcome(room):
     """(what the outer kernel gives, how often it came from disk) in a process of its own."""
     code = "from outer_kernels import found, outer; print(found, sum(outer.stats.cache_hits.values()))"
-    environment = {"NUMBA_CACHE_DIR": str(room / "kept"), "PYTHONPATH": ":".join([str(room), *sys.path])}
+    path = os.pathsep.join([str(room), *sys.path])
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(room / "kept"), "PYTHONPATH": path}
     done = subprocess.run(
         [sys.executable, "-B", "-c", code], capture_output=True, text=True, check=True, env=environment, cwd=room
     )

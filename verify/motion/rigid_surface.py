@@ -23,7 +23,18 @@ MOST_STEPS = 40_000_000
 
 def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Law:
     """Friction alone, accelerations in m/s^2."""
-    return Law(coulomb, float(kinetic), float(static), float(slope), 1.0, 0.0, GRAVITY, False, False, GRAVITY)
+    return Law(
+        coulomb=coulomb,
+        kinetic=float(kinetic),
+        static=float(static),
+        slope=float(slope),
+        mass=1.0,
+        half=0.0,
+        gravity=GRAVITY,
+        following=False,
+        held=False,
+        load=GRAVITY,
+    )
 
 
 def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:

@@ -147,7 +147,12 @@ def feed(stage: Stage, z: Array, forces: Sequence[PointForce], sliding: Sliding)
     return Feed(
         stage=stage,
         modes=modes,
-        drive=Drive(float(stage.omega), float(stage.origin), float(stage.unit_s), np.array(stage.growth, dtype=float)),
+        drive=Drive(
+            omega=float(stage.omega),
+            origin=float(stage.origin),
+            unit=float(stage.unit_s),
+            growth=np.array(stage.growth, dtype=float),
+        ),
         books=_books(stage, forces, sliding),
         kept=sliding.kept._replace(every=stage.every, points=np.ascontiguousarray(stage.rows(sliding.points).T)),
     )
