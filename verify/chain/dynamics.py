@@ -10,16 +10,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.chain import kernels
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular, held_points
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array, Indices
 
-Indices = NDArray[np.int64]
 PIVOT_LOSS = 0.1
 """A dependent angle is kept until its lever arm falls below this share of the longest."""
 

@@ -16,10 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from verify.models.arrays import Array, Indices
 
 FREE, ROLLER = 0, 1
 """Kinds of tip."""

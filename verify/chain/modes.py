@@ -4,7 +4,7 @@ import numpy as np
 
 from verify.chain.system import ChainSystem
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
 from verify.models.eigen import lowest
 from verify.segments.links import Chain, chain_pencil, with_ends
 

@@ -14,7 +14,7 @@ from verify.beam import Beam, check_number
 from verify.chain.stepping import ChainMotion
 from verify.chain.stretching import ElasticMotion
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
 from verify.motion.contact import law_entries
 from verify.motion.stepping import contact_space, fresh_motion
 from verify.slider import Slider

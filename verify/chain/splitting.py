@@ -25,7 +25,7 @@ from verify.chain.stepping import ChainMotion, Statistics, checked_times, how_st
 from verify.chain.system import ChainState, ChainSystem, circular, link_at
 from verify.chain.work import modal_work, refuse_work
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
 
 SCHEMES: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {
     1: ((0.5, 0.5), (1.0,)),

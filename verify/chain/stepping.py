@@ -22,7 +22,7 @@ from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem, link_at
 from verify.chain.work import fixed_steps, per_evaluation, refuse_work
 from verify.errors import InputError, near_name
-from verify.models.division import Array
+from verify.models.arrays import Array
 
 Method = Literal["rk4", "adaptive"]
 METHODS: tuple[str, ...] = get_args(Method)

@@ -17,7 +17,7 @@ from verify.chain import stretching_kernels as kernels
 from verify.chain.system import ChainSystem, circular, link_at
 from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,8 @@ import numpy as np
 
 from verify.beam import Beam, PointForce, check_number
 from verify.errors import InputError
-from verify.models.division import Array, divide
+from verify.models.arrays import Array
+from verify.models.division import divide
 from verify.segments.links import Chain, Joints, build_chain
 from verify.segments.loads import Load, joint_weights
 from verify.segments.walls import Wall

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.models.time_basis import Array
+from verify.models.arrays import Array
 from verify.slider import NormalChoice, Slider
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import msgspec
 
 if TYPE_CHECKING:
     from verify.chain.ride import ChainRide
-    from verify.models.time_basis import Array
+    from verify.models.arrays import Array
     from verify.motion.result import Motion
     from verify.scenes.scene import Scene
     from verify.slider import Slider

@@ -3,7 +3,7 @@
 import msgspec
 
 from verify.errors import InputError
-from verify.models.time_basis import Array
+from verify.models.arrays import Array
 from verify.motion.contact import Coupling, Margins
 from verify.slider import Slider
 

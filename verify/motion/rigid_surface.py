@@ -8,7 +8,7 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.errors import InputError
-from verify.models.time_basis import Array
+from verify.models.arrays import Array
 from verify.slider import GRAVITY
 
 STEPS = 4096

@@ -7,7 +7,8 @@ from typing import Literal
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.models.time_basis import Array, TimeBasis
+from verify.models.arrays import Array
+from verify.models.time_basis import TimeBasis
 from verify.motion.carried import begin, coupling_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance

@@ -5,11 +5,10 @@ from time import perf_counter
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import PointForce
+from verify.models.arrays import Array, Indices
 from verify.models.fields import phasor
-from verify.models.time_basis import Array
 from verify.motion.forcing import turns
 from verify.motion.surface import Stage
 
@@ -38,7 +37,7 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     ledger: Array
     first: Array
     first_deflection: Array
-    tally: NDArray[np.int64]
+    tally: Indices
     """(3,): steps of the present stage, samples and events so far; advanced by the loop together with the motion."""
     on_its_way: tuple[float, float] | None = None
     """Height and climb of a slider that was held on the surface before; one that is put on takes the surface's."""

@@ -9,9 +9,10 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.errors import InputError, near_name
+from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
-from verify.models.time_basis import Array, TimeBasis, check_held
+from verify.models.time_basis import TimeBasis, check_held
 from verify.segments.linear import check
 from verify.segments.links import Chain, build_chain, chain_pencil, corrected_reading, with_ends
 from verify.segments.loads import Load, joint_weights

@@ -11,8 +11,9 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.models.arrays import Array
 from verify.models.division import Parts, divide
-from verify.models.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
 from verify.segments.walls import Wall, wall_factors, welded_halves
 
 Joints = Literal["series", "printed"]

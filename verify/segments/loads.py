@@ -9,7 +9,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from verify.models.eigen import Array
+from verify.models.arrays import Array
 from verify.segments.links import Chain
 
 Load = Literal["reciprocal", "lever"]

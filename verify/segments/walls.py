@@ -7,7 +7,8 @@ for one link length (the trapezoidal rule); at a clamped wall that rule needs an
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+
+from verify.models.arrays import Array
 
 Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
 WALLS: tuple[str, ...] = get_args(Wall)
@@ -27,7 +28,7 @@ _CORRECTIONS: dict[str, tuple[float, ...]] = {
 }
 
 
-def wall_factors(supports: tuple[str, str], n_segments: int, wall: str) -> NDArray[np.float64]:
+def wall_factors(supports: tuple[str, str], n_segments: int, wall: str) -> Array:
     """What to multiply the compliances of joints 0..N with, (N + 1,); infinite where an end has no joint.
 
     A guided wall has half a joint, which is exact by reflection. On short chains the corrections of both

@@ -23,7 +23,7 @@ from verify.chain.stretching import simulate_elastic
 from verify.chain.system import axial_stiffness, build_system
 from verify.chain.work import MOST, check_kept, check_modes_of
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
 from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size
 
