@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import cos, pi, radians
 
 import numpy as np
+from numpy.typing import NDArray
 
-from verify.models.arrays import Array
-
+Array = NDArray[np.float64]
 Run = Callable[[float, float], tuple[Array, Array]]
 """(step, end) -> (times, deflection of the middle of the chain), sampled at every step or more rarely."""
 
