@@ -27,6 +27,7 @@ from verify.models import driven_pencil as harmonic_solvers
 from verify.motion import carried, contact, forcing, pure_wave, request, rigid_surface, simulate
 from verify.motion import figures as slider_figures
 from verify.motion import kernels as contact_kernels
+from verify.options import WALLS
 from verify.quantities import simulated as motions
 from verify.quantities.catalogue import QUANTITIES, Quantity
 from verify.run.gates import expectation, judge
@@ -188,7 +189,7 @@ def dips_overlooked(patch):
 
 
 def wall_joint_as_stiff_as_any_other(patch):
-    patch.setattr(chain_walls, "_CORRECTIONS", dict.fromkeys(chain_walls.WALLS, ()))
+    patch.setattr(chain_walls, "_CORRECTIONS", dict.fromkeys(WALLS, ()))
 
 
 def gregorys_weights_turned_round(patch):

@@ -14,8 +14,8 @@ from verify.chain.stepping import ChainMotion, simulate
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.chain.work import MOST, STATIC_LINKS, check_links, check_modes_of
 from verify.errors import InputError
+from verify.options import Wall
 from verify.segments.links import link_inertia
-from verify.segments.walls import Wall
 
 Progress = Callable[[float], None]
 """Hears how much of a motion is done, 0 to 1."""

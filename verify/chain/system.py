@@ -7,7 +7,6 @@ across it. Sections 2 and 7 of the paper's formalism: relative joint coordinates
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, pi, radians, sin
-from typing import Literal
 
 import numpy as np
 
@@ -15,11 +14,10 @@ from verify.beam import Beam, PointForce, check_number
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import divide
-from verify.segments.links import Chain, Joints, build_chain
-from verify.segments.loads import Load, joint_weights
-from verify.segments.walls import Wall
+from verify.options import TIPS, Joints, Load, Tip, Wall
+from verify.segments.links import Chain, build_chain
+from verify.segments.loads import joint_weights
 
-Tip = Literal["free", "roller"]
 MAX_ACTUATORS = 4
 
 
@@ -119,7 +117,7 @@ class ChainSystem:
         check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
         for value in self.gravity:
             check_number("chain.gravity", value, "m/s^2")
-        if self.tip not in ("free", "roller"):
+        if self.tip not in TIPS:
             raise InputError(
                 f"chain.tip = {self.tip!r}: a straight chain of rigid links between two fixed ends cannot move: "
                 "the sum of l cos theta equals L for theta = 0 alone; give 'free' or 'roller', with axial_spring = "

@@ -16,6 +16,7 @@ from verify.motion.margins import margins_of
 from verify.motion.request import STEPS_PER_PERIOD, Envelope, Request, requested
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
+from verify.options import Start
 from verify.slider import Slider
 
 CLOSED_FORM_ROWS = 2000
@@ -30,7 +31,7 @@ def simulate(
     model: Literal["analytic", "fem", "segment"] = "segment",
     count: int | None = None,
     modes: int = 400,
-    start: Literal["rest", "steady"] = "rest",
+    start: Start = "rest",
     soft_start_periods: float = 0.0,
     envelope: Envelope = (),
     modal_damping: float | None = None,

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from msgspec import Meta
 
+from verify import options
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.quantities.kind import Arguments, Mode, Quantity, Wall
@@ -93,7 +94,7 @@ class Departing(Chained, frozen=True, kw_only=True):
     force: Annotated[float, Meta(gt=0, description="N, of every force of the scene's drive")]
     time: Annotated[float, Meta(gt=0, lt=0.1, description="s after the forces set in")] = 1e-3
     inertia: Annotated[
-        Literal["full", "transverse", "elastic"],
+        options.Inertia,
         Meta(description="transverse: rigid links without inertia along x; elastic: links that stretch by EA / l"),
     ] = "full"
     of: Annotated[Literal["end", "rms"], Meta(description="the departure at that time, or its rms until then")] = "end"

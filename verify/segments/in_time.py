@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import lru_cache
 from math import pi
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
@@ -13,14 +13,10 @@ from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.time_basis import TimeBasis, check_held
+from verify.options import LINES, Line, Load, Wall
 from verify.segments.linear import check
 from verify.segments.links import Chain, build_chain, chain_pencil, corrected_reading, with_ends
-from verify.segments.loads import Load, joint_weights
-from verify.segments.walls import Wall
-
-Line = Literal["spline", "raw"]
-LINES: tuple[str, ...] = get_args(Line)
-"""The contact line: the paper's C2 spline through the joints (Section II.B), or the links' own straight edges."""
+from verify.segments.loads import joint_weights
 
 
 def time_basis(

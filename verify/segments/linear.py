@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from math import pi, sqrt
-from typing import Literal, get_args
 
 import numpy as np
 
@@ -14,10 +13,9 @@ from verify.models.driven_pencil import damped_response, modal_receptance, refus
 from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.options import JOINTS, LOADS, READINGS, WALLS, Joints, Load, Reading, Wall
 from verify.segments.links import (
-    JOINTS,
     Chain,
-    Joints,
     build_chain,
     chain_pencil,
     corrected_reading,
@@ -25,12 +23,9 @@ from verify.segments.links import (
     joint_curvatures,
     with_ends,
 )
-from verify.segments.loads import LOADS, Load, joint_weights
-from verify.segments.walls import WALLS, Wall
+from verify.segments.loads import joint_weights
 
 FIELD = "n_segments"
-Reading = Literal["corrected", "raw", "links"]
-READINGS: tuple[str, ...] = get_args(Reading)
 
 
 def unknowns(beam: Beam, n_segments: int) -> int:

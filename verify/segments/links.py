@@ -5,7 +5,7 @@ length is measured in mean link lengths, a stiffness and a mass in those of the 
 length 1 exactly.
 """
 
-from typing import Any, Literal, get_args
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -14,10 +14,8 @@ from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
 from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
-from verify.segments.walls import Wall, wall_factors, welded_halves
-
-Joints = Literal["series", "printed"]
-JOINTS: tuple[str, ...] = get_args(Joints)
+from verify.options import Joints, Wall
+from verify.segments.walls import wall_factors, welded_halves
 
 
 class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):

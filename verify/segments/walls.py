@@ -4,14 +4,9 @@ The compliances of the joints are the weights of a quadrature of M^2 / EI over t
 for one link length (the trapezoidal rule); at a clamped wall that rule needs an end correction.
 """
 
-from typing import Literal, get_args
-
 import numpy as np
 
 from verify.models.arrays import Array
-
-Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
-WALLS: tuple[str, ...] = get_args(Wall)
 
 # What a clamped end adds to the weights 1 of its joints, from the wall on, in l/EI.
 _CORRECTIONS: dict[str, tuple[float, ...]] = {

@@ -8,7 +8,7 @@ forces have one amplitude.
 
 from collections.abc import Callable
 from math import ceil
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -26,11 +26,12 @@ from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size
+from verify.options import Inertia
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
-Links = Literal["full", "transverse", "elastic"]
+Links = Inertia
 """Rigid links; rigid links without inertia along x; links of the beam's own EA / l."""
 SAMPLES, SAMPLES_PER_PERIOD = 1001, 40
 """Kept at least, and in a period of the drive."""
