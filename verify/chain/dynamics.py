@@ -3,7 +3,7 @@
 The chain is the paper's: rigid links in relative joint coordinates q_i = theta_i - theta_{i-1}, closed at the right
 by a roller of which only y_N = 0 is asked. The closure is a matter of coordinate partitioning (R. A. Wehage and E. J.
 Haug, J. Mech. Design 104 (1982) 247): as many angles as there are held points depend on the others, chosen by pivot.
-Forward dynamics is compiled (`chain_kernels`), motion in time is in `chain_motion`.
+Forward dynamics is compiled (`chain.kernels`), motion in time is in `chain.stepping`.
 """
 
 from collections.abc import Sequence

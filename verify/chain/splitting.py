@@ -129,7 +129,7 @@ def simulate_modal(
 
     `kicks` to a step, 1 to 3; `n_modes` (all unless given) take part in the nonlinear motion, which dashpots allow
     all of them alone. The chain has no ledger of work here. Raises InputError, also for more work than `most`
-    accelerations of links (`chain_work`).
+    accelerations of links (`chain.work`).
     """
     check_number("step", step, "seconds", above=0)
     if kicks not in SCHEMES:

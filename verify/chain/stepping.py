@@ -174,7 +174,7 @@ def simulate(
     order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
     `limit` is the stability limit where it is known already, which spares finding it.
     `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. `progress` hears
-    how much of the time is done; a run that will take more than `most` accelerations of links (`chain_work`) is
+    how much of the time is done; a run that will take more than `most` accelerations of links (`chain.work`) is
     refused as soon as its pace is known. Raises InputError.
     """
     _check_method(method, step, tolerance)

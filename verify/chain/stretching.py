@@ -1,8 +1,8 @@
 """The chain with links that stretch (EA / l): axial inertia as a beam has it, at the price of axial waves.
 
 Rigid links carry a spurious axial inertia (`ChainSystem.axial_inertia`). Here every link is a uniform bar that
-stretches evenly, its inertia that of `verify.chain` along both directions, half of m/4 |v_i + v_j|^2 + J/l^2
-|v_j - v_i|^2. Both ends may be immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
+stretches evenly, its inertia that of a link (`segments.links.joint_masses`) along both directions. Both ends may be
+immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
 """
 
 from collections.abc import Sequence
@@ -18,6 +18,7 @@ from verify.chain.system import ChainSystem, circular, link_at
 from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.errors import InputError
 from verify.models.arrays import Array
+from verify.segments.links import joint_masses
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +72,7 @@ def simulate_elastic(
 
     `axial_stiffness` is EA in newton, of all links or of each (N,); `step` is at most `elastic_step_limit`, half of
     it unless given, shortened to divide the spacing of the times; `immovable` holds the tip along x too. Raises
-    InputError, also for more work than `most` accelerations of links (`chain_work`), and for what stretching links do
+    InputError, also for more work than `most` accelerations of links (`chain.work`), and for what stretching links do
     not know here: actuators, a turning base, an axial spring, links without inertia along x.
     """
     samples = _checked(system, axial_stiffness, times)
@@ -127,9 +128,8 @@ def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) ->
 
 def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -> tuple[kernels.Elastic, Array, Array]:
     """The chain as the kernels see it, and its mass matrix: diagonal (N + 1,) and coupling (N,)."""
-    lengths, spin = system.lengths, system.inertias / system.lengths**2
-    own, coupling = system.masses / 4.0 + spin, system.masses / 4.0 - spin
-    diagonal = np.append(own, 0.0) + np.append(0.0, own)
+    lengths = system.lengths
+    diagonal, coupling = joint_masses(system.masses, system.inertias, lengths)
     free = np.ones((system.n_links + 1, 2))
     free[0] = 0.0
     free[-1] = 0.0 if immovable else 1.0, 0.0 if system.tip == "roller" else 1.0

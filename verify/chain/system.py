@@ -232,6 +232,27 @@ def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
     return divide(beam, n_segments, grading).axial_stiffnesses * (beam.youngs_modulus * beam.area)
 
 
+def straight_chain(system: ChainSystem, *, unit: float = 1.0, mass: float = 1.0, spring: float = 1.0) -> Chain:
+    """What linear theory sees of a chain at rest, in units of m, kg and N m/rad; its base is a wall if it has a spring.
+
+    A wall's slope is 0 in the readings: what turns the base is not in them.
+    """
+    flexible = np.append(system.stiffness, 0.0)
+    compliances = np.divide(spring, flexible, out=np.full(len(flexible), np.inf), where=flexible > 0.0)
+    left = "clamped" if system.stiffness[0] > 0.0 else "pinned"
+    right = "pinned" if system.tip == "roller" else "free"
+    return Chain(
+        supports=(left, right),
+        rigid_motions=int(left == "pinned" and right == "free"),
+        unit=unit,
+        start=0.0,
+        lengths=system.lengths / unit,
+        compliances=compliances,
+        masses=system.masses / mass,
+        inertias=system.inertias / (mass * unit**2),
+    )
+
+
 def check_buildable(beam: Beam, wall: str = "gregory") -> None:
     """Raise InputError for supports, a wall or a loss that the nonlinear chain does not have."""
     left, right = beam.supports
