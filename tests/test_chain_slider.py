@@ -1,11 +1,17 @@
 """The contact code of the linear beams on the nonlinear chain."""
 
+import dataclasses
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
+from verify import segment_model
 from verify.beam import PointForce
 from verify.chain.dynamics import at_rest
-from verify.chain.ride import _reading, half_steps, ride
+from verify.chain.problems import contact_line_error
+from verify.chain.ride import _surface, half_steps, ride
 from verify.chain.splitting import modal_basis, simulate_linear
 from verify.chain.stepping import simulate as simulate_chain
 from verify.chain.system import build_system
@@ -70,7 +76,7 @@ def test_coulomb_sticks_on_the_chain(paper_beam):
 def test_a_slider_that_leaves_its_piece_stops_and_keeps_its_way(paper_beam):
     slider = Slider(mass=1e-3, mu=0.2, slope=100.0, position=0.2401, speed=-3.0, coupling="one-way")
     found = ridden(paper_beam, 0.01, slider=slider)
-    assert found.stopped == "left the piece of the chain it began on"
+    assert found.statistics.stopped == "left the piece of the chain it began on"
     assert 0 < len(found.times) == len(found.travelled) < 201
     assert slider.position + found.displacement >= 0.24
 
@@ -84,8 +90,6 @@ def test_a_slider_that_leaves_its_piece_stops_and_keeps_its_way(paper_beam):
     ],
 )
 def test_what_a_chain_cannot_carry_is_refused(paper_beam, times, changed, words):
-    from msgspec.structs import replace
-
     system = build_system(paper_beam, 9, forces(0.01), 4276.0)
     chain = simulate_linear(modal_basis(system), at_rest(system), times)
     with pytest.raises(InputError, match=words):
@@ -93,8 +97,6 @@ def test_what_a_chain_cannot_carry_is_refused(paper_beam, times, changed, words)
 
 
 def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
-    from msgspec.structs import replace
-
     from verify.beam import Section
 
     with pytest.raises(InputError, match=r"slider.line = 'raw': a nonlinear chain is touched along its spline"):
@@ -104,15 +106,49 @@ def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
         ridden(stepped, 1.0, duration=2e-5)
 
 
-def test_the_contact_line_of_unequal_links_goes_through_the_corrected_joints(paper_beam):
-    from verify.segments.links import build_chain, corrected_reading
+AS_THE_CHAIN_LIES = [
+    (("clamped", "pinned"), 1.0),
+    (("clamped", "free"), 1.0),
+    (("clamped", "pinned"), 2.7),
+    (("pinned", "pinned"), 2.7),
+]
+"""Beside a clamped wall, on unequal links, and both."""
 
-    system = build_system(paper_beam, 12, forces(1.0), 4276.0, grading=2.7)
-    chain = build_chain(paper_beam, 12, grading=2.7)
-    heights = np.random.default_rng(5).normal(0, 1e-6, (3, 13))
-    heights[:, [0, -1]] = 0.0
-    expected = corrected_reading(chain, heights)
-    for piece in range(12):
-        line = np.diff(heights, axis=1) @ _reading(system.nodes, piece)
-        assert line[:, 0] == pytest.approx(expected[:, piece], rel=1e-12, abs=1e-20)
-        assert line.sum(axis=1) == pytest.approx(expected[:, piece + 1], rel=1e-9, abs=1e-18)
+
+def bent(titanium_strip, supports, grading, n=24, mode=3):
+    """A nonlinear chain that stands in one mode of the linear one, a millionth of its length high."""
+    beam = replace(titanium_strip, supports=supports)
+    system = build_system(beam, n, grading=grading)
+    modes = segment_model.solve_modes(beam, mode, n, grading=grading)
+    shape = modes.readings["raw"]()[mode - 1]
+    size = 1e-6 * beam.length / abs(shape).max()
+    angles = np.diff(np.arcsin(size * np.diff(shape) / system.lengths), prepend=0.0)
+    moved = simulate_linear(modal_basis(system), at_rest(system), [0.0, 1e-9])
+    return beam, modes, size, dataclasses.replace(moved, angles=np.stack([angles, -0.7 * angles]))
+
+
+@pytest.mark.parametrize(("supports", "grading"), AS_THE_CHAIN_LIES)
+def test_the_contact_line_is_the_linear_chains_reading_everywhere(titanium_strip, supports, grading):
+    beam, modes, size, moved = bent(titanium_strip, supports, grading)
+    highest = abs(modes.slope(np.linspace(0.0, beam.length, 300))[2]).max()
+    for piece, (left, right) in enumerate(pairwise(moved.system.nodes)):
+        xi = np.array([0.0, 0.23, 0.71, 1.0])
+        local, _, edges = _surface(moved, 0.4 * left + 0.6 * right)
+        assert edges == pytest.approx([left, right], abs=1e-15), piece
+        slopes = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(local[0, 0])) / (right - left)
+        expected = modes.slope(left + xi * (right - left))[2]
+        assert slopes / size == pytest.approx(expected, abs=1e-9 * highest), piece
+        assert local[1, 0] == pytest.approx(-0.7 * local[0, 0], rel=1e-6, abs=1e-9 * size)
+
+
+@pytest.mark.parametrize(("supports", "grading", "least"), [(("clamped", "pinned"), 1.0, 1.9)])
+def test_beside_a_clamped_wall_the_contact_line_comes_to_the_beams_slope_with_order_two(
+    titanium_strip, supports, grading, least
+):
+    errors = []
+    for n in (24, 48, 96):
+        beam = replace(titanium_strip, supports=supports)
+        errors.append(contact_line_error(beam, 3, n, 1e-3 * beam.length))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (orders > least).all()
+    assert (orders < 2.2).all()

@@ -8,34 +8,32 @@ immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from verify.beam import check_number
 from verify.chain import stretching_kernels as kernels
+from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
 from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.errors import InputError
 from verify.models.arrays import Array
+from verify.motion.result import END, Statistics
 from verify.segments.links import joint_masses
 
 
-@dataclass(frozen=True, eq=False)
-class ElasticMotion:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElasticMotion(MovedChain):
     """Joints of a stretching chain at the times kept."""
 
-    system: ChainSystem
-    times: Array
-    """(n,), s."""
     displacements: Array
     """(n, N + 1, 2), metres from the straight chain."""
     velocities: Array
     """(n, N + 1, 2), m/s."""
     energies: Array
     """(n,), kinetic, elastic and of gravity together, joule."""
-    stopped: str
-    """'finished', or why not."""
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Y of material points on their links, (n, len(x)), metres."""
@@ -75,6 +73,7 @@ def simulate_elastic(
     InputError, also for more work than `most` accelerations of links (`chain.work`), and for what stretching links do
     not know here: actuators, a turning base, an axial spring, links without inertia along x.
     """
+    began = perf_counter()
     samples = _checked(system, axial_stiffness, times)
     limit = elastic_step_limit(system, axial_stiffness)
     step = 0.5 * limit if step is None else step
@@ -89,7 +88,7 @@ def simulate_elastic(
     u[:, 1] = 0.0 if deflected is None else deflected
     steps = int(np.ceil(spacing / step - 1e-9))
     k, w = np.zeros((4, *u.shape)), np.zeros((2, *u.shape))
-    kept, stopped = [(u.copy(), v.copy())], "finished"
+    kept, stopped, ready = [(u.copy(), v.copy())], END, perf_counter()
     try:
         for t in samples[:-1]:
             if not kernels.march(flat, t, spacing / steps, steps, u, v, k, w):
@@ -98,9 +97,25 @@ def simulate_elastic(
             kept.append((u.copy(), v.copy()))
     except KeyboardInterrupt:
         stopped = f"interrupted after t = {samples[len(kept) - 1]:.6g} s"
+    done = steps * (len(kept) - 1)
+    statistics = Statistics(
+        steps=done,
+        evaluations=4 * done,
+        step_s=spacing / steps,
+        set_up_s=ready - began,
+        wall_s=perf_counter() - ready,
+        stopped=stopped,
+    )
     energies = np.array([kernels.energy(flat, diagonal, coupling, *state) for state in kept])
     places, speeds = (np.array([state[part] for state in kept]) for part in range(2))
-    return ElasticMotion(system, samples[: len(kept)], places, speeds, energies, stopped)
+    return ElasticMotion(
+        system=system,
+        times=samples[: len(kept)],
+        displacements=places,
+        velocities=speeds,
+        energies=energies,
+        statistics=statistics,
+    )
 
 
 def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) -> Array:
