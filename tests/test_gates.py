@@ -11,6 +11,7 @@ from verify.beam import Beam
 from verify.chain import dynamics as chain_dynamics
 from verify.chain import problems as chain_studies
 from verify.chain import records as chain_records
+from verify.chain import ride as chain_ride
 from verify.chain import splitting as chain_modal
 from verify.chain import statics as chain_statics
 from verify.chain import system as chain_system
@@ -37,6 +38,7 @@ from verify.motion import (
 )
 from verify.motion import figures as slider_figures
 from verify.motion import kernels as contact_kernels
+from verify.options import WALLS
 from verify.quantities import simulated as motions
 from verify.quantities.catalogue import QUANTITIES, Quantity
 from verify.run.gates import expectation, judge
@@ -47,6 +49,7 @@ from verify.scenes.scene import Complex, Gate, load_scene, packaged_scenes
 from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 from verify.segments import links as chain
+from verify.segments import reading as segment_reading
 from verify.segments import walls as chain_walls
 from verify.studies import axial_inertia as axial_study
 from verify.waves import operating_point
@@ -198,7 +201,7 @@ def dips_overlooked(patch):
 
 
 def wall_joint_as_stiff_as_any_other(patch):
-    patch.setattr(chain_walls, "_CORRECTIONS", dict.fromkeys(chain_walls.WALLS, ()))
+    patch.setattr(chain_walls, "_CORRECTIONS", dict.fromkeys(WALLS, ()))
 
 
 def gregorys_weights_turned_round(patch):
@@ -608,6 +611,63 @@ def links_that_do_not_shorten_where_they_turn(patch):
     patch.setattr(axial_study, "simulate_elastic", lambda *given, **more: true(*given, immovable=True, **more))
 
 
+def slider_on_a_chain_that_does_not_draw_in(patch):
+    true = chain_ride._surface
+
+    def still_along(*given):
+        local, along, edges = true(*given)
+        return local, 0.0 * along, edges
+
+    patch.setattr(chain_ride, "_surface", still_along)
+
+
+def slider_on_links_that_stretch_a_tenth_less(patch):
+    true = chain_ride.simulate_elastic
+    patch.setattr(
+        chain_ride,
+        "simulate_elastic",
+        lambda system, stiffness, times, **more: true(system, 1.1 * stiffness, times, **more),
+    )
+
+
+def slider_on_a_chain_that_feels_the_mid_line(patch):
+    true = chain_ride.law_of
+    patch.setattr(chain_ride, "law_of", lambda *given: law_with(true(*given), half=1e-9))
+
+
+def slider_on_a_chain_under_another_gravity(patch):
+    true = chain_ride.law_of
+    patch.setattr(
+        chain_ride,
+        "law_of",
+        lambda slider, beam: true(structs.replace(slider, gravity=9.80665), beam),
+    )
+
+
+def friction_booked_at_a_thousandth_less(patch):
+    true = chain_ride._over
+    patch.setattr(chain_ride, "_over", lambda times, values: true(times, 0.999 * values))
+
+
+def contact_line_that_does_not_know_the_wall(patch):
+    from scipy.interpolate import CubicSpline
+
+    patch.setattr(
+        segment_reading, "spline", lambda chain, values: CubicSpline(chain.nodes, values, axis=1, bc_type="natural")
+    )
+
+
+def joints_corrected_as_if_their_links_were_equal(patch):
+    true = segment_reading.corrected_reading
+
+    def equal(chain, joints):
+        found = true(chain, joints)
+        found[:, 1:-1] = joints[:, 1:-1] + np.diff(joints, 2, axis=1) / 12.0
+        return found
+
+    patch.setattr(segment_reading, "corrected_reading", equal)
+
+
 def surface_lever_forgotten(patch):
     """The slider feels the mid-line, whose first-order speed is across."""
     for module in (carried, pure_wave):
@@ -821,6 +881,11 @@ def ends_for_the_largest(patch):
 
 FAULTS_ELSEWHERE = {
     "paper-slider": {
+        slider_on_a_chain_that_does_not_draw_in: {"chain-slider", "chain-slider-on-links-that-stretch"},
+        slider_on_links_that_stretch_a_tenth_less: {"chain-slider-on-links-that-stretch"},
+        slider_on_a_chain_that_feels_the_mid_line: {"chain-slider", "chain-slider-in-the-limit"},
+        slider_on_a_chain_under_another_gravity: {"chain-slider-in-the-limit", "chain-slider-saturates"},
+        friction_booked_at_a_thousandth_less: {"chain-slider-books"},
         means_of_the_size_alone: {"slider-mean-friction", "slider-mean-surface-speed"},
         phases_left_as_they_are_where_they_were_to_turn: {"slider-turned-round"},
         ends_for_the_largest: {"slider-largest-friction", "slider-mean-friction", "slider-mean-surface-speed"},
@@ -1027,6 +1092,8 @@ FAULTS_ELSEWHERE = {
         section_order_reversed: {"elements-at-96", "segments-at-24", "fem-error", "fem-order"},
     },
     "steel-cantilever": {
+        contact_line_that_does_not_know_the_wall: {"contact-line-at-the-wall"},
+        joints_corrected_as_if_their_links_were_equal: {"contact-line-on-unequal-links"},
         link_inertia_left_out: {"gregory-mode-10", "gregory-law", "gregory-law-after-the-sign-change"},
         count_one_too_high: {"segments-for-a-tenth-of-a-per-cent"},
         wall_joint_as_stiff_as_any_other: {

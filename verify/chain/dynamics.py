@@ -3,23 +3,21 @@
 The chain is the paper's: rigid links in relative joint coordinates q_i = theta_i - theta_{i-1}, closed at the right
 by a roller of which only y_N = 0 is asked. The closure is a matter of coordinate partitioning (R. A. Wehage and E. J.
 Haug, J. Mech. Design 104 (1982) 247): as many angles as there are held points depend on the others, chosen by pivot.
-Forward dynamics is compiled (`recursion_kernels`), motion in time is in `stepping`.
+Forward dynamics is compiled (`chain.recursion_kernels`), motion in time is in `chain.stepping`.
 """
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.chain import held_kernels, kernels, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular, held_points
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array, Indices
 
-Indices = NDArray[np.int64]
 PIVOT_LOSS = 0.1
 """A dependent angle is kept until its lever arm falls below this share of the longest."""
 

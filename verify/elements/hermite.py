@@ -11,18 +11,10 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
+from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts, check_division, divide
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import (
-    DENSE_UNKNOWNS,
-    Array,
-    ComplexArray,
-    Eigenpairs,
-    FactoredPencil,
-    check_size,
-    lowest,
-    method_name,
-)
+from verify.models.eigen import DENSE_UNKNOWNS, Eigenpairs, FactoredPencil, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
 

@@ -8,10 +8,11 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.elements.hermite import assemble, check, element_pencil, free_unknowns, hermite, nodal_weights
+from verify.models.arrays import Array
 from verify.models.division import divide
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
-from verify.models.time_basis import Array, TimeBasis, check_held
+from verify.models.time_basis import TimeBasis, check_held
 
 Nodal = Callable[[Any], tuple[Array, Array]]
 """Node numbers -> deflection and slope (per element length) of all modes there, each (n, len(numbers))."""

@@ -6,10 +6,10 @@ from typing import TypeVar
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
-from verify.models.modes import Array, Modes
+from verify.models.arrays import Array, Indices
+from verify.models.modes import Modes
 
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
@@ -62,7 +62,7 @@ def mac(reference: Array, shapes: Array) -> Array:
     return np.asarray(cross**2 / squares)
 
 
-def pair_modes(likeness: Array) -> tuple[NDArray[np.intp], Array]:
+def pair_modes(likeness: Array) -> tuple[Indices, Array]:
     """For every exact mode the index of its computed mode, one to one, and their MAC: (n_reference,) each.
 
     The pairing with the largest sum of MAC values; `likeness` is (n_reference, n_shapes).

@@ -12,8 +12,9 @@ from verify.exact.error_laws import leading_error
 
 if TYPE_CHECKING:
     from verify.judge.compare import Bracket
+    from verify.models.arrays import Array
     from verify.models.fields import HarmonicField
-    from verify.models.modes import Array, Modes
+    from verify.models.modes import Modes
     from verify.motion.result import Motion
 
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]

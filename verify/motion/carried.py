@@ -10,7 +10,8 @@ from msgspec.structs import replace
 
 from verify.beam import PointForce
 from verify.errors import InputError
-from verify.models.time_basis import Array, TimeBasis
+from verify.models.arrays import Array
+from verify.models.time_basis import TimeBasis
 from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.margins import margins_of
 from verify.motion.moving_mass import carried_along, receptance, weighed_down

@@ -7,7 +7,8 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.motion.records import Law
-from verify.slider import NormalChoice, Slider
+from verify.options import NormalChoice
+from verify.slider import Slider
 
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField

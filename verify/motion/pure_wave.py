@@ -7,7 +7,7 @@ import numpy as np
 from verify.beam import Beam, check_number
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
-from verify.models.time_basis import Array
+from verify.models.arrays import Array
 from verify.motion.contact import law_of
 from verify.motion.forcing import CONSTANT
 from verify.motion.records import Law, Rider, V, X

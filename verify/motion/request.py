@@ -7,8 +7,8 @@ import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.errors import InputError
+from verify.models.arrays import Array
 from verify.models.fields import check_drive
-from verify.models.time_basis import Array
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut

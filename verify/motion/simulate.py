@@ -7,7 +7,8 @@ from typing import Literal
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.models.time_basis import Array, TimeBasis
+from verify.models.arrays import Array
+from verify.models.time_basis import TimeBasis
 from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance
@@ -15,6 +16,7 @@ from verify.motion.margins import margins_of
 from verify.motion.request import STEPS_PER_PERIOD, Driven, Envelope, Modelled, Request, Started, Watched, requested
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
+from verify.options import Start
 from verify.slider import Slider
 
 CLOSED_FORM_ROWS = 2000
@@ -29,7 +31,7 @@ def simulate(
     model: Literal["analytic", "fem", "segment"] = "segment",
     count: int | None = None,
     modes: int = 400,
-    start: Literal["rest", "steady"] = "rest",
+    start: Start = "rest",
     soft_start_periods: float = 0.0,
     envelope: Envelope = (),
     modal_damping: float | None = None,

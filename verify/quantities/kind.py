@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
+from verify import options
 from verify.errors import InputError
 from verify.judge.workbench import Need, Settings, Workbench
 
@@ -27,12 +28,10 @@ Reading = Annotated[
     str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default the first")
 ]
 Wall = Annotated[
-    Literal["gregory", "half", "welded", "third-order", "five-joint"],
+    options.Wall,
     Meta(description="how segments are held at a clamped end; half is the literature's k = 2EI/l"),
 ]
-Joints = Annotated[
-    Literal["series", "printed"], Meta(description="Eq. (1) of the segments' joints: put right, or as printed")
-]
+Joints = Annotated[options.Joints, Meta(description="Eq. (1) of the segments' joints: put right, or as printed")]
 Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
 
 

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
+from verify import options
 from verify.errors import InputError
 from verify.quantities.kind import Arguments, Size, Sizes, check_count
 
@@ -21,15 +22,9 @@ class Driven(Arguments, frozen=True, kw_only=True):
     loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
     modal_damping: Annotated[float, Meta(description="ratio of every mode; fem and segment")] = 0.0
     joint_dashpot: Annotated[float, Meta(description="N m s at every joint; segment")] = 0.0
-    drive: (
-        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
-    ) = None
-    load: Annotated[Literal["reciprocal", "lever"], Meta(description="how a force is shared among joints; segment")] = (
-        "reciprocal"
-    )
-    reading: Annotated[
-        Literal["corrected", "raw", "links"], Meta(description="how the chain is read between joints; segment")
-    ] = "corrected"
+    drive: Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")] | None = None
+    load: Annotated[options.Load, Meta(description="how a force is shared among joints; segment")] = "reciprocal"
+    reading: Annotated[options.Reading, Meta(description="how the chain is read between joints; segment")] = "corrected"
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
@@ -137,9 +132,7 @@ class Sensitivity(Arguments, frozen=True, kw_only=True):
     phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
     position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
     loss_factor: Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")] | None = None
-    drive: (
-        Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")] | None
-    ) = None
+    drive: Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")] | None = None
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)

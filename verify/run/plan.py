@@ -18,6 +18,10 @@ CHAIN_IN_TIME = (
     "chain.large_amplitude_frequency",
     "chain.transient_deflection",
     "chain.axial_departure",
+    "chain.slider_displacement",
+    "chain.slider_mean_speed",
+    "chain.slider_largest_friction",
+    "chain.slider_imbalance",
 )
 """Quantities of the nonlinear chain that are stepped; its others are equilibria and modes."""
 STEPS_PER_RADIAN = 15

@@ -9,7 +9,7 @@ from msgspec import Meta
 from verify.beam import check_number
 from verify.errors import InputError
 from verify.motion.figures import RUN_FIGURES
-from verify.slider import NormalChoice
+from verify.options import Kinematics, NormalChoice
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -97,7 +97,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     Every combination of the lists is run; a list that is left out has the scene's own value alone.
     """
 
-    kinematics: tuple[Literal["tangential", "following"], ...] = ()
+    kinematics: tuple[Kinematics, ...] = ()
     normal: tuple[NormalChoice, ...] = ()
     """Whether the beam carries the slider's weight and inertia."""
     soft_start_periods: tuple[float, ...] = ()

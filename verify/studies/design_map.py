@@ -16,7 +16,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError, NoFigureError, near_name
 from verify.exact.error_laws import PARTS
-from verify.models.fields import Array
+from verify.models.arrays import Array
 from verify.waves.measures import middle_half
 from verify.waves.unit_waves import FAST, Gaps, UnitDrive, superposed
 

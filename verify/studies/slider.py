@@ -8,12 +8,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.motion.figures import RUN_FIGURES, Condition, condition_of
-from verify.motion.result import Motion
+from verify.motion.result import Motion, Ride
 from verify.scenes.claims import asks_for_turned
 from verify.studies.work_precision import Comparison, NotCompared, Work, at_equal_error, run_once, work_of
 
 if TYPE_CHECKING:
-    from verify.chain.ride import ChainRide
     from verify.scenes.scene import Scene
 
 MOST_SAMPLES = 100_000
@@ -71,7 +70,7 @@ def motion_study(scene: "Scene", progress: Callable[[str], None] = lambda step: 
     )
 
 
-def figures_of(run: "Motion | ChainRide", back: "Motion | ChainRide | None") -> dict[str, float]:
+def figures_of(run: "Ride", back: "Ride | None") -> dict[str, float]:
     """All figures of a run, those of the one turned round only where there is one."""
     return {name: one.of(run, back) for name, one in RUN_FIGURES.items() if back is not None or not one.turned}
 

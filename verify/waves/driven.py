@@ -11,8 +11,9 @@ from verify.errors import InputError, ResonanceError
 from verify.exact.error_laws import check_carried, discrete_wavenumber
 from verify.judge.compare import observed_order, relative_error
 from verify.judge.workbench import model_module
+from verify.models.arrays import Array
 from verify.models.eigen import solve_seconds
-from verify.models.fields import Array, HarmonicField, phasor
+from verify.models.fields import HarmonicField, phasor
 from verify.models.search import Least, least_over
 from verify.patience import check_work
 from verify.quantities.wave_arguments import InWindow

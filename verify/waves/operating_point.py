@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-from verify.models.fields import Array
+from verify.models.arrays import Array
 from verify.waves.driven import drive_forces, drive_frequency, drive_kind, driven_beam, quietest
 from verify.waves.measures import middle_half
 from verify.waves.unit_waves import Gaps, UnitDrive, superposed

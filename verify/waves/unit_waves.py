@@ -4,12 +4,12 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.exact.error_laws import discrete_wavenumber
-from verify.models.fields import Array, ComplexArray, unit_response, wavenumber
+from verify.models.arrays import Array, BoolArray, ComplexArray
+from verify.models.fields import unit_response, wavenumber
 from verify.waves.imposed import held_units
 from verify.waves.measures import (
     STANDING,
@@ -22,7 +22,6 @@ from verify.waves.measures import (
     zero_field,
 )
 
-BoolArray = NDArray[np.bool_]
 MOST_READINGS = 50_000_000
 """Complex deflections that a map holds at once: 0.8 GB, and as much again twice while waves are fitted."""
 FAST = ("wave.reflection", "wave.standing_wave_ratio", "wave.crest_speed", "wave.energy_flux")
