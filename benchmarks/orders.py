@@ -8,7 +8,7 @@ from math import log2
 
 from verify.beam import SUPPORTS, Beam
 from verify.judge.workbench import Workbench
-from verify.segments.walls import WALLS
+from verify.options import WALLS
 
 
 def main() -> None:

@@ -143,7 +143,7 @@ def loading() -> None:
     from subprocess import check_output
 
     code = (
-        "from time import perf_counter as t; b = t(); from verify import contact_kernels as k; i = t();"
+        "from time import perf_counter as t; b = t(); from verify.motion import friction_kernels as k; i = t();"
         "k.tanh_speed_change(0.1, 0.2, 1.0, 1.0, 0.1); print(i - b, t() - i)"
     )
     found = [[float(v) for v in check_output([sys.executable, "-c", code], text=True).split()] for _ in range(5)]

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from test_chain_dynamics import beam, odd_chain, some_state
 
 from verify.beam import PointForce
-from verify.chain import kernels
+from verify.chain import kernels, splitting_kernels
 from verify.chain import stepping as chain_motion
 from verify.chain.dynamics import at_rest, energies, linearise, positions, project
 from verify.chain.splitting import linear_deflection, modal_basis, simulate_linear, simulate_modal
@@ -377,7 +377,7 @@ def test_ctrl_c_returns_what_is_kept(monkeypatch):
 
 
 def test_ctrl_c_returns_the_kicks_that_were_taken(monkeypatch):
-    true, calls = kernels.march_modal, []
+    true, calls = splitting_kernels.march_modal, []
 
     def interrupted(*given):
         calls.append(1)
@@ -385,7 +385,7 @@ def test_ctrl_c_returns_the_kicks_that_were_taken(monkeypatch):
             raise KeyboardInterrupt
         return true(*given)
 
-    monkeypatch.setattr(kernels, "march_modal", interrupted)
+    monkeypatch.setattr(splitting_kernels, "march_modal", interrupted)
     system = driven(8, 1.0)
     motion = simulate_modal(modal_basis(system), at_rest(system), np.linspace(0.0, 1e-2, 400), step=1e-5)
     assert motion.statistics.stopped.startswith("interrupted at t = ")

@@ -1,16 +1,27 @@
 """The contact code of the linear beams on the nonlinear chain."""
 
+import dataclasses
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from chain_reference import ridden as ridden_by_dop853
+from chain_reference import rigid_motion, stretching_motion
+from msgspec.structs import replace
 
+from verify import segment_model
 from verify.beam import PointForce
-from verify.chain.dynamics import at_rest
-from verify.chain.ride import _reading, half_steps, ride
+from verify.chain.dynamics import at_rest, linearise
+from verify.chain.problems import contact_line_error
+from verify.chain.ride import _surface, check_rideable, coupling_on_chain, half_steps, ride, ride_from_rest
 from verify.chain.splitting import modal_basis, simulate_linear
 from verify.chain.stepping import simulate as simulate_chain
-from verify.chain.system import build_system
+from verify.chain.system import Rotation, build_system, straight_chain
 from verify.errors import InputError
+from verify.models.eigen import lowest
+from verify.motion.contact import coupling_of, surface_speed
 from verify.motion.simulate import simulate
+from verify.segments.links import chain_pencil
 from verify.slider import Slider
 
 STEP = 4e-6
@@ -70,7 +81,7 @@ def test_coulomb_sticks_on_the_chain(paper_beam):
 def test_a_slider_that_leaves_its_piece_stops_and_keeps_its_way(paper_beam):
     slider = Slider(mass=1e-3, mu=0.2, slope=100.0, position=0.2401, speed=-3.0, coupling="one-way")
     found = ridden(paper_beam, 0.01, slider=slider)
-    assert found.stopped == "left the piece of the chain it began on"
+    assert found.statistics.stopped == "left the piece of the chain it began on"
     assert 0 < len(found.times) == len(found.travelled) < 201
     assert slider.position + found.displacement >= 0.24
 
@@ -84,8 +95,6 @@ def test_a_slider_that_leaves_its_piece_stops_and_keeps_its_way(paper_beam):
     ],
 )
 def test_what_a_chain_cannot_carry_is_refused(paper_beam, times, changed, words):
-    from msgspec.structs import replace
-
     system = build_system(paper_beam, 9, forces(0.01), 4276.0)
     chain = simulate_linear(modal_basis(system), at_rest(system), times)
     with pytest.raises(InputError, match=words):
@@ -93,8 +102,6 @@ def test_what_a_chain_cannot_carry_is_refused(paper_beam, times, changed, words)
 
 
 def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
-    from msgspec.structs import replace
-
     from verify.beam import Section
 
     with pytest.raises(InputError, match=r"slider.line = 'raw': a nonlinear chain is touched along its spline"):
@@ -104,15 +111,137 @@ def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
         ridden(stepped, 1.0, duration=2e-5)
 
 
-def test_the_contact_line_of_unequal_links_goes_through_the_corrected_joints(paper_beam):
-    from verify.segments.links import build_chain, corrected_reading
+AS_THE_CHAIN_LIES = [
+    (("clamped", "pinned"), 1.0),
+    (("clamped", "free"), 1.0),
+    (("clamped", "pinned"), 2.7),
+    (("pinned", "pinned"), 2.7),
+]
+"""Beside a clamped wall, on unequal links, and both."""
 
-    system = build_system(paper_beam, 12, forces(1.0), 4276.0, grading=2.7)
-    chain = build_chain(paper_beam, 12, grading=2.7)
-    heights = np.random.default_rng(5).normal(0, 1e-6, (3, 13))
-    heights[:, [0, -1]] = 0.0
-    expected = corrected_reading(chain, heights)
-    for piece in range(12):
-        line = np.diff(heights, axis=1) @ _reading(system.nodes, piece)
-        assert line[:, 0] == pytest.approx(expected[:, piece], rel=1e-12, abs=1e-20)
-        assert line.sum(axis=1) == pytest.approx(expected[:, piece + 1], rel=1e-9, abs=1e-18)
+
+def bent(titanium_strip, supports, grading, n=24, mode=3):
+    """A nonlinear chain that stands in one mode of the linear one, a millionth of its length high."""
+    beam = replace(titanium_strip, supports=supports)
+    system = build_system(beam, n, grading=grading)
+    modes = segment_model.solve_modes(beam, mode, n, grading=grading)
+    shape = modes.readings["raw"]()[mode - 1]
+    size = 1e-6 * beam.length / abs(shape).max()
+    angles = np.diff(np.arcsin(size * np.diff(shape) / system.lengths), prepend=0.0)
+    moved = simulate_linear(modal_basis(system), at_rest(system), [0.0, 1e-9])
+    return beam, modes, size, dataclasses.replace(moved, angles=np.stack([angles, -0.7 * angles]))
+
+
+@pytest.mark.parametrize(("supports", "grading"), AS_THE_CHAIN_LIES)
+def test_the_contact_line_is_the_linear_chains_reading_everywhere(titanium_strip, supports, grading):
+    beam, modes, size, moved = bent(titanium_strip, supports, grading)
+    highest = abs(modes.slope(np.linspace(0.0, beam.length, 300))[2]).max()
+    for piece, (left, right) in enumerate(pairwise(moved.system.nodes)):
+        xi = np.array([0.0, 0.23, 0.71, 1.0])
+        local, _, edges = _surface(moved, 0.4 * left + 0.6 * right)
+        assert edges == pytest.approx([left, right], abs=1e-15), piece
+        slopes = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(local[0, 0])) / (right - left)
+        expected = modes.slope(left + xi * (right - left))[2]
+        assert slopes / size == pytest.approx(expected, abs=1e-9 * highest), piece
+        assert local[1, 0] == pytest.approx(-0.7 * local[0, 0], rel=1e-6, abs=1e-9 * size)
+
+
+def test_beside_a_clamped_wall_the_slope_comes_to_the_beams_with_order_one_and_inside_with_order_three(titanium_strip):
+    beam = replace(titanium_strip, supports=("clamped", "pinned"))
+    for x, order in ((1e-4, 1.0), (0.3, 3.0)):
+        errors = [contact_line_error(beam, 3, n, x) for n in (96, 192, 384)]
+        assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx(order, abs=0.35), x
+
+
+STEEP = Slider(mass=1.3e-3, mu=0.23, slope=300.0, position=0.231, speed=0.004, preload=0.002, coupling="one-way")
+
+
+@pytest.mark.parametrize("kinematics", ["tangential", "following"])
+@pytest.mark.parametrize(("links", "n", "duration"), [("rigid", 9, 1.7e-4), ("stretching", 5, 0.9e-4)])
+def test_a_slider_rides_as_dense_equations_and_dop853_say(paper_beam, links, n, duration, kinematics):
+    """Chain, contact line, slider and integrator written out a second time, at 30 N."""
+    slider, axial = replace(STEEP, kinematics=kinematics), 70e9 * 0.02 * 0.001
+    system = build_system(paper_beam, n, forces(30.0), 4276.0, load="reciprocal")
+    seen = rigid_motion(system, duration) if links == "rigid" else stretching_motion(system, axial, duration)
+    way, speed, work = ridden_by_dop853(system, seen, slider, 0.5 * paper_beam.thickness, duration)
+    found = ride_from_rest(
+        paper_beam, forces(30.0), 4276.0, slider, n, duration, step=duration / 180, links=links, tolerance=1e-10
+    )
+    assert found.displacement == pytest.approx(way, rel=1e-8)
+    assert found.speed[-1] == pytest.approx(speed, rel=1e-8)
+    assert found.ledger.given - found.ledger.rubbed == pytest.approx(work, rel=1e-5)
+
+
+@pytest.mark.parametrize("kinematics", ["tangential", "following"])
+def test_the_sliders_books_close_with_order_four(paper_beam, kinematics):
+    slider, books = replace(STEEP, kinematics=kinematics), []
+    for step in (4e-6, 2e-6):
+        run = ride_from_rest(paper_beam, forces(12.0), 4276.0, slider, 25, 6e-4, step=step, tolerance=1e-11)
+        books.append(run.ledger)
+    coarse, fine = books
+    assert coarse.residual / fine.residual > 8.0
+    assert abs(fine.residual) < 1e-6 * fine.rubbed
+    assert fine.rubbed > 0.0
+    assert fine.given + fine.turned == pytest.approx(fine.gained + fine.rubbed, rel=1e-6)
+    assert fine.gained == pytest.approx(0.5 * 1.3e-3 * (run.speed[-1] ** 2 - 0.004**2), rel=1e-14)
+    assert (fine.turned == 0.0) is (kinematics == "tangential")
+
+
+def test_what_the_chain_would_feel_is_sized_as_on_the_linear_one(paper_beam):
+    system = build_system(paper_beam, 25, forces(2.0), 4276.0, load="reciprocal")
+    slider = replace(SLIDER, normal="held")
+    found = coupling_on_chain(system, paper_beam, slider)
+    drive = segment_model.solve_harmonic(paper_beam, forces(2.0), 4276.0, 25)
+    unit = segment_model.solve_harmonic(paper_beam, [PointForce(position=0.231)], 4276.0, 25)
+    expected = coupling_of(slider, paper_beam, 4276.0, surface_speed(drive, 0.231), unit.deflection([0.231])[0])
+    assert found.friction_size == pytest.approx(expected.friction_size, rel=1e-9)
+    assert found.normal_size == pytest.approx(expected.normal_size, rel=5e-3)  # read by the spline, not by reciprocity
+    assert found.normal_size > 1e-3
+
+
+def test_a_slider_says_with_its_figure_why_it_may_ride_one_way(paper_beam):
+    light = replace(SLIDER, mass=1e-7, coupling="auto")
+    run = ridden(paper_beam, 1.0, slider=light, duration=4e-5)
+    (said,) = run.notes
+    assert said.startswith("coupling: one-way; full friction moves the surface by ")
+    assert f"{run.coupling.friction_size:.1e}" in said
+    left_out = ridden(paper_beam, 1.0, slider=replace(SLIDER, mass=0.02), duration=4e-5)
+    assert "slider.coupling = 'one-way', a simplification: held on the surface" in left_out.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"mass": 0.004}, r"'auto': full friction moves the surface by .* the inertia of a slider held on it by"),
+        ({"mass": 4.0, "normal": "massless"}, r"'auto': full friction moves the surface by .*: give a lighter slider"),
+        ({"coupling": "two-way", "mass": 1e-9}, "'two-way': a nonlinear chain carries a slider one way"),
+    ],
+)
+def test_a_slider_that_the_chain_would_feel_is_refused_before_the_chain_moves(paper_beam, changed, words, monkeypatch):
+    monkeypatch.setattr("verify.chain.ride.simulate", lambda *given, **more: pytest.fail("the chain moved"))
+    slider = replace(replace(SLIDER, coupling="auto"), **changed)
+    with pytest.raises(InputError, match=words):
+        ride_from_rest(paper_beam, forces(1.0), 4276.0, slider, 25, 1e-4, step=STEP)
+
+
+def test_a_chain_that_no_load_drives_has_no_size_to_go_by(paper_beam):
+    system = build_system(paper_beam, 9)
+    assert coupling_on_chain(system, paper_beam, SLIDER) is None
+    with pytest.raises(InputError, match=r"'auto': no harmonic load says how the chain moves"):
+        coupling_on_chain(system, paper_beam, replace(SLIDER, coupling="auto"))
+
+
+def test_a_turned_chain_and_another_beams_are_refused(paper_beam):
+    system = build_system(paper_beam, 9, forces(1.0), 4276.0)
+    with pytest.raises(InputError, match=r"chain.rotation: a slider rides on a chain whose base does not turn"):
+        check_rideable(dataclasses.replace(system, rotation=Rotation(rate=3.0)), paper_beam, SLIDER)
+    for other in ({"length": 0.51}, {"supports": ("clamped", "pinned")}):
+        with pytest.raises(InputError, match=r"the chain has \['pinned', 'pinned'\] and 0.5 m"):
+            check_rideable(system, replace(paper_beam, **other), SLIDER)
+
+
+def test_the_straight_chain_has_the_frequencies_of_the_nonlinear_one_at_rest(titanium_strip):
+    beam = replace(titanium_strip, supports=("clamped", "free"))
+    system = build_system(beam, 14, wall="third-order", grading=1.7)
+    values = lowest(chain_pencil(straight_chain(system)), 5).values
+    assert np.sqrt(values) == pytest.approx(linearise(system, at_rest(system)).frequencies()[:5], rel=1e-9)

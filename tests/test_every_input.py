@@ -123,6 +123,13 @@ COARSE = {"motion": {"steps_per_period": 6}}
 """So that the step shows on a beam that its slider hardly moves."""
 HEAVY = {"slider": {"mass": 0.02}}
 STEADY = {"motion": {"start": "steady", "soft_start_periods": 0.0}}
+RIDDEN = {
+    **AT_ONCE,
+    "drive": SHAKEN["drive"],
+    "slider": {"mass": 1e-6, "mu": 0.003, "preload": 0.003, "speed": 3e-4, "slope": 2100.0},
+    "motion": {**AT_ONCE["motion"], "duration": 7e-4, "steps_per_period": 40},
+}
+"""On a chain that moves enough to draw in, and does not feel the slider."""
 FEM, SEGMENT = {"model": "fem", "count": 9}, {"model": "segment", "count": 9}
 SETTINGS = {"wall": "third-order", "grading": 1.3, "joints": "printed"}
 FIELDS = ("standing_wave_ratio", "reflection", "envelope", "travelling_index", "signed_area_spread", "crest_speed")
@@ -272,6 +279,27 @@ CASES: dict[str, list[Case]] = {
         ),
     ],
     "chain.axial_departure": [Case({"segments": 4, "force": 90.0, "time": 9e-4}, AT_ONCE)],
+    "chain.contact_line_error": [
+        Case({"segments": 7, "mode": 2, "x": 0.1}, {"beam": {"supports": ["clamped", "pinned"], "loss_factor": 0.0}}),
+        Case({"segments": 7, "mode": 3, "x": 0.27, "grading": 1.4}, STILL),
+    ],
+    "chain.slider_displacement": [
+        Case({"segments": 7}, RIDDEN),
+        Case({"segments": 5, "links": "stretching", "time": 3e-4, "step": 1.3e-5, "force": 70.0}, RIDDEN),
+        Case({"segments": 7, "kinematics": "following", "coupling": "one-way", "mass": 0.003}, RIDDEN),
+    ],
+    "chain.slider_mean_speed": [Case({"segments": 7}, {**RIDDEN, "slider": {**COULOMB["slider"], "mass": 1e-6}})],
+    "chain.slider_largest_friction": [
+        Case(
+            {"segments": 7},
+            {
+                **RIDDEN,
+                "slider": {**RIDDEN["slider"], "slope": 3.0},
+                "motion": {**RIDDEN["motion"], "steps_per_period": 14},
+            },
+        )
+    ],
+    "chain.slider_imbalance": [Case({"segments": 5, "step": 7e-5, "kinematics": "following"}, RIDDEN)],
     "chain.turning_frequency": [Case({"mode": 2, "segments": 4, "speed": 3.7})],
 }
 
@@ -418,10 +446,13 @@ DEAD = [
     ),
     Dead("slider.* motion.*", "beam.loss_factor", "a modal ratio is given instead", by_a_ratio),
     Dead(
-        "slider.*", "slider.coupling=one-way arguments.coupling=one-way", "auto chooses it for a slider so light", light
+        "slider.* chain.slider_*",
+        "slider.coupling=one-way arguments.coupling=one-way",
+        "auto chooses it for a slider so light",
+        light,
     ),
     Dead(
-        "slider.*",
+        "slider.* chain.slider_*",
         "slider.normal=massless arguments.normal=massless",
         "one way nothing of it presses on the beam",
         light,
@@ -429,8 +460,8 @@ DEAD = [
     Dead(
         "slider.*", "slider.coupling=two-way arguments.coupling=two-way", "auto chooses it for a slider so heavy", heavy
     ),
-    Dead("slider.*", "slider.coupling", "given instead", given("coupling")),
-    Dead("slider.*", "slider.normal", "given instead", given("normal")),
+    Dead("slider.* chain.slider_*", "slider.coupling", "given instead", given("coupling")),
+    Dead("slider.* chain.slider_*", "slider.normal", "given instead", given("normal")),
     Dead(
         "slider.coupling_size slider.loaded_deflection",
         "motion.* slider.slope slider.law slider.speed slider.coupling slider.line slider.kinematics slider.normal",
@@ -443,16 +474,16 @@ DEAD = [
         "m omega^2 |G|, whatever drives",
         lambda a: a.arguments["of"] == "normal",
     ),
-    Dead("slider.*", "slider.mass", "given instead", given("mass")),
-    Dead("slider.*", "slider.kinematics", "given instead", given("kinematics")),
+    Dead("slider.* chain.slider_*", "slider.mass", "given instead", given("mass")),
+    Dead("slider.* chain.slider_*", "slider.kinematics", "given instead", given("kinematics")),
     Dead(
-        "slider.*",
+        "slider.* chain.slider_*",
         "slider.slope arguments.slope",
         "Coulomb's law has none",
         lambda a: a.scene["slider"]["law"] == "coulomb",
     ),
     Dead(
-        "slider.*",
+        "slider.* chain.slider_*",
         "motion.steps_per_period",
         "given instead",
         lambda a: any(a.arguments.get(k) for k in ("step", "steps")),
@@ -475,14 +506,27 @@ DEAD = [
         "beam.supports.* drive.*",
         "between hinges of its own, let go",
     ),
-    Dead("chain.*", "slider.*", "the beam alone"),
-    Dead("chain.*", "motion.duration motion.steps_per_period", "the chain's runs have arguments of their own"),
+    Dead("chain.[!s]*", "slider.*", "the beam alone"),
+    Dead("chain.[!s]*", "motion.duration motion.steps_per_period", "the chain's runs have arguments of their own"),
     Dead(
         "chain.cantilever_tip chain.rollup_gap chain.*_frequency chain.energy_drift",
         "motion.*",
         "at rest, or let go without a drive that could set in",
     ),
-    Dead("chain.transient_deflection", "drive.force.*.amplitude", "given instead", given("force")),
+    Dead("chain.transient_deflection chain.slider_*", "drive.force.*.amplitude", "given instead", given("force")),
+    Dead("chain.slider_*", "motion.duration", "given instead", given("time")),
+    Dead(
+        "chain.slider_*",
+        "slider.normal arguments.normal",
+        "one way nothing of it presses on the chain",
+        lambda a: a.arguments["coupling"] == "one-way",
+    ),
+    Dead(
+        "chain.contact_line_error",
+        f"{MATERIAL} beam.length drive.* motion.*",
+        "a relative error of a mode of a uniform beam, at the place of one of its links",
+    ),
+    Dead("chain.contact_line_error", "arguments.wall", "no clamped end has a joint", unclamped),
     Dead(
         "chain.transient_deflection",
         "arguments.method=adaptive",

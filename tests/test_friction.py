@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 
 from verify.errors import InputError
 from verify.motion import rigid_surface
-from verify.motion.kernels import SLIPS, STICKS, TURNS, coulomb_span, slide_on_belt, tanh_speed_change
+from verify.motion.friction_kernels import coulomb_span, slide_on_belt, tanh_speed_change
+from verify.motion.records import SLIPS, STICKS, TURNS
 from verify.motion.rigid_surface import coulomb_decrement, creep_speed, free_decay, stick_slip_times
 
 

@@ -29,6 +29,7 @@ ROOMS = (
     "doors",
 )
 """From the ground up: a room imports from those before it; the three models from none of each other."""
+COMPILER = "models.kernels"
 DOORS = {"__init__", "__main__", "cli", "pytest_plugin"}
 FACES = {"analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"}
 
@@ -101,18 +102,33 @@ def test_closed_forms_take_the_beam_alone():
     assert imports_of(PACKAGE / "exact" / "closed_forms.py", typing_too=True) == {"beam", "errors"}
 
 
-def test_numba_is_imported_in_kernels_alone_and_they_only_where_something_steps():
-    """In one module each, for its cache sees no edit in an imported one; and in functions, which only stepping calls."""
-    kernels = {name for name, path in modules() if "import njit" in path.read_text("utf-8")}
-    assert kernels
-    assert all(name.endswith("kernels") for name in kernels)
+def test_numba_is_imported_by_one_module_and_used_by_kernels_alone():
+    sources = {name: path.read_text("utf-8") for name, path in modules()}
+    assert {name for name, text in sources.items() if "numba import" in text or "import numba" in text} == {COMPILER}
+    users = {name for name, path in modules() if COMPILER in imports_of(path)}
+    assert len(users) > 3
+    assert users == {name for name in sources if name.endswith("kernels")} - {COMPILER}
+
+
+def test_kernels_import_from_what_their_stamp_covers():
+    """Kernels and records of their own room: an edit elsewhere would leave what is compiled on disk as it was."""
+    for name, path in modules():
+        if name.endswith(("kernels", "records")) and name != COMPILER:
+            there = {one for one in imports_of(path, typing_too=True) if not one.endswith(("kernels", "records"))}
+            assert there <= {"models.arrays"}, name
+            assert {room_of(one) for one in imports_of(path) - {COMPILER, "models.arrays"}} <= {room_of(name)}, name
+
+
+def test_what_steps_a_slider_is_loaded_where_something_steps():
+    """In functions, which only stepping calls: planning and closed forms do without a compiler."""
+    slow = {name for name, _ in modules() if name.startswith("motion.") and name.endswith("kernels")}
     for name, path in modules():
         tree = ast.parse(path.read_text("utf-8"))
         tree.body = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
         at_the_top = {f"{node.module}.{a.name}" for node in tree.body for a in node.names} | {
             node.module for node in tree.body
         }
-        assert not at_the_top & {f"verify.motion.{one}" for one in ("kernels",)}, name
+        assert name in slow or not at_the_top & {f"verify.{one}" for one in slow}, name
 
 
 def test_scikit_fem_is_imported_by_the_finite_elements_alone():

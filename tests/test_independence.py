@@ -20,7 +20,6 @@ from scipy.optimize import brentq
 from test_stepped_beams import written_out
 
 import verify
-from verify.motion.kernels import HALF
 from verify.run.gates import judge
 from verify.run.runner import workbench_for
 from verify.scenes.scene import Complex, load_scene
@@ -406,8 +405,8 @@ SHARED = [
     Shared(
         "motion.contact",
         "a lever forty times as long",
-        ("motion.carried.law_entries",),
-        after(lambda law: law * np.where(np.arange(len(law)) == HALF, 40.0, 1.0)),
+        ("motion.carried.law_of",),
+        after(lambda law: law._replace(half=40.0 * law.half)),
         "paper-slider",
         ("slider-against-the-wave",),
         drift_against_the_wave,
@@ -513,8 +512,23 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
     assert "models.eigen" in takers
 
 
+NAMES_ALONE = ("models.arrays", "options")
+"""Kinds of arrays and words to choose from."""
+
+
+@pytest.mark.parametrize("name", NAMES_ALONE)
+def test_what_is_shared_as_names_alone_holds_no_figure_and_does_nothing(name):
+    assert imported(name, set()) == {name}
+    tree = ast.parse((Path(verify.__file__).parent / f"{name.replace('.', '/')}.py").read_text("utf-8"))
+    assert {type(node) for node in tree.body} <= {ast.ImportFrom, ast.Import, ast.Assign, ast.AnnAssign, ast.Expr}
+    assert not [node for node in ast.walk(tree) if isinstance(node, ast.BinOp | ast.UnaryOp | ast.Lambda)]
+    constants = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)]
+    assert all(isinstance(value, str | type(...)) for value in constants)
+    assert {getattr(node.func, "id", "") for node in ast.walk(tree) if isinstance(node, ast.Call)} <= {"get_args"}
+
+
 def test_every_module_that_two_models_stand_on_is_in_the_table():
-    """`errors` carries sentences and `patience` refusals: no figures, as the test above holds."""
+    """`errors` carries sentences, `patience` refusals, `NAMES_ALONE` names: no figures, as the tests above hold."""
     faces = (
         ("exact.modes", "exact.in_time"),
         ("elements.linear", "elements.in_time", "elements.stock"),
@@ -530,4 +544,4 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
         "models.driven_pencil",
         "models.time_basis",
     }
-    assert shared - {"errors", "patience"} <= {row.module for row in SHARED}
+    assert shared - {"errors", "patience", *NAMES_ALONE} <= {row.module for row in SHARED}

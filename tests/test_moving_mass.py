@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
-from verify.motion.kernels import SLIPS, STICKS
+from verify.motion.records import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
 from verify.run.runner import workbench_for

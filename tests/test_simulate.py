@@ -10,7 +10,7 @@ from motion_reference import FORCES, FREQUENCY, STRIP
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.motion import stepping as slider_run
-from verify.motion.kernels import SLIPS
+from verify.motion.records import SLIPS
 from verify.motion.simulate import simulate
 from verify.slider import Slider
 

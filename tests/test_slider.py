@@ -7,8 +7,8 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.exact.modes import solve_harmonic
-from verify.motion.kernels import SLIPS, STICKS
 from verify.motion.pure_wave import terminal_speed
+from verify.motion.records import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
 from verify.slider import Slider

@@ -13,8 +13,9 @@ from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
 from verify.judge import compare
 from verify.judge.workbench import Workbench
+from verify.options import WALLS
 from verify.segments import linear as segment_model
-from verify.segments.walls import WALLS, wall_factors
+from verify.segments.walls import wall_factors
 
 PAIRS = list(product(SUPPORTS, SUPPORTS))
 UNORDERED = list(combinations_with_replacement(SUPPORTS, 2))

@@ -3,14 +3,12 @@
 from math import inf, log10, pi, sqrt
 from operator import index
 from sys import float_info
-from typing import Literal, get_args
 
 import msgspec
 
 from verify.errors import InputError, near_name, shown
+from verify.options import SUPPORTS, Support
 
-Support = Literal["pinned", "clamped", "free", "guided"]
-SUPPORTS: tuple[str, ...] = get_args(Support)
 LARGEST = float_info.max
 FIGURE_DECADES = 100
 """Powers of ten within which a beam's derived figures lie, so that their squares and cubes are numbers too."""

@@ -1,18 +1,14 @@
 """The slider as a scene or a script states it. Data, no numerics."""
 
-from typing import Literal, get_args
+from typing import get_args
 
 import msgspec
 
 from verify.beam import Beam, check_number
 from verify.errors import InputError, near_name
+from verify.options import CouplingChoice, Kinematics, Law, Line, NormalChoice
 
 GRAVITY = 9.81
-Law = Literal["tanh", "coulomb"]
-CouplingChoice = Literal["auto", "one-way", "two-way"]
-Line = Literal["spline", "raw"]
-Kinematics = Literal["tangential", "following"]
-NormalChoice = Literal["held", "massless"]
 _WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
 
 

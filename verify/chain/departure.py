@@ -6,7 +6,7 @@ Links that stretch as the beam does (EA / l) keep a part of it.
 """
 
 from math import ceil
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -15,18 +15,19 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.chain.dynamics import at_rest
 from verify.chain.problems import Progress, transient, unheard
+from verify.chain.result import ChainMotion
 from verify.chain.splitting import linear_deflection, modal_basis
-from verify.chain.stepping import ChainMotion
 from verify.chain.stretching import simulate_elastic
 from verify.chain.system import axial_stiffness, build_system
 from verify.chain.work import MOST, check_kept, check_modes_of
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
+from verify.options import Inertia
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
-Links = Literal["full", "transverse", "elastic"]
+Links = Inertia
 """Rigid links; rigid links without inertia along x; links of the beam's own EA / l."""
 SAMPLES, SAMPLES_PER_PERIOD = 1001, 40
 """Kept at least, and in a period of the drive."""
@@ -147,8 +148,8 @@ def elastic_chain(driven: Driven, force: float) -> Array:
     """Deflection of the chain whose links stretch as the beam does, (n,), metres. Raises InputError."""
     system = build_system(driven.beam, driven.count, driven.under(force), driven.frequency_hz)
     motion = simulate_elastic(system, axial_stiffness(driven.beam, driven.count), driven.times, most=MOST)
-    if motion.stopped != "finished":
-        raise InputError(f"the stretching chain under {force!r} N {motion.stopped}: give a smaller force")
+    if not motion.finished:
+        raise InputError(f"the stretching chain under {force!r} N {motion.statistics.stopped}: give a smaller force")
     return np.asarray(motion.deflection([driven.x])[:, 0])
 
 

@@ -3,41 +3,39 @@
 The chain is the paper's: rigid links in relative joint coordinates q_i = theta_i - theta_{i-1}, closed at the right
 by a roller of which only y_N = 0 is asked. The closure is a matter of coordinate partitioning (R. A. Wehage and E. J.
 Haug, J. Mech. Design 104 (1982) 247): as many angles as there are held points depend on the others, chosen by pivot.
-Forward dynamics is compiled (`chain_kernels`), motion in time is in `chain_motion`.
+Forward dynamics is compiled (`chain.recursion_kernels`), motion in time is in `chain.stepping`.
 """
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from verify.chain import kernels
+from verify.chain import held_kernels, kernels, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular, held_points
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array, Indices
 
-Indices = NDArray[np.int64]
 PIVOT_LOSS = 0.1
 """A dependent angle is kept until its lever arm falls below this share of the longest."""
 
 
-def flatten(system: ChainSystem, *, ledger: bool = True) -> kernels.Flat:
+def flatten(system: ChainSystem, *, ledger: bool = True) -> records.Flat:
     """The chain as the kernels see it."""
     half, turn = system.lengths / 2.0, system.rotation
     held = [(float(half[-1]), 0.0, 0.0, 0.0, system.n_links - 1)] if system.tip == "roller" else []
     held += [(a.at - half[a.link - 1], a.amplitude, *_cycle(a), a.link - 1) for a in system.actuators]
     loads = [(p.at - half[p.link - 1], *p.force, p.moment, *_cycle(p), p.link - 1) for p in system.loads]
     own = np.stack([half, system.masses, system.inertias, system.stiffness, system.dashpots], axis=1)
-    return kernels.Flat(
-        links=np.hstack([own, kernels.mobilities(half, own[:, kernels.MASS], own[:, kernels.INERTIA])]),
+    return records.Flat(
+        links=np.hstack([own, records.mobilities(half, own[:, records.MASS], own[:, records.INERTIA])]),
         numbers=np.array([turn.offset, turn.rate, turn.amplitude, *_cycle(turn), *system.gravity], dtype=float),
         loads=np.array(loads, dtype=float).reshape(len(loads), 7),
         held=np.array(held, dtype=float).reshape(len(held), 5),
         small=np.zeros((len(held), len(held) + 1)),
-        tip=kernels.ROLLER if system.tip == "roller" else kernels.FREE,
+        tip=records.ROLLER if system.tip == "roller" else records.FREE,
         tip_spring=float(system.axial_spring),
         axial=bool(system.axial_inertia),
         ledger=ledger,
@@ -51,7 +49,7 @@ def _cycle(one: Any) -> tuple[float, float]:
 
 def workspace(system: ChainSystem) -> Array:
     """Scratch for the kernels, (N + 1, columns)."""
-    return np.zeros((system.n_links + 1, kernels.WORK_COLUMNS))
+    return np.zeros((system.n_links + 1, records.WORK_COLUMNS))
 
 
 def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
@@ -81,7 +79,7 @@ def _arrays(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
 def positions(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
     """Joints 0..N, (N + 1, 2) metres, and their velocities, (N + 1, 2) m/s."""
     work = workspace(system)
-    kernels.place(flatten(system), state.time, *_arrays(system, state), work)
+    held_kernels.place(flatten(system), state.time, *_arrays(system, state), work)
     return work[:, 13:15].copy(), work[:, 15:17].copy()
 
 
@@ -122,12 +120,12 @@ def project(system: ChainSystem, state: ChainState, dependent: Sequence[int] | N
     """
     q, v = _arrays(system, state)
     flat, work = flatten(system), workspace(system)
-    kernels.place(flat, state.time, q, v, work)
+    held_kernels.place(flat, state.time, q, v, work)
     rows = _rows(system, work[:, 13])
     pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
     if len(pivots) != len(rows) or any(not 0 <= p < system.n_links for p in pivots):
         raise InputError(f"dependent = {dependent!r}: give {len(rows)} joints between 1 and {system.n_links}")
-    moved = kernels.project(flat, state.time, q, v, pivots, 1e-14 * (1 + 0.1 * len(q)), work)
+    moved = held_kernels.project(flat, state.time, q, v, pivots, 1e-14 * (1 + 0.1 * len(q)), work)
     if not np.isfinite(moved) or not np.isfinite(q).all():
         raise InputError(
             f"state.angles cannot be brought onto the held points by turning joint {int(pivots[0]) + 1}: "

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from verify.chain.system import ChainSystem
+from verify.chain.system import ChainSystem, straight_chain
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
 from verify.models.eigen import lowest
-from verify.segments.links import Chain, chain_pencil, with_ends
+from verify.segments.links import chain_pencil, joint_masses, with_ends
 
 
 def lowest_modes(system: ChainSystem, n_modes: int) -> tuple[Array, Array, Array, float]:
@@ -18,19 +18,7 @@ def lowest_modes(system: ChainSystem, n_modes: int) -> tuple[Array, Array, Array
     """
     _check(system, n_modes)
     unit, spring, mass = system.lengths.mean(), system.stiffness.max(), system.masses.mean()
-    chain = Chain(
-        supports=("clamped" if system.stiffness[0] > 0.0 else "pinned", "pinned" if system.tip == "roller" else "free"),
-        rigid_motions=int(system.stiffness[0] == 0.0 and system.tip == "free"),
-        unit=float(unit),
-        start=0.0,
-        lengths=system.lengths / unit,
-        masses=system.masses / mass,
-        inertias=system.inertias / (mass * unit**2),
-        compliances=np.append(
-            np.divide(spring, system.stiffness, out=np.full(system.n_links, np.inf), where=system.stiffness > 0.0),
-            np.inf,
-        ),
-    )
+    chain = straight_chain(system, unit=float(unit), mass=float(mass), spring=float(spring))
     pairs = lowest(chain_pencil(chain), n_modes)
     omega = np.sqrt(pairs.values * spring / mass) / unit
     places, tilt = with_ends(chain, pairs.vectors)[1:].T / np.sqrt(mass), 0.0
@@ -53,9 +41,8 @@ def _check(system: ChainSystem, n_modes: int) -> None:
 
 def _mass(system: ChainSystem) -> tuple[Array, Array]:
     """Mass matrix over joints 1..N, the base held: diagonal (N,) and coupling (N - 1,)."""
-    spin = system.inertias / system.lengths**2
-    own, shared = system.masses / 4.0 + spin, system.masses / 4.0 - spin
-    return own + np.append(own[1:], 0.0), shared[1:]
+    diagonal, shared = joint_masses(system.masses, system.inertias, system.lengths)
+    return diagonal[1:], shared[1:]
 
 
 def _answer_of_tip(system: ChainSystem) -> Array:

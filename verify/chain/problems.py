@@ -8,14 +8,15 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.chain.dynamics import at_rest, linearise, positions
+from verify.chain.result import ChainMotion
 from verify.chain.splitting import modal_basis, simulate_linear, simulate_modal
 from verify.chain.statics import solve_static
-from verify.chain.stepping import ChainMotion, simulate
+from verify.chain.stepping import simulate
 from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.chain.work import MOST, STATIC_LINKS, check_links, check_modes_of
 from verify.errors import InputError
+from verify.options import Wall
 from verify.segments.links import link_inertia
-from verify.segments.walls import Wall
 
 Progress = Callable[[float], None]
 """Hears how much of a motion is done, 0 to 1."""
@@ -240,6 +241,30 @@ def transient(
         motion = simulate(system, start, times, tolerance=tolerance or 1e-9, ledger=False, most=most, progress=progress)
     _finished(motion)
     return motion
+
+
+def contact_line_error(
+    beam: Beam, mode: int, n_segments: int, x: float, *, wall: Wall = "gregory", grading: float = 1.0
+) -> float:
+    """Largest error of the slope that a slider on the nonlinear chain sees on the piece at x, over the largest slope.
+
+    The chain stands in a mode of the linear one, a millionth of its length high; the exact mode is the reference.
+    Order 3, beside a clamped wall 1. Raises InputError, also for a stepped beam: its exact shapes are not known here.
+    """
+    from verify.chain.ride import touched
+    from verify.exact.modes import mode_shape
+    from verify.segments.linear import solve_modes
+
+    check_modes_of(n_segments, 2)
+    system = build_system(beam, n_segments, wall=wall, grading=grading)
+    joints = solve_modes(beam, mode, n_segments, wall=wall, grading=grading).readings["raw"]()[mode - 1]
+    size = 1e-6 * beam.length / float(abs(joints).max())
+    pieces, edges = touched(system, size * np.diff(joints), x)
+    xi = np.linspace(0.0, 1.0, 17)
+    found = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(pieces)) / (size * np.ptp(edges))
+    exact = mode_shape(beam, mode, edges[0] + xi * np.ptp(edges), 1)
+    largest = float(abs(mode_shape(beam, mode, system.nodes, 1)).max())
+    return float(abs(found - exact).max()) / largest
 
 
 def _check_settings(method: str, step: float | None, tolerance: float | None) -> None:

@@ -1,52 +1,70 @@
 """A slider on the nonlinear chain: the contact code of the linear beams, fed with the chain's own surface.
 
-One way: the chain moves first, kept twice in every step of the slider. Its joints give the paper's C2 spline over the
-material coordinate, corrected by y + delta^2 y/12 (as in `chain.corrected_reading`); its links shorten the chain, and
-the surface moves along with them.
+One way: the chain moves first, kept twice in every step of the slider, which is refused where the chain would feel it.
+Its joints give the paper's C2 line over the material coordinate (`segments.reading.contact_line`); its links shorten
+the chain, and the surface moves along with them.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from time import perf_counter
 
+import msgspec
 import numpy as np
-from scipy.interpolate import CubicSpline
 
-from verify.beam import Beam, check_number
-from verify.chain.stepping import ChainMotion
-from verify.chain.stretching import ElasticMotion
-from verify.errors import InputError
-from verify.models.division import Array
-from verify.motion.contact import law_entries
+from verify.beam import Beam, PointForce, check_number
+from verify.chain.dynamics import at_rest
+from verify.chain.result import ChainMotion
+from verify.chain.stepping import simulate
+from verify.chain.stretching import ElasticMotion, simulate_elastic
+from verify.chain.system import (
+    ChainSystem,
+    LinkLoad,
+    Rotation,
+    axial_stiffness,
+    build_system,
+    circular,
+    straight_chain,
+)
+from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
+from verify.errors import InputError, near_name
+from verify.models.arrays import Array, ComplexArray
+from verify.models.eigen import forced_response
+from verify.motion.contact import Coupling, coupling_of, law_of
+from verify.motion.records import Given, Rider
+from verify.motion.result import END, Ride, Statistics
 from verify.motion.stepping import contact_space, fresh_motion
+from verify.options import LINKS, Links
+from verify.segments.links import chain_pencil, free_joints, with_ends
+from verify.segments.loads import joint_weights
+from verify.segments.reading import contact_line, contact_piece
 from verify.slider import Slider
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ChainRide:
+class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):
+    """Where the slider's energy went, joules, from the start of the run to its end.
+
+    What friction gives, `given`, and what the turning surface gives, `turned`, is gained or rubbed away.
+    """
+
+    given: float
+    """Work of friction on the slider at the speed of the surface; the chain, moved one way, is not charged with it."""
+    turned: float
+    """Work of the turning tangent and of gravity along it on a slider that follows the surface."""
+    gained: float
+    """Kinetic energy of the slider, at its end less at its start."""
+    rubbed: float
+    """Lost in friction."""
+    residual: float
+    """What the books miss: forces by the law at the steps' ends, integrated through a cubic spline (order 4 where
+    friction is smooth, 1 where it jumps), against the speed that the steps have made."""
+
+
+class ChainRide(Ride, frozen=True, eq=False, kw_only=True):
     """What a slider did on a chain."""
 
     chain: ChainMotion | ElasticMotion
-    times: Array
-    """(n + 1,), s."""
-    travelled: Array
-    """(n + 1,), metres along +x from the start."""
-    speed: Array
-    """(n + 1,), m/s."""
-    friction: Array
-    """(n + 1,), newton on the slider."""
-    surface_speed: Array
-    """(n + 1,), m/s."""
-    stopped: str
-    """end, or left the piece of the chain it began on."""
-
-    @property
-    def displacement(self) -> float:
-        """From the start to the end, metres."""
-        return float(self.travelled[-1])
-
-    @property
-    def mean_speed(self) -> float:
-        """Displacement over duration, m/s."""
-        return self.displacement / float(self.times[-1] - self.times[0])
+    ledger: SliderLedger | None
+    """None of a run that was over at its start."""
 
 
 def half_steps(duration: float, step: float) -> Array:
@@ -60,37 +78,201 @@ def half_steps(duration: float, step: float) -> Array:
 def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> ChainRide:
     """A slider carried by a chain, rigid or stretching, whose states stand at `half_steps`.
 
-    Raises InputError where the times are not evenly spaced and odd in number, for two-way coupling, which the chain's
-    own integrators do not know, for the links' edges as a contact line, and for a beam of unlike thicknesses.
+    Raises InputError for times that are not evenly spaced and odd in number; for a slider that is coupled two-way, or
+    one of coupling "auto" that the chain would feel (`coupling_on_chain`), which the chain's integrators do not know;
+    for the links' edges as a contact line; for a turned base; and for another beam than the chain's, or one of unlike
+    thicknesses.
     """
     from verify.motion import kernels
 
-    times = chain.times
+    began, times, start = perf_counter(), chain.times, slider.start_on(beam)
+    _check_times(times)
+    check_rideable(chain.system, beam, slider)
+    coupling = coupling_on_chain(chain.system, beam, slider)
+    n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
+    local, along, edges = _surface(chain, start)
+    given, kept = Given(local, along, edges - start), np.zeros((n_steps + 1, 4))
+    rider = Rider(fresh_motion(slider.speed), law_of(slider, beam), two_way=False)
+    ready = perf_counter()
+    done = kernels.slide_given(n_steps, dt, given, rider, kept, contact_space())
+    wall, kept, ends = perf_counter() - ready, kept[: done + 1], slice(0, 2 * done + 1, 2)
+    return ChainRide(
+        chain=chain,
+        times=times[ends],
+        slider=slider,
+        start=start,
+        travelled=kept[:, 0],
+        speed=kept[:, 1],
+        friction=slider.mass * kept[:, 2],
+        surface_speed=kept[:, 3],
+        coupling=coupling,
+        ledger=_ledger(slider, 0.5 * beam.thickness, times[ends], kept, local[ends], given.edges),
+        notes=(coupling.note if coupling else "coupling: one-way; no harmonic load says what the chain would feel",),
+        statistics=Statistics(
+            steps=done,
+            evaluations=2 * done + 1,
+            step_s=dt,
+            set_up_s=ready - began,
+            wall_s=wall,
+            stopped=END if done == n_steps else "left the piece of the chain it began on",
+        ),
+    )
+
+
+def _check_times(times: Array) -> None:
     if len(times) < 3 or len(times) % 2 == 0 or np.ptp(np.diff(times)) > 1e-9 * times[-1]:
         raise InputError(f"times: {len(times)} states do not stand twice in every step, give them at half_steps(...)")
+
+
+def check_rideable(system: ChainSystem, beam: Beam, slider: Slider) -> None:
+    """Raise InputError for a slider that is felt or on the links' edges, and for a turned chain or another beam's."""
     if slider.coupling == "two-way":
         raise InputError("slider.coupling = 'two-way': a nonlinear chain carries a slider one way, give 'one-way'")
     if slider.line != "spline":
         raise InputError(f"slider.line = {slider.line!r}: a nonlinear chain is touched along its spline, give 'spline'")
     if any(section.thickness not in (None, beam.thickness) for section in beam.section):
         raise InputError("beam.section has a thickness of its own: a slider rides on a beam of one thickness, give one")
-    start = slider.start_on(beam)
-    local, along, edges = _surface(chain, start)
-    n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
-    kept = np.zeros((n_steps + 1, 4))
-    motion = fresh_motion(slider.speed)
-    done = kernels.slide_given(
-        n_steps, dt, local, along, edges - start, motion, law_entries(slider, beam), kept, *contact_space()
+    if system.rotation != Rotation():
+        raise InputError("chain.rotation: a slider rides on a chain whose base does not turn, give none")
+    supports = straight_chain(system).supports
+    if supports != beam.supports or abs(system.length / beam.length - 1.0) > 1e-9:
+        raise InputError(
+            f"beam.supports = {list(beam.supports)!r}, beam.length = {beam.length!r} m: the chain has "
+            f"{list(supports)!r} and {system.length:.6g} m, give the beam that it was built from"
+        )
+
+
+def coupling_on_chain(system: ChainSystem, beam: Beam, slider: Slider) -> Coupling | None:
+    """How much the chain would feel the slider: the larger sizes at its loads' frequencies, straight and steady.
+
+    None where no harmonic load drives it. Raises InputError where coupling is "auto" and no size is known or one lies
+    above `contact.FELT`, with the figure.
+    """
+    springs = bool((system.stiffness[1:] > 0.0).all())
+    frequencies = {load.frequency_hz for load in system.loads if load.frequency_hz > 0.0} if springs else set()
+    found = [_sized(system, beam, slider, frequency) for frequency in frequencies]
+    sizes = [np.inf if one.relative_size is None else one.relative_size for one in found]
+    felt = found[int(np.argmax(sizes))] if found else None
+    if slider.coupling == "auto" and (felt is None or felt.two_way):
+        raise InputError(
+            f"slider.coupling = 'auto': {felt.told if felt else 'no harmonic load says how the chain moves'}, and a "
+            "nonlinear chain carries one that it does not feel: give a lighter slider, normal = 'massless', or "
+            "'one-way' to leave out what the chain would feel"
+        )
+    return felt
+
+
+def _sized(system: ChainSystem, beam: Beam, slider: Slider, frequency_hz: float) -> Coupling:
+    """Sizes of friction and inertia at one frequency: slope under the loads, deflection under a unit force at x."""
+    chain, x, omega = straight_chain(system), slider.start_on(beam), circular(frequency_hz)
+    pencil = chain_pencil(chain)
+    dashpots = system.dashpots[system.n_links - len(pencil.stiffness) :]
+    stiffness: ComplexArray = np.asarray(pencil.stiffness + 1j * omega * dashpots)
+    drive = sum(_on_joints(system, load) for load in system.loads if load.frequency_hz == frequency_hz)
+    loads = np.stack([drive, joint_weights(chain, x, "reciprocal")], axis=1)[free_joints(chain)]
+    joints = with_ends(chain, forced_response(pencil, loads, omega**2, stiffness)).T
+    real, imaginary = (contact_line(chain, part) for part in (joints.real, joints.imag))
+    speed = 0.5 * beam.thickness * omega * float(np.hypot(real(x, 1)[0], imaginary(x, 1)[0]))
+    return coupling_of(slider, beam, frequency_hz, speed, complex(real(x)[1], imaginary(x)[1]))
+
+
+def _on_joints(system: ChainSystem, load: LinkLoad) -> ComplexArray:
+    """A load's transverse force and moment on the joints at the ends of its link, (N + 1,) complex, newton."""
+    length = float(system.lengths[load.link - 1])
+    share, couple = load.at / length, load.moment / length
+    found = np.zeros(system.n_links + 1, dtype=complex)
+    found[load.link - 1] = (1.0 - share) * load.force[1] - couple
+    found[load.link] = share * load.force[1] + couple
+    return np.asarray(found * np.exp(1j * np.deg2rad(load.phase_deg)))
+
+
+def ride_from_rest(
+    beam: Beam,
+    forces: Sequence[PointForce],
+    frequency_hz: float,
+    slider: Slider,
+    n_segments: int,
+    duration: float,
+    *,
+    step: float,
+    links: Links = "rigid",
+    tolerance: float = 1e-9,
+    most: float = MOST,
+    progress: Callable[[float], None] = lambda part: None,
+) -> ChainRide:
+    """A slider on a chain from rest under forces that act at once, undamped, in steps no longer than `step`.
+
+    `links` are rigid, moved by adaptive steps of `tolerance`, or stretch by the beam's own EA / l. Raises InputError,
+    before the chain moves, for whatever `ride` or the chain refuses; also for a run that takes too much, breaks off, or
+    takes the slider off the piece of the chain that it began on.
+    """
+    if links not in LINKS:
+        raise InputError(f"links = {links!r} is not known: {near_name(links, LINKS)}")
+    system, times = _driven(beam, forces, frequency_hz, n_segments), half_steps(duration, step)
+    check_kept(len(times), n_segments, f"time = {duration!r} s in steps of {step:.3g} s")
+    check_rideable(system, beam, slider)
+    coupling_on_chain(system, beam, slider)
+    moved: ChainMotion | ElasticMotion = (
+        simulate_elastic(system, axial_stiffness(beam, n_segments), times, most=most)
+        if links == "stretching"
+        else simulate(system, at_rest(system), times, tolerance=tolerance, ledger=False, most=most, progress=progress)
     )
-    return ChainRide(
-        chain=chain,
-        times=times[: 2 * done + 1 : 2],
-        travelled=kept[: done + 1, 0],
-        speed=kept[: done + 1, 1],
-        friction=slider.mass * kept[: done + 1, 2],
-        surface_speed=kept[: done + 1, 3],
-        stopped="end" if done == n_steps else "left the piece of the chain it began on",
-    )
+    if moved.statistics.stopped.startswith("interrupted"):
+        raise KeyboardInterrupt
+    if not moved.finished:
+        raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces")
+    found = ride(moved, beam, slider)
+    if not found.statistics.finished:
+        raise InputError(
+            f"the slider {found.statistics.stopped} after {found.times[-1]:.6g} s of {duration!r} s: shorten time or "
+            "start it elsewhere"
+        )
+    return found
+
+
+def _driven(beam: Beam, forces: Sequence[PointForce], frequency_hz: float, n_segments: int) -> ChainSystem:
+    """The chain of a beam under its forces. Raises InputError."""
+    check_links(n_segments, 2, STATIC_LINKS, "a slider's contact line goes through two links or more")
+    return build_system(beam, n_segments, forces, frequency_hz, load="reciprocal")
+
+
+def _ledger(slider: Slider, half: float, times: Array, kept: Array, local: Array, edges: Array) -> SliderLedger | None:
+    """The slider's books from what stands at the steps' ends, `local` (n, 2, 4) on its piece between `edges`."""
+    if len(times) < 2:
+        return None
+    x, v, friction, surface = kept[:, 0], kept[:, 1], slider.mass * kept[:, 2], kept[:, 3]
+    given, own = _over(times, friction * surface), _over(times, friction * v)
+    follows = slider.kinematics == "following"
+    turned = _over(times, slider.mass * v * _pull(slider, half, local, edges, x, v)) if follows else 0.0
+    gained = 0.5 * slider.mass * float(v[-1] ** 2 - v[0] ** 2)
+    return SliderLedger(given=given, turned=turned, gained=gained, rubbed=given - own, residual=own + turned - gained)
+
+
+def _over(times: Array, values: Array) -> float:
+    """Integral over time through a cubic spline."""
+    from scipy.interpolate import CubicSpline
+
+    return float(CubicSpline(times, values).integrate(times[0], times[-1]))
+
+
+def _pull(slider: Slider, half: float, local: Array, edges: Array, x: Array, v: Array) -> Array:
+    """What the turning tangent and gravity along it add to a following slider's speed, (n,), m/s^2.
+
+    dw/dt (d2w/dxdt + w'' v) - g w' at the material point under x.
+    """
+    length = float(edges[1] - edges[0])
+    xi = (x - edges[0]) / length
+    slope = _power_sum(local[:, 0], xi, 1) / length
+    at = xi + half * slope / length
+    slope, bend = (_power_sum(local[:, 0], at, d) / length**d for d in (1, 2))
+    rise, turn = (_power_sum(local[:, 1], at, d) / length**d for d in (0, 1))
+    return np.asarray(rise * (turn + bend * v) - slider.gravity * slope)
+
+
+def _power_sum(coefficients: Array, at: Array, derivative: int) -> Array:
+    """Polynomials (n, 4), each at a place of its own, or their derivatives, (n,)."""
+    derived = np.polynomial.polynomial.polyder(coefficients, derivative, axis=1)
+    return np.asarray(sum(derived[:, power] * at**power for power in range(derived.shape[1])))
 
 
 def _surface(chain: ChainMotion | ElasticMotion, x: float) -> tuple[Array, Array, Array]:
@@ -98,14 +280,26 @@ def _surface(chain: ChainMotion | ElasticMotion, x: float) -> tuple[Array, Array
 
     (n, 2, 4) in the local coordinate from 0 to 1, (n,) in m/s, (2,) metres.
     """
-    nodes = chain.system.nodes
-    piece = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, chain.system.n_links - 1))
+    piece = _piece_at(chain.system, x)
     heights, rises, along = (
         _of_stretching(chain, piece) if isinstance(chain, ElasticMotion) else _of_rigid(chain, piece)
     )
-    reading = _reading(nodes, piece)
-    local = np.stack([steps @ reading for steps in (heights, rises)], axis=1)
-    return np.ascontiguousarray(local), np.ascontiguousarray(along), nodes[piece : piece + 2]
+    local, edges = touched(chain.system, np.stack([heights, rises], axis=1), x)
+    return np.ascontiguousarray(local), np.ascontiguousarray(along), edges
+
+
+def touched(system: ChainSystem, steps: Array, x: float) -> tuple[Array, Array]:
+    """The contact line on the piece at x of a chain that rises by `steps` (..., N) from joint to joint, metres.
+
+    (..., 4), coefficients of the local coordinate from 0 to 1, and the piece's ends, (2,).
+    """
+    piece = _piece_at(system, x)
+    one_step_up = np.triu(np.ones((system.n_links, system.n_links + 1)), 1)  # what lies beyond a step rises with it
+    return steps @ contact_piece(straight_chain(system), one_step_up, piece), system.nodes[piece : piece + 2]
+
+
+def _piece_at(system: ChainSystem, x: float) -> int:
+    return int(np.clip(np.searchsorted(system.nodes, x, side="right") - 1, 0, system.n_links - 1))
 
 
 def _of_rigid(chain: ChainMotion, piece: int) -> tuple[Array, Array, Array]:
@@ -121,15 +315,3 @@ def _of_stretching(chain: ElasticMotion, piece: int) -> tuple[Array, Array, Arra
     """The same of links that stretch evenly."""
     heights, rises = (np.diff(parts[:, :, 1], axis=1) for parts in (chain.displacements, chain.velocities))
     return heights, rises, chain.velocities[:, piece : piece + 2, 0].mean(axis=1)
-
-
-def _reading(nodes: Array, piece: int) -> Array:
-    """What every step from joint to joint gives to the spline through corrected joints on one piece, (N, 4) in xi."""
-    lengths = np.diff(nodes)
-    steps = np.eye(len(lengths))
-    joints = np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
-    corrected = joints.copy()
-    squares = (lengths[1:] ** 2 + lengths[:-1] ** 2) / 12.0
-    corrected[:, 1:-1] += squares * np.diff(steps / lengths, axis=1) / (lengths[1:] + lengths[:-1])
-    coefficients = CubicSpline(nodes, corrected, axis=1, bc_type="natural").c[::-1, piece]
-    return np.asarray((coefficients * lengths[piece] ** np.arange(4)[:, None]).T)

@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array, Indices
 
-Indices = NDArray[np.int64]
 STRAYED = 1e-6
 """A root of a turning chain is neither oscillation nor growth where both its parts are larger than this share of it."""
 ROUNDING = 1e-13

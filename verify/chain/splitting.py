@@ -18,14 +18,16 @@ from typing import Any
 import numpy as np
 
 from verify.beam import check_number
-from verify.chain import kernels
+from verify.chain import kernels, records, splitting_kernels
 from verify.chain.dynamics import at_rest, flatten, linearise, project, workspace
 from verify.chain.modes import lowest_modes
-from verify.chain.stepping import ChainMotion, Statistics, checked_times, how_started
+from verify.chain.result import ChainMotion, ChainStatistics
+from verify.chain.stepping import checked_times, how_started
 from verify.chain.system import ChainState, ChainSystem, circular, link_at
 from verify.chain.work import modal_work, refuse_work
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
+from verify.motion.result import END
 
 SCHEMES: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {
     1: ((0.5, 0.5), (1.0,)),
@@ -129,8 +131,9 @@ def simulate_modal(
 
     `kicks` to a step, 1 to 3; `n_modes` (all unless given) take part in the nonlinear motion, which dashpots allow
     all of them alone. The chain has no ledger of work here. Raises InputError, also for more work than `most`
-    accelerations of links (`chain_work`).
+    accelerations of links (`chain.work`).
     """
+    began = perf_counter()
     check_number("step", step, "seconds", above=0)
     if kicks not in SCHEMES:
         raise InputError(f"kicks = {kicks!r}: give 1, 2 or 3 kicks to a step")
@@ -144,9 +147,9 @@ def simulate_modal(
     refuse_work(modal_work(seconds, step, kicks, basis.system.n_links, taking), most, seconds)
     begin, moved = project(basis.system, start)
     run = _Modal(basis, begin, samples, step, kicks, taking)
-    clock = perf_counter()
+    ready = perf_counter()
     stopped = run.march()
-    return run.motion(kicks, perf_counter() - clock, stopped, how_started(moved, start))
+    return run.motion(kicks, (ready - began, perf_counter() - ready), stopped, how_started(moved, start))
 
 
 def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float] | Array) -> ChainMotion:
@@ -155,19 +158,19 @@ def simulate_linear(basis: ModalBasis, start: ChainState, times: Sequence[float]
     Raises InputError for a chain with dashpots, which couple the modes.
     """
     _refuse_dashpots(basis.system)
-    clock = perf_counter()
+    began = perf_counter()
     samples = checked_times(start, times)
     every = np.arange(len(basis.omega))
     state = linear_states(basis, _free(basis, start), samples - start.time, samples, every)
     angles, rates = state[:, :, 0] @ basis.modes + basis.rest.angles, state[:, :, 1] @ basis.modes
-    statistics = Statistics(
+    statistics = ChainStatistics(
         method="linear, exact",
         steps=0,
-        rejected=0,
         evaluations=0,
-        seconds=perf_counter() - clock,
-        stopped="finished",
-        started="consistent",
+        step_s=0.0,
+        set_up_s=0.0,
+        wall_s=perf_counter() - began,
+        stopped=END,
     )
     none = np.zeros(len(samples))
     return ChainMotion(
@@ -248,13 +251,13 @@ def _turns(omega: Array, times: Array) -> Array:
     return np.stack([c, sinc, -omega * s], axis=2)
 
 
-def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kicks: int) -> kernels.Modal:
+def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kicks: int) -> records.Modal:
     """The splitting as the kernels see it."""
     flows, weights = SCHEMES[kicks]
     omega, m, n = basis.omega[chosen], len(chosen), basis.system.n_links
     gaps = np.diff(samples)
     even = len(gaps) > 1 and np.ptp(gaps) < 1e-9 * gaps[0]
-    return kernels.Modal(
+    return records.Modal(
         kicks=np.array(weights),
         shares_of_step=np.array(flows),
         omega=omega,
@@ -298,18 +301,18 @@ class _Modal:
         """Step until every sample is kept; why it stopped."""
         try:
             while True:
-                status = kernels.march_modal(
+                status = splitting_kernels.march_modal(
                     self.flat, self.modal, self.clock, self.counts, self.samples, self.kept, 256, self.free, self.work
                 )
-                if status == kernels.DONE:
-                    return "finished"
-                if status == kernels.DIVERGED:
+                if status == records.DONE:
+                    return END
+                if status == records.DIVERGED:
                     return f"diverged at t = {self.clock[0]:.6g} s with a step of {self.clock[1]:.3g} s"
         except KeyboardInterrupt:
             return f"interrupted at t = {self.clock[0]:.6g} s"
 
-    def motion(self, kicks: int, seconds: float, stopped: str, started: str) -> ChainMotion:
-        """What was kept, back in angles."""
+    def motion(self, kicks: int, took: tuple[float, float], stopped: str, started: str) -> ChainMotion:
+        """What was kept, back in angles; `took` are the seconds before and in the run."""
         kept, basis = int(self.counts[3]), self.basis
         times, modes = self.samples[:kept], self.modal.modes
         angles, rates = self.kept[:kept, 0] @ modes + basis.rest.angles, self.kept[:kept, 1] @ modes
@@ -318,12 +321,13 @@ class _Modal:
             angles += state[:, :, 0] @ basis.modes[self.others]
             rates += state[:, :, 1] @ basis.modes[self.others]
         none = np.zeros(kept)
-        statistics = Statistics(
+        statistics = ChainStatistics(
             method=f"modal, {kicks} kicks",
             steps=int(self.counts[0]),
-            rejected=0,
             evaluations=int(self.counts[2]),
-            seconds=seconds,
+            step_s=float(self.clock[1]),
+            set_up_s=took[0],
+            wall_s=took[1],
             stopped=stopped,
             started=started,
         )

@@ -7,7 +7,7 @@ import numpy as np
 
 from verify.chain.system import ChainState, ChainSystem, held_points
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
 
 TOLERANCE = 1e-9
 """Residual moment, relative to the largest moment in the chain."""

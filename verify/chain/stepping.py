@@ -9,20 +9,15 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from verify.beam import check_number
-from verify.chain import kernels
-from verify.chain.dynamics import (
-    PIVOT_LOSS,
-    flatten,
-    held_rows,
-    keep_pivots,
-    project,
-    workspace,
-)
+from verify.chain import kernels, records
+from verify.chain.dynamics import PIVOT_LOSS, flatten, held_rows, keep_pivots, project, workspace
+from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
-from verify.chain.system import ChainState, ChainSystem, link_at
+from verify.chain.system import ChainState, ChainSystem
 from verify.chain.work import fixed_steps, per_evaluation, refuse_work
 from verify.errors import InputError, near_name
-from verify.models.division import Array
+from verify.models.arrays import Array
+from verify.motion.result import END
 
 Method = Literal["rk4", "adaptive"]
 METHODS: tuple[str, ...] = get_args(Method)
@@ -69,90 +64,6 @@ DORMAND_PRINCE = _tableau(
 """J. R. Dormand and P. J. Prince, J. Comp. Appl. Math. 6 (1980) 19."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Statistics:
-    """What a run cost and how it ended."""
-
-    method: str
-    steps: int
-    rejected: int
-    evaluations: int
-    seconds: float
-    stopped: str
-    """'finished', or why not: 'interrupted at ...', 'diverged at ...'."""
-    started: str
-    """'consistent', or how far the start had to be moved onto the held points."""
-    pivot_changes: int = 0
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ChainMotion:
-    """States of a chain at the times kept, and its energy ledger."""
-
-    system: ChainSystem
-    times: Array
-    """(n,), s; fewer than asked for where the run was stopped."""
-    angles: Array
-    """(n, N), relative, radians."""
-    rates: Array
-    """(n, N), rad/s."""
-    dissipated: Array
-    """(n,), joule since the start."""
-    work_in: Array
-    """(n,), joule put in by loads, actuators and hub since the start; zero where no ledger was asked for."""
-    statistics: Statistics
-
-    @property
-    def finished(self) -> bool:
-        """Whether every time asked for is here."""
-        return self.statistics.stopped == "finished"
-
-    def state(self, index: int) -> ChainState:
-        """The state at one of the times."""
-        return ChainState(self.angles[index], self.rates[index], float(self.times[index]))
-
-    def energies(self) -> tuple[Array, Array, Array]:
-        """Kinetic, elastic and gravitational energy, (n,) each, joule."""
-        flat, work = flatten(self.system), workspace(self.system)
-        rows = [
-            kernels.energies(flat, t, q, v, work) for t, q, v in zip(self.times, self.angles, self.rates, strict=True)
-        ]
-        kinetic, elastic, height = np.array(rows, dtype=float).reshape(len(rows), 3).T
-        return kinetic, elastic, height
-
-    def residual(self) -> Array:
-        """Energy now less energy at first less work put in plus what was lost, (n,), joule: zero but for the step."""
-        total = np.sum(self.energies(), axis=0)
-        changed: Array = total - total[0] - (self.work_in - self.work_in[0]) + (self.dissipated - self.dissipated[0])
-        return changed
-
-    def points(self, x: Sequence[float]) -> Array:
-        """Places of material points at x of the straight chain, (n, len(x), 2), metres, on their links."""
-        return np.stack([self._read(x, np.cos), self._read(x, np.sin)], axis=2)
-
-    def _read(self, x: Sequence[float], share: Any) -> Array:
-        """One coordinate of material points, (n, len(x)): links by the cosine or the sine of their angles."""
-        found, theta = np.zeros((len(self.times), len(x))), self.directions()
-        for k, position in enumerate(x):
-            check_number("x", position, "metres", at_least=0)
-            if position > self.system.length * (1 + 1e-12):
-                raise InputError(f"x = {position!r} lies off the chain: give up to {self.system.length!r} m")
-            link, at = link_at(self.system, position)
-            reach = np.append(self.system.lengths[: link - 1], at)
-            found[:, k] = share(theta[:, :link]) @ reach
-        return found
-
-    def deflection(self, x: Sequence[float]) -> Array:
-        """Y of material points on their links, (n, len(x)), metres."""
-        return self._read(x, np.sin)
-
-    def directions(self) -> Array:
-        """Absolute angles of the links, (n, N), radians."""
-        hub = flatten(self.system).numbers
-        turned = np.array([kernels.hub_motion(hub, t)[0] for t in self.times]) if hub[:3].any() else np.zeros(1)
-        return np.asarray(np.cumsum(self.angles, axis=1) + turned[:, None])
-
-
 def simulate(
     system: ChainSystem,
     start: ChainState,
@@ -174,9 +85,10 @@ def simulate(
     order l^2 in the step they can take. A start off the held points is projected, and the statistics say so.
     `limit` is the stability limit where it is known already, which spares finding it.
     `dependent` (1..N) chooses the angles that the closure determines. Ctrl-C returns what is kept. `progress` hears
-    how much of the time is done; a run that will take more than `most` accelerations of links (`chain_work`) is
+    how much of the time is done; a run that will take more than `most` accelerations of links (`chain.work`) is
     refused as soon as its pace is known. Raises InputError.
     """
+    began = perf_counter()
     _check_method(method, step, tolerance)
     samples = checked_times(start, times)
     begin, moved = project(system, start, dependent)
@@ -186,9 +98,9 @@ def simulate(
         seconds = float(samples[-1] - start.time)
         refuse_work(4.0 * fixed_steps(seconds, step) * per_evaluation(system.n_links), most, seconds)
     run = _Run(system, begin, samples, RK4 if method == "rk4" else DORMAND_PRINCE, step, tolerance, dependent, ledger)
-    clock = perf_counter()
+    ready = perf_counter()
     stopped = run.march(most, progress)
-    return run.motion(method, perf_counter() - clock, stopped, how_started(moved, start))
+    return run.motion(method, (ready - began, perf_counter() - ready), stopped, how_started(moved, start))
 
 
 def _check_method(method: str, step: float | None, tolerance: float) -> None:
@@ -239,7 +151,7 @@ class _Run:
         fastest = 0.0 if step else highest_rate(system, start)
         first = step or min(0.1 / max(fastest, 1e-12), max(samples[-1] - start.time, 1e-12))
         floor = 1e-3 * tolerance**1.5
-        self.m = kernels.March(
+        self.m = records.March(
             a=table.a,
             c=table.c,
             weights=table.weights,
@@ -265,7 +177,7 @@ class _Run:
         try:
             while True:
                 status = kernels.march(self.flat, self.m, budget, self.work)
-                if status != kernels.RUNNING:
+                if status != records.RUNNING:
                     return self.ended(status)
                 progress(pace.part())
                 if self.flat.held.shape[0] > 1 and self.m.clock[2] > 0.0:
@@ -283,13 +195,13 @@ class _Run:
 
     def ended(self, status: int) -> str:
         """The end in words."""
-        if status == kernels.DONE:
-            return "finished"
+        if status == records.DONE:
+            return END
         at = f"at t = {self.m.clock[0]:.6g} s with a step of {self.m.clock[1]:.3g} s"
-        return f"diverged {at}" if status == kernels.DIVERGED else f"stopped {at}, too small to go on"
+        return f"diverged {at}" if status == records.DIVERGED else f"stopped {at}, too small to go on"
 
-    def motion(self, method: str, seconds: float, stopped: str, started: str) -> ChainMotion:
-        """What was kept."""
+    def motion(self, method: str, took: tuple[float, float], stopped: str, started: str) -> ChainMotion:
+        """What was kept; `took` are the seconds before and in the run."""
         n, kept = self.system.n_links, int(self.m.counts[3])
         steps, rejected, evaluations, _, changes = (int(c) for c in self.m.counts)
         rows = self.m.kept[:kept]
@@ -300,12 +212,14 @@ class _Run:
             rates=rows[:, n : 2 * n],
             dissipated=rows[:, 2 * n],
             work_in=rows[:, 2 * n + 1],
-            statistics=Statistics(
+            statistics=ChainStatistics(
                 method=method,
                 steps=steps,
                 rejected=rejected,
                 evaluations=evaluations,
-                seconds=seconds,
+                step_s=float(self.m.clock[1]),
+                set_up_s=took[0],
+                wall_s=took[1],
                 stopped=stopped,
                 started=started,
                 pivot_changes=changes,

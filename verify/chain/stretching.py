@@ -1,40 +1,39 @@
 """The chain with links that stretch (EA / l): axial inertia as a beam has it, at the price of axial waves.
 
 Rigid links carry a spurious axial inertia (`ChainSystem.axial_inertia`). Here every link is a uniform bar that
-stretches evenly, its inertia that of `verify.chain` along both directions, half of m/4 |v_i + v_j|^2 + J/l^2
-|v_j - v_i|^2. Both ends may be immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
+stretches evenly, its inertia that of a link (`segments.links.joint_masses`) along both directions. Both ends may be
+immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from verify.beam import check_number
 from verify.chain import stretching_kernels as kernels
+from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
 from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
 from verify.errors import InputError
-from verify.models.division import Array
+from verify.models.arrays import Array
+from verify.motion.result import END, Statistics
+from verify.segments.links import joint_masses
 
 
-@dataclass(frozen=True, eq=False)
-class ElasticMotion:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElasticMotion(MovedChain):
     """Joints of a stretching chain at the times kept."""
 
-    system: ChainSystem
-    times: Array
-    """(n,), s."""
     displacements: Array
     """(n, N + 1, 2), metres from the straight chain."""
     velocities: Array
     """(n, N + 1, 2), m/s."""
     energies: Array
     """(n,), kinetic, elastic and of gravity together, joule."""
-    stopped: str
-    """'finished', or why not."""
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Y of material points on their links, (n, len(x)), metres."""
@@ -71,9 +70,10 @@ def simulate_elastic(
 
     `axial_stiffness` is EA in newton, of all links or of each (N,); `step` is at most `elastic_step_limit`, half of
     it unless given, shortened to divide the spacing of the times; `immovable` holds the tip along x too. Raises
-    InputError, also for more work than `most` accelerations of links (`chain_work`), and for what stretching links do
+    InputError, also for more work than `most` accelerations of links (`chain.work`), and for what stretching links do
     not know here: actuators, a turning base, an axial spring, links without inertia along x.
     """
+    began = perf_counter()
     samples = _checked(system, axial_stiffness, times)
     limit = elastic_step_limit(system, axial_stiffness)
     step = 0.5 * limit if step is None else step
@@ -86,20 +86,43 @@ def simulate_elastic(
     flat, diagonal, coupling = _flattened(system, axial_stiffness, immovable)
     u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
     u[:, 1] = 0.0 if deflected is None else deflected
-    steps = int(np.ceil(spacing / step - 1e-9))
+    steps, ready = int(np.ceil(spacing / step - 1e-9)), perf_counter()
+    kept, stopped = _march(flat, samples, steps, u, v)
+    done = steps * (len(kept) - 1)
+    statistics = Statistics(
+        steps=done,
+        evaluations=4 * done,
+        step_s=spacing / steps,
+        set_up_s=ready - began,
+        wall_s=perf_counter() - ready,
+        stopped=stopped,
+    )
+    energies = np.array([kernels.energy(flat, diagonal, coupling, *state) for state in kept])
+    places, speeds = (np.array([state[part] for state in kept]) for part in range(2))
+    return ElasticMotion(
+        system=system,
+        times=samples[: len(kept)],
+        displacements=places,
+        velocities=speeds,
+        energies=energies,
+        statistics=statistics,
+    )
+
+
+def _march(
+    flat: kernels.Elastic, samples: Array, steps: int, u: Array, v: Array
+) -> tuple[list[tuple[Array, Array]], str]:
+    """(displacements, velocities) at the samples reached, so many steps apart, and why it stopped."""
     k, w = np.zeros((4, *u.shape)), np.zeros((2, *u.shape))
-    kept, stopped = [(u.copy(), v.copy())], "finished"
+    spacing, kept = float(samples[1] - samples[0]), [(u.copy(), v.copy())]
     try:
         for t in samples[:-1]:
             if not kernels.march(flat, t, spacing / steps, steps, u, v, k, w):
-                stopped = f"diverged before t = {t + spacing:.6g} s"
-                break
+                return kept, f"diverged before t = {t + spacing:.6g} s"
             kept.append((u.copy(), v.copy()))
     except KeyboardInterrupt:
-        stopped = f"interrupted after t = {samples[len(kept) - 1]:.6g} s"
-    energies = np.array([kernels.energy(flat, diagonal, coupling, *state) for state in kept])
-    places, speeds = (np.array([state[part] for state in kept]) for part in range(2))
-    return ElasticMotion(system, samples[: len(kept)], places, speeds, energies, stopped)
+        return kept, f"interrupted after t = {samples[len(kept) - 1]:.6g} s"
+    return kept, END
 
 
 def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) -> Array:
@@ -127,9 +150,8 @@ def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) ->
 
 def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -> tuple[kernels.Elastic, Array, Array]:
     """The chain as the kernels see it, and its mass matrix: diagonal (N + 1,) and coupling (N,)."""
-    lengths, spin = system.lengths, system.inertias / system.lengths**2
-    own, coupling = system.masses / 4.0 + spin, system.masses / 4.0 - spin
-    diagonal = np.append(own, 0.0) + np.append(0.0, own)
+    lengths = system.lengths
+    diagonal, coupling = joint_masses(system.masses, system.inertias, lengths)
     free = np.ones((system.n_links + 1, 2))
     free[0] = 0.0
     free[-1] = 0.0 if immovable else 1.0, 0.0 if system.tip == "roller" else 1.0

@@ -1,18 +1,16 @@
-"""Compiled kernels of the chain whose links stretch. They call nothing outside this file (numba's cache).
+"""Compiled kernels of the chain whose links stretch.
 
 With a stretch of its own, uniform along the link, a link's motion is linear in the positions of its two joints: its
 mass matrix is constant and tridiagonal, the same along x and y, and no joint force is unknown. Displacements from the
 straight chain are the state, so that small stretches keep their digits.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from verify.models.arrays import Array
+from verify.models.kernels import compiled
 
 
 class Elastic(NamedTuple):
@@ -28,7 +26,7 @@ class Elastic(NamedTuple):
     """(N + 1, 2, 2): of the mass matrix over joints, for x and y: coupling to the joint before, reciprocal pivot."""
 
 
-@njit(cache=True, fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def factorise(diagonal: Array, coupling: Array, free: Array, factors: Array) -> None:
     """L D L^T of the mass matrix with held joints left out; `free` is (N + 1, 2), 1 or 0."""
     for axis in range(2):
@@ -39,7 +37,7 @@ def factorise(diagonal: Array, coupling: Array, free: Array, factors: Array) -> 
             factors[j, axis, 0], factors[j, axis, 1] = ratio, free[j, axis] / pivot
 
 
-@njit(cache=True, fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def _solve(e: Elastic, force: Array) -> None:
     """Accelerations in the place of forces, (N + 1, 2); zero at held joints."""
     last = force.shape[0] - 1
@@ -52,8 +50,8 @@ def _solve(e: Elastic, force: Array) -> None:
             force[j, axis] -= e.factors[j + 1, axis, 0] * force[j + 1, axis]
 
 
-@njit(cache=True, fastmath={"contract"})
-def _strain(e: Elastic, i: int, u: Array) -> Any:
+@compiled(fastmath={"contract"})
+def _strain(e: Elastic, i: int, u: Array) -> tuple[float, float, float, float]:
     """Length, cosine and sine of a link, and its stretch."""
     length = e.links[i, 0]
     dx, dy = u[i + 1, 0] - u[i, 0], u[i + 1, 1] - u[i, 1]
@@ -61,7 +59,7 @@ def _strain(e: Elastic, i: int, u: Array) -> Any:
     return now, (length + dx) / now, dy / now, (dx * (2.0 * length + dx) + dy * dy) / (now + length)
 
 
-@njit(cache=True, fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def _turn(force: Array, i: int, now: float, c: float, s: float, moment: float) -> None:
     """A moment on a link as forces across it at both ends."""
     pair = moment / now
@@ -69,7 +67,7 @@ def _turn(force: Array, i: int, now: float, c: float, s: float, moment: float) -
     force[i + 1, 0], force[i + 1, 1] = force[i + 1, 0] - pair * s, force[i + 1, 1] + pair * c
 
 
-@njit(cache=True, fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def _load(e: Elastic, t: float, u: Array, force: Array) -> None:
     """Dead loads shared between the joints of their links."""
     for k in range(e.loads.shape[0]):
@@ -83,7 +81,7 @@ def _load(e: Elastic, t: float, u: Array, force: Array) -> None:
             _turn(force, i, length, c, s, now * moment)
 
 
-@njit(cache=True, fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
     """Accelerations of all joints, (N + 1, 2), from displacements and velocities."""
     n = e.links.shape[0]
@@ -107,7 +105,7 @@ def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
     _solve(e, out)
 
 
-@njit(cache=True, fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def energy(e: Elastic, diagonal: Array, coupling: Array, u: Array, v: Array) -> float:
     """Kinetic and elastic energy, and that of gravity, joule."""
     total, before_c, before_s = 0.0, 1.0, 0.0
@@ -126,7 +124,7 @@ def energy(e: Elastic, diagonal: Array, coupling: Array, u: Array, v: Array) -> 
     return total
 
 
-@njit(cache=True, fastmath={"contract"})
+@compiled(fastmath={"contract"})
 def march(e: Elastic, t: float, h: float, steps: int, u: Array, v: Array, k: Array, w: Array) -> bool:
     """RK4 steps; `k` is (4, N + 1, 2), `w` (2, N + 1, 2). Whether the state is still finite."""
     for step in range(steps):

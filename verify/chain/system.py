@@ -7,18 +7,17 @@ across it. Sections 2 and 7 of the paper's formalism: relative joint coordinates
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, pi, radians, sin
-from typing import Literal
 
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_number
 from verify.errors import InputError
-from verify.models.division import Array, divide
-from verify.segments.links import Chain, Joints, build_chain
-from verify.segments.loads import Load, joint_weights
-from verify.segments.walls import Wall
+from verify.models.arrays import Array
+from verify.models.division import divide
+from verify.options import TIPS, Joints, Load, Tip, Wall
+from verify.segments.links import Chain, build_chain
+from verify.segments.loads import joint_weights
 
-Tip = Literal["free", "roller"]
 MAX_ACTUATORS = 4
 
 
@@ -118,7 +117,7 @@ class ChainSystem:
         check_number("chain.axial_spring", self.axial_spring, "N/m", at_least=0)
         for value in self.gravity:
             check_number("chain.gravity", value, "m/s^2")
-        if self.tip not in ("free", "roller"):
+        if self.tip not in TIPS:
             raise InputError(
                 f"chain.tip = {self.tip!r}: a straight chain of rigid links between two fixed ends cannot move: "
                 "the sum of l cos theta equals L for theta = 0 alone; give 'free' or 'roller', with axial_spring = "
@@ -231,6 +230,27 @@ def build_system(
 def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
     """EA of every link, each of its own section, (N,), newton. Raises InputError as `divide` does."""
     return divide(beam, n_segments, grading).axial_stiffnesses * (beam.youngs_modulus * beam.area)
+
+
+def straight_chain(system: ChainSystem, *, unit: float = 1.0, mass: float = 1.0, spring: float = 1.0) -> Chain:
+    """What linear theory sees of a chain at rest, in units of m, kg and N m/rad; its base is a wall if it has a spring.
+
+    A wall's slope is 0 in the readings: what turns the base is not in them.
+    """
+    flexible = np.append(system.stiffness, 0.0)
+    compliances = np.divide(spring, flexible, out=np.full(len(flexible), np.inf), where=flexible > 0.0)
+    left = "clamped" if system.stiffness[0] > 0.0 else "pinned"
+    right = "pinned" if system.tip == "roller" else "free"
+    return Chain(
+        supports=(left, right),
+        rigid_motions=int(left == "pinned" and right == "free"),
+        unit=unit,
+        start=0.0,
+        lengths=system.lengths / unit,
+        compliances=compliances,
+        masses=system.masses / mass,
+        inertias=system.inertias / (mass * unit**2),
+    )
 
 
 def check_buildable(beam: Beam, wall: str = "gregory") -> None:

@@ -17,7 +17,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
 
 from verify.elements.mesh import KEPT
-from verify.models.eigen import Array
+from verify.models.arrays import Array
 
 _RULES = {
     "gauss": get_quadrature(RefLine, 6),

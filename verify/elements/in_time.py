@@ -10,10 +10,11 @@ from verify.beam import Beam
 from verify.elements.linear import check
 from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, point_loads, stiffness_matrix
 from verify.elements.pencil import curvature_weights, element_pencil
+from verify.models.arrays import Array
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
-from verify.models.time_basis import Array, TimeBasis, check_held
+from verify.models.time_basis import TimeBasis, check_held
 
 Nodal = Callable[[Any], tuple[Array, Array]]
 """Node numbers -> deflection and slope (per element length) of all modes there, each (n, len(numbers))."""

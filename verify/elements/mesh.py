@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verify.beam import Beam
+from verify.models.arrays import Array
 from verify.models.division import Parts, divide
-from verify.models.eigen import Array
 
 KEPT = 4000
 """Nodes up to which a basis is kept for who asks next: about a kilobyte each."""

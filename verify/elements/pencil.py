@@ -11,8 +11,9 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.elements.mesh import Elements, build_elements, mass_matrix, stiffness_matrix
+from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
-from verify.models.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
 
 
 def element_pencil(elements: Elements) -> FactoredPencil:

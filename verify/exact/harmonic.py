@@ -10,16 +10,8 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import check_uniform
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.fields import (
-    RESONANCE,
-    ComplexArray,
-    HarmonicField,
-    check_drive,
-    phasor,
-    refuse_resonance,
-    wavenumber,
-)
-from verify.models.modes import Array
+from verify.models.arrays import Array, ComplexArray
+from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, refuse_resonance, wavenumber
 
 
 def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> HarmonicField:

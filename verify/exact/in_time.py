@@ -9,8 +9,9 @@ from verify.beam import Beam, PointForce, check_whole
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
 from verify.exact.modes import mode_shapes, solve_harmonic, solve_modes
+from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import phasor
-from verify.models.time_basis import Array, ComplexArray, TimeBasis, check_held
+from verify.models.time_basis import TimeBasis, check_held
 
 DEGREE = 8
 """Of the Taylor pieces: the fastest mode is followed to 1e-9, the others far closer."""

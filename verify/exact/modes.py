@@ -14,7 +14,8 @@ from verify.errors import InputError
 from verify.exact.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.exact.harmonic import solve_harmonic, unit_responses
 from verify.exact.section_minors import end_minor
-from verify.models.modes import Array, Modes
+from verify.models.arrays import Array
+from verify.models.modes import Modes
 
 __all__ = [
     "exact_frequency_hz",

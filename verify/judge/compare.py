@@ -6,10 +6,10 @@ from typing import TypeVar
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
-from verify.models.modes import Array, Modes
+from verify.models.arrays import Array, Indices
+from verify.models.modes import Modes
 
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
@@ -59,10 +59,11 @@ def mac(reference: Array, shapes: Array) -> Array:
     """
     cross = reference @ shapes.T
     squares = np.einsum("ij,ij->i", reference, reference)[:, None] * np.einsum("ij,ij->i", shapes, shapes)
-    return np.divide(cross**2, squares, out=np.zeros_like(cross), where=squares > 0.0)  # one at rest is like none
+    likeness: Array = np.divide(cross**2, squares, out=np.zeros_like(cross), where=squares > 0.0)
+    return likeness  # one at rest is like none
 
 
-def pair_modes(likeness: Array) -> tuple[NDArray[np.intp], Array]:
+def pair_modes(likeness: Array) -> tuple[Indices, Array]:
     """For every exact mode the index of its computed mode, one to one, and their MAC: (n_reference,) each.
 
     The pairing with the largest sum of MAC values; `likeness` is (n_reference, n_shapes).

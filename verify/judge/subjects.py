@@ -9,7 +9,8 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from verify.beam import Beam, PointForce
-    from verify.models.fields import Array, ComplexArray, HarmonicField
+    from verify.models.arrays import Array, ComplexArray
+    from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
     from verify.models.time_basis import TimeBasis
 

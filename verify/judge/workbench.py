@@ -13,8 +13,9 @@ from verify.models.catalogue import MODELS, bounding
 
 if TYPE_CHECKING:
     from verify.judge.compare import Bracket
+    from verify.models.arrays import Array
     from verify.models.fields import HarmonicField
-    from verify.models.modes import Array, Modes
+    from verify.models.modes import Modes
     from verify.motion.result import Motion
 
 MEAN = "mean"

@@ -2,12 +2,10 @@
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.errors import InputError
-
-Array = NDArray[np.float64]
+from verify.models.arrays import Array
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):

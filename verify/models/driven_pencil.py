@@ -7,15 +7,8 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.errors import InputError
-from verify.models.eigen import (
-    DENSE_UNKNOWNS,
-    Array,
-    ComplexArray,
-    FactoredPencil,
-    forced_response,
-    modal_basis,
-    resonance_distance,
-)
+from verify.models.arrays import Array, ComplexArray
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, forced_response, modal_basis, resonance_distance
 from verify.models.fields import RESONANCE, refuse_resonance
 from verify.models.modes import Modes
 

@@ -10,13 +10,10 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.errors import InputError
+from verify.models.arrays import Array, ComplexArray, Indices
 from verify.patience import check_work
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 DENSE_UNKNOWNS = 250
 """Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
@@ -157,14 +154,14 @@ def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     return np.asarray(solve_triangular(lower, wanted, lower=True, trans="T"))
 
 
-def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, NDArray[np.intp]]:
+def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
     """([[-1/d, B], [B^T, 0]] as a sparse array, the unknowns in it): K with its strains kept as unknowns.
 
     Where motions are rigid, as many unknowns are grounded as make the matrix regular.
     """
     from scipy.sparse import block_array, diags_array
 
-    free: NDArray[np.intp] = np.delete(np.arange(pencil.n, dtype=np.intp), _grounds(pencil.rigid))
+    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), _grounds(pencil.rigid))
     strain = pencil.strain_matrix()[:, free]
     # None, not stored zeros: they would cost three times the solve
     return block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, None]], format="csc"), free

@@ -5,13 +5,10 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from verify.models.arrays import Array, ComplexArray
 
 RESONANCE = 1e-9
 """An undamped beam is not driven closer than this (relative) to a resonance: the answer would be rounding."""

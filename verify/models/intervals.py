@@ -6,7 +6,7 @@ from functools import cache
 import msgspec
 import numpy as np
 
-from verify.models.fields import Array
+from verify.models.arrays import Array
 
 GAUSS = 12
 """Points of the quadrature in each part of an interval."""

@@ -7,7 +7,8 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.beam import Beam, PointForce
-    from verify.models.fields import Array, ComplexArray, HarmonicField
+    from verify.models.arrays import Array, ComplexArray
+    from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
     from verify.models.time_basis import TimeBasis
 

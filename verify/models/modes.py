@@ -5,11 +5,9 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.errors import InputError
-
-Array = NDArray[np.float64]
+from verify.models.arrays import Array
 
 
 class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):

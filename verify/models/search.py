@@ -4,9 +4,8 @@ from collections.abc import Callable
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from verify.models.arrays import Array
 
 
 class Least(msgspec.Struct, frozen=True, kw_only=True):

@@ -5,13 +5,10 @@ from math import comb, factorial
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from verify.models.arrays import Array, ComplexArray
 
 
 class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):

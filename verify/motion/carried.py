@@ -4,20 +4,39 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import PointForce
 from verify.errors import InputError
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS, check_count
-from verify.models.time_basis import Array, TimeBasis
-from verify.motion.contact import Coupling, coupling_of, law_entries
+from verify.models.time_basis import TimeBasis
+from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.margins import margins_of
 from verify.motion.moving_mass import carried_along, receptance, weighed_down
+from verify.motion.records import (
+    DAMPED,
+    DRIVEN,
+    KEPT_FRICTION,
+    KEPT_NORMAL,
+    KEPT_SURFACE,
+    KEPT_V,
+    KEPT_X,
+    LIFTED,
+    ON_BEAM,
+    ON_SLIDER,
+    RUBBED,
+    STUCK,
+    Rider,
+    V,
+    X,
+)
 from verify.motion.request import MOST_STEPS, Request
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
-from verify.motion.stepping import Sliding, run_stages, slider_seconds
+from verify.motion.stepping import Sliding, fresh_motion, run_stages, slider_seconds
 from verify.motion.surface import Stage
 from verify.patience import check_work
 from verify.slider import Slider
@@ -84,60 +103,74 @@ def put_on(request: Request, slider: Slider) -> tuple[float, float, bool]:
     return before.position, before.speed, before.stuck and slider.law == "coulomb"
 
 
-def slide(
-    request: Request,
-    slider: Slider,
-    stages: list[Stage],
-    basis: TimeBasis | None,
-    coupling: Coupling,
-    began: float,
-    notes: tuple[str, ...],
-    progress: Callable[[float], None],
-    patient: bool,
-) -> Motion:
+class Laid(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A run laid out, before its slider takes a step."""
+
+    request: Request
+    slider: Slider
+    stages: list[Stage]
+    basis: TimeBasis | None
+    """None where no mode is free."""
+    coupling: Coupling
+    began: float
+    """Wall clock at the request, seconds."""
+    notes: tuple[str, ...]
+
+
+def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motion:
     """Step the slider through all stages. Raises InputError where that takes too many steps, or too long."""
-    stages, step_note = _in_steps(request, stages, begin(request, stages[0], basis, None), coupling)
-    z = begin(request, stages[0], basis, coupling)
-    start, sliding = _fresh(request, slider, stages, coupling)
+    request, basis = laid.request, laid.basis
+    stages, step_note = _in_steps(request, laid.stages, begin(request, laid.stages[0], basis, None), laid.coupling)
+    z = begin(request, stages[0], basis, laid.coupling)
+    sliding = _fresh(request, laid.slider, stages, laid.coupling)
     n_steps = sum(stage.n_steps for stage in stages)
     if not patient:
-        seconds = slider_seconds(n_steps, z.shape[1], coupling.two_way)
+        seconds = slider_seconds(n_steps, z.shape[1], laid.coupling.two_way)
         check_work("duration", sum(stage.duration for stage in stages), seconds, "shorten it or lengthen the step")
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
     ready = perf_counter()
-    stopped, q, rates = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / n_steps))
-    wall = perf_counter() - ready - sliding.set_up_s
+    stopped, *state = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / n_steps))
     statistics = Statistics(
         steps=sliding.steps,
         evaluations=2 * sliding.steps + 1,
         step_s=stages[-1].dt,
-        set_up_s=ready - began + sliding.set_up_s,
-        wall_s=wall,
+        set_up_s=ready - laid.began + sliding.set_up_s,
+        wall_s=perf_counter() - ready - sliding.set_up_s,
         stopped=stopped,
     )
-    n = sliding.n_kept
-    columns = np.concatenate([sliding.first[None], sliding.kept[:n]])
-    lost = (f"events: the first {sliding.n_events} of {sliding.n_events + sliding.n_lost}",) if sliding.n_lost else ()
+    lost = (f"events: the first {len(sliding.events)} of {len(sliding.events) + sliding.n_lost}",)
+    said = replace(
+        laid, stages=stages, notes=(*laid.notes, laid.coupling.note, *step_note, *lost * bool(sliding.n_lost))
+    )
+    return _told(said, sliding, statistics, energy, *state)
+
+
+def _told(
+    laid: Laid, sliding: Sliding, statistics: Statistics, energy: tuple[float, float], q: Array, rates: Array
+) -> Motion:
+    """What came of a run that ended with the modes at (q, rates); `energy` is the beam's at its start."""
+    request, n = laid.request, sliding.n_kept
+    columns = np.concatenate([sliding.first[None], sliding.kept.kept[:n]]).T
     return Motion(
         model=request.model,
         count=request.count,
-        times=times_of(request, stages)[: n + 1],
+        times=times_of(request, laid.stages)[: n + 1],
         points=request.points,
-        deflection=np.concatenate([sliding.first_deflection[None], sliding.deflections[:n]]),
-        slider=slider,
-        start=start,
-        travelled=columns[:, 0],
-        speed=columns[:, 1],
-        friction=slider.mass * columns[:, 2],
-        surface_speed=columns[:, 3],
-        normal_force=columns[:, 4],
-        events=sliding.events[: sliding.n_events],
-        coupling=coupling,
-        margins=margins_of(request, stages[-1], sliding.fall),
-        ledger=_ledger(basis, sliding, energy, q, rates) if sliding.accounts else None,
-        notes=(*notes, coupling.note, *step_note, *lost),
+        deflection=np.concatenate([sliding.first_deflection[None], sliding.kept.deflections[:n]]),
+        slider=laid.slider,
+        start=sliding.start,
+        travelled=columns[KEPT_X],
+        speed=columns[KEPT_V],
+        friction=laid.slider.mass * columns[KEPT_FRICTION],
+        surface_speed=columns[KEPT_SURFACE],
+        normal_force=columns[KEPT_NORMAL],
+        events=sliding.events,
+        coupling=laid.coupling,
+        margins=margins_of(request, laid.stages[-1], sliding.fall),
+        ledger=_ledger(laid.basis, sliding, energy, q, rates) if sliding.accounts else None,
+        notes=laid.notes,
         statistics=statistics,
-        end=_end(request, stages, sliding, q, rates, coupling),
+        end=_end(request, laid.stages, sliding, q, rates, laid.coupling),
     )
 
 
@@ -189,21 +222,15 @@ def _grip(slider: Slider) -> float:
     return float("inf") if slider.law == "coulomb" else slider.slope * slider.mu * slider.normal_force / slider.mass
 
 
-def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> tuple[float, Sliding]:
-    """Where the slider starts, and room for its run."""
+def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> Sliding:
+    """Room for the slider's run from where it starts."""
     start, speed, stuck = put_on(request, slider)
-    sliding = Sliding.fresh(
-        start,
-        sum(stage.n_steps // stage.every for stage in stages),
-        request.points,
-        law_entries(slider, request.beam),
-        coupling.two_way,
-        request.accounts and request.start == "rest",
-    )
-    sliding.motion[1:3] = speed, stuck
+    rider = Rider(fresh_motion(speed, stuck), law_of(slider, request.beam), coupling.two_way)
+    samples = sum(stage.n_steps // stage.every for stage in stages)
+    sliding = Sliding.fresh(start, samples, request.points, rider, request.accounts and request.start == "rest")
     if request.before is not None and request.before.height is not None:
         sliding.on_its_way = request.before.height, request.before.climb
-    return start, sliding
+    return sliding
 
 
 def _end(
@@ -214,9 +241,9 @@ def _end(
         time=_reached(stages, sliding.steps),
         q=q,
         rates=rates,
-        position=sliding.start + float(sliding.motion[0]),
-        speed=float(sliding.motion[1]),
-        stuck=bool(sliding.motion[2] > 0.0),
+        position=sliding.start + float(sliding.motion[X]),
+        speed=float(sliding.motion[V]),
+        stuck=bool(sliding.motion[STUCK] > 0.0),
         height=height,
         climb=climb,
     )
@@ -241,17 +268,18 @@ def _ledger(
 ) -> Ledger | None:
     if basis is None:
         return None
-    on_beam, on_slider, driven, damped, rubbed, lifted = (float(v) for v in sliding.ledger)
+    booked = sliding.ledger.tolist()
+    on_beam, lifted, driven, damped = (booked[of] for of in (ON_BEAM, LIFTED, DRIVEN, DAMPED))
     kinetic, elastic = _beam_energy(basis, q, rates)
     gained = kinetic + elastic - sum(before)
-    charged = on_beam + lifted if sliding.two_way else 0.0
+    charged = on_beam + lifted if sliding.rider.two_way else 0.0
     return Ledger(
         kinetic=kinetic,
         elastic=elastic,
-        slider=on_slider,
+        slider=booked[ON_SLIDER],
         work_in=driven,
         damped=damped,
-        rubbed=rubbed,
+        rubbed=booked[RUBBED],
         contact_on_beam=on_beam,
         normal_on_beam=lifted,
         residual=driven + charged - damped - gained,

@@ -6,8 +6,9 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.models.time_basis import Array
-from verify.slider import NormalChoice, Slider
+from verify.motion.records import Law
+from verify.options import NormalChoice
+from verify.slider import Slider
 
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
@@ -16,23 +17,21 @@ FELT = 1e-3
 """From this relative change of the surface's motion on, a slider is coupled back to the beam."""
 
 
-def law_entries(slider: Slider, beam: Beam) -> Array:
-    """The numbers the compiled loop sees (`contact_kernels.KIND` and so on), (10,)."""
+def law_of(slider: Slider, beam: Beam) -> Law:
+    """The slider as the compiled loop sees it, on this beam."""
     pressing = slider.normal_force / slider.mass
     static = slider.mu if slider.mu_static is None else slider.mu_static
-    return np.array(
-        [
-            float(slider.law == "coulomb"),
-            slider.mu * pressing,
-            static * pressing,
-            slider.slope,
-            slider.mass,
-            0.5 * beam.thickness,
-            slider.gravity,
-            float(slider.kinematics == "following"),
-            float(slider.normal == "held"),
-            slider.normal_force,
-        ]
+    return Law(
+        coulomb=slider.law == "coulomb",
+        kinetic=float(slider.mu * pressing),
+        static=float(static * pressing),
+        slope=float(slider.slope),
+        mass=float(slider.mass),
+        half=float(0.5 * beam.thickness),
+        gravity=float(slider.gravity),
+        following=slider.kinematics == "following",
+        held=slider.normal == "held",
+        load=float(slider.normal_force),
     )
 
 

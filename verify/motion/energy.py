@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from verify.models.time_basis import Array, ComplexArray, TimeBasis
+from verify.models.arrays import Array, ComplexArray
+from verify.models.time_basis import TimeBasis
 from verify.motion.result import Ledger
 from verify.motion.surface import Stage, free_at
 

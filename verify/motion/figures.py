@@ -8,9 +8,8 @@ import msgspec
 from verify.models.catalogue import MODELS
 
 if TYPE_CHECKING:
-    from verify.chain.ride import ChainRide
-    from verify.models.time_basis import Array
-    from verify.motion.result import Motion
+    from verify.models.arrays import Array
+    from verify.motion.result import Ride
     from verify.scenes.scene import Scene
     from verify.slider import Slider
 
@@ -23,7 +22,7 @@ class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
 
     unit: str
     summary: str
-    of: "Callable[[Motion | ChainRide, Motion | ChainRide | None], float]"
+    of: "Callable[[Ride, Ride | None], float]"
     """Of the run, and of the one with all phases turned round where `turned` asks for it."""
     sampled: bool = True
     """Whether it takes the run at every step, not at its end alone."""
@@ -36,7 +35,7 @@ def mean(times: "Array", values: "Array") -> float:
     return float((0.5 * (values[1:] + values[:-1]) * steps).sum() / steps.sum())
 
 
-def _reversal(run: "Motion | ChainRide", turned: "Motion | ChainRide | None") -> float:
+def _reversal(run: "Ride", turned: "Ride | None") -> float:
     assert turned is not None
     way = run.displacement
     return turned.displacement / way if way else float("nan")

@@ -5,11 +5,11 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import PointForce
-from verify.models.fields import RESONANCE, ComplexArray, phasor, refuse_resonance
-from verify.models.time_basis import Array, TimeBasis
+from verify.models.arrays import Array, BoolArray, ComplexArray
+from verify.models.fields import RESONANCE, phasor, refuse_resonance
+from verify.models.time_basis import TimeBasis
 
 CONSTANT = np.array([1.0])
 SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
@@ -87,7 +87,7 @@ def answer(modes: Modal, omega: float, growth: Array, unit_s: float, origin: flo
     return Answer(amplitudes=amplitudes, omega=omega, origin=origin, unit_s=unit_s)
 
 
-def _beating(modes: Modal, slow: NDArray[np.bool_], omega: float, growth: Array, unit_s: float) -> ComplexArray:
+def _beating(modes: Modal, slow: BoolArray, omega: float, growth: Array, unit_s: float) -> ComplexArray:
     """Powers of the envelope a of q = Re(a e^{i omega t}) that starts at zero, (slow modes, len(growth) + SERIES).
 
     (D - r)(D - s) a = F growth with r = -sigma + i (omega_d - omega), slow, and s = -sigma - i (omega_d + omega):

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.errors import InputError
+from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE
-from verify.models.time_basis import Array, ComplexArray, TimeBasis
+from verify.models.time_basis import TimeBasis
 
 if TYPE_CHECKING:
     from verify.motion.surface import Stage

@@ -7,10 +7,11 @@ import numpy as np
 from verify.beam import Beam, check_number
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
-from verify.models.time_basis import Array
-from verify.motion.contact import law_entries
+from verify.models.arrays import Array
+from verify.motion.contact import law_of
 from verify.motion.forcing import CONSTANT
-from verify.motion.stepping import Sliding, run_stages
+from verify.motion.records import Law, Rider, V, X
+from verify.motion.stepping import Sliding, fresh_motion, run_stages
 from verify.motion.surface import ANALYTIC_DEGREE, NO_MODES, Stage
 from verify.slider import Slider
 
@@ -59,7 +60,7 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
     from scipy.optimize import brentq
 
     check_number("amplitude", amplitude, "metres", above=0)
-    law, start, mean = law_entries(slider, beam), slider.start_on(beam), 0.0
+    law, start, mean = law_of(slider, beam), slider.start_on(beam), 0.0
     for _ in range(3):
         stage = wave_stage(beam, amplitude, frequency_hz, mean)
         k = np.sqrt(stage.omega / beam.wave_constant)
@@ -78,9 +79,8 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
     return float(mean)
 
 
-def _period(stage: Stage, law: Array, x: float, speed: float) -> tuple[float, float]:
+def _period(stage: Stage, law: Law, x: float, speed: float) -> tuple[float, float]:
     """(distance travelled, speed) after one period."""
-    sliding = Sliding.fresh(x, 1, np.empty(0), law, False, False)
-    sliding.motion[1] = speed
+    sliding = Sliding.fresh(x, 1, np.empty(0), Rider(fresh_motion(speed), law, False), False)
     run_stages([stage], np.zeros((2, 0)), sliding, (), lambda n: None)
-    return float(sliding.motion[0]), float(sliding.motion[1])
+    return float(sliding.motion[X]), float(sliding.motion[V])

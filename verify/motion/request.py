@@ -7,9 +7,9 @@ import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.errors import InputError
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.fields import check_drive
-from verify.models.time_basis import Array
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
@@ -20,6 +20,7 @@ STEPS_PER_PERIOD = 64
 COARSEST = 0.25
 """Of a period: longer steps of a slider are refused."""
 MOST_STEPS = 2e9
+MOST_SAMPLES = 10_000_000
 Envelope = Sequence[tuple[float, Sequence[float]]]
 """Pieces (seconds, coefficients of powers of t / seconds) of the forces' amplitude."""
 
@@ -65,62 +66,99 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return self.slider.line if self.slider else "spline"
 
 
-def requested(
-    beam: Beam,
-    forces: tuple[PointForce, ...],
-    frequency_hz: float,
-    duration: float,
-    model: str,
-    count: int | None,
-    modes: int,
-    start: str,
-    soft: float,
-    envelope: Envelope,
-    damping: float | None,
-    slider: Slider | None,
-    at: Sequence[float],
-    samples: int,
-    step: float | None,
-    steps_per_period: int,
-    ledger: bool,
-    before: Motion | None,
-) -> Request:
+class Driven(msgspec.Struct, frozen=True, eq=False):
+    """What moves, and for how long."""
+
+    beam: Beam
+    forces: tuple[PointForce, ...]
+    frequency_hz: float
+    duration: float
+    """Seconds."""
+
+
+class Modelled(msgspec.Struct, frozen=True, eq=False):
+    """By which model of the beam."""
+
+    model: str
+    count: int | None
+    modes: int
+    damping: float | None
+    """Ratio of every mode; None is half the beam's loss factor."""
+
+
+class Started(msgspec.Struct, frozen=True, eq=False):
+    """From where."""
+
+    start: str
+    soft: float
+    """Periods of the drive over which the forces grow."""
+    envelope: Envelope
+    before: Motion | None
+
+
+class Watched(msgspec.Struct, frozen=True, eq=False):
+    """What is kept, and in which steps."""
+
+    at: Sequence[float]
+    samples: int
+    step: float | None
+    steps_per_period: int
+    ledger: bool
+
+
+def requested(driven: Driven, modelled: Modelled, started: Started, watched: Watched, slider: Slider | None) -> Request:
     """A checked request. Raises InputError."""
-    check_drive(beam, forces, frequency_hz)
-    check_number("duration", duration, "seconds", above=0)
-    _check_start(model, start, soft, envelope, before)
-    check_whole("samples", samples, 2)
-    if samples > 10_000_000:
-        raise InputError(f"samples = {samples!r}: keep between 2 and 10000000 of them")
-    zeta = 0.5 * beam.loss_factor if damping is None else damping
+    beam, hertz = driven.beam, driven.frequency_hz
+    check_drive(beam, driven.forces, hertz)
+    check_number("duration", driven.duration, "seconds", above=0)
+    _check_start(modelled.model, started)
+    _check_samples(watched.samples)
+    zeta = 0.5 * beam.loss_factor if modelled.damping is None else modelled.damping
     check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
-    points = np.atleast_1d(np.asarray(at, dtype=float)) if len(at) else np.empty(0)
-    if not np.all((points >= 0.0) & (points <= beam.length)):
-        raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
-    longest = _longest(frequency_hz, duration, step, steps_per_period, slider)
-    check_line(model, start, slider.line if slider else "spline")
-    grown = (
-        ((soft / frequency_hz, SMOOTH_STEP),) if soft else tuple((s, np.asarray(c, dtype=float)) for s, c in envelope)
-    )
+    points = _points(beam, watched.at)
+    longest = _longest(hertz, driven.duration, watched.step, watched.steps_per_period, slider)
+    check_line(modelled.model, started.start, slider.line if slider else "spline")
     return Request(
         beam=beam,
-        forces=forces,
-        frequency_hz=frequency_hz,
-        model=model,
-        count=count,
-        modes=modes,
-        start=start,
+        forces=driven.forces,
+        frequency_hz=hertz,
+        model=modelled.model,
+        count=modelled.count,
+        modes=modelled.modes,
+        start=started.start,
         damping=zeta,
         slider=slider,
         points=points,
-        accounts=ledger,
-        step=step,
-        before=before.end if before else None,
-        pieces=laid_out(duration, grown, longest, samples - 1),
+        accounts=watched.ledger,
+        step=watched.step,
+        before=started.before.end if started.before else None,
+        pieces=laid_out(driven.duration, _grown(started, hertz), longest, watched.samples - 1),
     )
 
 
-def _check_start(model: str, start: str, soft: float, envelope: Envelope, before: Motion | None) -> None:
+def _grown(started: Started, frequency_hz: float) -> tuple[tuple[float, Array], ...]:
+    """The pieces (seconds, coefficients) over which the forces grow."""
+    if started.soft:
+        return ((started.soft / frequency_hz, SMOOTH_STEP),)
+    return tuple((seconds, np.asarray(c, dtype=float)) for seconds, c in started.envelope)
+
+
+def _check_samples(samples: int) -> None:
+    check_whole("samples", samples, 2)
+    if samples > MOST_SAMPLES:
+        raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
+
+
+def _points(beam: Beam, at: Sequence[float]) -> Array:
+    """Positions as an array, metres. Raises InputError off the beam."""
+    points = np.atleast_1d(np.asarray(at, dtype=float)) if len(at) else np.empty(0)
+    if not np.all((points >= 0.0) & (points <= beam.length)):
+        raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
+    return points
+
+
+def _check_start(model: str, started: Started) -> None:
+    start, soft, envelope, before = started.start, started.soft, started.envelope, started.before
     check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
     MODELS.named(model)
     if start not in ("rest", "steady"):

@@ -3,13 +3,16 @@
 import msgspec
 
 from verify.errors import InputError
-from verify.models.time_basis import Array
+from verify.models.arrays import Array
 from verify.motion.contact import Coupling, Margins
 from verify.slider import Slider
 
+END = "end"
+"""Why a run stopped that went as far as it was asked to."""
+
 
 class Statistics(msgspec.Struct, frozen=True, kw_only=True):
-    """What a run cost and why it ended."""
+    """What a run cost and why it ended, of a beam or of a chain."""
 
     steps: int
     """0 where the motion was evaluated in closed form."""
@@ -22,7 +25,12 @@ class Statistics(msgspec.Struct, frozen=True, kw_only=True):
     wall_s: float
     """Wall time of the run itself."""
     stopped: str
-    """end, interrupted, left the beam, or diverged."""
+    """end, interrupted, left the beam, or diverged; a chain's adds when."""
+
+    @property
+    def finished(self) -> bool:
+        """Whether it went as far as it was asked to."""
+        return self.stopped == END
 
 
 class Ledger(msgspec.Struct, frozen=True, kw_only=True):
@@ -66,18 +74,13 @@ class EndState(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Its speed across the beam, m/s."""
 
 
-class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """A beam, and perhaps a slider on it, in time."""
+class Ride(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What a slider did on a surface in motion, of a linear beam or of a nonlinear chain."""
 
-    model: str
-    count: int | None
     times: Array
     """(n,), seconds."""
-    points: Array
-    """(p,), metres: where the deflection was asked for."""
-    deflection: Array
-    """(n, p), metres."""
     slider: Slider | None
+    """As it was asked for; None where nothing lay on the beam."""
     start: float | None
     """Where the slider began, metres from the left end; None without one."""
     travelled: Array
@@ -86,20 +89,12 @@ class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n,), m/s."""
     friction: Array
     """(n,), tangential force on the slider, newton."""
-    normal_force: Array
-    """(n,), normal reaction on the slider, mean over the step that ends there, newton: m g + preload, and m times the
-    acceleration of the surface for a slider held on it. Below 0 the surface holds it back."""
     surface_speed: Array
     """(n,), tangential velocity of the material under the slider, m/s."""
-    events: Array
-    """(k, 3): time, kind (1 sticks, 2 slips) and distance travelled by the end of that step, for Coulomb friction."""
     coupling: Coupling | None
-    margins: Margins
-    ledger: Ledger | None
     statistics: Statistics
-    end: EndState
     notes: tuple[str, ...]
-    """What stands for what: modes, damping, soft start."""
+    """What stands for what: modes, damping, soft start, coupling."""
 
     @property
     def position(self) -> Array:
@@ -125,3 +120,22 @@ class Motion(msgspec.Struct, frozen=True, eq=False, kw_only=True):
                 "ask for more samples"
             )
         return seconds
+
+
+class Motion(Ride, frozen=True, eq=False, kw_only=True):
+    """A linear beam, and perhaps a slider on it, in time."""
+
+    model: str
+    count: int | None
+    points: Array
+    """(p,), metres: where the deflection was asked for."""
+    deflection: Array
+    """(n, p), metres."""
+    normal_force: Array
+    """(n,), normal reaction on the slider, mean over the step that ends there, newton: m g + preload, and m times the
+    acceleration of the surface for a slider held on it. Below 0 the surface holds it back."""
+    events: Array
+    """(k, 3): time, kind (1 sticks, 2 slips) and distance travelled by the end of that step, for Coulomb friction."""
+    margins: Margins
+    ledger: Ledger | None
+    end: EndState

@@ -8,7 +8,7 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.errors import InputError
-from verify.models.time_basis import Array
+from verify.motion.records import SLIPS, STICKS, Law
 from verify.slider import GRAVITY
 
 STEPS = 4096
@@ -21,14 +21,25 @@ DOUBLINGS = 60
 MOST_STEPS = 40_000_000
 
 
-def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Array:
-    """Entries of `contact_kernels.KIND` and so on, accelerations in m/s^2."""
-    return np.array([float(coulomb), kinetic, static, slope, 1.0, 0.0, GRAVITY, 0.0])
+def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Law:
+    """Friction alone, accelerations in m/s^2."""
+    return Law(
+        coulomb=coulomb,
+        kinetic=float(kinetic),
+        static=float(static),
+        slope=float(slope),
+        mass=1.0,
+        half=0.0,
+        gravity=GRAVITY,
+        following=False,
+        held=False,
+        load=GRAVITY,
+    )
 
 
 def free_decay(mu: float, slope: float, speed: float, time: float, gravity: float = GRAVITY) -> float:
     """Speed that tanh friction leaves of `speed` after `time` on a surface at rest, m/s."""
-    from verify.motion.kernels import slide_on_belt
+    from verify.motion.friction_kernels import slide_on_belt
 
     state = np.array([0.0, speed, 0.0])
     slide_on_belt(STEPS, time / STEPS, _law(False, mu * gravity, 0.0, slope), 0.0, 0.0, 0.0, state, np.zeros((0, 3)))
@@ -37,7 +48,7 @@ def free_decay(mu: float, slope: float, speed: float, time: float, gravity: floa
 
 def creep_speed(mu: float, slope: float, pull: float, gravity: float = GRAVITY) -> float:
     """Speed at which a slider under the constant acceleration `pull` creeps in the end, m/s. Raises InputError."""
-    from verify.motion.kernels import slide_on_belt
+    from verify.motion.friction_kernels import slide_on_belt
 
     if not abs(pull) <= HELD * mu * gravity:
         raise InputError(f"pull = {pull!r} is not below mu g = {mu * gravity!r} m/s^2 by a millionth: lower pull")
@@ -57,7 +68,7 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
 
     Raises InputError where it does not stick and slip.
     """
-    from verify.motion.kernels import SLIPS, STICKS, slide_on_belt
+    from verify.motion.friction_kernels import slide_on_belt
 
     if kinetic >= static:
         raise InputError(
@@ -86,7 +97,7 @@ def stick_slip_times(mass: float, stiffness: float, static: float, kinetic: floa
 
 def coulomb_decrement(mass: float, stiffness: float, force: float) -> float:
     """Amplitude that a spring-mass oscillator on a floor with Coulomb friction `force` loses in a cycle, metres."""
-    from verify.motion.kernels import slide_on_belt
+    from verify.motion.friction_kernels import slide_on_belt
 
     period = 2.0 * pi * sqrt(mass / stiffness)
     start = 12.5 * force / stiffness

@@ -2,20 +2,21 @@
 
 from collections.abc import Callable, Sequence
 from time import perf_counter
-from typing import Literal
 
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.models.time_basis import Array, TimeBasis
-from verify.motion.carried import begin, coupling_on, slide, steady_field, times_of
+from verify.models.time_basis import TimeBasis
+from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance
 from verify.motion.margins import margins_of
-from verify.motion.request import STEPS_PER_PERIOD, Envelope, Request, requested
+from verify.motion.request import STEPS_PER_PERIOD, Driven, Envelope, Modelled, Request, Started, Watched, requested
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
+from verify.options import Start
 from verify.slider import Slider
 
 CLOSED_FORM_ROWS = 2000
@@ -30,7 +31,7 @@ def simulate(
     model: str = "segment",
     count: int | None = None,
     modes: int = 400,
-    start: Literal["rest", "steady"] = "rest",
+    start: Start = "rest",
     soft_start_periods: float = 0.0,
     envelope: Envelope = (),
     modal_damping: float | None = None,
@@ -58,29 +59,30 @@ def simulate(
     """
     began = perf_counter()
     request = requested(
-        beam,
-        tuple(forces),
-        frequency_hz,
-        duration,
-        model,
-        count,
-        modes,
-        start,
-        soft_start_periods,
-        envelope,
-        modal_damping,
+        Driven(beam, tuple(forces), frequency_hz, duration),
+        Modelled(model, count, modes, modal_damping),
+        Started(start, soft_start_periods, envelope, continue_from),
+        Watched(at, samples, step, steps_per_period, ledger),
         slider,
-        at,
-        samples,
-        step,
-        steps_per_period,
-        ledger,
-        continue_from,
     )
+    return _run(request, began, progress, patient)
+
+
+def _run(request: Request, began: float, progress: Callable[[float], None], patient: bool) -> Motion:
+    """What a checked request gives; `began` is the wall clock at its start, seconds. Raises InputError."""
     stages, basis, coupling = _prepare(request)
-    if slider is None or coupling is None:
+    if request.slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
-    return slide(request, slider, stages, basis, coupling, began, _notes(request, basis), progress, patient)
+    laid = Laid(
+        request=request,
+        slider=request.slider,
+        stages=stages,
+        basis=basis,
+        coupling=coupling,
+        began=began,
+        notes=_notes(request, basis),
+    )
+    return slide(laid, progress, patient)
 
 
 def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling | None]:

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from msgspec.structs import replace
 
-from verify.models.time_basis import Array
+from verify.models.arrays import Array
 from verify.motion.surface import Stage, cut, free_at
 
 UNSEEN = 1e-4

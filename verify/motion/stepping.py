@@ -5,12 +5,13 @@ from time import perf_counter
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import PointForce
+from verify.models.arrays import Array
 from verify.models.fields import phasor
-from verify.models.time_basis import Array
+from verify.motion import records
 from verify.motion.forcing import turns
+from verify.motion.records import Books, Drive, Kept, Rider, Space, Surface
 from verify.motion.surface import Stage
 
 CHUNK = 20_000
@@ -25,21 +26,15 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
 
     start: float
     """Where the slider was put, metres; the loop counts from here, so that nanometres keep their digits."""
-    motion: Array
-    """(7,): distance travelled, v, whether it sticks and so on, `contact_kernels.X` to `FALL`."""
-    law: Array
-    two_way: bool
+    rider: Rider
     points: Array
-    kept: Array
-    """(samples, 5): distance travelled, v, friction per mass, speed of the surface, normal reaction on the slider."""
-    deflections: Array
-    events: Array
+    """Where the deflection is kept, metres."""
+    kept: Kept
+    """Its points and the steps between samples are each stage's own."""
     accounts: bool
     ledger: Array
     first: Array
     first_deflection: Array
-    tally: NDArray[np.int64]
-    """(3,): steps of the present stage, samples and events so far; advanced by the loop together with the motion."""
     on_its_way: tuple[float, float] | None = None
     """Height and climb of a slider that was held on the surface before; one that is put on takes the surface's."""
     steps_before: int = 0
@@ -48,63 +43,77 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     """Wall time spent on tables, not on steps."""
 
     @classmethod
-    def fresh(cls, start: float, samples: int, points: Array, law: Array, two_way: bool, accounts: bool) -> "Sliding":
+    def fresh(cls, start: float, samples: int, points: Array, rider: Rider, accounts: bool) -> "Sliding":
         """Room for a run."""
         return cls(
             start=start,
-            motion=fresh_motion(),
-            law=law,
-            two_way=two_way,
+            rider=rider,
             points=points,
-            kept=np.zeros((samples, 5)),
-            deflections=np.zeros((samples, len(points))),
-            events=np.zeros((EVENTS, 3)),
+            kept=Kept(
+                every=1,
+                kept=np.zeros((samples, 5)),
+                points=np.empty((0, 0)),
+                deflections=np.zeros((samples, len(points))),
+                events=np.zeros((EVENTS, 3)),
+                tally=np.zeros(3, dtype=np.int64),
+            ),
             accounts=accounts,
             ledger=np.zeros(6),
             first=np.zeros(5),
             first_deflection=np.zeros(len(points)),
-            tally=np.zeros(3, dtype=np.int64),
         )
+
+    @property
+    def motion(self) -> Array:
+        """(7,), `records.X` and so on."""
+        return self.rider.motion
 
     @property
     def steps(self) -> int:
         """Of all stages so far."""
-        return self.steps_before + int(self.tally[0])
+        return self.steps_before + int(self.kept.tally[records.STEP])
 
     @property
     def held(self) -> tuple[float, float]:
         """Height and climb of a slider that is held on the surface, metres and m/s."""
-        return float(self.motion[3]), float(self.motion[4])
+        return float(self.motion[records.HEIGHT]), float(self.motion[records.CLIMB])
 
     @property
     def fall(self) -> float:
         """The largest downward acceleration of the surface under the slider so far, m/s^2."""
-        return float(self.motion[6])
+        return float(self.motion[records.FALL])
 
     @property
     def n_kept(self) -> int:
         """Samples so far."""
-        return int(self.tally[1])
+        return int(self.kept.tally[records.SAMPLES])
 
     @property
-    def n_events(self) -> int:
-        """Events written down so far."""
-        return min(int(self.tally[2]), len(self.events))
+    def events(self) -> Array:
+        """Those written down so far, (n, 3): time, kind, x."""
+        return self.kept.events[: int(self.kept.tally[records.EVENTS])]
 
     @property
     def n_lost(self) -> int:
         """Events for which there was no room."""
-        return max(int(self.tally[2]) - len(self.events), 0)
+        return int(self.kept.tally[records.EVENTS]) - len(self.events)
 
 
 def fresh_motion(speed: float = 0.0, stuck: bool = False) -> Array:
-    """What a slider carries from step to step at the start, (7,)."""
-    return np.array([0.0, speed, float(stuck), 0.0, 0.0, 0.0, 0.0])
+    """What a slider carries from step to step at the start, `Rider.motion`."""
+    motion = np.zeros(7)
+    motion[[records.V, records.STUCK]] = speed, stuck
+    return motion
 
 
-def contact_space() -> tuple[Array, Array]:
-    """Working space of the compiled contact: what is seen at three times of a step, and how the slider slips."""
-    return np.zeros((3, 6)), np.zeros(45)
+def contact_space(rows: int = 0, degree: int = 3) -> Space:
+    """Working space of the compiled contact, on a surface of so many rows."""
+    return Space(
+        factors=np.empty((2, rows)),
+        local=np.zeros((3, degree + 1)),
+        seen=np.zeros((3, 6)),
+        slip=np.zeros(records.FIRST_EVENT + 2 * records.SPANS),
+    )
 
 
 class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -112,37 +121,55 @@ class Feed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     stage: Stage
     modes: Array
-    """(11, n), see `contact_kernels.Z_RE`; advanced in place."""
-    drive: Array
-    loads: Array
-    forces: Array
-    answers: Array
-    """(n, drive rows): the forced part of every mode over the drive's time factors; zero in a steady field."""
-    points: Array
+    """`Surface.modes`; advanced in place."""
+    drive: Drive
+    books: Books
+    kept: Kept
 
     @property
     def z(self) -> Array:
         """The free modes now, (2, n)."""
-        return self.modes[:2].copy()
+        return self.modes[: records.Z_IM + 1].copy()
+
+    @property
+    def space(self) -> Space:
+        """Working space, fresh."""
+        return contact_space(self.kept.points.shape[1], self.stage.degree)
 
 
-def feed(stage: Stage, z: Array, forces: Sequence[PointForce], points: Array) -> Feed:
-    """Arrays for one stage with free modes z."""
-    modes = np.zeros((11, z.shape[1]))
-    modes[0:2], modes[2], modes[3] = z, stage.modal.sigmas, stage.modal.omegas
-    modes[4:6], modes[6:8] = turns(stage.modal, 0.5 * stage.dt), turns(stage.modal, stage.dt)
+def feed(stage: Stage, z: Array, forces: Sequence[PointForce], sliding: Sliding) -> Feed:
+    """What one stage with free modes z gives to the loop."""
+    modes = np.zeros((records.READ + 1, z.shape[1]))
+    modes[[records.Z_RE, records.Z_IM]] = z
+    modes[records.SIGMA], modes[records.OMEGA] = stage.modal.sigmas, stage.modal.omegas
+    modes[[records.HALF_RE, records.HALF_IM]] = turns(stage.modal, 0.5 * stage.dt)
+    modes[[records.FULL_RE, records.FULL_IM]] = turns(stage.modal, stage.dt)
+    return Feed(
+        stage=stage,
+        modes=modes,
+        drive=Drive(
+            omega=float(stage.omega),
+            origin=float(stage.origin),
+            unit=float(stage.unit_s),
+            growth=np.array(stage.growth, dtype=float),
+        ),
+        books=_books(stage, forces, sliding),
+        kept=sliding.kept._replace(every=stage.every, points=np.ascontiguousarray(stage.rows(sliding.points).T)),
+    )
+
+
+def _books(stage: Stage, forces: Sequence[PointForce], sliding: Sliding) -> Books:
+    """What the work of the forces is reckoned from."""
     amplitudes = np.array([phasor(f) for f in forces], dtype=complex)
     loads = np.zeros((len(forces), len(stage.rows(np.zeros(1)))))
     for row, force in zip(loads, forces, strict=True):
         row[:] = stage.load_rows(force.position)
-    return Feed(
-        stage=stage,
-        modes=modes,
+    return Books(
+        open=sliding.accounts,
         loads=loads,
-        drive=np.array([stage.omega, stage.origin, stage.unit_s, *stage.growth]),
         forces=np.array([amplitudes.real, amplitudes.imag]),
         answers=stage.answers,
-        points=np.ascontiguousarray(stage.rows(points).T),
+        ledger=sliding.ledger,
     )
 
 
@@ -171,20 +198,17 @@ def window(stage: Stage, start: float, travelled: float) -> Window | None:
     return stage.table(first, last), edges[first : last + 1]
 
 
-def room(fed: Feed) -> tuple[Array, Array, Array, Array]:
-    """Working space of the compiled loop: time factors, local polynomials, what is seen, how it slips."""
-    rows = fed.points.shape[1]
-    return np.empty((2, rows)), np.zeros((3, fed.stage.degree + 1)), *contact_space()
-
-
 def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     """The first sample: the slider as it is put on, before any step; a slider on its way keeps its height and climb."""
     from verify.motion import kernels
 
-    speed, friction = kernels.look(fed.modes, fed.drive, *around, sliding.motion, sliding.law, *room(fed)[:3])
-    sliding.first[:] = sliding.motion[0], sliding.motion[1], friction, speed, sliding.motion[5]
+    motion, surface = sliding.motion, Surface(fed.modes, fed.drive, *around)
+    speed, friction = kernels.look(surface, sliding.rider, fed.space)
+    sliding.first[records.KEPT_X], sliding.first[records.KEPT_V] = motion[records.X], motion[records.V]
+    sliding.first[records.KEPT_FRICTION], sliding.first[records.KEPT_SURFACE] = friction, speed
+    sliding.first[records.KEPT_NORMAL] = motion[records.NORMAL]
     if sliding.on_its_way is not None:
-        sliding.motion[kernels.HEIGHT], sliding.motion[kernels.CLIMB] = sliding.on_its_way
+        motion[records.HEIGHT], motion[records.CLIMB] = sliding.on_its_way
     if len(sliding.points):
         sliding.first_deflection[:] = fed.stage.deflection(fed.z, np.zeros(1), sliding.points)[0]
 
@@ -203,17 +227,17 @@ def run_stages(
     stopped, state = "end", (np.empty(0), np.empty(0))
     for i, stage in enumerate(stages):
         began = perf_counter()
-        fed = feed(stage, z if i == 0 else stage.start(*state), forces, sliding.points)
-        around = window(stage, sliding.start, float(sliding.motion[0]))
+        fed = feed(stage, z if i == 0 else stage.start(*state), forces, sliding)
+        around = window(stage, sliding.start, float(sliding.motion[records.X]))
         if i == 0 and around:
             look(fed, around, sliding)
         sliding.set_up_s += perf_counter() - began
-        sliding.steps_before, sliding.tally[0] = sliding.steps, 0
+        sliding.steps_before, sliding.kept.tally[records.STEP] = sliding.steps, 0
         try:
             stopped = _run_stage(fed, around, sliding, tell)
         except KeyboardInterrupt:
             stopped = "interrupted"
-        state = stage.state(fed.z, int(sliding.tally[0]) * stage.dt)
+        state = stage.state(fed.z, int(sliding.kept.tally[records.STEP]) * stage.dt)
         if stopped != "end":
             break
     return stopped, *state
@@ -223,35 +247,17 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
     """One stage in chunks; why it ended. The loop keeps its own books, so that an interrupt finds them closed."""
     from verify.motion import kernels
 
-    s, stage, space = sliding, fed.stage, room(fed)
-    while around and s.tally[0] < stage.n_steps:
-        why = kernels.slide(
-            min(CHUNK, stage.n_steps - s.tally[0]),
-            stage.dt,
-            fed.modes,
-            fed.drive,
-            *around,
-            s.motion,
-            s.law,
-            s.two_way,
-            fed.loads,
-            fed.forces,
-            fed.answers,
-            s.accounts,
-            s.ledger,
-            stage.every,
-            s.kept,
-            fed.points,
-            s.deflections,
-            s.events,
-            s.tally,
-            *space,
-        )
+    s, stage, space = sliding, fed.stage, fed.space
+    done, motion = s.kept.tally, s.motion
+    while around and done[records.STEP] < stage.n_steps:
+        steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
+        surface = Surface(fed.modes, fed.drive, *around)
+        why = kernels.slide(steps, stage.dt, surface, s.rider, fed.books, fed.kept, space)
         tell(s.steps)
-        if why == kernels.NOT_FINITE:
+        if why == records.NOT_FINITE:
             return "diverged"
-        if why == kernels.OFF_PIECES:
+        if why == records.OFF_PIECES:
             began = perf_counter()
-            around = window(stage, s.start, float(s.motion[0]))
+            around = window(stage, s.start, float(motion[records.X]))
             s.set_up_s += perf_counter() - began
-    return "end" if around and on_beam(stage, s.start, float(s.motion[0])) else "left the beam"
+    return "end" if around and on_beam(stage, s.start, float(motion[records.X])) else "left the beam"

@@ -9,8 +9,9 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
+from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS, check_count
-from verify.models.time_basis import Array, ComplexArray, TimeBasis, taylor_table
+from verify.models.time_basis import TimeBasis, taylor_table
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 
 if TYPE_CHECKING:

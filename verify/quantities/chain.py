@@ -1,14 +1,19 @@
 """Named figures of the nonlinear chain."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from msgspec import Meta
 
+from verify import options
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
-from verify.quantities.kind import Arguments, Mode, Quantity, Wall
+from verify.quantities.kind import Arguments, Grading, Mode, Quantity, Wall
+from verify.quantities.motion_arguments import Friction, Slope
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from verify.chain.ride import ChainRide
     from verify.scenes.scene import Scene
 
 Links = Annotated[int, Meta(ge=1, description="links of the chain; segments and count mean the same")]
@@ -93,7 +98,7 @@ class Departing(Chained, frozen=True, kw_only=True):
     force: Annotated[float, Meta(gt=0, description="N, of every force of the scene's drive")]
     time: Annotated[float, Meta(gt=0, lt=0.1, description="s after the forces set in")] = 1e-3
     inertia: Annotated[
-        Literal["full", "transverse", "elastic"],
+        options.Inertia,
         Meta(description="transverse: rigid links without inertia along x; elastic: links that stretch by EA / l"),
     ] = "full"
     of: Annotated[Literal["end", "rms"], Meta(description="the departure at that time, or its rms until then")] = "end"
@@ -114,6 +119,47 @@ class FromRest(Chained, frozen=True, kw_only=True):
     tolerance: Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step alone; default 1e-9")] | None = (
         None
     )
+
+
+class ContactLine(Chained, frozen=True, kw_only=True):
+    """One mode of the scene's beam as a slider on its nonlinear chain sees it."""
+
+    mode: Mode
+    x: Annotated[float, Meta(ge=0, description="m from the left end: on which piece")]
+    wall: Wall = "gregory"
+    grading: Grading = 1.0
+
+
+class Ridden(Arguments, frozen=True, kw_only=True):
+    """The scene's slider on the nonlinear chain from rest, with what is given instead of the scene's."""
+
+    slides: ClassVar[bool] = True
+    segments: Links
+    links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"
+    time: Annotated[float, Meta(gt=0, description="s; default: the scene's motion.duration")] | None = None
+    step: Annotated[float, Meta(gt=0, description="of the slider, s; default: the scene's steps per period")] | None = (
+        None
+    )
+    force: Annotated[float, Meta(gt=0, description="N, of every force; default those of the scene's drive")] | None = (
+        None
+    )
+    soft_start_periods: (
+        Annotated[float, Meta(ge=0, description="0 in place of the scene's: forces act at once")] | None
+    ) = None
+    mu: Friction | None = None
+    slope: Slope | None = None
+    mass: Annotated[float, Meta(gt=0, description="kg")] | None = None
+    law: Annotated[options.Law, Meta(description="Eq. (3), or true sticking")] | None = None
+    coupling: (
+        Annotated[options.CouplingChoice, Meta(description="auto: refused where the chain would feel it")] | None
+    ) = None
+    kinematics: Annotated[options.Kinematics, Meta(description="how it keeps to the surface")] | None = None
+    normal: Annotated[options.NormalChoice, Meta(description="held: refused where the chain would feel it")] | None = (
+        None
+    )
+    preload: Annotated[float, Meta(ge=0, description="newton pressing it on beside its weight")] | None = None
+    slider_position: Annotated[float, Meta(description="where it starts, metres")] | None = None
+    slider_speed: Annotated[float, Meta(description="at the start, m/s")] | None = None
 
 
 def _cantilever_tip(a: TipUnderLoad, scene: "Scene", bench: Workbench) -> float:
@@ -189,6 +235,60 @@ def _axial_departure(a: Departing, scene: "Scene", bench: Workbench) -> float:
     driven = driven_chain(scene, "chain.axial_departure", a.links, a.time, a.x)
     found = departure(driven, a.force, a.inertia, bench.tell)
     return found.at_end if a.of == "end" else found.rms
+
+
+def _contact_line_error(a: ContactLine, scene: "Scene", bench: Workbench) -> float:
+    from verify.chain.problems import contact_line_error
+
+    if a.x > scene.beam.length:
+        raise InputError(f"x = {a.x!r} lies off the chain: give up to {scene.beam.length!r} m")
+    return contact_line_error(scene.beam, a.mode, a.links, a.x, wall=a.wall, grading=a.grading)
+
+
+def _ridden(figure: "Callable[[ChainRide], float]") -> Any:
+    """One figure of the slider's run on the chain."""
+
+    def evaluate(a: Ridden, scene: "Scene", bench: Workbench) -> float:
+        return figure(_ride(a, scene, bench))
+
+    return evaluate
+
+
+def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
+    from msgspec.structs import replace
+
+    from verify.chain.departure import point_forces
+    from verify.chain.ride import ride_from_rest
+    from verify.motion.request import STEPS_PER_PERIOD
+    from verify.quantities.simulated import slider_of
+
+    bench.n_unkept_motions += 1
+    motion, slider = scene.motion, slider_of(a, scene)
+    if motion is not None and a.soft_start_periods is not None:
+        motion = replace(motion, soft_start_periods=a.soft_start_periods)
+    forces = point_forces(replace(scene, motion=motion), "a slider on the nonlinear chain")
+    assert scene.drive is not None
+    time = a.time if a.time is not None or motion is None else motion.duration
+    if time is None:
+        raise InputError("time is missing and the scene has no [motion]: give time in seconds")
+    steps = motion.steps_per_period if motion else STEPS_PER_PERIOD
+    return ride_from_rest(
+        scene.beam,
+        [replace(force, amplitude=a.force) for force in forces] if a.force is not None else forces,
+        scene.drive.frequency_hz,
+        slider,
+        a.segments,
+        time,
+        step=a.step or 1.0 / (steps * scene.drive.frequency_hz),
+        links=a.links,
+        progress=bench.tell,
+    )
+
+
+def _imbalance(run: "ChainRide") -> float:
+    """What the slider's books miss over what friction rubs away."""
+    assert run.ledger is not None
+    return abs(run.ledger.residual) / run.ledger.rubbed
 
 
 def _buildable(a: Any, scene: "Scene") -> tuple[()]:
@@ -267,5 +367,28 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _axial_departure,
         needs=_buildable,
+    ),
+    Quantity(
+        "chain.contact_line_error",
+        "1",
+        "Slope of the contact line on the chain in a mode less the beam's, over the largest slope.",
+        ContactLine,
+        "equilibrium",
+        _contact_line_error,
+        needs=_buildable,
+    ),
+    *(
+        Quantity(f"chain.slider_{name}", unit, summary, Ridden, "in time", _ridden(figure), needs=_buildable)
+        for name, unit, summary, figure in (
+            (
+                "displacement",
+                "m",
+                "Of the scene's slider along +x on the nonlinear chain.",
+                lambda run: run.displacement,
+            ),
+            ("mean_speed", "m/s", "Displacement over time.", lambda run: run.mean_speed),
+            ("largest_friction", "N", "Largest friction force on it.", lambda run: float(abs(run.friction).max())),
+            ("imbalance", "1", "What the slider's energy ledger misses, over what friction rubs away.", _imbalance),
+        )
     ),
 )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, Ty
 import msgspec
 from msgspec import Meta
 
+from verify import options
 from verify.errors import InputError, near_name
 from verify.judge.workbench import MEAN, Need, Settings, Workbench
 from verify.models import catalogue
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 Work: TypeAlias = Literal["closed form", "matrices", "modes", "harmonic", "equilibrium", "in time"]
-"""What is done for a figure: nothing but arithmetic; matrices, of which nothing is solved; eigenvalues (of models of
-parts; the exact beam's are closed forms); driven fields; equilibria and modes of the nonlinear chain; motion in time."""
+"""What is done for a figure: nothing but arithmetic; matrices, of which nothing is solved; eigenvalues, of models of
+parts, for the exact beam's are closed forms; driven fields; equilibria and modes of the nonlinear chain; motion."""
 
 
 class Among(msgspec.Struct, frozen=True):
@@ -65,12 +66,10 @@ Reading = Annotated[
     str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default the first")
 ]
 Wall = Annotated[
-    Literal["gregory", "half", "welded", "third-order", "five-joint"],
+    options.Wall,
     Meta(description="how segments are held at a clamped end; half is the literature's k = 2EI/l"),
 ]
-Joints = Annotated[
-    Literal["series", "printed"], Meta(description="Eq. (1) of the segments' joints: put right, or as printed")
-]
+Joints = Annotated[options.Joints, Meta(description="Eq. (1) of the segments' joints: put right, or as printed")]
 Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
 
 

@@ -4,6 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from msgspec import Meta
 
+from verify import options
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities.kind import (
@@ -68,7 +69,7 @@ class OnWave(AtFrequency, frozen=True, kw_only=True):
     slope: Slope
     mu: Friction
     kinematics: Annotated[
-        Literal["tangential", "following"], Meta(description="following: its path is that of the surface, exactly")
+        options.Kinematics, Meta(description="following: its path is that of the surface, exactly")
     ] = "tangential"
     gravity: Gravity = GRAVITY
 
@@ -79,7 +80,7 @@ class InTime(DriveArguments, frozen=True, kw_only=True):
     model: MovingModel = "segment"
     count: Size | None = None
     time: Annotated[float, Meta(gt=0, description="seconds; default: the scene's motion.duration")] | None = None
-    start: Annotated[Literal["rest", "steady"], Meta(description="default: the scene's motion.start")] | None = None
+    start: Annotated[options.Start, Meta(description="default: the scene's motion.start")] | None = None
     soft_start_periods: (
         Annotated[float, Meta(ge=0, description="over which the forces grow; default: the scene's")] | None
     ) = None
@@ -110,17 +111,12 @@ class SliderInTime(InTime, frozen=True, kw_only=True):
     mu: Friction | None = None
     slope: Slope | None = None
     mass: Annotated[float, Meta(gt=0, description="kg")] | None = None
-    law: Annotated[Literal["tanh", "coulomb"], Meta(description="Eq. (3), or true sticking")] | None = None
-    coupling: Annotated[Literal["auto", "one-way", "two-way"], Meta(description="whether the beam feels it")] | None = (
-        None
-    )
-    line: Annotated[Literal["spline", "raw"], Meta(description="contact line of a chain")] | None = None
-    kinematics: (
-        Annotated[Literal["tangential", "following"], Meta(description="how it keeps to the surface")] | None
-    ) = None
+    law: Annotated[options.Law, Meta(description="Eq. (3), or true sticking")] | None = None
+    coupling: Annotated[options.CouplingChoice, Meta(description="whether the beam feels it")] | None = None
+    line: Annotated[options.Line, Meta(description="contact line of a chain")] | None = None
+    kinematics: Annotated[options.Kinematics, Meta(description="how it keeps to the surface")] | None = None
     normal: (
-        Annotated[Literal["held", "massless"], Meta(description="whether its weight and inertia act on the beam")]
-        | None
+        Annotated[options.NormalChoice, Meta(description="whether its weight and inertia act on the beam")] | None
     ) = None
     preload: Annotated[float, Meta(ge=0, description="newton pressing it on beside its weight")] | None = None
     slider_position: Annotated[float, Meta(description="where it starts, metres")] | None = None

@@ -12,6 +12,7 @@ from verify.motion.case import MotionCase
 from verify.motion.request import STEPS_PER_PERIOD
 from verify.motion.result import Motion
 from verify.quantities.cases import drive_forces, drive_frequency
+from verify.quantities.kind import Arguments
 from verify.quantities.motion_arguments import (
     CouplingSize,
     DeflectionAt,
@@ -50,7 +51,7 @@ _OWN = {
 MOST_SAMPLES = 1_000_000
 
 
-def slider_of(a: InTime | Steady, scene: "Scene") -> Slider:
+def slider_of(a: Arguments, scene: "Scene") -> Slider:
     """The scene's slider with what is given instead. Raises InputError where there is none."""
     if scene.slider is None:
         raise InputError("the scene has no slider: add [slider] with mass and mu")

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
+from verify import options
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities.kind import AtFrequency, DiscreteField, DriveArguments, FieldModel, Size, Sizes, check_count
@@ -12,7 +13,7 @@ Window = Annotated[tuple[float, float], Meta(description="metres, start and end;
 
 
 Loss = Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")]
-Imposed = Annotated[Literal["force", "displacement"], Meta(description="what is imposed; default: the scene's")]
+Imposed = Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")]
 
 
 class Driven(DriveArguments, frozen=True, kw_only=True):
@@ -24,12 +25,8 @@ class Driven(DriveArguments, frozen=True, kw_only=True):
     modal_damping: Annotated[float, Meta(description="ratio of every mode; fem and segment")] = 0.0
     joint_dashpot: Annotated[float, Meta(description="N m s at every joint; segment")] = 0.0
     drive: Imposed | None = None
-    load: Annotated[Literal["reciprocal", "lever"], Meta(description="how a force is shared among joints; segment")] = (
-        "reciprocal"
-    )
-    reading: Annotated[
-        Literal["corrected", "raw", "links"], Meta(description="how the chain is read between joints; segment")
-    ] = "corrected"
+    load: Annotated[options.Load, Meta(description="how a force is shared among joints; segment")] = "reciprocal"
+    reading: Annotated[options.Reading, Meta(description="how the chain is read between joints; segment")] = "corrected"
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)

@@ -11,6 +11,7 @@ from msgspec import Meta
 from verify.beam import Beam, PointForce, check_frequency, check_number
 from verify.errors import InputError, near_name, shown
 from verify.files import exists
+from verify.options import DriveKind, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
 from verify.scenes.sections import SECTIONS
@@ -49,7 +50,7 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """What shakes the beam at one frequency: harmonic point forces, or displacements imposed at points."""
 
     frequency_hz: float
-    kind: Literal["force", "displacement"] = "force"
+    kind: DriveKind = "force"
     """What the amplitudes mean: newton, or metres. The paper does not say; its frequency rule fits forces."""
     force: tuple[SceneForce, ...] = ()
 
@@ -62,7 +63,7 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
     duration: float = 1e-3
     """Seconds."""
-    start: Literal["rest", "steady"] = "rest"
+    start: Start = "rest"
     soft_start_periods: float = 0.0
     """Over which the forces grow; 0 is a step load, because cos(0) = 1."""
     modal_damping: float | None = None

@@ -3,23 +3,21 @@
 from collections.abc import Callable
 from functools import lru_cache
 from math import pi
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
 from verify.beam import Beam
 from verify.errors import InputError, near_name
+from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
-from verify.models.time_basis import Array, TimeBasis, check_held
+from verify.models.time_basis import TimeBasis, check_held
+from verify.options import LINES, Line, Load, Wall
 from verify.segments.linear import check
-from verify.segments.links import Chain, build_chain, chain_pencil, corrected_reading, with_ends
-from verify.segments.loads import Load, joint_weights
-from verify.segments.walls import Wall
-
-Line = Literal["spline", "raw"]
-LINES: tuple[str, ...] = get_args(Line)
-"""The contact line: the paper's C2 spline through the joints (Section II.B), or the links' own straight edges."""
+from verify.segments.links import Chain, build_chain, chain_pencil, with_ends
+from verify.segments.loads import joint_weights
+from verify.segments.reading import corrected_reading, spline_at
 
 
 def time_basis(
@@ -109,10 +107,8 @@ def _straight(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
 def _splined(beam: Beam, chain: Chain, joints: Joints, uniform: bool) -> Callable[[Array, int], Array]:
     """The C2 spline through the corrected joints."""
     if not uniform:
-        from verify.segments.linear import _spline
-
         everywhere = corrected_reading(chain, joints(np.arange(chain.n_segments + 1)))
-        return lambda x, derivative: _spline(chain, everywhere, x, derivative)
+        return lambda x, derivative: spline_at(chain, everywhere, x, derivative)
     return _sine_spline(chain, joints)
 
 

@@ -2,34 +2,30 @@
 
 from collections.abc import Callable, Sequence
 from math import pi, sqrt
-from typing import Literal, get_args
 
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_number, check_whole
 from verify.errors import InputError, near_name
+from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import Array, ComplexArray, Eigenpairs, check_size, lowest, method_name
+from verify.models.eigen import Eigenpairs, FactoredPencil, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.options import JOINTS, LOADS, READINGS, WALLS, Joints, Load, Reading, Wall
 from verify.segments.links import (
-    JOINTS,
     Chain,
-    Joints,
     build_chain,
     chain_pencil,
-    corrected_reading,
     free_joints,
     joint_curvatures,
     with_ends,
 )
-from verify.segments.loads import LOADS, Load, joint_weights
-from verify.segments.walls import WALLS, Wall
+from verify.segments.loads import joint_weights
+from verify.segments.reading import corrected_reading, spline_at
 
 FIELD = "n_segments"
-Reading = Literal["corrected", "raw", "links"]
-READINGS: tuple[str, ...] = get_args(Reading)
 
 
 def unknowns(beam: Beam, n_segments: int) -> int:
@@ -54,7 +50,7 @@ def solve_modes(
     """The first `n_modes` elastic modes of the beam as `n_segments` rigid links.
 
     Links have their own rotary inertia m l^2/12 (the paper, Section II.A). `joints` is Eq. (1) in its
-    "series" form or as "printed"; `wall` says how a clamped end is held (`chain_walls.WALLS`); `grading` is the
+    "series" form or as "printed"; `wall` says how a clamped end is held (`options.WALLS`); `grading` is the
     length of a section's last link over its first. Frequencies are those of the chain to rounding. Shapes are
     read at the joints with the correction y + delta^2 y / 12 (order 4, next to a clamped wall 2; the raw y,
     order 2, is the reading "raw") and through a cubic spline between. Raises InputError for unknown settings,
@@ -96,7 +92,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
         return corrected_reading(chain, raw)
 
     def shapes(x: Array, derivative: int) -> Array:
-        return _spline(chain, corrected(), x, derivative)
+        return spline_at(chain, corrected(), x, derivative)
 
     def curvatures() -> Array:
         return joint_curvatures(chain, raw)
@@ -116,16 +112,6 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
         curvatures=curvatures,
         method=pairs.method,
     )
-
-
-def _spline(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
-    """Cubic spline through the joints: no moment at pinned and free ends, no slope at walls."""
-    from scipy.interpolate import CubicSpline
-
-    ends = tuple((1 if wall else 2, np.zeros(len(values))) for wall in chain.walls)
-    nodes = chain.nodes
-    inside = np.clip(x, nodes[0], nodes[-1])  # a welded half segment stands still
-    return np.asarray(CubicSpline(nodes, values, axis=1, bc_type=ends)(inside, derivative))
 
 
 def _sign(chain: Chain, free: Array) -> Array:
@@ -163,11 +149,8 @@ def solve_harmonic(
     if not (beam.loss_factor or modal_damping or joint_dashpot):
         refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve_modes, n_segments)
     loads = _loads(chain, forces, load) * (chain.unit**3 / beam.bending_stiffness)
-    dashpot = 2.0 * pi * frequency_hz * joint_dashpot * chain.unit / beam.bending_stiffness
-    damped = pencil.stiffness * (1.0 + 1j * beam.loss_factor) + 1j * dashpot
-    stiffness: ComplexArray = np.asarray(damped, dtype=complex)
-    free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
-    raw = with_ends(chain, free).T
+    stiffness = _damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
+    raw = with_ends(chain, damped_response(pencil, loads, omega2, stiffness, modal_damping)).T
     return HarmonicField(
         model="segment",
         count=n_segments,
@@ -176,6 +159,12 @@ def solve_harmonic(
         forces=tuple(forces),
         shapes=_field_shapes(chain, raw, reading),
     )
+
+
+def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:
+    """The stiffness with the beam's loss factor and dashpots of omega c, N m, at every joint."""
+    lossy = pencil.stiffness * (1.0 + 1j * beam.loss_factor) + 1j * (dashpots * chain.unit / beam.bending_stiffness)
+    return np.asarray(lossy, dtype=complex)
 
 
 def _check_harmonic(
@@ -204,7 +193,7 @@ def _field_shapes(chain: Chain, raw: ComplexArray, reading: str) -> Callable[[Ar
     values = corrected_reading(chain, parts) if reading == "corrected" else parts
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
-        real, imaginary = _spline(chain, values, x, derivative)
+        real, imaginary = spline_at(chain, values, x, derivative)
         return np.asarray(real + 1j * imaginary)
 
     return shapes
@@ -240,7 +229,7 @@ def unit_responses(
     weights = np.array([joint_weights(chain, p, "reciprocal")[free_joints(chain)] for p in positions]).T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * chain.unit**4
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
-    shapes = _spline(chain, corrected_reading(chain, with_ends(chain, modes).T), x, 0)
+    shapes = spline_at(chain, corrected_reading(chain, with_ends(chain, modes).T), x, 0)
     return np.asarray(receptance @ shapes) * (chain.unit**3 / beam.bending_stiffness)
 
 

@@ -5,18 +5,17 @@ length is measured in mean link lengths, a stiffness and a mass in those of the 
 length 1 exactly.
 """
 
-from typing import Any, Literal, get_args
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.models.arrays import Array
 from verify.models.division import Parts, divide
-from verify.models.eigen import DENSE_UNKNOWNS, Array, FactoredPencil
-from verify.segments.walls import Wall, wall_factors, welded_halves
-
-Joints = Literal["series", "printed"]
-JOINTS: tuple[str, ...] = get_args(Joints)
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
+from verify.options import Joints, Wall
+from verify.segments.walls import wall_factors, welded_halves
 
 
 class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -162,13 +161,19 @@ def free_joints(chain: Chain) -> slice:
     return slice(int(left), chain.n_segments + 1 - int(right))
 
 
+def joint_masses(masses: Array, inertias: Array, lengths: Array) -> tuple[Array, Array]:
+    """Mass of links over the positions of joints 0..N, tridiagonal: diagonal (N + 1,) and beside it (N,).
+
+    Each link has m/4 (y_i + y_j)^2 + J/l^2 (y_j - y_i)^2, halved.
+    """
+    spin = inertias / lengths**2
+    own, shared = masses / 4.0 + spin, masses / 4.0 - spin
+    return np.append(own, 0.0) + np.append(0.0, own), shared
+
+
 def mass_matrix(chain: Chain, *, dense: bool = False) -> Any:
-    """M over the free joint positions, tridiagonal: each link m/4 (y_i + y_j)^2 + J/l^2 (y_j - y_i)^2, halved."""
-    spin = chain.inertias / chain.lengths**2
-    own, shared = chain.masses / 4.0 + spin, chain.masses / 4.0 - spin
-    diagonal = np.zeros(chain.n_segments + 1)
-    diagonal[:-1] += own
-    diagonal[1:] += own
+    """M over the free joint positions, tridiagonal (`joint_masses`)."""
+    diagonal, shared = joint_masses(chain.masses, chain.inertias, chain.lengths)
     free = free_joints(chain)
     diagonal, off = diagonal[free], shared[free.start : free.stop - 1]
     if dense:
@@ -188,37 +193,6 @@ def _between_zeros(rows: Any, left: bool, right: bool) -> Any:
     padded = np.zeros((len(rows) + left + right, rows.shape[1]), dtype=rows.dtype)
     padded[int(left) : len(padded) - right] = rows
     return padded
-
-
-def node_curvatures(chain: Chain, joints: Array) -> Array:
-    """Change of slope over the mean of the adjoining links at every joint, (k, N + 1), in 1/unit.
-
-    At a wall the chain goes on by reflection (guided even, clamped even); zero at pinned and free ends.
-    """
-    slopes = np.diff(joints, axis=1) / chain.lengths
-    curvatures = np.zeros_like(joints)
-    curvatures[:, 1:-1] = np.diff(slopes, axis=1) / (0.5 * (chain.lengths[1:] + chain.lengths[:-1]))
-    left, right = chain.walls
-    if left:
-        curvatures[:, 0] = 2.0 * slopes[:, 0] / chain.lengths[0]
-    if right:
-        curvatures[:, -1] = -2.0 * slopes[:, -1] / chain.lengths[-1]
-    return curvatures
-
-
-def corrected_reading(chain: Chain, joints: Array) -> Array:
-    """Y + delta^2 y / 12 at every joint, (k, N + 1); ends that keep their position keep it.
-
-    For unequal links (l_i^2 + l_j^2)/24 times the curvature, which is the same for equal ones.
-    """
-    squares = np.zeros(chain.n_segments + 1)
-    squares[:-1] += chain.lengths**2
-    squares[1:] += chain.lengths**2
-    squares[[0, -1]] *= 2.0
-    left, right = chain.held
-    squares[0] *= not left
-    squares[-1] *= not right
-    return np.asarray(joints + squares / 24.0 * node_curvatures(chain, joints))
 
 
 def joint_curvatures(chain: Chain, joints: Array) -> Array:

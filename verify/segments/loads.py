@@ -5,15 +5,10 @@ reciprocal pair weighs the four joints around with L_j + L_j''/12 (cubic Lagrang
 for the load and for the reading alike: order 4.
 """
 
-from typing import Literal, get_args
-
 import numpy as np
 
-from verify.models.eigen import Array
+from verify.models.arrays import Array
 from verify.segments.links import Chain
-
-Load = Literal["reciprocal", "lever"]
-LOADS: tuple[str, ...] = get_args(Load)
 
 
 def joint_weights(chain: Chain, position: float, rule: str) -> Array:

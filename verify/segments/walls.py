@@ -4,13 +4,9 @@ The compliances of the joints are the weights of a quadrature of M^2 / EI over t
 for one link length (the trapezoidal rule); at a clamped wall that rule needs an end correction.
 """
 
-from typing import Literal, get_args
-
 import numpy as np
-from numpy.typing import NDArray
 
-Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
-WALLS: tuple[str, ...] = get_args(Wall)
+from verify.models.arrays import Array
 
 # What a clamped end adds to the weights 1 of its joints, from the wall on, in l/EI.
 _CORRECTIONS: dict[str, tuple[float, ...]] = {
@@ -27,7 +23,7 @@ _CORRECTIONS: dict[str, tuple[float, ...]] = {
 }
 
 
-def wall_factors(supports: tuple[str, str], n_segments: int, wall: str) -> NDArray[np.float64]:
+def wall_factors(supports: tuple[str, str], n_segments: int, wall: str) -> Array:
     """What to multiply the compliances of joints 0..N with, (N + 1,); infinite where an end has no joint.
 
     A guided wall has half a joint, which is exact by reflection. On short chains the corrections of both

@@ -26,8 +26,8 @@ from verify.chain.departure import (
     rms,
 )
 from verify.errors import InputError
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.models.division import Array
 from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size, field_size
 from verify.studies.axial_inertia import STEPPED, AxialInertia

@@ -6,8 +6,9 @@ import msgspec
 from msgspec.structs import replace
 
 from verify.chain.dynamics import at_rest
+from verify.chain.result import ChainMotion
 from verify.chain.ride import ChainRide, half_steps, ride
-from verify.chain.stepping import ChainMotion, simulate
+from verify.chain.stepping import simulate
 from verify.chain.system import build_system
 from verify.errors import InputError
 

@@ -14,8 +14,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.errors import InputError, NoFigureError, near_name
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.models.fields import Array
 from verify.quantities.cases import driven_case
 from verify.quantities.kind import Quantity
 from verify.quantities.wave_arguments import Driven, InWindow

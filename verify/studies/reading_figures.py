@@ -240,7 +240,8 @@ def chain_reading(scene: "Scene", claims: Sequence[Claim], chains: Chains) -> Re
     try:
         run = chains.ride(scene, motion.count)
         back = chains.ride(reversed_scene(scene), motion.count) if asks_for_turned(tuple(claims)) else None
-        stopped = next((one.stopped for one in (run, back) if one is not None and one.stopped != "end"), "end")
+        ends = [one.statistics.stopped for one in (run, back) if one is not None]
+        stopped = next((end for end in ends if end != "end"), "end")
         figures = figures_of(run, back) if stopped == "end" else {}
     except InputError as error:
         stopped = str(error)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import prod
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 from msgspec import Meta
@@ -10,9 +10,9 @@ from msgspec import Meta
 from verify.beam import check_number
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
+from verify.options import Kinematics, NormalChoice
 from verify.quantities.kind import Among, model_meta
 from verify.scenes.claims import asks_for_turned
-from verify.slider import NormalChoice
 from verify.studies.kind import Found, Progress, Study
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     Every combination of the lists is run; a list that is left out has the scene's own value alone.
     """
 
-    kinematics: tuple[Literal["tangential", "following"], ...] = ()
+    kinematics: tuple[Kinematics, ...] = ()
     normal: tuple[NormalChoice, ...] = ()
     """Whether the beam carries the slider's weight and inertia."""
     soft_start_periods: tuple[float, ...] = ()

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from verify.models.catalogue import bounding, discrete
 from verify.motion.figures import RUN_FIGURES, Condition, condition_of
-from verify.motion.result import Motion
+from verify.motion.result import Motion, Ride
 from verify.scenes.claims import asks_for_turned
 from verify.studies.kind import Chart, Found, Progress, Table
 from verify.studies.work_precision import (
@@ -22,7 +22,6 @@ from verify.studies.work_precision import (
 )
 
 if TYPE_CHECKING:
-    from verify.chain.ride import ChainRide
     from verify.scenes.scene import Scene
 
 MOST_SAMPLES = 100_000
@@ -144,7 +143,7 @@ def slider_study(scene: "Scene", progress: Progress = lambda step: None) -> Slid
     )
 
 
-def figures_of(run: "Motion | ChainRide", back: "Motion | ChainRide | None") -> dict[str, float]:
+def figures_of(run: Ride, back: Ride | None) -> dict[str, float]:
     """All figures of a run, those of the one turned round only where there is one."""
     return {name: one.of(run, back) for name, one in RUN_FIGURES.items() if back is not None or not one.turned}
 

@@ -9,9 +9,10 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.judge.compare import observed_order, relative_error
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.eigen import solve_seconds
-from verify.models.fields import Array, HarmonicField, phasor
+from verify.models.fields import HarmonicField, phasor
 from verify.models.search import Least, least_over
 from verify.patience import check_work
 from verify.waves.case import DrivenCase

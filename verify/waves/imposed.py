@@ -11,7 +11,8 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
-from verify.models.fields import RESONANCE, Array, ComplexArray, HarmonicField, phasor, unit_response
+from verify.models.arrays import Array, ComplexArray
+from verify.models.fields import RESONANCE, HarmonicField, phasor, unit_response
 
 Solve = Callable[[Sequence[PointForce], float], HarmonicField]
 Units = Callable[[Array, Array], ComplexArray]

@@ -10,12 +10,12 @@ from typing import Any, TypeAlias
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
 from verify.exact.closed_forms import check_uniform
-from verify.models.fields import Array, ComplexArray, HarmonicField, phasor, unit_response, wavenumber
+from verify.models.arrays import Array, ComplexArray
+from verify.models.fields import HarmonicField, phasor, unit_response, wavenumber
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
 from verify.models.search import least_over
 
@@ -348,7 +348,7 @@ def check_series(times: Array, values: Array, frequency_hz: float) -> None:
         )
 
 
-def phasors(times: Array, values: NDArray[np.float64], frequency_hz: float) -> ComplexArray:
+def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
     """Complex amplitudes of series at one frequency, over the last whole number of periods, (n_points,).
 
     times (n_times,) ascending, values (n_times, n_points). A constant and a linear trend are fitted beside the
@@ -373,7 +373,7 @@ def phasors(times: Array, values: NDArray[np.float64], frequency_hz: float) -> C
 
 
 def measure_series(
-    beam: Beam, x: Array, times: Array, values: NDArray[np.float64], frequency_hz: float, k: complex | None = None
+    beam: Beam, x: Array, times: Array, values: Array, frequency_hz: float, k: complex | None = None
 ) -> WaveMeasures:
     """The same measures from time series at positions x (ascending), values (n_times, n_positions), metres.
 

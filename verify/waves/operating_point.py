@@ -5,7 +5,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
-from verify.models.fields import Array
+from verify.models.arrays import Array
 from verify.waves.case import DrivenCase
 from verify.waves.driven import quietest
 from verify.waves.measures import middle_half

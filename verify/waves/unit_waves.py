@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.errors import InputError, NoFigureError, ResonanceError
+from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS
-from verify.models.fields import Array, ComplexArray, unit_response, wavenumber
+from verify.models.fields import unit_response, wavenumber
 from verify.waves.imposed import held_units
 from verify.waves.measures import (
     STANDING,

@@ -1,0 +1,111 @@
+"""What the compiled kernels of the planar chain of rigid links see, by name. SI; frozen but for the arrays in it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from verify.models.arrays import Array, Indices
+
+FREE, ROLLER = 0, 1
+"""Kinds of tip."""
+WORK_COLUMNS = 20
+HALF, MASS, INERTIA, SPRING, DASHPOT, MOBILITY = range(6)
+"""Columns of `Flat.links`."""
+RUNNING, DONE, DIVERGED, TOO_SMALL = 0, 1, 2, 3
+"""What `march` and `march_modal` return."""
+
+
+class Flat(NamedTuple):
+    """A chain as the kernels see it: few arrays, because every call hands all of them on. SI."""
+
+    links: Array
+    """(N, 10): half length, mass, inertia, joint spring, dashpot, and the columns of `mobilities`."""
+    numbers: Array
+    """(7,): offset, rate, amplitude, circular frequency and phase of the base's rotation; gravity along x and y."""
+    loads: Array
+    """(n_loads, 7): arm from the link's middle, F_x, F_y, moment, circular frequency, phase, link from 0."""
+    held: Array
+    """(n_held, 5), the roller first: arm, amplitude, circular frequency, phase of the y prescribed, link from 0."""
+    small: Array
+    """(n_held, n_held + 1), scratch."""
+    tip: int
+    """FREE or ROLLER."""
+    tip_spring: float
+    """N/m, axial, at the roller."""
+    axial: bool
+    """Whether the links have inertia along x."""
+    ledger: bool
+    """Whether the power of loads is worth a pass of its own."""
+
+
+def mobilities(half: Array, masses: Array, inertias: Array) -> Array:
+    """What one link answers to forces at its joints, (N, 5): 1/m, 1/J, h/J, h^2/J + 1/m, h^2/J - 1/m."""
+    a, spin = 1.0 / masses, 1.0 / inertias
+    return np.stack([a, spin, half * spin, half**2 * spin + a, half**2 * spin - a], axis=1)
+
+
+class March(NamedTuple):
+    """An explicit Runge-Kutta run as the kernels see it: its method, its state and what it keeps."""
+
+    a: Array
+    """(s + 1, s), the last row the answer."""
+    c: Array
+    """(s,)."""
+    weights: Array
+    """(s + 1,), of the error estimate; empty for a fixed step."""
+    order: float
+    y: Array
+    """(2N + 2,): angles, rates, energy lost, work put in."""
+    new: Array
+    """(2N + 2,), scratch."""
+    k: Array
+    """(s + 1, 2N + 2); k[0] holds the rates at y."""
+    clock: Array
+    """(3,): time, step, and the share of the longest lever arm below which a dependent angle is exchanged."""
+    counts: Indices
+    """(5,): steps, rejected steps, evaluations, samples kept, exchanges."""
+    samples: Array
+    """(n,), times to keep."""
+    kept: Array
+    """(n, 2N + 2)."""
+    scale: Array
+    """(5,): relative tolerance, absolute ones of angles and rates, the largest means of both so far."""
+    pivots: Indices
+    """(n_held,), dependent angles."""
+
+
+class Modal(NamedTuple):
+    """A splitting in modal coordinates as the kernels see it, and its scratch."""
+
+    kicks: Array
+    """(n_kicks,), shares of the step."""
+    shares_of_step: Array
+    """(n_kicks + 1,), of the flows between them."""
+    flows: Array
+    """(n_kicks + 2, m, 3): turns of those flows, and of the whole step."""
+    spacing: Array
+    """(m, 3): turns between two samples where these are evenly spaced; empty elsewhere."""
+    omega: Array
+    """(m,), rad/s."""
+    modes: Array
+    """(m, N)."""
+    duals: Array
+    """(m, N)."""
+    rest: Array
+    """(N,), angles that the modes are about."""
+    drives: Array
+    """(n_loads, 2), circular frequencies and phases."""
+    shares: Array
+    """(n_loads, m), steady amplitudes."""
+    tilt: float
+    """Metres: how far the last mode moves the tip off the roller's line; 0 without a roller."""
+    start: Array
+    """(m, 2)."""
+    steady: Array
+    """(m, 2)."""
+    trial: Array
+    """(m, 2)."""
+    vectors: Array
+    """(3, N)."""
+    force: Array
+    """(m,)."""

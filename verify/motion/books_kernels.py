@@ -1,0 +1,80 @@
+"""The compiled books of a run: powers of drive and damping, and the work of a step."""
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.models.kernels import FAST, lean
+from verify.motion.records import (
+    DAMPED,
+    DRIVEN,
+    LOSS,
+    MOVING,
+    ON_BEAM,
+    ON_SLIDER,
+    POWER,
+    RUBBED,
+    SIGMA,
+    SURFACE,
+    Books,
+    Drive,
+    Rider,
+    Space,
+    Surface,
+    V,
+)
+
+
+@lean(fastmath=FAST, error_model="numpy")
+def power(drive: Drive, books: Books, time: float, factors: Array) -> float:
+    """Power of the driving forces, watts."""
+    angle = drive.omega * (drive.origin + time)
+    c, s = np.cos(angle), np.sin(angle)
+    part, grown = time / drive.unit, 0.0
+    for d in range(len(drive.growth) - 1, -1, -1):
+        grown = grown * part + drive.growth[d]
+    loads, forces, total = books.loads, books.forces, 0.0
+    for f in range(loads.shape[0]):
+        speed = 0.0
+        for j in range(loads.shape[1]):
+            speed += loads[f, j] * factors[MOVING, j]
+        total += grown * (forces[0, f] * c - forces[1, f] * s) * speed
+    return total
+
+
+@lean(fastmath=FAST)
+def loss(modes: Array, answers: Array, factors: Array) -> float:
+    """Power lost in the modes, watts."""
+    total, n = 0.0, modes.shape[1]
+    for j in range(n):
+        rate = factors[MOVING, j]
+        for d in range(answers.shape[1]):
+            rate += answers[j, d] * factors[MOVING, n + d]
+        total += 2.0 * modes[SIGMA, j] * rate * rate
+    return total
+
+
+@lean()
+def correct_powers(time: float, surface: Surface, books: Books, space: Space) -> None:
+    """Powers at the end of a step with what the contact has added to the speeds since its start, half at mid-step."""
+    seen = space.seen
+    driven = power(surface.drive, books, time, space.factors)
+    damped = loss(surface.modes, books.answers, space.factors)
+    seen[1, POWER] += 0.5 * (driven - seen[2, POWER])
+    seen[1, LOSS] += 0.5 * (damped - seen[2, LOSS])
+    seen[2, POWER], seen[2, LOSS] = driven, damped
+
+
+@lean(inline="always")
+def account(v: float, moved: float, pressed: float, dt: float, rider: Rider, books: Books, seen: Array) -> None:
+    """Add one step from the speed v to the ledger. `pressed` is the work of friction on the beam (two-way)."""
+    mass, v1, ledger = rider.law.mass, rider.motion[V], books.ledger
+    ledger[DRIVEN] += dt * (seen[0, POWER] + 4.0 * seen[1, POWER] + seen[2, POWER]) / 6.0
+    ledger[DAMPED] += dt * (seen[0, LOSS] + 4.0 * seen[1, LOSS] + seen[2, LOSS]) / 6.0
+    on_slider = 0.5 * mass * (v1 * v1 - v * v)
+    if not rider.two_way:  # the integral of friction times the surface's line, by parts
+        mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
+        rise = seen[2, SURFACE] - seen[0, SURFACE]
+        pressed = -mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved)
+    ledger[ON_BEAM] += pressed
+    ledger[ON_SLIDER] += on_slider
+    ledger[RUBBED] -= on_slider + pressed

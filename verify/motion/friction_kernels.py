@@ -1,0 +1,294 @@
+"""Compiled friction: Eq. (3) solved exactly within a step, Coulomb's law from event to event, a step of a slider.
+
+A slider on a belt, at the end of the file, is friction alone.
+"""
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.models.kernels import lean
+from verify.motion.records import (
+    CHANGE,
+    DRIFT,
+    FIRST_EVENT,
+    GIVEN_END,
+    GIVEN_MIDDLE,
+    N_EVENTS,
+    PULL,
+    SLIPS,
+    SPANS,
+    STICKING,
+    STICKS,
+    STUCK,
+    SURFACE,
+    TURNS,
+    Law,
+    Space,
+    V,
+    X,
+)
+
+
+@lean()
+def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> float:
+    """What friction -b tanh(slope r) adds to a slider's speed in dt, while r' = -b tanh(slope r) - a exactly.
+
+    r is the relative speed at the start and `a` the constant acceleration of the surface. Solved in closed form
+    up to one monotone scalar equation, so any slope and any step are stable and exact.
+    """
+    if b <= 0.0 or dt <= 0.0:
+        return 0.0
+    alpha, tau = a / b, slope * b * dt
+    side = -1.0 if alpha < 0.0 else 1.0  # mirrored, so that the surface accelerates forward
+    alpha, rho = side * alpha, side * slope * r
+    if (1.0 + alpha) * tau < 0.01:
+        return float(side * _brief_change(rho, alpha, tau) / slope)
+    if min(rho, rho - (alpha + 1.0) * tau) > 20.0:
+        return -side * b * dt  # |tanh| is 1 throughout, to e^-40
+    if max(rho, rho - (alpha - 1.0) * tau) < -20.0:
+        return side * b * dt
+    if abs(alpha - 1.0) < 1e-7:
+        alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)  # 1e-7 of b in this step; the formulas part there
+    change = _held_change(rho, alpha, tau) if alpha < 1.0 else _swept_change(rho, alpha, tau)
+    added = min(max(change + alpha * tau, -tau), tau)  # rounding gives no more than friction has
+    return float(side * added / slope)
+
+
+@lean()
+def _brief_change(rho: float, alpha: float, tau: float) -> float:
+    """What friction adds to rho in a short tau: four stages, off by less than 1e-11 of it, where logarithms cancel."""
+    first = np.tanh(rho)
+    second = np.tanh(rho - 0.5 * tau * (first + alpha))
+    third = np.tanh(rho - 0.5 * tau * (second + alpha))
+    fourth = np.tanh(rho - tau * (third + alpha))
+    return float(-tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0)
+
+
+@lean(error_model="numpy")
+def _swept_change(rho: float, alpha: float, tau: float) -> float:
+    """Change of rho in tau under rho' = -(tanh rho + alpha), alpha > 1: there is no speed at rest with the surface.
+
+    alpha delta - ln cosh delta falls by (alpha^2 - 1) tau, with delta = rho + artanh(1/alpha). Newton's method on
+    the change; it stops where the next step would be rounding.
+    """
+    grip = np.tanh(rho)
+    lean = (alpha * grip + 1.0) / (alpha + grip)  # tanh delta
+    fall = (alpha * alpha - 1.0) * tau
+    change = -(alpha + np.tanh(rho - 0.5 * (alpha + grip) * tau)) * tau
+    for _ in range(80):
+        if abs(change) < 4.0:
+            grown = np.expm1(change)
+            sine, cosine = 0.5 * (grown + grown / (grown + 1.0)), 0.5 * grown * grown / (grown + 1.0)
+            inner = cosine + lean * sine
+            value, end = np.log1p(inner), (lean * (1.0 + cosine) + sine) / (1.0 + inner)
+        else:
+            delta = rho + np.arctanh(1.0 / alpha)
+            value, end = _ln_cosh(delta + change) - _ln_cosh(delta), np.tanh(delta + change)
+        step = (alpha * change - value + fall) / (alpha - end)
+        change -= step
+        if abs(step) <= 1e-8 * (abs(change) + 1e-8):
+            break
+    return float(change)
+
+
+@lean()
+def _ln_cosh(delta: float) -> float:
+    """Ln(2 cosh delta), without overflow."""
+    return float(abs(delta) + np.log1p(np.exp(-2.0 * abs(delta))))
+
+
+@lean()
+def _held_change(rho: float, alpha: float, tau: float) -> float:
+    """Change of rho in tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1: rho tends to rest = -artanh alpha.
+
+    With eta = |rho - rest|, ln sinh eta - s alpha eta falls by (1 - alpha^2) tau; solved for ln sinh eta, in which
+    the slope lies between 1 - alpha and 1 + alpha.
+    """
+    rest = -np.arctanh(alpha)
+    side = 1.0 if rho > rest else -1.0
+    eta = abs(rho - rest)
+    if eta == 0.0:
+        return 0.0
+    lean = side * alpha
+    start = _ln_sinh(eta)
+    goal = start - lean * eta - (1.0 - alpha * alpha) * tau
+    level = min(start, goal + lean * eta)
+    for _ in range(80):
+        here = _arsinh_exp(level)
+        step = (level - lean * here - goal) / (1.0 - lean * np.tanh(here))
+        level -= step
+        if abs(step) <= 1e-8:  # the next would be its square
+            break
+    return float(side * _arsinh_exp(level) + rest - rho)
+
+
+@lean()
+def _ln_sinh(eta: float) -> float:
+    return float(np.log(np.sinh(eta))) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
+
+
+@lean()
+def _arsinh_exp(level: float) -> float:
+    return float(np.arcsinh(np.exp(level))) if level < 20.0 else level + np.log(2.0)
+
+
+@lean()
+def coulomb_span(
+    r: float, a0: float, a1: float, kinetic: float, static: float, dt: float, stuck: bool
+) -> tuple[float, float, bool, float]:
+    """Until friction changes its mind: (time used, r at its end, whether stuck then, kind of event or 0).
+
+    `a0` and `a1` are the acceleration of the surface relative to a slider free of friction, at the start and the
+    end of dt, linear between. A slider at rest on the surface stays while |a| <= static; one that slips does so
+    under `kinetic` until r = 0, where it sticks if it can.
+    """
+    rate = (a1 - a0) / dt
+    if stuck and abs(a0) > static * (1.0 + 1e-12):
+        return 0.0, 0.0, False, SLIPS
+    if stuck:
+        for bound in (static, -static):
+            beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
+            if beyond > 0.0 and rate != 0.0:
+                return min(max((bound - a0) / rate, 0.0), dt), 0.0, False, SLIPS
+        return dt, 0.0, True, 0.0
+    side = np.sign(r) if r != 0.0 else -np.sign(a0 if a0 != 0.0 else rate)
+    slowing = kinetic * side + a0  # r(t) = r - slowing t - rate t^2 / 2
+    used = _first_zero(r, slowing, rate, dt)
+    if used >= dt:
+        return dt, r - slowing * dt - 0.5 * rate * dt * dt, False, 0.0
+    return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
+
+
+@lean()
+def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
+    """The first t in (0, dt) where r - slowing t - rate t^2/2 changes sign, else dt."""
+    if r == 0.0:
+        # leaves zero now; it comes back where slowing + rate t / 2 = 0
+        back = -2.0 * slowing / rate if rate != 0.0 else dt
+        return back if 0.0 < back < dt else dt
+    discriminant = slowing * slowing + 2.0 * rate * r
+    if discriminant < 0.0:
+        return dt
+    root = np.sqrt(discriminant)
+    q = slowing + root if slowing >= 0.0 else slowing - root
+    first, second = (2.0 * r / q if q != 0.0 else dt), (-q / rate if rate != 0.0 else dt)
+    best = dt
+    for t in (first, second):
+        if 0.0 < t < best:
+            best = t
+    return best
+
+
+@lean(inline="always")
+def friction(r: float, law: Law) -> float:
+    """Friction per mass at relative speed r where it does not depend on sticking."""
+    if not law.coulomb:
+        return float(-law.kinetic * np.tanh(law.slope * r))
+    return float(-law.kinetic * np.sign(r))
+
+
+@lean(error_model="numpy", inline="always")
+def slip(v: float, stuck: bool, push: float, half: float, full: float, law: Law, dt: float, space: Space) -> float:
+    """Speed change by friction in one step under a contact force `push` on the beam; fills `space.slip`.
+
+    For tanh the speed of the surface is replaced by its least-squares line, which keeps both moments: order 4
+    where friction is smooth, exact where it is steep. Coulomb's law follows the parabola, with sticking and
+    slipping located on it.
+    """
+    seen, took = space.seen, space.slip
+    s0 = seen[0, SURFACE]
+    sm = seen[1, SURFACE] - took[GIVEN_MIDDLE] + push * half
+    s1 = seen[2, SURFACE] - took[GIVEN_END] + push * full
+    took[STICKING], took[N_EVENTS] = 0.0, 0.0
+    if not law.coulomb:
+        mean, rise = (s0 + 4.0 * sm + s1) / 6.0, s1 - s0
+        took[CHANGE] = tanh_speed_change(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
+        return float(took[CHANGE])
+    a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
+    r, used = 0.0 if stuck else v - s0, 0.0
+    if abs(r) <= 1e-9 * law.kinetic * dt and abs(a0) <= law.static:
+        r, stuck = 0.0, True  # put on a surface at rest, to rounding
+    for _ in range(SPANS):
+        span, r, stuck, event = coulomb_span(
+            r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, law.static, dt - used, stuck
+        )
+        used += span
+        if event in (STICKS, SLIPS):
+            here = FIRST_EVENT + 2 * int(took[N_EVENTS])
+            took[here], took[here + 1] = used, event
+            took[N_EVENTS] += 1.0
+        if used >= dt or (span <= 0.0 and event == 0.0):
+            break
+    took[CHANGE], took[STICKING] = r + s1 - v, 1.0 if stuck else 0.0
+    return float(took[CHANGE])
+
+
+@lean()
+def give(dt: float, seen: Array, took: Array) -> None:
+    """What everything but friction adds to the speed by the middle and the end of a step."""
+    took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
+    took[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
+
+
+@lean()
+def advance(dt: float, rate: float, motion: Array, law: Law, seen: Array, took: Array) -> float:
+    """Move the slider to the end of a step; the distance that its own speed made. `rate` was its acceleration."""
+    v = motion[V]
+    v1 = v + took[GIVEN_END] + took[CHANGE]
+    if took[STICKING] > 0.0:
+        v1, rate1 = seen[2, SURFACE], rate
+    else:
+        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], law)
+    moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
+    motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
+    motion[V], motion[STUCK] = v1, took[STICKING]
+    return float(moved)
+
+
+@lean()
+def _tanh_on_belt(
+    x: float, v: float, dt: float, kinetic: float, slope: float, belt: float, stiffness: float, pull: float
+) -> tuple[float, float]:
+    """(x, v) after a step of a spring-held slider under Eq. (3): the spring's mean force, friction solved exactly."""
+    start = pull - stiffness * x
+    rate = start - kinetic * np.tanh(slope * (v - belt))
+    middle = pull - stiffness * (x + 0.5 * dt * v + 0.125 * dt * dt * rate)
+    end = pull - stiffness * (x + dt * v + 0.5 * dt * dt * rate)
+    given = dt * (start + 4.0 * middle + end) / 6.0
+    v1 = v + given + tanh_speed_change(v - belt, -given / dt, kinetic, slope, dt)
+    rate1 = end - kinetic * np.tanh(slope * (v1 - belt))
+    return x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
+
+
+@lean()
+def slide_on_belt(
+    n_steps: int, dt: float, law: Law, belt: float, stiffness: float, pull: float, state: Array, events: Array
+) -> int:
+    """A slider held by a spring to the ground on a surface of constant speed; returns the number of events.
+
+    `state` is (x, v, stuck) and is advanced in place; `stiffness` is k/m, `pull` an acceleration. `events` is
+    (capacity, 3): time, kind, x; a turn of the velocity relative to the surface is an event as well.
+    """
+    x, v, stuck = state[0], state[1], state[2] > 0.0
+    kinetic, static, slope = law.kinetic, law.static, law.slope
+    n_events = 0
+    for step in range(n_steps):
+        left = dt
+        while left > 0.0:
+            force0 = pull - stiffness * x
+            if not law.coulomb:
+                x, v = _tanh_on_belt(x, v, dt, kinetic, slope, belt, stiffness, pull)
+                break
+            rate = 0.0 if stuck else force0 - kinetic * np.sign(v - belt)
+            end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
+            used, r1, stuck1, event = coulomb_span(v - belt, -force0, -end, kinetic, static, left, stuck)
+            rate1 = 0.0 if stuck else force0 + (end - force0) * used / left - kinetic * np.sign(v - belt)
+            x += 0.5 * used * (v + belt + r1) + used * used * (rate - rate1) / 12.0
+            v, stuck, left = belt + r1, stuck1, left - used
+            if event != 0.0 and n_events < len(events):
+                events[n_events, 0], events[n_events, 1], events[n_events, 2] = (step + 1) * dt - left, event, x
+                n_events += 1
+            if used <= 0.0 and event == 0.0:
+                left = 0.0
+    state[0], state[1], state[2] = x, v, 1.0 if stuck else 0.0
+    return n_events

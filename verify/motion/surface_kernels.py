@@ -1,0 +1,147 @@
+"""The compiled surface: modes and drive in time, polynomials on the slider's piece, and what a point on it sees."""
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.models.kernels import FAST, lean
+from verify.motion.records import (
+    BEFORE,
+    DRIFT,
+    HALF_IM,
+    HALF_RE,
+    LEVEL,
+    MOVING,
+    OMEGA,
+    PULL,
+    SIGMA,
+    STILL,
+    SURFACE,
+    Z_IM,
+    Z_RE,
+    Drive,
+    Here,
+    Law,
+)
+
+
+@lean(fastmath=FAST)
+def rotate_half(modes: Array) -> None:
+    """Advance every free mode by half a step."""
+    for j in range(modes.shape[1]):
+        real = modes[Z_RE, j] * modes[HALF_RE, j] - modes[Z_IM, j] * modes[HALF_IM, j]
+        modes[Z_IM, j] = modes[Z_RE, j] * modes[HALF_IM, j] + modes[Z_IM, j] * modes[HALF_RE, j]
+        modes[Z_RE, j] = real
+
+
+@lean(fastmath=FAST, error_model="numpy")
+def set_factors(time: float, modes: Array, drive: Drive, factors: Array) -> None:
+    """Time factors of all rows and their rates: modes first, then (t/ramp)^d (cos, -sin) of the drive."""
+    n = modes.shape[1]
+    for j in range(n):
+        factors[STILL, j] = modes[Z_RE, j]
+        factors[MOVING, j] = -modes[SIGMA, j] * modes[Z_RE, j] - modes[OMEGA, j] * modes[Z_IM, j]
+    omega, unit = drive.omega, drive.unit
+    angle = omega * (drive.origin + time)
+    c, s = np.cos(angle), np.sin(angle)
+    power, growth = 1.0, 0.0
+    for d in range((factors.shape[1] - n) // 2):
+        j = n + 2 * d
+        factors[STILL, j], factors[STILL, j + 1] = power * c, -power * s
+        factors[MOVING, j] = growth * c - power * omega * s
+        factors[MOVING, j + 1] = -growth * s - power * omega * c
+        growth = (d + 1) * power / unit
+        power = power * time / unit
+
+
+@lean(fastmath=FAST)
+def set_local(table: Array, piece: int, factors: Array, local: Array) -> None:
+    """Polynomials of deflection and velocity on one piece; table is (pieces, degree + 1, rows)."""
+    for d in range(table.shape[1]):
+        still, moving = 0.0, 0.0
+        for j in range(table.shape[2]):
+            still += table[piece, d, j] * factors[STILL, j]
+            moving += table[piece, d, j] * factors[MOVING, j]
+        local[STILL, d], local[MOVING, d] = still, moving
+
+
+@lean()
+def find_piece(edges: Array, x: float, piece: int) -> int:
+    """The piece that holds x, from the one that did; -1 off the pieces."""
+    while piece >= 0 and x < edges[piece]:
+        piece -= 1
+    if piece < 0:
+        return -1
+    while piece < len(edges) - 1 and x > edges[piece + 1]:
+        piece += 1
+    return piece if piece < len(edges) - 1 else -1
+
+
+@lean(error_model="numpy", inline="always")
+def material(local: Array, edges: Array, piece: int, x: float, half: float) -> float:
+    """The local coordinate of the material point under x: X = x + (h/2) w'."""
+    length = edges[piece + 1] - edges[piece]
+    xi = (x - edges[piece]) / length
+    value, first = 0.0, 0.0
+    for d in range(local.shape[1] - 1, 0, -1):
+        value = value * xi + local[STILL, d]
+        first = first * xi + value
+    return float(xi + half * first / (length * length))
+
+
+@lean(error_model="numpy", inline="always")
+def touch(local: Array, edges: Array, piece: int, x: float, speed: float, law: Law, seen: Array, row: int) -> None:
+    """The surface under x: tangential velocity of its material, and what a slider that follows it feels.
+
+    The material point over x stands at X = x + (h/2) w'(X) of the mid-line and moves with (-(h/2) dw'/dt, dw/dt).
+    """
+    length = edges[piece + 1] - edges[piece]
+    at = material(local, edges, piece, x, law.half)
+    deflection, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[1] - 1, -1, -1):  # Horner for values and derivatives together
+        bend = bend * at + slope
+        slope = slope * at + deflection
+        deflection = deflection * at + local[STILL, d]
+        turn = turn * at + rise
+        rise = rise * at + local[MOVING, d]
+    slope, turn = slope / length, turn / length
+    seen[row, SURFACE] = (rise * slope - law.half * turn) / np.sqrt(1.0 + slope * slope)
+    seen[row, PULL], seen[row, DRIFT], seen[row, LEVEL] = 0.0, 0.0, deflection
+    if law.following:
+        seen[row, PULL] = rise * (turn + 2.0 * bend / (length * length) * speed) - law.gravity * slope
+        seen[row, DRIFT] = -slope * rise
+
+
+@lean(error_model="numpy")
+def climb(local: Array, edges: Array, piece: int, x: float, along: float, half: float) -> float:
+    """Speed across the beam of a point on the surface over x that moves along x: dw/dt + w' dX/dt at its material."""
+    length = edges[piece + 1] - edges[piece]
+    at = material(local, edges, piece, x, half)
+    value, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[1] - 1, -1, -1):
+        bend = bend * at + slope
+        slope = slope * at + value
+        value = value * at + local[STILL, d]
+        turn = turn * at + rise
+        rise = rise * at + local[MOVING, d]
+    bend = 2.0 * bend / (length * length)
+    return float(rise + slope / length * (along + half * (turn / length + bend * along)))
+
+
+@lean(error_model="numpy")
+def carried(local: Array, edges: Array, here: Here, half: float) -> float:
+    """How far the whole motion moves the surface in a step, along the tangent here, metres."""
+    at, slope, piece = here.at, here.slope, here.piece
+    value, first = 0.0, 0.0
+    for d in range(local.shape[1] - 1, -1, -1):
+        first = first * at + value
+        value = value * at + local[STILL, d] - local[BEFORE, d]
+    return float((slope * value - half * first / (edges[piece + 1] - edges[piece])) / np.sqrt(1.0 + slope * slope))
+
+
+@lean()
+def climbed(local: Array, at: float) -> float:
+    """How far the whole motion lifts the surface in a step, at `at`, metres."""
+    value = 0.0
+    for d in range(local.shape[1] - 1, -1, -1):
+        value = value * at + local[STILL, d] - local[BEFORE, d]
+    return float(value)

@@ -1,0 +1,61 @@
+"""The words that a scene, a script or a command line may choose among: each list once, plain values."""
+
+from typing import Literal, get_args
+
+Support = Literal["pinned", "clamped", "free", "guided"]
+SUPPORTS: tuple[str, ...] = get_args(Support)
+"""An end of a beam. pinned: it does not move. clamped: nor turn. free: nothing holds it. guided: it does not turn."""
+
+Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
+WALLS: tuple[str, ...] = get_args(Wall)
+"""How a chain is held at a clamped end, by the weights of its joints from the wall on (`segments.walls`).
+
+gregory: 3/8, 7/6, 23/24, frequencies of order 4. half: the literature's k = 2EI/l, order 2. welded: half a segment is
+part of the wall, order 2. third-order: 5/12, 13/12. five-joint: order 4 and a little more for low modes.
+"""
+
+Joints = Literal["series", "printed"]
+JOINTS: tuple[str, ...] = get_args(Joints)
+"""The paper's Eq. (1) between two links. series: two half links in a row. printed: with its indices as they stand."""
+
+Load = Literal["reciprocal", "lever"]
+LOADS: tuple[str, ...] = get_args(Load)
+"""A point force on a chain. reciprocal: shared among four joints, order 4. lever: between a link's two, order 2."""
+
+Reading = Literal["corrected", "raw", "links"]
+READINGS: tuple[str, ...] = get_args(Reading)
+"""A steady chain between its joints. corrected: the spline through y + delta^2 y / 12. raw: the spline through y.
+links: the straight links themselves."""
+
+Line = Literal["spline", "raw"]
+LINES: tuple[str, ...] = get_args(Line)
+"""A chain's contact line. spline: the paper's C2 spline (Section II.B). raw: the links' own straight edges."""
+
+Links = Literal["rigid", "stretching"]
+LINKS: tuple[str, ...] = get_args(Links)
+"""What a nonlinear chain is made of. rigid: the paper's links. stretching: bars of the beam's own EA / l."""
+
+Inertia = Literal["full", "transverse", "elastic"]
+"""Of a chain's links along x. full: rigid links. transverse: rigid links without any. elastic: links that stretch."""
+
+Tip = Literal["free", "roller"]
+TIPS: tuple[str, ...] = get_args(Tip)
+"""The far end of a nonlinear chain. free: nothing holds it. roller: it keeps y = 0 and moves along x."""
+
+Law = Literal["tanh", "coulomb"]
+"""Friction. tanh: the paper's Eq. (3), which never sticks. coulomb: mu N against the motion, with true sticking."""
+
+CouplingChoice = Literal["auto", "one-way", "two-way"]
+"""auto: its size decides whether a beam feels its slider. one-way: it does not. two-way: it does."""
+
+Kinematics = Literal["tangential", "following"]
+"""tangential: m dv/dt = F and dx/dt = v. following: the path of a point that follows the surface exactly."""
+
+NormalChoice = Literal["held", "massless"]
+"""What a slider coupled two-way presses its beam with. held: weight and inertia. massless: nothing, as in the paper."""
+
+Start = Literal["rest", "steady"]
+"""How a beam stands when its motion begins. rest: straight and still. steady: in the steady state of its drive."""
+
+DriveKind = Literal["force", "displacement"]
+"""What a drive imposes. force: newtons. displacement: metres, by the forces that it takes."""

@@ -1,0 +1,72 @@
+"""What a chain's joints say of the beam between them: the one corrected reading, and the contact line through it.
+
+Linear and nonlinear chains, steady fields, modes and sliders all read with these.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.segments.links import Chain
+
+
+def node_curvatures(chain: Chain, joints: Array) -> Array:
+    """Change of slope over the mean of the adjoining links at every joint, (k, N + 1), in 1/unit.
+
+    At a wall the chain goes on by reflection (guided even, clamped even); zero at pinned and free ends.
+    """
+    slopes = np.diff(joints, axis=1) / chain.lengths
+    curvatures = np.zeros_like(joints)
+    curvatures[:, 1:-1] = np.diff(slopes, axis=1) / (0.5 * (chain.lengths[1:] + chain.lengths[:-1]))
+    left, right = chain.walls
+    if left:
+        curvatures[:, 0] = 2.0 * slopes[:, 0] / chain.lengths[0]
+    if right:
+        curvatures[:, -1] = -2.0 * slopes[:, -1] / chain.lengths[-1]
+    return curvatures
+
+
+def corrected_reading(chain: Chain, joints: Array) -> Array:
+    """Y + delta^2 y / 12 at every joint, (k, N + 1); ends that keep their position keep it.
+
+    For unequal links (l_i^2 + l_j^2)/24 times the curvature, which is the same for equal ones.
+    """
+    squares = np.zeros(chain.n_segments + 1)
+    squares[:-1] += chain.lengths**2
+    squares[1:] += chain.lengths**2
+    squares[[0, -1]] *= 2.0
+    left, right = chain.held
+    squares[0] *= not left
+    squares[-1] *= not right
+    return np.asarray(joints + squares / 24.0 * node_curvatures(chain, joints))
+
+
+def spline(chain: Chain, values: Array) -> Any:
+    """Cubic C2 spline through a value at every joint, (k, N + 1): no moment at pinned and free ends, no slope at walls.
+
+    A scipy CubicSpline over metres along axis 1.
+    """
+    from scipy.interpolate import CubicSpline
+
+    ends = tuple((1 if wall else 2, np.zeros(len(values))) for wall in chain.walls)
+    return CubicSpline(chain.nodes, values, axis=1, bc_type=ends)
+
+
+def spline_at(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
+    """That spline or a derivative of it at x, (k, len(x))."""
+    nodes = chain.nodes
+    inside = np.clip(x, nodes[0], nodes[-1])  # a welded half segment stands still
+    return np.asarray(spline(chain, values)(inside, derivative))
+
+
+def contact_line(chain: Chain, joints: Array) -> Any:
+    """The paper's C2 line (Section II.B) through the corrected joints, (k, N + 1), as `spline` gives it."""
+    return spline(chain, corrected_reading(chain, joints))
+
+
+def contact_piece(chain: Chain, joints: Array, piece: int) -> Array:
+    """The contact line of joints (k, N + 1) on one piece, (k, 4): coefficients of the powers of xi, 0 to 1 along it."""
+    length = float(chain.lengths[piece]) * chain.unit
+    powers = contact_line(chain, joints).c[::-1, piece]
+    return np.asarray((powers * length ** np.arange(4)[:, None]).T)
