@@ -9,10 +9,9 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import Beam
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Indices
 from verify.models.division import Parts, divide
 
 KEPT = 4000
@@ -29,7 +28,7 @@ class Elements(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     parts: Parts
     basis: Any
     """verify.elements.element.LineBasis."""
-    free: NDArray[np.intp]
+    free: Indices
     """Degrees of freedom that the supports leave, (n,) ascending."""
 
     @property
@@ -65,7 +64,7 @@ def _kept(nodes: bytes) -> Any:
     return line_basis(np.frombuffer(nodes))
 
 
-def free_unknowns(basis: Any, supports: tuple[str, str]) -> NDArray[np.intp]:
+def free_unknowns(basis: Any, supports: tuple[str, str]) -> Indices:
     """Which degrees of freedom the supports leave, (n,) ascending."""
     left, right = supports
     return np.asarray(basis.unheld((_HELD[left], _HELD[right])))

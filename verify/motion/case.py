@@ -1,7 +1,6 @@
 """A driven beam in time as one value: what moves, under what, for how long."""
 
 from collections.abc import Callable, Sequence
-from typing import Literal
 
 import msgspec
 from msgspec.structs import asdict
@@ -10,6 +9,7 @@ from verify.beam import Beam, PointForce
 from verify.motion.request import STEPS_PER_PERIOD
 from verify.motion.result import Motion
 from verify.motion.simulate import simulate
+from verify.options import Start
 from verify.slider import Slider
 
 
@@ -24,7 +24,7 @@ class MotionCase(msgspec.Struct, frozen=True, kw_only=True):
     model: str
     count: int | None
     modes: int
-    start: Literal["rest", "steady"]
+    start: Start
     soft_start_periods: float
     modal_damping: float | None
 

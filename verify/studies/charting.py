@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 from verify.models.catalogue import MODELS
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from verify.models.arrays import Array
 
 Figure = dict[str, Any]
 
@@ -70,6 +69,6 @@ def sizes_axis(counts: Iterable[int]) -> Figure:
     return {"type": "log", "tickvals": found, "ticktext": [str(n) for n in found]}
 
 
-def thinned(values: "Sequence[float] | NDArray[np.float64]", most: int = 1000) -> list[float]:
+def thinned(values: "Sequence[float] | Array", most: int = 1000) -> list[float]:
     """Every so manyth value, for a chart."""
     return [float(v) for v in values[:: max(len(values) // most, 1)]]

@@ -9,9 +9,7 @@ from verify.studies.kind import Chart
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from verify.models.arrays import Array
     from verify.motion.result import Motion
     from verify.studies.slider_figures import SliderFound
 
@@ -39,7 +37,7 @@ def _set_up(study: "SliderFound") -> str:
     return f"the set-up before the loop is not counted: {' and '.join(spans)}"
 
 
-def _lines(study: "SliderFound", read: "Callable[[Motion], NDArray[np.float64]]", scale: float) -> list[Figure]:
+def _lines(study: "SliderFound", read: "Callable[[Motion], Array]", scale: float) -> list[Figure]:
     """One line for every model, those without parts broad and first."""
     order = sorted(study.runs, key=lambda name: MODELS[name].sized)
     return [

@@ -4,11 +4,10 @@ from collections.abc import Callable
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from verify.beam import Beam, check_number
 from verify.errors import InputError, NoFigureError, ResonanceError
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.catalogue import MODELS
 from verify.models.fields import unit_response, wavenumber
 from verify.waves.imposed import held_units
@@ -23,7 +22,6 @@ from verify.waves.measures import (
     zero_field,
 )
 
-BoolArray = NDArray[np.bool_]
 MOST_READINGS = 50_000_000
 """Complex deflections that a map holds at once: 0.8 GB, and as much again twice while waves are fitted."""
 
