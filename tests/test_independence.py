@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.optimize import brentq
-from test_stepped_beams import written_out
+from stepped_reference import written_out
 
 import verify
 from verify.run.gates import judge

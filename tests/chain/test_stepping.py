@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from chain_reference import by_multipliers, woinowsky_krieger
 from scipy.integrate import solve_ivp
-from test_chain_dynamics import beam, odd_chain, some_state
+from test_dynamics import beam, odd_chain, some_state
 
 from verify.beam import PointForce
 from verify.chain import kernels, splitting_kernels

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from chain_reference import woinowsky_krieger
-from test_chain_dynamics import beam, odd_chain
-from test_chain_motion import driven, rms
+from test_dynamics import beam, odd_chain
+from test_stepping import driven, rms
 
 from verify.beam import Section
 from verify.chain.dynamics import at_rest
