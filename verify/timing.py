@@ -1,7 +1,6 @@
 """Run times that can be compared: jobs take turns, medians are kept."""
 
 from collections.abc import Callable, Sequence
-from statistics import median
 from time import perf_counter
 
 _BUDGET_S = 0.06
@@ -10,6 +9,8 @@ _BUDGET_S = 0.06
 
 def interleaved_medians(jobs: Sequence[Callable[[], object]], budget_s: float = _BUDGET_S) -> list[float]:
     """Median seconds of each job over rounds in which all take turns; at least one round, at most 15."""
+    from statistics import median
+
     rounds: list[list[float]] = []
     start = perf_counter()
     while len(rounds) < 15 and (not rounds or perf_counter() - start < budget_s):

@@ -8,8 +8,8 @@ import msgspec
 
 from verify.beam import Beam
 from verify.errors import InputError, NoBracketError
-from verify.exact.error_laws import leading_error
 from verify.models.catalogue import MODELS, bounding
+from verify.models.naming import MEAN
 
 if TYPE_CHECKING:
     from verify.judge.compare import Bracket
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from verify.models.modes import Modes
     from verify.motion.result import Motion
 
-MEAN = "mean"
-"""The middle between the model below and the model above, where a model's name is asked for."""
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Keyword settings of a model's solve_modes other than their defaults, for instance (("wall", "half"),)."""
 
@@ -208,6 +206,7 @@ class Workbench:
         Holds for uniform beams of equal parts without a clamped end (checked on every mode and support for
         N = 2..24), and loosely, with order 2, for clamped ends with the wall joint 2EI/l.
         """
+        from verify.exact.error_laws import leading_error
         from verify.judge import compare
 
         check_bracket(self.beam, settings)

@@ -11,8 +11,9 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.workbench import Need, Workbench
+from verify.models.naming import Among
 from verify.quantities.chain import CHAIN_QUANTITIES
-from verify.quantities.kind import A, Among, Arguments, Quantity
+from verify.quantities.kind import A, Arguments, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
 from verify.quantities.motion import MOTION_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
@@ -37,13 +38,18 @@ def quantity(name: str) -> Quantity[Any]:
 def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     """Arguments checked against the quantity's types; one number stands for a list of one. Raises InputError."""
     fields = msgspec.structs.fields(found.arguments)
-    lists = {f.name for f in fields if _type_words(f.type).startswith("list")}
+    lists = {f.name for f in fields if _is_list(f.type)}
     data = {k: [v] if k in lists and not isinstance(v, list) else v for k, v in given.items()}
     data = _one_name(data, {f.name for f in fields})
     for field in fields:
         if (among := among_of(field.type)) and isinstance(name := data.get(field.name), str):
             among.check(name, field.name)
     return checked(data, found.arguments)
+
+
+def _is_list(kind: Any) -> bool:
+    """Whether an argument is a list of values, or nothing."""
+    return get_origin(kind) is tuple or any(_is_list(arm) for arm in get_args(kind) if get_origin(kind) is not Literal)
 
 
 def among_of(kind: Any) -> Among | None:

@@ -7,10 +7,11 @@ import msgspec
 from msgspec import Meta
 
 from verify import options
-from verify.errors import InputError, near_name
-from verify.judge.workbench import MEAN, Need, Settings, Workbench
+from verify.errors import InputError
+from verify.judge.workbench import Need, Settings, Workbench
 from verify.models import catalogue
 from verify.models.catalogue import MODELS
+from verify.models.naming import MEAN, model_meta
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -18,35 +19,6 @@ if TYPE_CHECKING:
 Work: TypeAlias = Literal["closed form", "matrices", "modes", "harmonic", "equilibrium", "in time"]
 """What is done for a figure: nothing but arithmetic; matrices, of which nothing is solved; eigenvalues, of models of
 parts, for the exact beam's are closed forms; driven fields; equilibria and modes of the nonlinear chain; motion."""
-
-
-class Among(msgspec.Struct, frozen=True):
-    """Which models a name may be of."""
-
-    verb: str
-    """One that they have."""
-    sized: bool = False
-    """Whether they have parts."""
-    mean: bool = False
-    """Whether the mean of the models below and above is one."""
-
-    def names(self) -> tuple[str, ...]:
-        """All of them, in the order of the alphabet."""
-        models = [m for m in MODELS.values() if m.can(self.verb) and (m.sized or not self.sized)]
-        return (*sorted(m.name for m in models), *([MEAN] if self.mean else []))
-
-    def check(self, name: str, field: str = "model") -> None:
-        """Raise InputError, with the nearest that is, for a name that is none of them."""
-        if self.mean and name == MEAN:
-            return
-        found = MODELS.get(name)
-        if found is None or not found.can(self.verb) or (self.sized and not found.sized):
-            raise InputError(f"{field} = {name!r} is not known: {near_name(name, self.names())}")
-
-
-def model_meta(meaning: str, verb: str, *, sized: bool = False, mean: bool = False) -> Meta:
-    """The annotation of an argument that names a model."""
-    return Meta(description=meaning, extra={"among": Among(verb, sized, mean)})
 
 
 Mode = Annotated[int, Meta(ge=1, description="mode number from 1, elastic modes only")]

@@ -3,8 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
-from verify.judge.workbench import MEAN, Need, Settings, Workbench, for_model
+from verify.judge.workbench import Need, Settings, Workbench, for_model
 from verify.models.catalogue import MODELS, bounding
+from verify.models.naming import MEAN
 from verify.quantities.cases import drive_frequency
 from verify.quantities.kind import (
     AtFrequency,

@@ -14,7 +14,7 @@ from verify.files import exists
 from verify.options import DriveKind, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
-from verify.scenes.sections import SECTIONS
+from verify.scenes.sections import ON_WHAT_EXISTS, SECTIONS
 from verify.scenes.toml import override, read_toml
 from verify.slider import Slider
 
@@ -160,8 +160,8 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             self.slider.start_on(self.beam)
         if self.motion is not None and not forces:
             raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
-        for name in SECTIONS.own():
-            if (asked := SECTIONS[name].asked(self)) is not None:
+        for name in set(self.__struct_fields__) - set(Scene.__struct_fields__):
+            if (asked := getattr(self, name)) is not None:
                 SECTIONS[name].check_on(asked, self)
 
     def _check_claims(self) -> None:
@@ -185,17 +185,22 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return tuple(force.on(self.beam) for force in self.drive.force) if self.drive else ()
 
 
-def scene_type(keys: Iterable[str] = ()) -> type[Scene]:
-    """`Scene` with a field for the section of every study; those of other packages where `keys` may mean them."""
-    if not set(keys) <= {*Scene.__struct_fields__, *SECTIONS.own()}:
+def scene_type(keys: Iterable[str] | None = None) -> type[Scene]:
+    """`Scene` with a field for the section of every study: those among `keys` of their type, or all of them.
+
+    A study of another package is looked up where a key is not known here.
+    """
+    if keys is not None and not set(keys) <= {*Scene.__struct_fields__, *SECTIONS.own()}:
         _ = len(SECTIONS)  # looks into other packages
-    sections = [(name, SECTIONS[name].section) for name in SECTIONS.own() if name not in Scene.__struct_fields__]
-    return _with_sections(tuple((name, kind) for name, kind in sections if kind is not None))
+    names = [name for name in SECTIONS.own() if name not in ON_WHAT_EXISTS]
+    wanted = set(names) if keys is None else set(keys)
+    return _with_sections(tuple((name, SECTIONS[name].section if name in wanted else None) for name in names))
 
 
-@lru_cache(maxsize=8)
-def _with_sections(sections: tuple[tuple[str, type[msgspec.Struct]], ...]) -> type[Scene]:
-    fields = [(name, kind | None, None) for name, kind in sections]
+@lru_cache(maxsize=64)
+def _with_sections(sections: tuple[tuple[str, type[msgspec.Struct] | None], ...]) -> type[Scene]:
+    """None in place of a type: nothing can stand there, and nothing is imported for it."""
+    fields = [(name, kind and kind | None, None) for name, kind in sections]
     made = msgspec.defstruct(
         "Scene", fields, bases=(Scene,), frozen=True, kw_only=True, forbid_unknown_fields=True, module=__name__
     )

@@ -38,3 +38,5 @@ SECTIONS: Registry[Section] = Registry(
     },
 )
 """Run in this order."""
+ON_WHAT_EXISTS = ("motion", "claims")
+"""Those that stand on what a scene has anyway, and have no section beside it."""

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.scenes.claims import READ, Claim
 from verify.studies.kind import Column, Found, Progress, Study, Table
 
@@ -156,6 +155,7 @@ class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
 def _on_the_run(claim: Claim, study: "SliderFound") -> ClaimResult:
     """On the scene's own slider: the chain's figure, the exact beam's beside it."""
     from verify.models.catalogue import bounding
+    from verify.quantities.catalogue import quantity
 
     chain, exact = (study.figures[model].get(claim.quantity) for model in (bounding()[0].name, "analytic"))
     ended = chain is not None
@@ -171,6 +171,8 @@ def _on_the_run(claim: Claim, study: "SliderFound") -> ClaimResult:
 
 def _alone(claim: Claim, scene: "Scene", bench: "Workbench") -> ClaimResult:
     """As `verify measure` finds it."""
+    from verify.quantities.catalogue import arguments_of, evaluate, quantity
+
     given = ", ".join(f"{name} = {value}" for name, value in claim.arguments.items())
     unit = ""
     try:

@@ -9,14 +9,14 @@ import msgspec
 from msgspec import Meta
 
 from verify.errors import InputError
-from verify.judge.workbench import MEAN, Need, Workbench, check_size
 from verify.models.catalogue import MODELS, discrete
+from verify.models.naming import MEAN
 from verify.patience import check_work
 from verify.studies.kind import Chart, Column, Found, Progress, Study, Table
-from verify.timing import interleaved_medians
 
 if TYPE_CHECKING:
     from verify.beam import Beam
+    from verify.judge.workbench import Need, Workbench
     from verify.scenes.scene import Scene
 
 Counts: TypeAlias = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(min_length=1)]
@@ -123,8 +123,10 @@ class ConvergenceStudy(Study[Convergence, ConvergenceFound]):
     title = "Convergence"
     nothing = ()
 
-    def needs(self, asked: Convergence, scene: "Scene") -> tuple[Need, ...]:
+    def needs(self, asked: Convergence, scene: "Scene") -> "tuple[Need, ...]":
         """Each model at each size."""
+        from verify.judge.workbench import Need
+
         return tuple(Need(m.name, count, max(asked.modes)) for count in asked.counts for m in discrete())
 
     def n_steps(self, asked: Convergence, scene: "Scene") -> int:
@@ -132,14 +134,16 @@ class ConvergenceStudy(Study[Convergence, ConvergenceFound]):
         return len(asked.counts)
 
     def run(
-        self, asked: Convergence, scene: "Scene", bench: Workbench, done: Mapping[str, Found], step: Progress
+        self, asked: Convergence, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
     ) -> ConvergenceFound:
         """See `convergence`."""
         return ConvergenceFound(rows=convergence(bench, asked, step))
 
 
-def convergence(bench: Workbench, asked: Convergence, progress: Progress = lambda step: None) -> tuple[Row, ...]:
+def convergence(bench: "Workbench", asked: Convergence, progress: Progress = lambda step: None) -> tuple[Row, ...]:
     """Rows by mode, then by size. `progress` is told the size about to be solved. Raises InputError."""
+    from verify.judge.workbench import check_size
+
     models = tuple(model.name for model in discrete())
     for count in asked.counts:
         for model in models:
@@ -167,8 +171,10 @@ def _check_together(beam: "Beam", models: tuple[str, ...], counts: tuple[int, ..
     check_work("counts", list(counts), 2.0 * seconds, "give fewer or smaller ones")
 
 
-def _timed(bench: Workbench, models: tuple[str, ...], count: int, n_modes: int) -> dict[str, float]:
+def _timed(bench: "Workbench", models: tuple[str, ...], count: int, n_modes: int) -> dict[str, float]:
     """Seconds of a warm solve for each model, medians of rounds in which the models take turns."""
+    from verify.timing import interleaved_medians
+
     solves = {}
     for name in models:
         model = MODELS[name]
@@ -178,7 +184,7 @@ def _timed(bench: Workbench, models: tuple[str, ...], count: int, n_modes: int) 
     return dict(zip(models, interleaved_medians(list(solves.values())), strict=True))
 
 
-def _row(bench: Workbench, mode: int, count: int, seconds: dict[str, float], previous: Row | None) -> Row:
+def _row(bench: "Workbench", mode: int, count: int, seconds: dict[str, float], previous: Row | None) -> Row:
     cells, notes = {}, []
     for model, time in seconds.items():
         cells[model], note = _cell(bench, model, mode, count, time, previous)
@@ -201,7 +207,7 @@ def _row(bench: Workbench, mode: int, count: int, seconds: dict[str, float], pre
 
 
 def _cell(
-    bench: Workbench, model: str, mode: int, count: int, seconds: float, previous: Row | None
+    bench: "Workbench", model: str, mode: int, count: int, seconds: float, previous: Row | None
 ) -> tuple[Cell, str]:
     error, note = bench.error_or_why(model, count, mode)
     if error is None:

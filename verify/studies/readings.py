@@ -10,8 +10,8 @@ from msgspec import Meta
 from verify.beam import check_number
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
+from verify.models.naming import Among, model_meta
 from verify.options import Kinematics, NormalChoice
-from verify.quantities.kind import Among, model_meta
 from verify.scenes.claims import asks_for_turned
 from verify.studies.kind import Found, Progress, Study
 

@@ -7,13 +7,13 @@ import msgspec
 from msgspec import Meta
 
 from verify.exact.closed_forms import THEORIES, frequency_hz
-from verify.judge.workbench import Need, Workbench
 from verify.models.catalogue import discrete
 from verify.studies.kind import Chart, Found, Progress, Study
 from verify.words import percent
 
 if TYPE_CHECKING:
     from verify.beam import Beam
+    from verify.judge.workbench import Need, Workbench
     from verify.scenes.scene import Scene
 
 
@@ -66,12 +66,14 @@ class SpectrumStudy(Study[Spectrum, SpectrumFound]):
     name, section, work = "spectrum", Spectrum, "modes"
     title = "Error spectrum"
 
-    def needs(self, asked: Spectrum, scene: "Scene") -> tuple[Need, ...]:
+    def needs(self, asked: Spectrum, scene: "Scene") -> "tuple[Need, ...]":
         """Each model once."""
+        from verify.judge.workbench import Need
+
         return tuple(Need(model.name, asked.count, asked.modes) for model in discrete())
 
     def run(
-        self, asked: Spectrum, scene: "Scene", bench: Workbench, done: Mapping[str, Found], step: Progress
+        self, asked: Spectrum, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
     ) -> SpectrumFound:
         """Errors of modes 1..modes at one size. Raises InputError for a size that cannot be solved."""
         from verify.judge.workbench import check_size, is_bracketed

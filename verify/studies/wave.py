@@ -8,7 +8,7 @@ import msgspec
 from verify.beam import check_number
 from verify.errors import InputError
 from verify.models.catalogue import discrete
-from verify.quantities.kind import model_meta
+from verify.models.naming import Among, model_meta
 from verify.studies.convergence import Counts
 from verify.studies.kind import Found, Progress, Study
 
@@ -51,8 +51,6 @@ class WaveStudy(Study[Wave, "WaveFound"]):
 
     def check_on(self, asked: Wave, scene: "Scene") -> None:
         """Raise InputError for a scene without two forces, or a model of the map that has no fields."""
-        from verify.quantities.kind import Among
-
         if len(scene.forces) != 2:
             raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
         Among("solve_harmonic").check(asked.model, "wave.model")
