@@ -23,7 +23,8 @@ from verify.quantities.kind import Arguments, Quantity
 from verify.report.html import page
 from verify.run.plan import plan_scene
 from verify.studies.catalogue import STUDIES
-from verify.studies.kind import Chart, Column, Found, Study, Table
+from verify.studies.kind import Study
+from verify.studies.told import Chart, Column, Found, Table
 
 SCENE = """
 name = "toy"

@@ -1,7 +1,6 @@
 """Files written whole or not at all."""
 
 import os
-import tempfile
 from errno import ENAMETOOLONG
 from pathlib import Path
 
@@ -27,6 +26,8 @@ def exists(path: Path, field: str) -> bool:
 
 def writable_folder(folder: Path, field: str) -> Path:
     """Make `folder` and prove that a file can be written there. Raises InputError naming `field`."""
+    import tempfile
+
     exists(folder, field)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -40,6 +41,8 @@ def writable_folder(folder: Path, field: str) -> Path:
 
 def write_whole(path: Path, text: str, field: str = "file") -> None:
     """Write a text file through a neighbour and a rename, so that no reader ever sees half of it."""
+    import tempfile
+
     exists(path, field)
     handle = None
     try:

@@ -233,7 +233,8 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
 
 def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(titanium_strip):
     from verify.judge.workbench import Workbench
-    from verify.studies.convergence import Convergence, convergence
+    from verify.studies.convergence import Convergence
+    from verify.studies.convergence_figures import convergence
     from verify.studies.mode_charts import mean_in_words
 
     bench = Workbench(titanium_strip)

@@ -20,7 +20,7 @@ from verify.words import cell, figure, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
     from verify.run.runner import RunResult
-    from verify.studies.kind import Table
+    from verify.studies.told import Table
 
 _PACKAGES = ("fem-segment-verify", "numpy", "scipy", "scikit-fem", "plotly")
 

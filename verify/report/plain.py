@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
     from verify.run.runner import RunResult
-    from verify.studies.kind import Found
+    from verify.studies.told import Found
 
 
 def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from verify.run.gates import GateResult
     from verify.run.plan import Plan
     from verify.run.runner import RunResult
-    from verify.studies.kind import Column, Found
-    from verify.studies.kind import Table as StudyTable
+    from verify.studies.told import Column, Found
+    from verify.studies.told import Table as StudyTable
 
 NARROW = 88
 """Below this many characters a table leaves out what is wide."""

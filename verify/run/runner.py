@@ -10,7 +10,8 @@ from verify.run.asks import asks_of
 from verify.run.gates import GateResult, judge
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.catalogue import asked_of
-from verify.studies.kind import Found, Progress
+from verify.studies.kind import Progress
+from verify.studies.told import Found
 
 
 class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):

@@ -13,7 +13,8 @@ from verify.scenes.scene import Scene
 from verify.scenes.toml import given_arguments, literal
 from verify.studies.catalogue import STUDIES
 from verify.studies.convergence import Convergence, ConvergenceStudy, Counts
-from verify.studies.kind import Found, Progress
+from verify.studies.kind import Progress
+from verify.studies.told import Found
 
 
 class Job(msgspec.Struct, frozen=True):

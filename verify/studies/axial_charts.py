@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from verify.motion.validity import NONLINEAR
 from verify.studies.charting import GREY, LOG, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, Figure, axes, thinned
-from verify.studies.kind import Chart, Column, Table
+from verify.studies.told import Chart, Column, Table
 
 if TYPE_CHECKING:
     from verify.studies.axial_figures import AxialFound

@@ -31,7 +31,8 @@ from verify.models.catalogue import MODELS
 from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size, field_size
 from verify.studies.axial_inertia import STEPPED, AxialInertia
-from verify.studies.kind import Chart, Found, Progress, Table
+from verify.studies.kind import Progress
+from verify.studies.told import Chart, Found, Table
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene

@@ -1,6 +1,5 @@
 """How far a chain of rigid links departs from the linear one through its axial inertia, over the force."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
@@ -9,12 +8,15 @@ from msgspec import Meta
 from verify.beam import Beam, check_number
 from verify.errors import InputError
 from verify.models.catalogue import discrete
-from verify.studies.kind import Found, Progress, Study
+from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import Drive, Scene
     from verify.studies.axial_figures import AxialFound
+    from verify.studies.told import Found
 
 STEPS_PER_RADIAN = 15
 """Of a chain's fastest mode, which the tolerance of the study takes."""
@@ -102,7 +104,7 @@ class AxialInertiaStudy(Study[AxialInertia, "AxialFound"]):
         return STEPPED * len(asked.forces) + BESIDE
 
     def run(
-        self, asked: AxialInertia, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
+        self, asked: AxialInertia, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
     ) -> "AxialFound":
         """See `axial_study`."""
         from verify.studies.axial_figures import axial_study

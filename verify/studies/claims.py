@@ -8,7 +8,8 @@ import msgspec
 
 from verify.errors import InputError
 from verify.scenes.claims import READ, Claim
-from verify.studies.kind import Column, Found, Progress, Study, Table
+from verify.studies.kind import Progress, Study
+from verify.studies.told import Column, Found, Table
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench

@@ -19,7 +19,8 @@ from verify.models.catalogue import MODELS
 from verify.quantities.cases import driven_case
 from verify.quantities.kind import Quantity
 from verify.quantities.wave_arguments import Driven, InWindow
-from verify.studies.kind import Column, Found, Progress, Table
+from verify.studies.kind import Progress
+from verify.studies.told import Column, Found, Table
 from verify.waves.measures import middle_half
 from verify.waves.unit_waves import Gaps, UnitDrive, superposed
 

@@ -22,12 +22,12 @@ from verify.studies.charting import (
     percent,
     sizes_axis,
 )
-from verify.studies.kind import Chart
+from verify.studies.told import Chart
 
 if TYPE_CHECKING:
-    from verify.studies.convergence import Row
-    from verify.studies.sensitivity import SensitivityFound
-    from verify.studies.spectrum import SpectrumFound
+    from verify.studies.convergence_figures import Row
+    from verify.studies.sensitivity_figures import SensitivityFound
+    from verify.studies.spectrum_figures import SpectrumFound
 
 _THEORIES = {"rayleigh": RAYLEIGH, "timoshenko": TIMOSHENKO}
 

@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 from verify.studies.charting import GREY, LOG, Figure, axes
-from verify.studies.kind import Chart
 from verify.studies.reading_words import met_words, start_words
+from verify.studies.told import Chart
 
 if TYPE_CHECKING:
     from verify.studies.reading_figures import Reading, ReadingsFound

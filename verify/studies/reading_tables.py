@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from verify.studies.kind import Column, Table
 from verify.studies.reading_words import (
     best_cells,
     cm_per_s,
@@ -12,6 +11,7 @@ from verify.studies.reading_words import (
     met_words,
     turn_words,
 )
+from verify.studies.told import Column, Table
 
 if TYPE_CHECKING:
     from verify.studies.reading_figures import Reading, ReadingsFound

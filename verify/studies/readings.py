@@ -1,6 +1,5 @@
 """Which published claims about a slider hold under which reading of what their source leaves open."""
 
-from collections.abc import Mapping
 from math import prod
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,12 +12,15 @@ from verify.models.catalogue import MODELS
 from verify.models.naming import Among, model_meta
 from verify.options import Kinematics, NormalChoice
 from verify.scenes.claims import asks_for_turned
-from verify.studies.kind import Found, Progress, Study
+from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import Scene
     from verify.studies.reading_figures import ReadingsFound
+    from verify.studies.told import Found
 
 MOST_READINGS = 10_000
 MOST_LINKS = 250
@@ -223,7 +225,7 @@ class ReadingsStudy(Study[ReadingsAsk, "ReadingsFound"]):
         return self.n_steps(asked, scene) * (2 if asks_for_turned(scene.claim) else 1)
 
     def run(
-        self, asked: ReadingsAsk, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
+        self, asked: ReadingsAsk, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
     ) -> "ReadingsFound":
         """See `readings_study`."""
         from verify.studies.reading_figures import readings_study

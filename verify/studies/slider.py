@@ -1,17 +1,19 @@
 """The slider of a scene: its run on every model, what bounds it, and run time against error."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from verify.models.catalogue import discrete
 from verify.scenes.claims import asks_for_turned
 from verify.scenes.scene import MotionAsk
-from verify.studies.kind import Found, Progress, Study
+from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import Scene
     from verify.studies.slider_figures import SliderFound
+    from verify.studies.told import Found
 
 ROUNDS = 7
 """In which models and sizes take turns for their run times."""
@@ -56,7 +58,7 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
         return once + DRIFTS + EXACT + ROUNDS * models * len(set(asked.counts))
 
     def run(
-        self, asked: MotionAsk, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
+        self, asked: MotionAsk, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
     ) -> "SliderFound":
         """See `slider_study`."""
         from verify.studies.slider_figures import slider_study

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from verify.models.catalogue import MODELS
 from verify.studies.charting import GREY, LOG, Figure, axes, model_line, plain_line, thinned
-from verify.studies.kind import Chart
+from verify.studies.told import Chart
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from verify.models.catalogue import MODELS
 from verify.motion.contact import FELT
-from verify.studies.kind import Column, Table
+from verify.studies.told import Column, Table
 
 if TYPE_CHECKING:
     from verify.motion.result import Motion

@@ -1,6 +1,5 @@
 """The driven beam: the motor's figures over sizes, envelopes, ellipses, a map with operating points."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
@@ -10,11 +9,14 @@ from verify.errors import InputError
 from verify.models.catalogue import discrete
 from verify.models.naming import Among, model_meta
 from verify.studies.convergence import Counts
-from verify.studies.kind import Found, Progress, Study
+from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import Scene
+    from verify.studies.told import Found
     from verify.studies.wave_figures import WaveFound
 
 
@@ -69,7 +71,7 @@ class WaveStudy(Study[Wave, "WaveFound"]):
         return len(discrete("solve_harmonic")) * len(asked.counts) + 1
 
     def run(
-        self, asked: Wave, scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
+        self, asked: Wave, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
     ) -> "WaveFound":
         """See `wave_study`."""
         from verify.studies.wave_figures import wave_study

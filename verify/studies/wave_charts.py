@@ -6,7 +6,7 @@ import numpy as np
 
 from verify.models.catalogue import MODELS
 from verify.studies.charting import LOG, Figure, axes, model_line, plain_line, sizes_axis
-from verify.studies.kind import Chart
+from verify.studies.told import Chart
 
 if TYPE_CHECKING:
     from verify.studies.wave_figures import Operation, WaveFound

@@ -13,7 +13,8 @@ from verify.models.catalogue import MODELS, discrete
 from verify.quantities.cases import driven_case
 from verify.quantities.wave_arguments import Driven
 from verify.studies.design_map import Axis, DesignMap, design_map
-from verify.studies.kind import Chart, Column, Found, Progress, Table
+from verify.studies.kind import Progress
+from verify.studies.told import Chart, Column, Found, Table
 from verify.waves.case import DrivenCase
 from verify.waves.driven import SEARCH_SPAN, SEARCHED, check_fields, driven, measures, quietest_drive
 from verify.waves.measures import surface_motion

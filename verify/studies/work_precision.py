@@ -14,8 +14,9 @@ from verify.motion.stepping import slider_seconds
 from verify.patience import check_work
 from verify.quantities.motion_arguments import SliderInTime
 from verify.quantities.simulated import motion_case, slider_of
-from verify.studies.kind import Found, Progress, Table
+from verify.studies.kind import Progress
 from verify.studies.slider import EXACT, ROUNDS
+from verify.studies.told import Found, Table
 
 if TYPE_CHECKING:
     from verify.motion.result import Motion

@@ -1,0 +1,77 @@
+"""How what a study finds is told: tables, charts and facts as plain values."""
+
+from typing import Any, Literal
+
+import msgspec
+
+
+class Column(msgspec.Struct, frozen=True):
+    """One column of a table."""
+
+    head: str
+    """What stands above it, with its unit."""
+    form: str = ""
+    """How a number is written: a format such as '+.4f', or 'percent', 'bare percent', 'duration', 'ratio', 'speed'."""
+    factor: float = 1.0
+    """By which it is multiplied before."""
+    unit: str = ""
+    """Behind each number."""
+    left: bool = False
+    """Words stand left, numbers right."""
+    wide: bool = False
+    """Left out where there is no room."""
+
+
+class Table(msgspec.Struct, frozen=True, kw_only=True):
+    """Rows for a person; None is a figure that there is not."""
+
+    title: str = ""
+    before: str = ""
+    """A sentence above it."""
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Any, ...], ...]
+    notes: tuple[str, ...] = ()
+    """Sentences below it."""
+    shown: Literal["both", "page", "terminal"] = "page"
+    """Where a run shows it; `verify table` shows it anyway."""
+    folded: bool = False
+    """On the page: behind its title until it is opened."""
+
+
+class Chart(msgspec.Struct, frozen=True):
+    """One chart of the page as plain plotly data, so that building it costs little and needs no import."""
+
+    id: str
+    title: str
+    caption: str
+    data: list[dict[str, Any]]
+    layout: dict[str, Any]
+
+
+class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What a study found. It tells itself; terminal, page, CSV, Markdown and JSON show what it tells."""
+
+    def tables(self) -> tuple[Table, ...]:
+        """Tables for a person."""
+        return ()
+
+    def charts(self) -> tuple[Chart, ...]:
+        """Charts for the page."""
+        return ()
+
+    def facts(self) -> tuple[str, ...]:
+        """Sentences, each with the condition under which it holds."""
+        return ()
+
+    def plain(self) -> Any:
+        """For JSON."""
+        return msgspec.to_builtins(self)
+
+    def records(self) -> list[dict[str, Any]]:
+        """Rows with one level of names, for CSV and Markdown: those of the first table unless a study knows better."""
+        first = next(iter(self.tables()), Table(columns=(), rows=()))
+        return [dict(zip((column.head for column in first.columns), row, strict=True)) for row in first.rows]
+
+    def motions(self) -> int:
+        """How many simulations in time were done for it."""
+        return 0
