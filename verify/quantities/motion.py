@@ -172,7 +172,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         "1",
         "What of the slider the beam may feel: full friction, or its inertia.",
         CouplingSize,
-        "in time",
+        "harmonic",
         _coupling_size,
     ),
     Quantity(
@@ -180,7 +180,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         "m",
         "Complex, of the steady beam that carries the slider's mass at rest.",
         LoadedDeflection,
-        "in time",
+        "harmonic",
         _loaded,
     ),
     Quantity("motion.deflection", "m", "Of the driven beam at a place and time.", DeflectionAt, "in time", _deflection),

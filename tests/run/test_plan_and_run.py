@@ -1,0 +1,62 @@
+"""What a plan says will be done is what a run does: motions, steps told, studies, and what is skipped with its reason."""
+
+import pytest
+from msgspec.structs import replace
+from packaged import ran
+
+from verify.judge.workbench import Workbench
+from verify.motion import case
+from verify.run.asks import asks_of
+from verify.run.plan import plan_scene
+from verify.run.runner import n_steps
+from verify.scenes.scene import load_scene, packaged_scenes
+from verify.studies.catalogue import STUDIES, asked_of
+from verify.studies.slider import SliderStudy
+
+
+@pytest.mark.parametrize("scene", packaged_scenes())
+def test_a_run_does_the_motions_that_were_planned_and_tells_the_steps_that_were_counted(scene):
+    result, steps = ran(scene)
+    assert sum(found.motions() for found in result.found.values()) == plan_scene(load_scene(scene)).motions
+    assert len(steps) == n_steps(load_scene(scene))
+
+
+@pytest.mark.parametrize("scene", packaged_scenes())
+def test_every_study_is_run_or_skipped_with_its_reason(scene):
+    result, _ = ran(scene)
+    skipped = {one.what: one.why for one in plan_scene(load_scene(scene)).skipped}
+    for name in STUDIES.own():
+        assert (name in result.found) != (f"{name} study" in skipped), name
+        assert skipped.get(f"{name} study", "reason")
+
+
+def test_the_motions_of_a_slider_s_study_are_counted_where_they_are_done(monkeypatch):
+    """Each run of its three models, both ways where a claim asks, the steady wave, the references, and every round."""
+    done = []
+    true = case.simulate
+    monkeypatch.setattr(case, "simulate", lambda *given, **more: done.append(more["model"]) or true(*given, **more))
+    scene = load_scene("paper-slider", ("motion.counts=[9, 13]", "motion.count=11", "motion.duration=6e-4"))
+    study = SliderStudy()
+    asked = study.asked(scene)
+    found = study.run(asked, scene, Workbench(scene.beam), {}, lambda step: None)
+    assert len(done) == found.motions() == study.n_motions(asked, scene)
+    assert done.count("segment") == done.count("fem") == 2 + 7 * 2
+
+
+def test_a_motion_without_a_slider_is_skipped_with_the_reason_it_has():
+    scene = replace(load_scene("paper-slider").bare, slider=None, gate=(), claim=())
+    assert scene.motion is not None
+    (why,) = [one.why for one in plan_scene(scene).skipped if one.what == "motion study"]
+    assert why == "the scene has no [slider]; its [motion] says how gates and claims in time are run"
+    assert "motion" not in {study.name for study, _ in asked_of(scene)}
+
+
+def test_the_kind_of_work_is_what_a_quantity_says_not_what_it_is_called():
+    scene = load_scene("paper-slider")
+    work = {ask.name: ask.work for ask in asks_of(scene)}
+    assert work["friction-size"] == "harmonic"  # a slider's figure without a step in it
+    assert work["slider-order-fem"] == "in time"
+    assert {ask.work for ask in asks_of(load_scene("chain")) if ask.kind == "gate"} == {"equilibrium", "in time"}
+    stepped = plan_scene(scene).stepped
+    assert "gate friction-size" not in stepped
+    assert "gate slider-order-fem" in stepped
