@@ -62,8 +62,13 @@ _FORMS: dict[str, Callable[[float], str]] = {
 """How a number is written in a cell, beside Python's own formats."""
 
 
+VERDICTS = {True: "holds", False: "fails", None: "unknown"}
+
+
 def cell(value: Any, form: str = "", factor: float = 1.0, unit: str = "") -> str:
     """A value in a cell of a table: words as they are, a dash for what there is not."""
+    if form == "verdict":
+        return VERDICTS[value]
     if value is None:
         return "–"
     if isinstance(value, str):

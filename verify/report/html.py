@@ -4,6 +4,7 @@ import json
 import os
 import platform
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from importlib import metadata
 from importlib.util import find_spec
@@ -20,8 +21,10 @@ from verify.words import cell, figure, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
     from verify.run.runner import RunResult
-    from verify.studies.told import Table
+    from verify.studies.told import Column, Table
 
+SENTENCE = 32
+"""Characters from which on words in a cell may be broken into lines."""
 _PACKAGES = ("fem-segment-verify", "numpy", "scipy", "scikit-fem", "plotly")
 
 
@@ -60,24 +63,45 @@ class Section(msgspec.Struct, frozen=True):
     title: str
     facts: tuple[str, ...]
     tables: tuple[dict[str, Any], ...]
+    notes: tuple[str, ...]
+    """What stands below several of its tables, once."""
 
 
 def sections_of(result: "RunResult") -> Iterator[Section]:
     """Every study that has words or tables for the page."""
     for name, found in result.found.items():
-        tables = tuple(_on_page(table) for table in found.tables() if table.shown != "terminal")
+        shown = [table for table in found.tables() if table.shown != "terminal"]
+        counted = Counter(note for table in shown for note in table.notes)
+        shared = tuple(note for note, times in counted.items() if times > 1)
+        tables = tuple(_on_page(table, shared) for table in shown)
         if facts := found.facts():
             facts = tuple(fact[:1].upper() + fact[1:] for fact in facts)
         if facts or tables:
-            yield Section(name, STUDIES[name].title or name, facts, tables)
+            yield Section(name, STUDIES[name].title or name, facts, tables, shared)
 
 
-def _on_page(table: "Table") -> dict[str, Any]:
+def _verdict(value: bool | None) -> str:
+    """The colour of a verdict."""
+    return "soft" if value is None else "pass" if value else "fail"
+
+
+def _side(i: int, column: "Column", rows: tuple[tuple[Any, ...], ...]) -> str:
+    """Numbers stand right; words left, with room where they are sentences."""
+    if not column.left:
+        return "n"
+    longest = max((len(row[i]) for row in rows if isinstance(row[i], str)), default=0)
+    return "long" if longest > SENTENCE else "word" if longest < SENTENCE // 2 else ""
+
+
+def _on_page(table: "Table", shared: tuple[str, ...]) -> dict[str, Any]:
     """A table with its figures written out: heads with their side, rows of cells, sentences before and after."""
-    sides = ["" if column.left else "n" for column in table.columns]
+    sides = [_side(i, column, table.rows) for i, column in enumerate(table.columns)]
     rows = [
         [
-            (side, cell(value, column.form, column.factor, column.unit))
+            (
+                _verdict(value) if column.form == "verdict" else side,
+                cell(value, column.form, column.factor, column.unit),
+            )
             for side, value, column in zip(sides, row, table.columns, strict=True)
         ]
         for row in table.rows
@@ -88,7 +112,7 @@ def _on_page(table: "Table") -> dict[str, Any]:
         "before": table.before,
         "heads": heads,
         "rows": rows,
-        "notes": table.notes,
+        "notes": [note for note in table.notes if note not in shared],
         "folded": table.folded,
     }
 

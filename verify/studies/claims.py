@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
     from verify.studies.slider_figures import SliderFound
 
-VERDICT = {True: "holds", False: "fails", None: "unknown"}
 LEAST_SHOWN = 1e-4
 
 
@@ -68,9 +67,9 @@ class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
         return tuple(
             Table(
                 title=f"published claims{f', found with {condition}' if condition else ''}",
-                columns=(Column("", left=True), Column("", left=True)),
+                columns=(Column("", "verdict", left=True), Column("", left=True)),
                 rows=tuple(
-                    (VERDICT[c.holds], f"{c.id}: {claimed_words(c)}; found {found_words(c)}\n{c.source} ({c.read})")
+                    (c.holds, f"{c.id}: {claimed_words(c)}; found {found_words(c)}\n{c.source} ({c.read})")
                     for c in group
                 ),
                 shown="terminal",
@@ -81,7 +80,7 @@ class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
     def _wide(self) -> Table:
         return Table(
             columns=(
-                Column("", left=True),
+                Column("", "verdict", left=True),
                 Column("claim", left=True),
                 Column("claimed", left=True),
                 Column("found", left=True),
@@ -105,13 +104,13 @@ class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
         return found
 
 
-def _page_cells(claim: ClaimResult) -> tuple[str, ...]:
+def _page_cells(claim: ClaimResult) -> tuple[str | bool | None, ...]:
     off, other = off_words(claim), other_verdict(claim)
     beside = [value_words(claim.exact, claim.unit), *([f"found is {off}"] if off else []), *([other] if other else [])]
     source = f"{claim.source} ({claim.read})."
     source += f" Found with {claim.condition}." if claim.condition else ""
     return (
-        VERDICT[claim.holds],
+        claim.holds,
         f"{claim.id}, {claim.quantity}",
         claimed_words(claim),
         "–" if claim.found is None else value_words(claim.found, claim.unit),

@@ -60,10 +60,6 @@ def _best(study: "ReadingsFound") -> Table:
             (*group_cells(group), *best_cells(group), group.best.lift_off, group.best.nonlinearity)
             for group in study.groups
         ),
-        notes=(
-            "Lift-off and nonlinearity as of the slider's own run: a linear model leaves the latter out whatever the "
-            "force, the nonlinear chain keeps it, the shortening of its links included.",
-        ),
         shown="both",
     )
 
@@ -94,6 +90,10 @@ def _all(study: "ReadingsFound") -> Table:
             Column("holds", left=True),
         ),
         rows=tuple(_reading_cells(one) for one in study.readings),
+        notes=(
+            "Lift-off and nonlinearity above are those of the slider's own run: a linear model leaves the latter out "
+            "whatever the force, the nonlinear chain keeps it, the shortening of its links included.",
+        ),
         folded=True,
     )
 

@@ -19,6 +19,7 @@ from verify.waves.case import DrivenCase
 from verify.waves.driven import SEARCH_SPAN, SEARCHED, check_fields, driven, measures, quietest_drive
 from verify.waves.measures import surface_motion
 from verify.waves.operating_point import OperatingPoint, edge_note, operating_points
+from verify.words import cell
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -76,6 +77,10 @@ def motor_rows_table(rows: "Sequence[MotorRow]") -> Table:
     )
 
 
+def _named(row: MotorRow) -> str:
+    return MODELS[row.model].title if row.count is None else f"{row.count} {MODELS[row.model].title}"
+
+
 def _cells(one: Operation | None) -> tuple[float | None, ...]:
     if one is None:
         return (None,) * 4
@@ -131,6 +136,14 @@ class WaveFound(Found, frozen=True, eq=False, kw_only=True):
     count: int
     other_drive: float
     """Standing-wave ratio of the exact field if the other kind of drive is imposed with the same phase."""
+
+    def facts(self) -> tuple[str, ...]:
+        """How pure the wave is on every model at the size of the envelopes."""
+        exact, *others = self.rows
+        shown = [exact, *(row for row in others if row.count == self.count)]
+        ratios = [f"{_named(row)} {cell(row.drive.standing_wave_ratio, 'ratio')}" for row in shown]
+        at = f"at {exact.drive.frequency_hz:g} Hz in the window [L/4, 3L/4]"
+        return (f"standing-wave ratio {at}: {', '.join(ratios)}",)
 
     def tables(self) -> tuple[Table, ...]:
         """The motor over sizes, and where to drive."""
