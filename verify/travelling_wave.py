@@ -6,12 +6,11 @@ from verify.waves.measures import (
     ellipse,
     fit_waves,
     measure,
-    measure_series,
     middle_half,
-    phasors,
     surface_motion,
     two_waves,
 )
+from verify.waves.series import measure_series, phasors
 
 __all__ = [
     "TwoWaves",

@@ -26,16 +26,9 @@ from verify.studies.wave_figures import motor_row
 from verify.waves import measures as travelling_wave
 from verify.waves.driven import own_wavenumber
 from verify.waves.imposed import driven_field
-from verify.waves.measures import (
-    ellipse,
-    fit_waves,
-    fitted_wavenumber,
-    measure,
-    measure_series,
-    phasors,
-    surface_motion,
-)
+from verify.waves.measures import ellipse, fit_waves, fitted_wavenumber, measure, surface_motion
 from verify.waves.operating_point import operating_points
+from verify.waves.series import measure_series, phasors
 
 PAPER = load_scene("paper")
 BEAM = PAPER.beam

@@ -96,6 +96,10 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
     ready = perf_counter()
     done = kernels.slide_given(n_steps, dt, given, rider, kept, contact_space())
     wall, kept, ends = perf_counter() - ready, kept[: done + 1], slice(0, 2 * done + 1, 2)
+    stopped = END if done == n_steps else "left the piece of the chain it began on"
+    statistics = Statistics(
+        steps=done, evaluations=2 * done + 1, step_s=dt, set_up_s=ready - began, wall_s=wall, stopped=stopped
+    )
     return ChainRide(
         chain=chain,
         times=times[ends],
@@ -108,14 +112,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
         coupling=coupling,
         ledger=_ledger(slider, 0.5 * beam.thickness, times[ends], kept, local[ends], given.edges),
         notes=(coupling.note if coupling else "coupling: one-way; no harmonic load says what the chain would feel",),
-        statistics=Statistics(
-            steps=done,
-            evaluations=2 * done + 1,
-            step_s=dt,
-            set_up_s=ready - began,
-            wall_s=wall,
-            stopped=END if done == n_steps else "left the piece of the chain it began on",
-        ),
+        statistics=statistics,
     )
 
 
@@ -217,10 +214,7 @@ def ride_from_rest(
         if links == "stretching"
         else simulate(system, at_rest(system), times, tolerance=tolerance, ledger=False, most=most, progress=progress)
     )
-    if moved.statistics.stopped.startswith("interrupted"):
-        raise KeyboardInterrupt
-    if not moved.finished:
-        raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces")
+    check_moved(moved)
     found = ride(moved, beam, slider)
     if not found.statistics.finished:
         raise InputError(
@@ -228,6 +222,14 @@ def ride_from_rest(
             "start it elsewhere"
         )
     return found
+
+
+def check_moved(moved: ChainMotion | ElasticMotion) -> None:
+    """Raise InputError for a chain's motion that broke off, KeyboardInterrupt for one that was broken off."""
+    if moved.statistics.interrupted:
+        raise KeyboardInterrupt
+    if not moved.finished:
+        raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces")
 
 
 def _driven(beam: Beam, forces: Sequence[PointForce], frequency_hz: float, n_segments: int) -> ChainSystem:

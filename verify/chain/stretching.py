@@ -56,6 +56,16 @@ def elastic_step_limit(system: ChainSystem, axial_stiffness: float | Array) -> f
     return float(2.0 * np.sqrt(2.0 / fastest.max()))
 
 
+def _step(limit: float, step: float | None) -> float:
+    """The step asked for, or half of what is stable. Raises InputError above that."""
+    if step is None:
+        return 0.5 * limit
+    check_number("step", step, "seconds", above=0)
+    if step > limit:
+        raise InputError(f"step = {step!r} s lies above the stability limit {limit:.4g} s of the stretching chain")
+    return step
+
+
 def simulate_elastic(
     system: ChainSystem,
     axial_stiffness: float | Array,
@@ -75,11 +85,7 @@ def simulate_elastic(
     """
     began = perf_counter()
     samples = _checked(system, axial_stiffness, times)
-    limit = elastic_step_limit(system, axial_stiffness)
-    step = 0.5 * limit if step is None else step
-    check_number("step", step, "seconds", above=0)
-    if step > limit:
-        raise InputError(f"step = {step!r} s lies above the stability limit {limit:.4g} s of the stretching chain")
+    step = _step(elastic_step_limit(system, axial_stiffness), step)
     spacing = float(samples[1] - samples[0])
     work = fixed_steps(spacing, step) * (len(samples) - 1.0) * system.n_links * PER_STRETCHING_STEP
     refuse_work(work, most, float(samples[-1]))
@@ -88,15 +94,7 @@ def simulate_elastic(
     u[:, 1] = 0.0 if deflected is None else deflected
     steps, ready = int(np.ceil(spacing / step - 1e-9)), perf_counter()
     kept, stopped = _march(flat, samples, steps, u, v)
-    done = steps * (len(kept) - 1)
-    statistics = Statistics(
-        steps=done,
-        evaluations=4 * done,
-        step_s=spacing / steps,
-        set_up_s=ready - began,
-        wall_s=perf_counter() - ready,
-        stopped=stopped,
-    )
+    done, wall = steps * (len(kept) - 1), perf_counter() - ready
     energies = np.array([kernels.energy(flat, diagonal, coupling, *state) for state in kept])
     places, speeds = (np.array([state[part] for state in kept]) for part in range(2))
     return ElasticMotion(
@@ -105,7 +103,14 @@ def simulate_elastic(
         displacements=places,
         velocities=speeds,
         energies=energies,
-        statistics=statistics,
+        statistics=Statistics(
+            steps=done,
+            evaluations=4 * done,
+            step_s=spacing / steps,
+            set_up_s=ready - began,
+            wall_s=wall,
+            stopped=stopped,
+        ),
     )
 
 

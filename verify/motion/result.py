@@ -7,7 +7,7 @@ from verify.models.arrays import Array
 from verify.motion.contact import Coupling, Margins
 from verify.slider import Slider
 
-END = "end"
+END, INTERRUPTED = "end", "interrupted"
 """Why a run stopped that went as far as it was asked to."""
 
 
@@ -31,6 +31,11 @@ class Statistics(msgspec.Struct, frozen=True, kw_only=True):
     def finished(self) -> bool:
         """Whether it went as far as it was asked to."""
         return self.stopped == END
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether it was broken off from outside; of a chain the first word says so, the rest when."""
+        return self.stopped.partition(" ")[0] == INTERRUPTED
 
 
 class Ledger(msgspec.Struct, frozen=True, kw_only=True):

@@ -133,9 +133,9 @@ def with_slider(
 
 def _check_ended(found: Motion, duration: float) -> None:
     """Raise InputError for a run that did not reach its end, and KeyboardInterrupt for one that was broken off."""
-    if found.statistics.stopped == "interrupted":
+    if found.statistics.interrupted:
         raise KeyboardInterrupt
-    if found.statistics.stopped != "end":
+    if not found.statistics.finished:
         raise InputError(
             f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {duration!r} s: "
             "shorten time or start it elsewhere"

@@ -46,7 +46,7 @@ def _moved(scene: "Scene", count: int) -> ChainMotion:
     system = build_system(scene.beam, count, scene.forces, drive.frequency_hz, load="reciprocal")
     times = half_steps(asked.duration, 1.0 / (drive.frequency_hz * asked.steps_per_period))
     motion = simulate(system, at_rest(system), times.tolist(), ledger=False)
-    if motion.statistics.stopped.startswith("interrupted"):
+    if motion.statistics.interrupted:
         raise KeyboardInterrupt
     if not motion.finished:
         raise InputError(f"the chain {motion.statistics.stopped}: give smaller forces")

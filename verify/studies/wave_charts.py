@@ -9,7 +9,8 @@ from verify.studies.charting import LOG, Figure, axes, model_line, plain_line, s
 from verify.studies.told import Chart
 
 if TYPE_CHECKING:
-    from verify.studies.wave_figures import Operation, WaveFound
+    from verify.studies.wave_figures import Ellipse, Operation, WaveFound
+    from verify.waves.operating_point import OperatingPoint
 
 _ELLIPSE, _POINT = "#2f80ed", "#e8760c"
 CLIPPED = 10.0
@@ -48,32 +49,7 @@ def _ellipses(study: "WaveFound") -> Chart:
     up = max(max(map(abs, e.up)) for e in study.ellipses)
     gap = (study.ellipses[1].x - study.ellipses[0].x) * 1e3
     magnified = 0.42 * gap / (1e3 * across)
-    data: list[Figure] = []
-    for e in study.ellipses:
-        x = [1e3 * (e.x + magnified * v) for v in e.across]
-        y = [1e6 * v for v in e.up]
-        data.append(
-            {
-                "type": "scatter",
-                "mode": "lines",
-                "x": x,
-                "y": y,
-                "showlegend": False,
-                "hoverinfo": "skip",
-                "line": {"color": _ELLIPSE},
-            }
-        )
-        data.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "x": x[:1],
-                "y": y[:1],
-                "showlegend": False,
-                "name": f"x = {1e3 * e.x:.1f} mm",
-                "marker": {"color": _POINT, "size": 6},
-            }
-        )
+    data = [trace for e in study.ellipses for trace in _path(e, magnified)]
     ratio = across / up
     return Chart(
         "wave-ellipses",
@@ -83,6 +59,43 @@ def _ellipses(study: "WaveFound") -> Chart:
         data,
         axes("x, mm", "up, µm"),
     )
+
+
+def _path(one: "Ellipse", magnified: float) -> list[Figure]:
+    """The path of a surface point, and where it is at t = 0."""
+    x = [1e3 * (one.x + magnified * v) for v in one.across]
+    y = [1e6 * v for v in one.up]
+    path: Figure = {
+        "type": "scatter",
+        "mode": "lines",
+        "x": x,
+        "y": y,
+        "showlegend": False,
+        "hoverinfo": "skip",
+        "line": {"color": _ELLIPSE},
+    }
+    start = {
+        "type": "scatter",
+        "mode": "markers",
+        "x": x[:1],
+        "y": y[:1],
+        "showlegend": False,
+        "name": f"x = {1e3 * one.x:.1f} mm",
+        "marker": {"color": _POINT, "size": 6},
+    }
+    return [path, start]
+
+
+def _marked(point: "OperatingPoint", symbol: str) -> Figure:
+    """An operating point on the map."""
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": f"{point.what}: {point.frequency_hz:.1f} Hz, {point.phase_deg:.1f}°",
+        "x": [point.frequency_hz],
+        "y": [point.phase_deg],
+        "marker": {"symbol": symbol, "size": 13, "color": "#ff5a36", "line": {"color": "#ffffff", "width": 1.5}},
+    }
 
 
 def _map(study: "WaveFound") -> Chart:
@@ -102,23 +115,7 @@ def _map(study: "WaveFound") -> Chart:
             "hoverongaps": False,
         }
     ]
-    for point, symbol in zip(study.points, ("circle", "star"), strict=False):
-        label = f"{point.what}: {point.frequency_hz:.1f} Hz, {point.phase_deg:.1f}°"
-        data.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "name": label,
-                "x": [point.frequency_hz],
-                "y": [point.phase_deg],
-                "marker": {
-                    "symbol": symbol,
-                    "size": 13,
-                    "color": "#ff5a36",
-                    "line": {"color": "#ffffff", "width": 1.5},
-                },
-            }
-        )
+    data += [_marked(p, symbol) for p, symbol in zip(study.points, ("circle", "star"), strict=False)]
     return Chart(
         "wave-map",
         f"{name} over frequency and phase, {study.map.of}",

@@ -179,7 +179,7 @@ def run_once(
     found = motion_case(a, scene).run(
         slider=slider_of(a, scene), steps_per_period=per_period, samples=samples, ledger=ledger, patient=False
     )
-    if found.statistics.stopped == "interrupted":
+    if found.statistics.interrupted:
         raise KeyboardInterrupt
     return found
 
