@@ -2,6 +2,7 @@
 
 from itertools import chain
 
+import faults.everything  # noqa: F401
 import pytest
 from faults import chain as of_the_chain
 from faults import modes, motion, waves

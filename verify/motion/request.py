@@ -16,7 +16,7 @@ from verify.motion.surface import Growth, check_line, cut
 from verify.slider import Slider
 
 STEPS_PER_PERIOD = 64
-"""At least: more where the start excites faster modes (`excited`)."""
+"""At least: more where the start excites faster modes (`step_size`)."""
 COARSEST = 0.25
 """Of a period: longer steps of a slider are refused."""
 MOST_STEPS = 2e9

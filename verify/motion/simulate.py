@@ -50,7 +50,7 @@ def simulate(
     Forces are amplitude cos(omega t + phase): from rest cos(0) = 1 is a step load, which `soft_start_periods`
     spreads as 3 p^2 - 2 p^3; any other growth is an `envelope` of polynomial pieces, after which the amplitudes are
     those given. Modes advance exactly by any step; `step` is the slider's alone: unless given it is at most a
-    `steps_per_period`-th of the drive's period and follows what the start excites (`excited`). The exact beam keeps
+    `steps_per_period`-th of the drive's period and follows what the start excites (`step_size`). The exact beam keeps
     `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half the beam's loss factor
     unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and in the steady
     state its mass is part of it. `at` are metres where the deflection is kept. Returns what was reached where the run

@@ -135,7 +135,7 @@ def solve_harmonic(
 ) -> HarmonicField:
     """The steady field of the chain under harmonic point forces, e^{+i omega t}.
 
-    `load` shares a force among the joints (`point_loads`). The field between the joints is the C2 spline of the
+    `load` shares a force among the joints (`loads`). The field between the joints is the C2 spline of the
     paper's contact line (Section II.B) through the "corrected" or the "raw" joints, or that of the rigid "links"
     themselves: straight, its slope the link's, the mean of both at a joint. Damping: the beam's loss factor;
     `modal_damping` zeta of every mode (equivalent near a resonance: eta = 2 zeta); `joint_dashpot` c in N m s
