@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from verify.errors import InputError
-from verify.judge.compare import Bracket
+from verify.judge.bracket import Bracket
 from verify.quantities.catalogue import QUANTITIES
 from verify.run.gates import expectation, judge
 from verify.run.plan import asks_of

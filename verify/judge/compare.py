@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from math import isfinite
 from typing import TypeVar
 
-import msgspec
 import numpy as np
 
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
+from verify.judge.bracket import Bracket
 from verify.models.arrays import Array, Indices
 from verify.models.modes import Modes
 
@@ -18,23 +18,6 @@ ORDER_FLOOR = 50 * EIGENVALUE_FLOOR
 """Below this an error is too close to rounding to speak of an order."""
 LIKENESS = 0.5
 """A mode pairs with an exact one only above this MAC."""
-
-
-class Bracket(msgspec.Struct, frozen=True):
-    """Two-sided bound on an exact value."""
-
-    lower: float
-    upper: float
-
-    @property
-    def mean(self) -> float:
-        """The middle: the leading errors of both sides cancel, if the lower is not more than three times as far off."""
-        return 0.5 * (self.lower + self.upper)
-
-    @property
-    def relative_width(self) -> float:
-        """Width over mean."""
-        return (self.upper - self.lower) / self.mean
 
 
 def relative_error(value: T, exact: T) -> T:

@@ -12,7 +12,7 @@ from verify.models.catalogue import MODELS, bounding
 from verify.models.naming import MEAN
 
 if TYPE_CHECKING:
-    from verify.judge.compare import Bracket
+    from verify.judge.bracket import Bracket
     from verify.models.arrays import Array
     from verify.models.fields import HarmonicField
     from verify.models.modes import Modes

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 import msgspec
 
 from verify.errors import InputError
+from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Workbench
 from verify.models.naming import Among
 from verify.quantities.chain import CHAIN_QUANTITIES
-from verify.quantities.kind import A, Arguments, Quantity
+from verify.quantities.kind import A, Arguments, Figure, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
 from verify.quantities.motion import MOTION_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
@@ -72,16 +73,16 @@ def needs_of(found: Quantity[A], arguments: A, scene: "Scene") -> tuple[Need, ..
     return found.needs(arguments, scene)
 
 
-def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Any:
+def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Figure:
     """The figure: float, int, complex or Bracket. Raises InputError."""
     return found.evaluate(arguments, scene, bench)
 
 
-def as_plain(value: Any) -> Any:
+def as_plain(value: Figure | None) -> Any:
     """A figure for JSON: a number, {"re", "im"} or {"lower", "upper"}."""
     if isinstance(value, complex):
         return {"re": value.real, "im": value.imag}
-    if hasattr(value, "lower"):
+    if isinstance(value, Bracket):
         return {"lower": value.lower, "upper": value.upper}
     return value
 

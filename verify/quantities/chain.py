@@ -245,7 +245,7 @@ def _contact_line_error(a: ContactLine, scene: "Scene", bench: Workbench) -> flo
     return contact_line_error(scene.beam, a.mode, a.links, a.x, wall=a.wall, grading=a.grading)
 
 
-def _ridden(figure: "Callable[[ChainRide], float]") -> Any:
+def _ridden(figure: "Callable[[ChainRide], float]") -> "Callable[[Ridden, Scene, Workbench], float]":
     """One figure of the slider's run on the chain."""
 
     def evaluate(a: Ridden, scene: "Scene", bench: Workbench) -> float:
@@ -291,7 +291,7 @@ def _imbalance(run: "ChainRide") -> float:
     return abs(run.ledger.residual) / run.ledger.rubbed
 
 
-def _buildable(a: Any, scene: "Scene") -> tuple[()]:
+def _buildable(a: Arguments, scene: "Scene") -> tuple[()]:
     """No modes of others. Raises InputError for a beam that is no nonlinear chain."""
     from verify.chain.system import check_buildable
 

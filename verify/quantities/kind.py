@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from verify import options
 from verify.errors import InputError
+from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Settings, Workbench
 from verify.models import catalogue
 from verify.models.catalogue import MODELS
@@ -15,6 +16,9 @@ from verify.models.naming import MEAN, model_meta
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
+
+Figure: TypeAlias = float | complex | Bracket
+"""What a quantity is evaluated to."""
 
 Work: TypeAlias = Literal["closed form", "matrices", "modes", "harmonic", "equilibrium", "in time"]
 """What is done for a figure: nothing but arithmetic; matrices, of which nothing is solved; eigenvalues, of models of
@@ -229,8 +233,8 @@ class Quantity(msgspec.Struct, Generic[A], frozen=True):
     summary: str
     arguments: type[A]
     work: Work
-    evaluate: Callable[[A, "Scene", Workbench], Any]
-    """A real or complex number, or a bracket. Raises InputError."""
+    evaluate: Callable[[A, "Scene", Workbench], Figure]
+    """Raises InputError."""
     needs: Callable[[A, "Scene"], tuple[Need, ...]] = no_needs
     """What has to be solved for it, as far as can be known beforehand. Raises InputError where it cannot be."""
     models: tuple[str, ...] = ()

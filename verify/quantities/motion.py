@@ -1,5 +1,6 @@
 """Named figures in time: friction laws on their own, the slider on a beam, the beam itself."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from verify.judge.workbench import Workbench
@@ -35,7 +36,7 @@ def _creep_speed(a: Creep, scene: "Scene", bench: Workbench) -> float:
     return creep_speed(a.mu, a.slope, a.pull, a.gravity)
 
 
-def _belt(which: int) -> Any:
+def _belt(which: int) -> Callable[[OnBelt, "Scene", Workbench], float]:
     """Stick time (0) or slip time (1)."""
 
     def evaluate(a: OnBelt, scene: "Scene", bench: Workbench) -> float:
@@ -61,7 +62,7 @@ def _terminal_speed(a: OnWave, scene: "Scene", bench: Workbench) -> float:
     return terminal_speed(scene.beam, slider, a.amplitude, drive_frequency(a, scene))
 
 
-def _slider(figure: RunFigure) -> Any:
+def _slider(figure: RunFigure) -> Callable[[SliderInTime, "Scene", Workbench], float]:
     """One figure of the slider's run."""
 
     def evaluate(a: SliderInTime, scene: "Scene", bench: Workbench) -> float:

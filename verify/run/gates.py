@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
+from verify.judge.bracket import Bracket
 from verify.quantities.catalogue import arguments_of, as_plain, evaluate, in_words, quantity
-from verify.quantities.kind import Quantity
+from verify.quantities.kind import Figure, Quantity
 from verify.scenes.scene import Complex
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
 def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
     """Evaluate one gate. Never raises on a wrong gate or a failing model: a gate that cannot be evaluated fails."""
     start = perf_counter()
-    unit, value, reason = "", None, ""
+    unit, reason = "", ""
+    value: Figure | None = None
     try:
         found = quantity(gate.quantity)
         unit, value = found.unit, _evaluated(found, gate, scene, bench)
@@ -59,7 +61,7 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
     except Exception:  # a fault of the suite's own, not of the input: every such place is to become an InputError
         reason = f"cannot be evaluated: the suite itself fails on it, `verify measure {gate.quantity}` shows where"
     share = None
-    if not reason:
+    if value is not None:
         reason, share = _verdict(gate, value)
     return GateResult(
         id=gate.id,
@@ -82,7 +84,7 @@ def given_band(gate: "Gate") -> Band:
     return Band(expect=gate.expect, within=gate.within, at_least=gate.at_least, at_most=gate.at_most)
 
 
-def _evaluated(found: Quantity[Any], gate: "Gate", scene: "Scene", bench: "Workbench") -> Any:
+def _evaluated(found: Quantity[Any], gate: "Gate", scene: "Scene", bench: "Workbench") -> Figure:
     return evaluate(found, arguments_of(found, gate.arguments), scene, bench)
 
 
@@ -95,9 +97,9 @@ def expectation(gate: "Gate") -> str:
     return ", ".join(sides + [f"at most {gate.at_most!r}"] * (gate.at_most is not None))
 
 
-def _verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
+def _verdict(gate: "Gate", value: Figure) -> tuple[str, float | None]:
     """(reason for failing or '', share of the band used)."""
-    if hasattr(value, "lower"):
+    if isinstance(value, Bracket):
         return _bracket_verdict(gate, value)
     if isinstance(gate.expect, Complex):
         return _disc_verdict(gate.expect, gate.within, value)
@@ -113,7 +115,7 @@ def _verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
     return f"measured {value!r} lies {side} {edge!r}", share
 
 
-def _disc_verdict(expect: Complex, within: float | None, value: Any) -> tuple[str, float | None]:
+def _disc_verdict(expect: Complex, within: float | None, value: Figure) -> tuple[str, float | None]:
     """A complex figure has to lie within a distance of the expected one."""
     if not isinstance(value, complex) or within is None:
         return f"measured {in_words(as_plain(value))}, and a complex expect with within judges complex figures", None
@@ -139,7 +141,7 @@ def _share(value: float, low: float, high: float) -> float | None:
     return low / value if isfinite(low) and low > 0 and value > 0 else None
 
 
-def _bracket_verdict(gate: "Gate", value: Any) -> tuple[str, float | None]:
+def _bracket_verdict(gate: "Gate", value: Bracket) -> tuple[str, float | None]:
     if not isinstance(gate.expect, float) or gate.within is not None:
         return "a two-sided bound needs expect alone: the value it has to contain", None
     share = _share(gate.expect, value.lower, value.upper)
