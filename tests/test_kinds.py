@@ -209,6 +209,14 @@ def test_pytest_collects_their_gates(pytester):
     done.assert_outcomes(passed=2)
 
 
+@pytest.mark.parametrize("given", [None, "heavy", [2.0]])
+def test_a_quantity_that_gives_no_figure_is_a_failed_gate(scene, given):
+    with QUANTITIES.registered(msgspec.structs.replace(WEIGHT, evaluate=lambda a, scene, bench: given)):
+        (found,) = [gate for gate in run_scene(scene).gates if gate.id == "weight"]
+    assert not found.passed
+    assert "which is no figure" in found.reason
+
+
 def test_they_are_gone_when_nobody_holds_them_any_more(tmp_path):
     path = tmp_path / "toy.toml"
     path.write_text(SCENE, encoding="utf-8")

@@ -74,8 +74,11 @@ def needs_of(found: Quantity[A], arguments: A, scene: "Scene") -> tuple[Need, ..
 
 
 def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Figure:
-    """The figure: float, int, complex or Bracket. Raises InputError."""
-    return found.evaluate(arguments, scene, bench)
+    """The figure. Raises InputError, also where the quantity gives none."""
+    value = found.evaluate(arguments, scene, bench)
+    if not isinstance(value, float | int | complex | Bracket):
+        raise InputError(f"quantity = {found.name!r} gave {value!r}, which is no figure: let it give a number")
+    return value
 
 
 def as_plain(value: Figure | None) -> Any:
