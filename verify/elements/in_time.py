@@ -35,10 +35,9 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
     layout: Literal["C", "F"] = "F" if uniform else "C"  # of what BLAS sums, as it rounds by it
 
     def loads(position: float) -> Array:
-        dofs, weights = basis.weights(np.array([position / parts.unit]))
-        w, slope = (kind.copy(layout) for kind in nodal(node[dofs[::2, 0]]))
-        at, turned = np.array(weights).reshape(2, 2).T.copy()
-        return np.asarray(at @ w + turned @ slope)
+        beside, lift, turn = _unit_force(basis, position / parts.unit, node)
+        w, slope = (kind.copy(layout) for kind in nodal(beside))
+        return np.asarray(lift @ w + turn @ slope)
 
     def shapes(x: Array, derivative: int) -> Array:
         dofs, weights = basis.weights(on_mesh(x), derivative)
@@ -65,6 +64,13 @@ def _nodes(basis: Any) -> Indices:
     nodes = np.zeros(basis.N, dtype=int)
     nodes[basis.nodal_dofs] = np.arange(basis.nodal_dofs.shape[1])
     return nodes
+
+
+def _unit_force(basis: Any, x: float, node: Indices) -> tuple[Indices, Array, Array]:
+    """The nodes beside a unit force at x on the mesh, and its force and moment on each, (2,) each."""
+    dofs, weights = basis.weights(np.array([x]))
+    lift, turn = np.array(weights).reshape(2, 2).T.copy()
+    return node[dofs[::2, 0]], lift, turn
 
 
 def _at_both_ends(nodal: Nodal, ends: Indices, count: int) -> Iterator[Array]:
