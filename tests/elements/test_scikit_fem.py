@@ -86,22 +86,85 @@ def test_without_scikit_fems_mapping_there_is_no_model(work, monkeypatch, unkept
         works()[work]()
 
 
-def test_forces_act_and_shapes_are_read_through_scikit_fems_probes(monkeypatch):
-    from skfem import CellBasis
+def readings():
+    """Every way a force enters and a shape is read, by name, of models that are built before."""
+    modes, equal, stepped = linear.solve_modes(STEPPED, 3, 23), time_basis(STRIP, 23), time_basis(STEPPED, 23)
+    field, x = linear.solve_harmonic(STRIP, FORCES, 777.0, 23), np.array([0.0137, 0.2911])
+    return {
+        "a force that drives a field": works()["field"],
+        "a field": lambda: field.deflection(x),
+        "responses to unit forces": works()["unit responses"],
+        "modes at the points they are compared at": modes.sampled,
+        "their curvatures": modes.curvatures,
+        "their slopes": lambda: modes.slope(x),
+        "a force on the modes of equal elements": lambda: equal.loads(0.1),
+        "those modes": lambda: equal.shapes(x, 1),
+        "those modes all along": lambda: equal.shapes(np.linspace(0.001, 0.429, 77), 2),
+        "a force on the modes of a stepped beam": lambda: stepped.loads(0.1),
+        "modes of a stepped beam": lambda: stepped.shapes(x, 0),
+    }
 
-    modes, basis = linear.solve_modes(STEPPED, 3, 23), time_basis(STRIP, 23)
-    monkeypatch.setattr(CellBasis, "probes", raising)
-    for work in (
-        works()["field"],
-        works()["unit responses"],
-        modes.sampled,
-        modes.curvatures,
-        lambda: modes.slope([0.1]),
-        lambda: basis.loads(0.1),
-        lambda: basis.shapes(np.array([0.1]), 1),
-    ):
-        with pytest.raises(ZeroDivisionError):
-            work()
+
+def replacing(monkeypatch, part, make):
+    """Puts what `make` makes of its answer in place of a part that is read with.
+
+    The finder is ours in scikit-fem's place for it, and held below to find the cells that scikit-fem's does.
+    """
+    from skfem.assembly.basis.abstract_basis import AbstractBasis
+    from skfem.mapping import MappingAffine
+
+    from verify.elements.element import Line
+
+    if part == "finder":
+        finder = Line.element_finder
+        monkeypatch.setattr(Line, "element_finder", lambda *a, **k: lambda x: make(finder(*a, **k)(x)))
+    elif part == "mapping":
+        local = MappingAffine.invF
+        monkeypatch.setattr(MappingAffine, "invF", lambda *a, **k: make(local(*a, **k)))
+    else:
+        numbers = AbstractBasis.element_dofs.fget
+        monkeypatch.setattr(AbstractBasis, "element_dofs", property(lambda basis: make(numbers(basis))))
+
+
+ALTERED = {
+    "finder": lambda cells: np.maximum(cells - 1, 0),
+    "mapping": lambda xi: 0.9 * xi,
+    "degrees of freedom": lambda dofs: dofs[[2, 1, 0, 3]],
+}
+
+
+@pytest.mark.parametrize("part", ALTERED)
+@pytest.mark.parametrize("reading", readings())
+def test_without_what_scikit_fem_reads_with_no_force_acts_and_no_shape_is_read(part, reading, monkeypatch):
+    read = readings()[reading]
+    replacing(monkeypatch, part, raising)
+    with pytest.raises(ZeroDivisionError):
+        read()
+
+
+@pytest.mark.parametrize("part", ALTERED)
+@pytest.mark.parametrize("reading", readings())
+def test_forces_and_shapes_follow_what_scikit_fem_reads_with(part, reading, monkeypatch):
+    """The neighbour's cell, a point a tenth nearer its left node, deflections of the two nodes exchanged."""
+    read = readings()[reading]
+    here = read()
+    replacing(monkeypatch, part, ALTERED[part])
+    assert abs(read() - here).max() > 1e-3 * abs(here).max()
+
+
+@pytest.mark.parametrize("stretched", ["DF", "invDF"])
+def test_slopes_follow_scikit_fems_mapping(stretched, monkeypatch, unkept):
+    """Nodal slopes weigh with both stretches in a slope, nodal deflections with that of the mesh to the cell alone."""
+    from skfem.mapping import MappingAffine
+
+    true, x = getattr(MappingAffine, stretched), np.array([0.11, 3.3])
+    here = mesh.interpolate(mesh.basis_between(UNEQUAL), np.eye(12), x, 1)
+    mesh._kept.cache_clear()
+    monkeypatch.setattr(MappingAffine, stretched, lambda *given: 1.21 * true(*given))
+    found = mesh.interpolate(mesh.basis_between(UNEQUAL), np.eye(12), x, 1)
+    deflections, slopes = slice(0, None, 2), slice(1, None, 2)
+    assert found[slopes] == pytest.approx(1.21 * here[slopes], rel=1e-13)
+    assert found[deflections] == pytest.approx((1.0 if stretched == "DF" else 1.21) * here[deflections], rel=1e-13)
 
 
 def test_the_mesh_has_the_beams_own_coordinates():
@@ -131,7 +194,7 @@ def test_our_element_assembles_what_scikit_fems_own_does_on_unequal_cells(form):
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-10 * abs(expected).max())
 
 
-def test_our_probes_read_what_scikit_fems_own_element_does():
+def test_our_readings_are_the_probes_of_scikit_fems_own_element():
     from skfem import Basis, ElementLineHermite, MeshLine
 
     x = np.array([0.0, 0.11, 0.3, 1.69, 3.3, 5.3])
@@ -142,8 +205,30 @@ def test_our_probes_read_what_scikit_fems_own_element_does():
     assert mesh.interpolate(basis, nodal, x) == pytest.approx(nodal @ stock.T, abs=1e-10)
 
 
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_our_readings_are_scikit_fems_probes_to_the_last_digit(order):
+    """`probes` reads values: of an element whose values are the derivative of ours that scikit-fem is given."""
+    from skfem import CellBasis
+    from skfem.element import DiscreteField
+
+    from verify.elements.element import HermiteLine
+
+    class Derived(HermiteLine):
+        def gbasis(self, mapping, X, i, tind=None):  # noqa: N803
+            field = super().gbasis(mapping, X, i, tind)[0]
+            return (DiscreteField((np.asarray(field), field.grad[0], field.hess[0, 0])[order]),)
+
+    rng, basis = np.random.default_rng(6), mesh.basis_between(UNEQUAL)
+    x = np.concatenate([UNEQUAL, rng.uniform(0.0, 5.3, 300)])
+    nodal = rng.standard_normal((4, basis.N)) + 1j * rng.standard_normal((4, basis.N))
+    probes = CellBasis(basis.mesh, Derived()).probes(x[None])
+    assert (mesh.interpolate(basis, nodal, x, order) == (probes @ nodal.T).T).all()
+    if order == 0:
+        assert (mesh.point_loads(basis, x) == probes.toarray()).all()
+
+
 @pytest.mark.parametrize("order", [1, 2])
-def test_a_derivative_probed_is_the_field_that_scikit_fem_interpolates(order):
+def test_a_derivative_read_is_the_field_that_scikit_fem_interpolates(order):
     basis = mesh.basis_between(UNEQUAL)
     nodal = np.random.default_rng(4).standard_normal(basis.N)
     points = basis.at("gauss")
@@ -152,12 +237,25 @@ def test_a_derivative_probed_is_the_field_that_scikit_fem_interpolates(order):
     assert mesh.interpolate(basis, nodal[None], places, order)[0] == pytest.approx(expected, abs=1e-10)
 
 
+def test_the_third_derivative_is_the_change_of_the_second_over_its_cell_and_the_fourth_is_none():
+    basis = mesh.basis_between(UNEQUAL)
+    nodal = np.random.default_rng(7).standard_normal((3, basis.N))
+    left, right = UNEQUAL[:-1], UNEQUAL[1:] - 1e-9
+    bend = mesh.interpolate(basis, nodal, np.concatenate([left, right]), 2)
+    change = (bend[:, len(left) :] - bend[:, : len(left)]) / (right - left)
+    found = mesh.interpolate(basis, nodal, 0.6 * left + 0.4 * right, 3)
+    assert found == pytest.approx(change, rel=1e-9)
+    assert abs(found).min() > 0.01
+    assert not mesh.interpolate(basis, nodal, left, 4).any()
+
+
 def test_our_finder_finds_the_cells_that_scikit_fems_does():
     from skfem.mesh import MeshLine1
 
     line = mesh.basis_between(UNEQUAL).mesh
     x = np.concatenate([UNEQUAL, np.random.default_rng(5).uniform(0.0, 5.3, 200)])
     assert (line.element_finder()(x) == MeshLine1.element_finder(line)(x)).all()
+    assert line.element_finder()(np.array([-1e-9, 5.3 + 1e-9])).tolist() == [0, 4]
 
 
 def test_factors_read_off_the_stiffness_of_equal_elements_are_the_textbooks_with_no_rounding():

@@ -1,23 +1,23 @@
 """The free modes of the Hermite elements for motion in time, closed-form where they have one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import pi
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from verify.beam import Beam
 from verify.elements.linear import check
-from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, point_loads, stiffness_matrix
+from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, stiffness_matrix, weighed
 from verify.elements.pencil import curvature_weights, element_pencil
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Indices
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.time_basis import TimeBasis, check_held
 
-Nodal = Callable[[Any], tuple[Array, Array]]
-"""Node numbers -> deflection and slope (per element length) of all modes there, each (n, len(numbers))."""
+Nodal = Callable[[Indices], tuple[Array, Array]]
+"""Node numbers -> deflection and slope (per element length) of all modes there, each (len(numbers), n)."""
 
 
 def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
@@ -25,28 +25,26 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
 
     Raises InputError for rigid motions and meshes beyond the dense size.
     """
-    from scipy.sparse import coo_array
-
     check(beam, 1, n_elements)
     check_held(beam)
     uniform = beam.supports == ("pinned", "pinned") and not beam.section and n_elements > 1
     elements = build_elements(beam, n_elements)
     omegas, nodal, method = _pinned(beam, n_elements) if uniform else _dense(elements)
     parts, basis = elements.parts, elements.basis
+    node, on_mesh = _nodes(basis), _on_mesh(parts)
+    layout: Literal["C", "F"] = "F" if uniform else "C"  # of what BLAS sums, as it rounds by it
 
     def loads(position: float) -> Array:
-        weights = point_loads(basis, np.array([position / parts.unit])).reshape(-1, 2)
-        near = np.flatnonzero(weights.any(axis=1))
-        w, slope = nodal(near)
-        return np.asarray(weights[near, 0] @ w.T + weights[near, 1] @ slope.T)
+        beside, lift, turn = _unit_force(basis, position / parts.unit, node)
+        w, slope = (kind.copy(layout) for kind in nodal(beside))
+        return np.asarray(lift @ w + turn @ slope)
 
     def shapes(x: Array, derivative: int) -> Array:
-        probes = basis.derivative(derivative).probes(_on_mesh(parts, x)[None])
-        near, place = np.unique(probes.col // 2, return_inverse=True)
-        values = np.stack(nodal(near), axis=2).reshape(len(omegas), -1)
-        entries = (probes.data / parts.unit**derivative, (probes.row, 2 * place + probes.col % 2))
-        read = coo_array(entries, shape=(len(x), values.shape[1]))
-        return np.ascontiguousarray((read @ values.T).T)
+        dofs, weights = basis.weights(on_mesh(x), derivative)
+        if derivative:
+            weights = [weight / parts.unit**derivative for weight in weights]
+        values = _at_both_ends(nodal, node[dofs[::2]], n_elements + 1)
+        return np.ascontiguousarray(weighed(values, [weight[:, None] for weight in weights]).T)
 
     return TimeBasis(
         model="fem",
@@ -61,11 +59,35 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
     )
 
 
-def _on_mesh(parts: Parts, x: Array) -> Array:
+def _nodes(basis: Any) -> Indices:
+    """The node of every degree of freedom."""
+    nodes = np.zeros(basis.N, dtype=int)
+    nodes[basis.nodal_dofs] = np.arange(basis.nodal_dofs.shape[1])
+    return nodes
+
+
+def _unit_force(basis: Any, x: float, node: Indices) -> tuple[Indices, Array, Array]:
+    """The nodes beside a unit force at x on the mesh, and its force and moment on each, (2,) each."""
+    dofs, weights = basis.weights(np.array([x]))
+    lift, turn = np.array(weights).reshape(2, 2).T.copy()
+    return node[dofs[::2, 0]], lift, turn
+
+
+def _at_both_ends(nodal: Nodal, ends: Indices, count: int) -> Iterator[Array]:
+    """Deflection and slope left, then right, each (points, n), at nodes (2, points) of `count`."""
+    if ends.size > count:
+        kinds = nodal(np.arange(count))
+        yield from (kind[end] for end in ends for kind in kinds)
+    else:
+        kinds, half = nodal(ends.ravel()), ends.shape[1]
+        yield from (kind[end] for end in (slice(half), slice(half, None)) for kind in kinds)
+
+
+def _on_mesh(parts: Parts) -> Callable[[Array], Array]:
     """Metres -> the mesh's unit; a position at a node stays on its right, where rounding would put it on its left."""
-    ends = parts.nodes * parts.unit
-    element = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
-    return np.maximum(np.asarray(x) / parts.unit, parts.nodes[element])
+    nodes, unit = parts.nodes, parts.unit
+    inner = nodes[1:-1] * unit
+    return lambda x: np.maximum(np.asarray(x) / unit, nodes[inner.searchsorted(x, side="right")])
 
 
 def _dense(elements: Elements) -> tuple[Array, Nodal, str]:
@@ -74,9 +96,9 @@ def _dense(elements: Elements) -> tuple[Array, Nodal, str]:
     check_dense(pencil, "motion in time")
     values, vectors = modal_basis(pencil)
     deflections, slopes = elements.basis.nodal_dofs
-    everywhere = elements.all_values(vectors / np.sqrt(beam.mass_per_length * unit))
+    everywhere = np.ascontiguousarray(elements.all_values(vectors / np.sqrt(beam.mass_per_length * unit)).T)
     omegas = np.sqrt(values) * beam.wave_constant / unit**2
-    return omegas, lambda i: (everywhere[:, deflections[i]], everywhere[:, slopes[i]]), "dense eigenvalues"
+    return omegas, lambda i: (everywhere[deflections[i]], everywhere[slopes[i]]), "dense eigenvalues"
 
 
 def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
@@ -91,11 +113,12 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
     alone = (numbers == 0) | (numbers == n)
     scale = 1.0 / np.sqrt(beam.mass_per_length * element * np.where(alone, float(n), 0.5 * n))
     turn = pi * np.arange(2 * n) / n
-    sines, cosines = np.sin(turn), np.cos(turn)
+    waves = np.array([np.sin(turn), np.cos(turn)])
+    scales = np.array([scale * w, scale * slope])[:, None]
 
-    def nodal(nodes: Any) -> tuple[Array, Array]:
-        index = np.outer(numbers, np.asarray(nodes, dtype=int)) % (2 * n)
-        return (scale * w)[:, None] * sines[index], (scale * slope)[:, None] * cosines[index]
+    def nodal(nodes: Indices) -> tuple[Array, Array]:
+        deflections, slopes = scales * waves.take(nodes[:, None] * numbers % (2 * n), axis=1)
+        return deflections, slopes
 
     return np.sqrt(values) * beam.wave_constant / element**2, nodal, "two by two for every wavelength"
 

@@ -1,9 +1,10 @@
-"""A beam's line of Hermite elements: scikit-fem's mesh, degrees of freedom, assembly, point sources and probes.
+"""A beam's line of Hermite elements: scikit-fem's mesh, degrees of freedom, assembly, point forces and readings.
 
 Lengths are in mean element lengths L/N, stiffnesses and masses in those of the beam; the nodes are real
 coordinates in that unit, so that those of equal elements are whole numbers, exact at any size.
 """
 
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
@@ -88,9 +89,24 @@ def mass_matrix(basis: Any, mass: Array) -> Any:
 
 def point_loads(basis: Any, x: Array) -> Array:
     """Unit forces at x (in units from the left end) on every degree of freedom, (len(x), 2N + 2)."""
-    return np.asarray(basis.derivative(0).probes(x[None]).toarray())
+    dofs, weights = basis.weights(x)
+    loads = np.zeros((len(x), basis.N))
+    loads[np.arange(len(x)), dofs] = weights
+    return loads
 
 
 def interpolate(basis: Any, nodal: Any, x: Array, derivative: int = 0) -> Any:
     """The elements' cubics or a derivative at x (in units from the left end), (k, len(x)); nodal is (k, 2N + 2)."""
-    return np.ascontiguousarray((basis.derivative(derivative).probes(x[None]) @ nodal.T).T)
+    return basis.read(nodal, x, derivative)
+
+
+def weighed(values: Iterable[Any], weights: Iterable[Array]) -> Any:
+    """The sum of values, each an array written over, times their weights, one after another."""
+    total = None
+    for value, weight in zip(values, weights, strict=True):
+        np.multiply(value, weight, out=value)
+        if total is None:
+            total = value
+        else:
+            total += value
+    return total
