@@ -703,3 +703,15 @@ def test_every_quantity_that_takes_a_model_names_the_nearest_whatever_its_letter
         words = [f"{a['name']}=2" for a in arguments if a["required"] and a["name"] != "model"]
         message = refused(verify, "measure", quantity, f"model={given}", *words)
         assert f"model = '{given}' is not known: did you mean 'fem'?" in message
+
+
+def test_the_mean_of_a_bracket_is_a_model_where_a_figure_says_so_and_nowhere_else(verify):
+    for one in described():
+        models = next((a["type"].split(" | ") for a in one["arguments"] if a["name"] == "model"), None)
+        if models and "mean" not in models:
+            words = [f"{a['name']}=2" for a in one["arguments"] if a["required"] and a["name"] != "model"]
+            message = refused(verify, "measure", one["quantity"], "model=mean", *words)
+            assert f"model = 'mean' is not known: known are {', '.join(models)}" in message
+    mean = ("measure", "mode.frequency", "mode=3", "count=17")
+    assert "did you mean 'mean'?" in refused(verify, *mean, "model=maen")
+    assert verify(*mean, "model=mean")[0] == 0

@@ -6,6 +6,7 @@ Each is a dozen lines below; nothing else in the suite knows of them, and CONTRI
 import json
 import re
 import sys
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import msgspec
@@ -20,6 +21,7 @@ from verify.models.kind import Model
 from verify.models.modes import Modes
 from verify.quantities.catalogue import QUANTITIES
 from verify.quantities.kind import Arguments, Quantity
+from verify.registry import Registry, unusable
 from verify.report.html import page
 from verify.run.plan import plan_scene
 from verify.studies.catalogue import STUDIES
@@ -321,6 +323,56 @@ def test_a_good_study_beside_a_broken_one_is_run(broken, tmp_path):
     status, out, _ = broken("table", "good.toml", "--of", "heaviness", "--csv")
     assert (status, out[1].split(",")[0]) == (0, "this one")
     assert float(out[1].split(",")[1]) == pytest.approx(2.0 * 9.81 * 4470 * 0.031 * 0.0023 * 0.73)
+
+
+@pytest.mark.parametrize(
+    ("ask", "looks"),
+    [
+        (lambda models: models["near"], False),
+        (lambda models: models.named("near"), False),
+        (lambda models: "near" in models, False),
+        (lambda models: models.own() == ("near",), False),
+        (lambda models: models["far"].name == "far", True),
+        (lambda models: "far" in models, True),
+        (lambda models: "further" not in models, True),
+        (lambda models: list(models) == ["near", "far"], True),
+        (lambda models: len(models) == 2, True),
+    ],
+)
+def test_other_packages_are_looked_at_for_a_name_that_is_not_known_and_no_other(monkeypatch, ask, looks):
+    looked = []
+
+    def entry_points(*, group):
+        looked.append(group)
+        return [EntryPoint("far", "test_kinds:Far", group), EntryPoint("near", "no_such_module:Far", group)]
+
+    monkeypatch.setattr("importlib.metadata.entry_points", entry_points)
+    models = Registry("model", "toys.models", homes={"near": "test_kinds:Near"})
+    assert ask(models)
+    assert looked == (["toys.models"] if looks else [])
+    assert unusable() == ()  # a name of our own stays ours
+
+
+class Near:
+    """Something with a name."""
+
+    name = "near"
+
+
+class Far:
+    """Something of another package."""
+
+    name = "far"
+
+
+def test_what_stood_in_a_place_stands_there_again():
+    models = Registry("model", "toys.models", own=[near := Near()])
+    other = Near()
+    with models.registered(other, Far()):
+        assert models["near"] is other
+        assert "far" in models
+    assert models["near"] is near
+    assert "far" not in models
 
 
 def test_the_guide_for_contributors_shows_these_lines():
