@@ -21,6 +21,7 @@ from verify.judge.compare import observed_order, relative_error
 from verify.judge.workbench import Workbench
 from verify.models import eigen
 from verify.motion import rigid_surface
+from verify.quantities import described
 from verify.quantities.catalogue import QUANTITIES, in_words
 from verify.run import gates
 from verify.scenes.checked import checked
@@ -615,3 +616,102 @@ def test_a_short_chain_over_a_long_time_is_refused_for_its_work(verify):
     beam = ("--set", "beam.length=8.565", "--set", "beam.width=1.995", "--set", "beam.thickness=0.0425")
     drive = ("--set", "drive.frequency_hz=3.2e-6")
     assert "accelerations of links" in refused(verify, "measure", "chain.transient_deflection", *given, *beam, *drive)
+
+
+# ---------------------------------------------------------------------------------- tables, maps, drives of any size
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("paper", "--of", "convergence", "--counts", "7"), "--counts belongs to the table of all models or --wave"),
+        (("paper", "--of", "convergence", "--modes", "7"), "--modes belongs to the table of all models: leave it out"),
+        (("paper-wave", "--wave", "--modes", "3"), "leave it out beside --wave"),
+        (("paper-wave", "--sweep", "phase_deg=0:90:2", "--counts", "3"), "leave it out beside --sweep"),
+        (("paper-wave", "--quantity", "wave.reflection"), "--quantity belongs to --sweep"),
+        (("paper-slider", "--wave", "--slider"), "--slider and --wave ask for two tables"),
+        (("paper-wave", "--of", "wave", "--sweep", "phase_deg=0:90:2"), "--of and --sweep ask for two tables"),
+        (("paper", "--of", "convergense"), "--of = 'convergense' is not known: did you mean 'convergence'?"),
+        (("paper", "--of", "wave"), "--of wave: the scene has no [wave]"),
+        (("paper", "--of", "sensitivity"), "ask for --csv, --markdown or --json"),
+    ],
+)
+def test_a_table_takes_no_option_that_would_change_nothing(verify, words, said):
+    assert said in refused(verify, "table", *words)
+
+
+def test_a_study_told_in_charts_has_rows_for_other_programs(verify):
+    spectrum = verify("table", "paper", "--of", "spectrum", "--csv")[1].splitlines()
+    assert spectrum[0] == "mode,count,segment_error,fem_error,rayleigh_error,timoshenko_error"
+    last = load_scene("paper").spectrum.modes
+    assert [row.split(",")[0] for row in spectrum[1:]] == [str(mode) for mode in range(1, last + 1)]
+    assert float(spectrum[22].split(",")[2]) == pytest.approx(-4.28e-3, rel=1e-3)
+    rows = [row.split(",") for row in verify("table", "paper", "--of", "sensitivity", "--csv")[1].splitlines()[1:]]
+    beam = load_scene("paper").beam
+    for mode, modulus, density, hertz in [rows[7], rows[63]]:
+        changed = replace(beam, youngs_modulus=float(modulus), density=float(density))
+        assert float(hertz) == pytest.approx(analytic_modes.exact_frequency_hz(changed, int(mode)), rel=1e-12)
+
+
+def test_claims_about_a_run_are_found_on_it_in_a_table_too(verify):
+    status, out, _ = verify("table", "paper-slider", "--of", "claims", "--json")
+    claims = {claim["id"]: claim for claim in json.loads(out)}
+    assert status == 0
+    assert claims["to-the-left"]["reason"] == ""
+    assert claims["to-the-left"]["found"] == pytest.approx(-1.3833e-9, rel=1e-4)
+
+
+def test_a_map_point_by_point_is_refused_for_the_time_of_all_its_points(verify):
+    fine = ("--sweep", "frequency_hz=4000:4600:241", "--sweep", "phase_deg=0:180:121")
+    words = ("--quantity", "wave.signed_area_spread", "model=segment", "count=49")
+    assert "points of the map = 29161 would take about 5 minutes" in refused(
+        verify, "table", "paper-wave", *fine, *words
+    )
+    few = ("--sweep", "frequency_hz=4000:4600:2", "--sweep", "phase_deg=30:70:2", "--csv")
+    assert verify("table", "paper-wave", *few, *words)[0] == 0
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_force_whose_figures_leave_floating_point_is_refused_with_the_slope_it_makes(verify):
+    huge = ("--scene", "paper-slider", "--set", "drive.force.0.amplitude=1e300")
+    for quantity in ("slider.displacement", "wave.energy_flux", "motion.deflection"):
+        given = ("x=0.2",) if quantity == "motion.deflection" else ()
+        message = refused(verify, "measure", quantity, "model=analytic", *given, *huge)
+        assert "force.amplitude = 1e+300 N bends this beam to slopes of about 2e+300" in message
+    beam = Beam(**TITANIUM)
+    drive = [PointForce(position=0.21, amplitude=1e99 * beam.bending_stiffness / beam.length**2)]
+    assert math.isfinite(abs(analytic_modes.solve_harmonic(beam, drive, 433.0).slope([0.3])[0]) ** 2)
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_reflection_below_a_hertz_changes_over_half_of_its_frequency(verify):
+    """Of a strip as thin as a thousandth of the paper's, whose waves of 0.4 Hz are shorter than it is."""
+    slow = ("--scene", "paper-wave", "--set", "beam.thickness=1e-6", "model=analytic", "loss_factor=0.03")
+    measured = verify("measure", "wave.reflection_per_hertz", *slow, "frequency_hz=0.4", "--json")[1]
+    here, below, above = (
+        json.loads(verify("measure", "wave.reflection", *slow, f"frequency_hz={f}", "--json")[1])["value"]
+        for f in (0.4, 0.2, 0.6)
+    )
+    assert json.loads(measured)["value"] == pytest.approx((abs(above - here) + abs(below - here)) / 0.4, rel=1e-6)
+
+
+@pytest.mark.parametrize("given", ["FEM", "Fem", "fen"])
+def test_every_quantity_that_takes_a_model_names_the_nearest_whatever_its_letters(verify, given):
+    asked = {q["quantity"]: q["arguments"] for q in described() if "model" in {a["name"] for a in q["arguments"]}}
+    assert len(asked) > 30
+    for quantity, arguments in asked.items():
+        words = [f"{a['name']}=2" for a in arguments if a["required"] and a["name"] != "model"]
+        message = refused(verify, "measure", quantity, f"model={given}", *words)
+        assert f"model = '{given}' is not known: did you mean 'fem'?" in message
+
+
+def test_the_mean_of_a_bracket_is_a_model_where_a_figure_says_so_and_nowhere_else(verify):
+    for one in described():
+        models = next((a["type"].split(" | ") for a in one["arguments"] if a["name"] == "model"), None)
+        if models and "mean" not in models:
+            words = [f"{a['name']}=2" for a in one["arguments"] if a["required"] and a["name"] != "model"]
+            message = refused(verify, "measure", one["quantity"], "model=mean", *words)
+            assert f"model = 'mean' is not known: known are {', '.join(models)}" in message
+    mean = ("measure", "mode.frequency", "mode=3", "count=17")
+    assert "did you mean 'mean'?" in refused(verify, *mean, "model=maen")
+    assert verify(*mean, "model=mean")[0] == 0

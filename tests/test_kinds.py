@@ -6,6 +6,7 @@ Each is a dozen lines below; nothing else in the suite knows of them, and CONTRI
 import json
 import re
 import sys
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import msgspec
@@ -20,6 +21,7 @@ from verify.models.kind import Model
 from verify.models.modes import Modes
 from verify.quantities.catalogue import QUANTITIES
 from verify.quantities.kind import Arguments, Quantity
+from verify.registry import Registry, unusable
 from verify.report.html import page
 from verify.run.plan import plan_scene
 from verify.studies.catalogue import STUDIES
@@ -241,6 +243,144 @@ def test_entry_points_of_other_packages_are_taken_up(tmp_path, pytester, monkeyp
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}:{Path(__file__).parent}:{Path(__file__).parent.parent}")
     done = pytester.run(sys.executable, "-m", "verify", "run", str(path), "--no-report")
     done.stdout.fnmatch_lines(["*all 2 gates passed*"])
+
+
+BROKEN = """[verify.models]
+gone = no_such_module:Sine
+other = test_kinds:Sine
+[verify.quantities]
+toy.raises = explodes:WEIGHT
+[verify.studies]
+lost = test_kinds:Nowhere
+heaviness = test_kinds:HeavinessStudy
+"""
+
+
+@pytest.fixture
+def broken(tmp_path, pytester, monkeypatch):
+    """Run a command line beside a package of which hardly an entry point can be used."""
+    info = tmp_path / "toys-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: toys\nVersion: 1.0\n", encoding="utf-8")
+    (info / "entry_points.txt").write_text(BROKEN, encoding="utf-8")
+    (tmp_path / "explodes.py").write_text("raise RuntimeError('one\\ntwo')\n", encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}:{Path(__file__).parent}:{Path(__file__).parent.parent}")
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words):
+        done = pytester.run(sys.executable, "-m", "verify", *words)
+        return done.ret, done.outlines, done.errlines
+
+    return call
+
+
+def test_a_package_that_cannot_be_imported_breaks_no_command_that_does_not_ask_for_it(broken):
+    status, out, err = broken("measure", "mode.frequency", "model=segment", "mode=2", "count=9")
+    assert (status, err) == (0, [])
+    assert out[0].startswith("mode.frequency = ")
+    assert broken("plan", "free-free-bar", "--set", "spectrum={}")[0] == 0
+
+
+def test_what_of_a_package_cannot_be_used_is_one_sentence_where_all_are_listed(broken):
+    status, out, err = broken("quantities")
+    assert status == 0
+    assert any(line.startswith("mode.frequency ") for line in out)
+    assert err == [
+        "verify: left out: quantity = 'toy.raises' of toys, explodes:WEIGHT, cannot be used (RuntimeError: one\\ntwo): "
+        "mend that package or uninstall it",
+        "verify: left out: model = 'gone' of toys, no_such_module:Sine, cannot be used (ModuleNotFoundError: No module "
+        "named 'no_such_module'): mend that package or uninstall it",
+        "verify: left out: model = 'other' of toys, test_kinds:Sine, cannot be used (it is no model of that name): "
+        "mend that package or uninstall it",
+    ]
+
+
+def test_a_gate_on_what_cannot_be_used_fails_and_what_was_left_out_is_told(broken, tmp_path):
+    (tmp_path / "toy.toml").write_text(SCENE.replace('model = "sine"', 'model = "gone"'), encoding="utf-8")
+    status, out, err = broken("run", "toy.toml", "--no-report")
+    assert status == 1
+    assert "gate toy-mode-2: cannot be evaluated: model = 'gone' of toys" in " ".join(out)
+    assert {line.split(" of toys")[0].removeprefix("verify: left out: ") for line in err} == {
+        "model = 'gone'",
+        "model = 'other'",
+        "quantity = 'toy.raises'",
+        "study = 'lost'",
+    }
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("measure", "mode.frequency", "model=gone", "mode=2", "count=9"), "model = 'gone' of toys"),
+        (("measure", "toy.raises"), "quantity = 'toy.raises' of toys"),
+        (("table", "paper", "--of", "lost"), "study = 'lost' of toys"),
+        (("plan", "lost.toml"), "study = 'lost' of toys"),
+    ],
+)
+def test_asked_for_by_name_it_is_refused_with_the_reason(broken, tmp_path, words, said):
+    (tmp_path / "lost.toml").write_text(SCENE.replace("[heaviness]", "[lost]"), encoding="utf-8")
+    status, out, err = broken(*words)
+    assert (status, out, len(err)) == (2, [], 1)
+    assert err[0].startswith(f"verify: {said}")
+    assert "cannot be used (" in err[0]
+
+
+def test_a_good_study_beside_a_broken_one_is_run(broken, tmp_path):
+    text = SCENE.replace('model = "sine"', 'model = "segment"').replace('"toy.weight"', '"mode.frequency"')
+    (tmp_path / "good.toml").write_text(text, encoding="utf-8")
+    status, out, _ = broken("table", "good.toml", "--of", "heaviness", "--csv")
+    assert (status, out[1].split(",")[0]) == (0, "this one")
+    assert float(out[1].split(",")[1]) == pytest.approx(2.0 * 9.81 * 4470 * 0.031 * 0.0023 * 0.73)
+
+
+@pytest.mark.parametrize(
+    ("ask", "looks"),
+    [
+        (lambda models: models["near"], False),
+        (lambda models: models.named("near"), False),
+        (lambda models: "near" in models, False),
+        (lambda models: models.own() == ("near",), False),
+        (lambda models: models["far"].name == "far", True),
+        (lambda models: "far" in models, True),
+        (lambda models: "further" not in models, True),
+        (lambda models: list(models) == ["near", "far"], True),
+        (lambda models: len(models) == 2, True),
+    ],
+)
+def test_other_packages_are_looked_at_for_a_name_that_is_not_known_and_no_other(monkeypatch, ask, looks):
+    looked = []
+
+    def entry_points(*, group):
+        looked.append(group)
+        return [EntryPoint("far", "test_kinds:Far", group), EntryPoint("near", "no_such_module:Far", group)]
+
+    monkeypatch.setattr("importlib.metadata.entry_points", entry_points)
+    models = Registry("model", "toys.models", homes={"near": "test_kinds:Near"})
+    assert ask(models)
+    assert looked == (["toys.models"] if looks else [])
+    assert unusable() == ()  # a name of our own stays ours
+
+
+class Near:
+    """Something with a name."""
+
+    name = "near"
+
+
+class Far:
+    """Something of another package."""
+
+    name = "far"
+
+
+def test_what_stood_in_a_place_stands_there_again():
+    models = Registry("model", "toys.models", own=[near := Near()])
+    other = Near()
+    with models.registered(other, Far()):
+        assert models["near"] is other
+        assert "far" in models
+    assert models["near"] is near
+    assert "far" not in models
 
 
 def test_the_guide_for_contributors_shows_these_lines():

@@ -104,9 +104,7 @@ def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as
 )
 @click.option(
     "--quantity",
-    default="wave.standing_wave_ratio",
-    show_default=True,
-    help="What a sweep maps, with its other arguments as KEY=VALUE.",
+    help="What a sweep maps, with its other arguments as KEY=VALUE. Default: wave.standing_wave_ratio.",
 )
 @_as_json
 @click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
@@ -121,7 +119,7 @@ def table(
     wave: bool,
     slider: bool,
     sweeps: tuple[str, ...],
-    quantity: str,
+    quantity: str | None,
     as_json: bool,
     layout: str | None,
 ) -> None:
@@ -131,10 +129,14 @@ def table(
     asked = _load(scene, overrides)
     if arguments and not sweeps:
         raise InputError(f"{arguments[0]!r}: KEY=VALUE arguments belong to a --sweep")
+    tables.check_options(
+        {"--of": study is not None, "--sweep": sweeps, "--slider": slider, "--wave": wave},
+        {"--modes": modes is not None, "--counts": counts is not None, "--quantity": quantity is not None},
+    )
     if study is not None:
         job = tables.study_of(asked, study)
     elif sweeps:
-        job = tables.sweep(asked, sweeps, quantity, arguments)
+        job = tables.sweep(asked, sweeps, quantity or "wave.standing_wave_ratio", arguments)
     elif slider:
         job = tables.slider(asked, counts)
     else:
@@ -328,6 +330,7 @@ def status_of(argv: list[str] | None = None) -> int:
     try:
         result = cli.main(args=argv, prog_name="verify", standalone_mode=False)
         sys.stdout.flush()
+        _tell_of_unusable()
     except (BrokenPipeError, ReaderGoneError):
         _hush()
         return NO_READER
@@ -342,7 +345,17 @@ def status_of(argv: list[str] | None = None) -> int:
         return INTERRUPTED
     except SystemExit as stop:
         result = stop.code if isinstance(stop.code, int) else BAD_INPUT
+        _tell_of_unusable()
     return result if isinstance(result, int) else 0
+
+
+def _tell_of_unusable() -> None:
+    """A sentence for each entry point of other packages that a command looked at and had to leave out."""
+    if "verify.registry" in sys.modules:
+        from verify.registry import unusable
+
+        for why in unusable():
+            click.echo(f"verify: left out: {why}", err=True)
 
 
 def _hush() -> None:

@@ -54,8 +54,9 @@ def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
     """The end of a sentence about an unknown word: the nearest known one, or all of them."""
     from difflib import get_close_matches
 
-    close = get_close_matches(word, known, n=1, cutoff=0.6)
-    return f"did you mean {close[0]!r}?" if close else f"known are {', '.join(known)}"
+    plain = {name.casefold(): name for name in known}
+    close = get_close_matches(word.casefold(), plain, n=1, cutoff=0.6)
+    return f"did you mean {plain[close[0]]!r}?" if close else f"known are {', '.join(known)}"
 
 
 def one_line(text: str) -> str:

@@ -2,9 +2,12 @@
 
 from collections.abc import Iterable, Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, one_line
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 
 class Named(Protocol):
@@ -18,10 +21,20 @@ class Named(Protocol):
 T = TypeVar("T", bound=Named)
 
 
-class Registry(MutableMapping[str, T]):
-    """Things of one kind by their names; each is imported when it is first asked for.
+_UNUSABLE: dict[tuple[str, str], str] = {}
+"""Why an entry point of another package is left out, by its group and name."""
 
-    Entry points of other packages are looked up only where a name is not known here, or where all are asked for.
+
+def unusable() -> tuple[str, ...]:
+    """A sentence for every entry point that was looked at so far and cannot be used."""
+    return tuple(one_line(why) for why in _UNUSABLE.values())
+
+
+class Registry(MutableMapping[str, T]):
+    """Things of one kind by their names; each of the package's own is imported when it is first asked for.
+
+    Entry points of other packages are looked up, and imported, only where a name is not known here or where all are
+    asked for. One that cannot be is left out; asked for by name it is refused with the reason.
     """
 
     def __init__(self, what: str, group: str, own: Iterable[T] = (), homes: Mapping[str, str] | None = None) -> None:
@@ -47,17 +60,17 @@ class Registry(MutableMapping[str, T]):
     @contextmanager
     def registered(self, *ones: T) -> Iterator[None]:
         """The same for a while."""
-        held = {one.name: self.get(one.name) for one in ones}
+        held = {one.name: self[one.name] for one in ones if one.name in self}
         for one in ones:
             self.register(one)
         try:
             yield
         finally:
-            for name, before in held.items():
-                if before is None:
-                    del self[name]
+            for one in ones:
+                if one.name in held:
+                    self.register(held[one.name])
                 else:
-                    self[name] = before
+                    del self[one.name]
 
     def own(self) -> tuple[str, ...]:
         """The names of what is known without looking into other packages."""
@@ -67,6 +80,8 @@ class Registry(MutableMapping[str, T]):
         if name not in self._names:
             self._look_outside()
         if name not in self._names:
+            if why := _UNUSABLE.get((self._group, name)):
+                raise InputError(why)
             raise KeyError(name)
         if name not in self._found:
             self._found[name] = _imported(self._homes[name])
@@ -103,8 +118,23 @@ class Registry(MutableMapping[str, T]):
 
         for point in entry_points(group=self._group):
             if point.name not in self._names:
-                self._homes[point.name] = point.value
-                self._names.append(point.name)
+                self._take_up(point)
+
+    def _take_up(self, point: "EntryPoint") -> None:
+        """Import what another package declares; whatever goes wrong there is that package's, and is kept in words."""
+        try:
+            found: T = _imported(point.value)
+            if getattr(found, "name", None) != point.name:
+                raise InputError(f"it is no {self._what} of that name")
+        except Exception as error:
+            package = point.dist.name if point.dist else "another package"
+            why = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+            _UNUSABLE[self._group, point.name] = (
+                f"{self._what} = {point.name!r} of {package}, {point.value}, cannot be used ({why}): mend that package "
+                "or uninstall it"
+            )
+        else:
+            self[point.name] = found
 
 
 def _imported(home: str) -> Any:

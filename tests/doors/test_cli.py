@@ -144,6 +144,50 @@ def test_plan_counts_a_wave_study_and_its_gates_as_harmonic(verify):
     assert {"harmonic response", "wave study"} <= {skipped["what"] for skipped in bare["skipped"]}
 
 
+def test_claims_are_planned_by_the_figures_they_name_and_not_once_more_as_a_study(verify):
+    data = json.loads(verify("plan", "paper", "--json")[1])
+    assert {skipped["what"] for skipped in data["skipped"]}.isdisjoint({"claims study", "sensitivity study"})
+    who = [*data["closed_forms"], *(name for solve in data["solves"] for name in solve["asked_by"])]
+    assert any(name.startswith("claim ") for name in who)
+    assert not any(name.startswith("claims") for name in who)
+    assert any(name.startswith("sensitivity") for name in data["closed_forms"])
+
+
+def test_a_gate_that_cannot_be_evaluated_runs_no_slider(verify, tmp_path):
+    (tmp_path / "still.toml").write_text(
+        "name = 'still'\nbeam = {length = 0.7, width = 0.03, thickness = 0.002, youngs_modulus = 113e9, density = 4470}"
+        "\nslider = {mass = 0.1, mu = 0.2}\n[[gate]]\nid = 'g'\nquantity = 'mode.nothing'\nat_least = 0\nwhy = 'w'\n"
+    )
+    data = json.loads(verify("plan", "still.toml", "--json")[1])
+    assert [problem["who"] for problem in data["problems"]] == ["gate g"]
+    assert "slider" in {skipped["what"] for skipped in data["skipped"]}
+
+
+def test_a_motion_without_a_slider_is_skipped_as_a_study_with_its_reason(verify, tmp_path):
+    (tmp_path / "m.toml").write_text(
+        "name = 'm'\nbeam = {length = 0.7, width = 0.03, thickness = 0.002, youngs_modulus = 113e9, density = 4470}\n"
+        "drive = {frequency_hz = 433.0, force = [{position = 0.1}]}\nmotion = {duration = 1e-3}\n"
+    )
+    data = json.loads(verify("plan", "m.toml", "--json")[1])
+    why = {skipped["what"]: skipped["why"] for skipped in data["skipped"]}
+    assert why["motion study"].startswith("the scene has no [slider]")
+    assert data["stepped"] == []
+    status, _, err = verify("table", "m.toml", "--of", "motion")
+    assert (status, err.startswith("verify: --of motion: the scene has no [slider]")) == (2, True)
+
+
+def test_a_map_may_be_of_the_exact_beam_and_readings_may_not(verify):
+    assert verify("plan", "paper-wave", "--set", "wave.model=analytic")[0] == 0
+    assert (
+        "wave.model = 'segmnt' is not known: did you mean 'segment'?"
+        in (verify("plan", "paper-wave", "--set", "wave.model=segmnt")[2])
+    )
+    assert (
+        "readings.model = 'analytic' is not known: known are fem, segment"
+        in (verify("plan", "paper-slider", "--set", "readings.model=analytic")[2])
+    )
+
+
 def test_plan_of_a_size_that_does_not_fit_says_so_without_allocating(verify):
     status, out, _ = verify("plan", "paper", "--set", "spectrum.count=10000000000000")
     assert status == 0

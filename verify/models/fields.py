@@ -10,6 +10,8 @@ from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 from verify.models.arrays import Array, ComplexArray
 
+LARGEST_SLOPE = 1e100
+"""Of a beam under a force, F L^2 / EI."""
 RESONANCE = 1e-9
 """An undamped beam is not driven closer than this (relative) to a resonance: the answer would be rounding."""
 
@@ -68,7 +70,10 @@ def unit_response(beam: Beam, frequency_hz: float) -> float:
 
 
 def check_drive(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> None:
-    """Raise InputError for a frequency that is not finite and positive, no force, or a force off the beam."""
+    """Raise InputError for a frequency that is not finite and positive, no force, or a force off the beam or too large.
+
+    Unit forces bend the thinnest beams to F L^2 / EI = 1e60; from LARGEST_SLOPE on resonance leaves no square of it.
+    """
     check_frequency("frequency_hz", frequency_hz, beam)
     if not forces:
         raise InputError("forces is empty: give at least one PointForce")
@@ -77,6 +82,11 @@ def check_drive(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -
             raise InputError(
                 f"force.position = {force.position!r} lies off the beam: "
                 f"give a position between 0 and {beam.length!r} m"
+            )
+        if (slope := abs(force.amplitude) * beam.length**2 / beam.bending_stiffness) > LARGEST_SLOPE:
+            raise InputError(
+                f"force.amplitude = {force.amplitude!r} N bends this beam to slopes of about {slope:.0e}, which no "
+                "figure can be made of: check its unit, give a smaller force"
             )
 
 

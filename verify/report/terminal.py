@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.words import cell, figure, percent, seconds_in_words, work_in_words
 
@@ -61,7 +62,9 @@ def _verdict(result: "RunResult") -> str:
 
 
 def print_found(found: "Found") -> None:
-    """What a study found: its facts and all its tables."""
+    """What a study found: its facts and all its tables. Raises InputError where it has neither."""
+    if not found.facts() and not found.tables():
+        raise InputError("--of: the study has no table that a terminal holds, ask for --csv, --markdown or --json")
     _print_found(Terminal(), found, every_table=True)
 
 

@@ -1,7 +1,7 @@
 """What `verify table` can tabulate: any study of a scene, and figures over sizes or axes that no scene asks for."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import msgspec
@@ -11,7 +11,7 @@ from verify.judge.workbench import Workbench
 from verify.scenes.checked import checked
 from verify.scenes.scene import Scene
 from verify.scenes.toml import given_arguments, literal
-from verify.studies.catalogue import STUDIES
+from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.convergence import Convergence, ConvergenceStudy, Counts
 from verify.studies.kind import Progress
 from verify.studies.told import Found
@@ -24,14 +24,38 @@ class Job(msgspec.Struct, frozen=True):
     run: Callable[[Progress], Found]
 
 
+BESIDE = {"": ("--modes", "--counts"), "--wave": ("--counts",), "--slider": ("--counts",), "--sweep": ("--quantity",)}
+"""Which options go with which table; the first is the table that no option asks for."""
+
+
+def check_options(tables: Mapping[str, object], options: Mapping[str, object]) -> None:
+    """Raise InputError for two tables at once, or for an option of another table, which would change nothing."""
+    asked = [name for name, given in tables.items() if given]
+    if len(asked) > 1:
+        raise InputError(f"{asked[0]} and {asked[1]} ask for two tables: give one of them")
+    table = asked[0] if asked else ""
+    for option in (name for name, given in options.items() if given and name not in BESIDE.get(table, ())):
+        others = " or ".join(name or "the table of all models" for name, known in BESIDE.items() if option in known)
+        raise InputError(f"{option} belongs to {others}: leave it out" + (f" beside {table}" if table else ""))
+
+
 def study_of(scene: Scene, name: str) -> Job:
     """What a study of the scene finds. Raises InputError for one that the scene does not ask for."""
     study = STUDIES.named(name, "--of")
     asked = study.asked(scene)
     if asked is None:
         raise InputError(f"--of {name}: {study.skipped(scene)}")
-    bench = Workbench(scene.beam, study.needs(asked, scene))
-    return Job(study.n_steps(asked, scene), lambda step: study.run(asked, scene, bench, {}, step))
+    taken = set(study.takes(asked, scene))
+    jobs = [*((other, its) for other, its in asked_of(scene) if other.name in taken), (study, asked)]
+    bench = Workbench(scene.beam, (need for one, its in jobs for need in one.needs(its, scene)))
+
+    def run(step: Progress) -> Found:
+        done: dict[str, Found] = {}
+        for one, its in jobs:
+            done[one.name] = one.run(its, scene, bench, done, step)
+        return done[name]
+
+    return Job(sum(one.n_steps(its, scene) for one, its in jobs), run)
 
 
 def convergence(scene: Scene, modes: str | None, counts: str | None) -> Job:

@@ -188,10 +188,10 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 def scene_type(keys: Iterable[str] | None = None) -> type[Scene]:
     """`Scene` with a field for the section of every study: those among `keys` of their type, or all of them.
 
-    A study of another package is looked up where a key is not known here.
+    A study of another package is looked up where a key is not known here. Raises InputError where it cannot be used.
     """
-    if keys is not None and not set(keys) <= {*Scene.__struct_fields__, *SECTIONS.own()}:
-        _ = len(SECTIONS)  # looks into other packages
+    for key in set(keys or ()) - {*Scene.__struct_fields__, *SECTIONS.own()}:
+        SECTIONS.get(key)  # looks into other packages
     names = [name for name in SECTIONS.own() if name not in ON_WHAT_EXISTS]
     wanted = set(names) if keys is None else set(keys)
     return _with_sections(tuple((name, SECTIONS[name].section if name in wanted else None) for name in names))

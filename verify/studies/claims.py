@@ -133,6 +133,10 @@ class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
         """Without any."""
         return "the scene has no [[claim]]"
 
+    def takes(self, asked: tuple[Claim, ...], scene: "Scene") -> tuple[str, ...]:
+        """The slider's study, of whose run claims are."""
+        return ("motion",) if any(is_of_study(claim, scene) for claim in asked) else ()
+
     def n_steps(self, asked: tuple[Claim, ...], scene: "Scene") -> int:
         """A step for each."""
         return len(asked)

@@ -16,6 +16,7 @@ from msgspec.structs import replace
 from verify.errors import InputError, NoFigureError, near_name
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
+from verify.patience import check_work
 from verify.quantities.cases import driven_case
 from verify.quantities.kind import Quantity
 from verify.quantities.wave_arguments import Driven, InWindow
@@ -39,6 +40,8 @@ AXES = {
 COARSE = (13, 7)
 """Rows and columns of a map that are shown at most."""
 MOST_STEPS, MOST_POINTS = 10_000, 4_000_000
+POINT_S, WINDOW_S = 0.003, 0.01
+"""About, of a figure that is not superposed at one point, and where it is a mean or an extreme over a window."""
 """Of an axis, and of a map: 64 MB of figures."""
 
 
@@ -234,6 +237,8 @@ def _check_points(asked: Driven, axes: tuple[Axis, ...], scene: "Scene") -> None
     counts = next((axis.values for axis in axes if axis.name == "count"), (asked.count,))
     others = prod(len(axis.values) for axis in axes if axis.name != "count")
     check_fields(scene.beam, asked.model, [None if n is None else int(n) for n in counts], others)
+    n_points, each = prod(len(axis.values) for axis in axes), WINDOW_S if isinstance(asked, InWindow) else POINT_S
+    check_work("points of the map", n_points, n_points * each, "give its axes fewer steps")
 
 
 def _pointwise(

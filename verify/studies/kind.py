@@ -59,6 +59,10 @@ class Study(Generic[Asked, Out]):
         """Models that it uses beside its `needs`, by name."""
         return ()
 
+    def takes(self, asked: Asked, scene: "Scene") -> tuple[str, ...]:
+        """Studies before it whose findings it takes, by name."""
+        return ()
+
     def choices(self, asked: Asked, scene: "Scene") -> tuple[tuple[str, str], ...]:
         """(which simpler model will do, why, with the size of what it neglects), for the plan."""
         return ()

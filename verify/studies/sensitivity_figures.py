@@ -1,7 +1,7 @@
 """One exact frequency over modulus and density, and how it is told."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from msgspec import structs
 
@@ -28,6 +28,14 @@ class SensitivityFound(Found, frozen=True, eq=False, kw_only=True):
         from verify.studies.mode_charts import sensitivity_chart
 
         return (sensitivity_chart(self),)
+
+    def records(self) -> list[dict[str, Any]]:
+        """A row for each modulus and density."""
+        return [
+            {"mode": self.mode, "youngs_modulus": modulus, "density": density, "frequency_hz": hertz}
+            for density, row in zip(self.densities, self.frequencies_hz, strict=True)
+            for modulus, hertz in zip(self.moduli, row, strict=True)
+        ]
 
 
 def sensitivity(beam: "Beam", asked: "Sensitivity", steps: int = 25) -> SensitivityFound:

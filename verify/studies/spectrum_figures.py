@@ -1,6 +1,6 @@
 """Errors of many modes at one size, and how they are told."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from verify.exact.closed_forms import THEORIES, frequency_hz
 from verify.judge.workbench import Workbench, check_size, is_bracketed
@@ -45,6 +45,14 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     def plain(self) -> object:
         """Errors by the model's name."""
         return {"count": self.count, "modes": self.modes, **self.errors, "theories": self.theories}
+
+    def records(self) -> list[dict[str, Any]]:
+        """A row for each mode."""
+        columns = self.errors | self.theories
+        return [
+            {"mode": mode, "count": self.count, **{f"{name}_error": values[i] for name, values in columns.items()}}
+            for i, mode in enumerate(self.modes)
+        ]
 
 
 def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:

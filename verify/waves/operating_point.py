@@ -62,7 +62,10 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
         return float(reflection[0, 0]), float(speed[0, 0])
 
     def point(self, frequency: float, phase_deg: float, what: str, note: str = "") -> OperatingPoint:
-        """A point with its sensitivity: mean changes over half a hertz and half a degree on both sides."""
+        """A point with its sensitivity: mean changes over half a hertz and half a degree on both sides.
+
+        Below one hertz it is half of the frequency.
+        """
         gamma, speed = self.at(frequency, phase_deg)
 
         def change(hertz: float, degrees: float) -> float:
@@ -74,7 +77,7 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
             phase_deg=phase_deg,
             reflection=gamma,
             crest_speed=speed,
-            per_hertz=change(0.5, 0.0),
+            per_hertz=change(min(0.5, 0.5 * frequency), 0.0),
             per_degree=change(0.0, 0.5),
             what=what,
             note=note,
