@@ -16,7 +16,7 @@ import pytest
 from verify import load_scene, run_scene
 from verify.cli import status_of
 from verify.errors import InputError
-from verify.models.catalogue import MODELS
+from verify.models.catalogue import MODELS, bounding
 from verify.models.kind import Model
 from verify.models.modes import Modes
 from verify.quantities.catalogue import QUANTITIES
@@ -68,6 +68,9 @@ class Sine(Model):
     """Modes of a pinned beam, each two per cent too high."""
 
     name, parts, title = "sine", "sines", "Sines"
+
+    def refuses(self, beam):
+        return "" if beam.supports == ("pinned", "pinned") else "its sines fit pinned ends alone"
 
     def solve_modes(self, beam, n_modes, count, **settings):
         n = np.arange(1, n_modes + 1)
@@ -390,3 +393,59 @@ def test_the_guide_for_contributors_shows_these_lines():
     shown = [line.strip() for block in re.findall(r"```python\n(.*?)```", guide, re.S) for line in block.splitlines()]
     assert len(shown) > 20
     assert [line for line in shown if line and line not in own] == []
+
+
+def test_a_guest_that_cannot_answer_takes_no_answer_of_ours_away(toys, capsys):
+    """It is left out with its reason: of a size it never reaches, and of a beam it does not take."""
+    assert status_of(["choose", "--mode", "5", "--error", "1%", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [one["model"] for one in told["choices"]] == ["segment", "fem"]
+    assert "does not reach it" in told["left_out"]["sine"]
+    assert status_of(["choose", "--mode", "5", "--error", "1%"]) == 0
+    assert "sine is left out" in " ".join(capsys.readouterr().out.split())
+    assert status_of(["table", "steel-cantilever", "--counts", "20,30", "--modes", "2", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert "sine_error" not in rows[0]
+    assert rows[0]["fem_error"] > 0
+    assert any("its sines fit pinned ends alone" in note for note in rows[0]["notes"])
+
+
+def test_a_guest_changes_no_figure_of_ours(toys):
+    """The two models that bound a frequency are ours, whatever others say of themselves."""
+    bounded = type("Upper", (Sine,), {"name": "upper", "bounds": "above"})
+    with pytest.raises(InputError, match="bounds nothing here"):
+        MODELS.register(bounded())
+    assert [model.name for model in bounding()] == ["segment", "fem"]
+    assert list(MODELS)[-1] == "sine"
+    assert [model.name for model in bounding()] == ["segment", "fem"]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"name": "beam"}, "a name that scenes or their results have already"),
+        ({"name": "gates"}, "a name that scenes or their results have already"),
+        ({"section": None}, "has no section"),
+        ({"name": ""}, "has no name"),
+    ],
+)
+def test_a_study_that_has_no_place_of_its_own_is_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        STUDIES.register(type("Odd", (HeavinessStudy,), change)())
+
+
+def test_a_study_that_breaks_is_named(scene):
+    def run(self, asked, scene, bench, done, step):
+        raise ZeroDivisionError("no weight")
+
+    broken, message = (
+        type("Broken", (HeavinessStudy,), {"run": run})(),
+        r"'heaviness' breaks: ZeroDivisionError: no weight",
+    )
+    with STUDIES.registered(broken), pytest.raises(InputError, match=message):
+        run_scene(scene)
+
+
+def test_a_row_that_does_not_fit_its_table_is_said():
+    with pytest.raises(InputError, match="a row of 2 cells under 1 columns"):
+        Table(columns=(Column("one"),), rows=((1, 2),))

@@ -196,16 +196,16 @@ def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_jso
 
     wanted, number = accuracy(error), mode_number(mode)
     beam = _load(scene, overrides).beam
-    from verify.judge.sizing import choose as chosen
+    from verify.judge.sizing import choose_of_all
 
     bench = Workbench(beam)
-    choices = chosen(bench, number, wanted)
+    choices, left_out = choose_of_all(bench, number, wanted)
     if as_json:
-        _print_json(choice_as_plain(bench, number, wanted, choices))
+        _print_json(choice_as_plain(bench, number, wanted, choices, left_out))
     else:
         from verify.report.terminal import print_choices
 
-        print_choices(bench.exact_hz(number), number, wanted, choices)
+        print_choices(bench.exact_hz(number), number, wanted, choices, left_out)
 
 
 @cli.command("quantities")

@@ -1,6 +1,6 @@
 """What there is to choose from, by name: what the package brings, what was registered, what others installed."""
 
-from collections.abc import Iterable, Iterator, Mapping, MutableMapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
@@ -37,13 +37,25 @@ class Registry(MutableMapping[str, T]):
     asked for. One that cannot be is left out; asked for by name it is refused with the reason.
     """
 
-    def __init__(self, what: str, group: str, own: Iterable[T] = (), homes: Mapping[str, str] | None = None) -> None:
-        """`what` a message calls one; `group` of entry points; `own` by value, `homes` by 'module:attribute'."""
-        self._what, self._group = what, group
+    def __init__(
+        self,
+        what: str,
+        group: str,
+        own: Iterable[T] = (),
+        homes: Mapping[str, str] | None = None,
+        refuses: Callable[[T], str] = lambda one: "",
+    ) -> None:
+        """`what` a message calls one; `group` of entry points; `own` by value, `homes` by 'module:attribute'.
+
+        `refuses` says what is wrong with one from outside, if anything is.
+        """
+        self._what, self._group, self._refuses = what, group, refuses
         self._found: dict[str, T] = {one.name: one for one in own}
         self._homes = dict(homes or {})
         self._names = [*self._found, *self._homes]
-        self._outside: bool | None = None
+        self._outside = False
+        self.built_in = tuple(self._names)
+        """The names of what comes with the package, whatever others have added."""
 
     def named(self, name: str, field: str = "") -> T:
         """The one of that name. Raises InputError, with the nearest name, for one that nobody has."""
@@ -53,8 +65,13 @@ class Registry(MutableMapping[str, T]):
             raise InputError(f"{field or self._what} = {name!r} is not known: {near_name(name, tuple(self))}") from None
 
     def register(self, one: T) -> T:
-        """Add one from outside the package, or put another in the place of one; returns it."""
-        self[one.name] = one
+        """Add one from outside the package, or put another in the place of one; returns it. Raises InputError."""
+        name = getattr(one, "name", None)
+        if not isinstance(name, str) or not name:
+            raise InputError(f"{self._what} = {one!r} has no name: give it one")
+        if why := self._refuses(one):
+            raise InputError(f"{self._what} = {name!r} {why}")
+        self[name] = one
         return one
 
     @contextmanager
@@ -126,6 +143,8 @@ class Registry(MutableMapping[str, T]):
             found: T = _imported(point.value)
             if getattr(found, "name", None) != point.name:
                 raise InputError(f"it is no {self._what} of that name")
+            if problem := self._refuses(found):
+                raise InputError(f"it {problem}")
         except Exception as error:
             package = point.dist.name if point.dist else "another package"
             why = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"

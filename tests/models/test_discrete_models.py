@@ -283,6 +283,20 @@ def test_the_memory_guard_counts_more_than_a_driven_field_takes(titanium_strip, 
     assert 0.3 * counted < int(done.stdout) < counted
 
 
+def mean_is_nearest(supports, mode, count):
+    """Whether the mean of both models is known to lie nearer to the exact frequency than Hermite elements alone.
+
+    It does while the segments' error is less than three times the elements': with pinned and guided ends exactly for
+    mu < 0.69635 pi, by both dispersions; with a free end one mode earlier for each (checked on all modes up to 80
+    parts). With a clamped end, where there is no such mean or one of order 2, it is not known.
+    """
+    if "clamped" in supports:
+        return False
+    return (
+        closed_forms.wavenumber_length(supports, mode) + np.pi * supports.count("free") < error_laws.MEAN_LIMIT * count
+    )
+
+
 @pytest.mark.parametrize("count", [3, 12, 31, 47])
 @pytest.mark.parametrize(
     "supports",
@@ -303,7 +317,7 @@ def test_the_mean_of_both_is_nearer_than_elements_up_to_seven_tenths_of_the_mode
     exact = [closed_forms.frequency_hz(beam, n) for n in range(1, n_modes + 1)]
     below, above = (module.solve_modes(beam, n_modes, count).frequencies_hz for module in (segment_model, fem_beam))
     nearer = [abs((b + a) / 2 / e - 1) < abs(a / e - 1) for b, a, e in zip(below, above, exact, strict=True)]
-    said = [error_laws.mean_is_nearest(supports, n, count) for n in range(1, n_modes + 1)]
+    said = [mean_is_nearest(supports, n, count) for n in range(1, n_modes + 1)]
     assert sum(nearer) - supports.count("free") <= sum(said) <= sum(nearer)
     assert nearer == sorted(nearer, reverse=True)
     assert said == sorted(said, reverse=True)
@@ -314,4 +328,4 @@ def test_the_means_limit_is_where_segments_are_three_times_as_far_off():
     segment, hermite = (np.sqrt(root(mu)) / mu**2 - 1 for root in (error_laws._segment_root, error_laws._hermite_root))
     assert segment / hermite == pytest.approx(-3, abs=1e-10)
     assert mu / np.pi == pytest.approx(0.69635, abs=1e-5)
-    assert not error_laws.mean_is_nearest(("clamped", "free"), 1, 1000)
+    assert not mean_is_nearest(("clamped", "free"), 1, 1000)

@@ -156,18 +156,6 @@ def parts_from_here_on(model: str, beam: Beam, mode: int, error: float) -> int:
     return high
 
 
-def mean_is_nearest(supports: tuple[str, str], mode: int, count: int) -> bool:
-    """Whether the mean of both models is known to lie nearer to the exact frequency than Hermite elements alone.
-
-    It does while the segments' error is less than three times the elements': with pinned and guided ends exactly for
-    mu < 0.69635 pi, by both dispersions; with a free end one mode earlier for each (checked on all modes up to 80
-    parts). With a clamped end, where there is no such mean or one of order 2, it is not known.
-    """
-    if "clamped" in supports:
-        return False
-    return wavenumber_length(supports, mode) + pi * supports.count("free") < MEAN_LIMIT * count
-
-
 def last_hump(model: str, beam: Beam, mode: int) -> tuple[int, float]:
     """(the size down to whose error it falls at first, the size of its last hump), beyond which it falls for good.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.errors import InputError, PairingError
-from verify.exact.error_laws import expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
+from verify.exact.error_laws import LAWS, expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.timing import interleaved_medians
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from verify.beam import Beam
 
 _LARGEST_COUNT = 200_000
+_LARGEST_UNKNOWN = 2000
+"""Of a model without an error law: nobody says beforehand whether it gets there."""
 _EVERY, _CLOSELY = 100, 2000
 """Sizes are gone through one by one up to the first, 5 % apart up to the second, then doubled."""
 _LOWER_BRANCH = 0.05
@@ -58,15 +60,14 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
 
 def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
     """Where to begin: the error law's answer, on a stepped beam the fewest parts that have the mode."""
-    if beam.stepped or MODELS.named(model).error_law is None:
+    if beam.stepped or model not in LAWS:
         return smallest_count(beam, mode)
     return parts_from_here_on(model, beam, mode, error)
 
 
 def _expected(model: str, beam: "Beam", mode: int, count: int) -> float | None:
     """The error that the model's own law expects; None on a stepped beam, and of a model without one."""
-    law = MODELS.named(model).error_law
-    return None if beam.stepped or law is None else law(beam, mode, count)
+    return None if beam.stepped or model not in LAWS else expected_error(model, beam, mode, count)
 
 
 def enough_from(bench: Workbench, model: str, mode: int, error: float, settings: Settings = ()) -> Enough:
@@ -88,8 +89,7 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
 
     guess = count_guess(model, bench.beam, mode, error)
     smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
-    law = MODELS.named(model).error_law is not None
-    uniform = law and not (bench.beam.section or settings)
+    uniform = model in LAWS and not (bench.beam.section or settings)
     if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:
         count = _around(reached, guess, smallest, model, error)
         return Enough(
@@ -119,7 +119,7 @@ def _scanned(reached: Reached, smallest: int, guess: int, model: str, error: flo
     does: dict[int, bool] = {}
     count, failed = smallest, smallest - 1
     while count <= max(2 * failed, guess, smallest + 4):
-        if count > _LARGEST_COUNT:
+        if count > (_LARGEST_COUNT if model in LAWS else _LARGEST_UNKNOWN):
             raise _unreached(model, error, count)
         does[count] = reached(count)
         failed = failed if does[count] else count
@@ -157,7 +157,7 @@ def _gallop_up(reached: Reached, bad: int, model: str, error: float) -> tuple[in
     step = 1
     while not reached(bad + step):
         bad, step = bad + step, 2 * step
-        if bad + step > _LARGEST_COUNT:
+        if bad + step > (_LARGEST_COUNT if model in LAWS else _LARGEST_UNKNOWN):
             raise _unreached(model, error, bad)
     return bad, bad + step
 
@@ -166,9 +166,27 @@ def _unreached(model: str, error: float, count: int) -> InputError:
     return InputError(f"error = {error!r}: the {model} model does not reach it up to count = {count}")
 
 
+def choose_of_all(bench: Workbench, mode: int, error: float) -> tuple[list[Choice], dict[str, str]]:
+    """(choices of every model of parts, why those of other packages are left out that have none). Raises InputError."""
+    names, left_out = [], {}
+    for model in discrete():
+        try:
+            if model.name not in MODELS.built_in:
+                if why := model.refuses(bench.beam):
+                    raise InputError(why)
+                enough_from(bench, model.name, mode, error)
+            names.append(model.name)
+        except InputError as problem:
+            left_out[model.name] = str(problem)
+    return choose(bench, mode, error, tuple(names)), left_out
+
+
 def choose(bench: Workbench, mode: int, error: float, models: tuple[str, ...] = ()) -> list[Choice]:
-    """For each model the size from which on it keeps `error`, and its time, taken in turns. Raises InputError."""
-    names = models or tuple(model.name for model in discrete())
+    """For each model the size from which on it keeps `error`, and its time, taken in turns. Raises InputError.
+
+    Those of the package, unless `models` names others.
+    """
+    names = models or tuple(name for name in MODELS.built_in if MODELS[name].sized)
     found = {model: enough_from(bench, model, mode, error) for model in names}
     jobs = [_solver(bench, model, one.count, mode) for model, one in found.items()]
     return [

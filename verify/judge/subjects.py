@@ -1,6 +1,6 @@
 """The three models that come with the package, as the registry holds them: verbs, words, and the laws known of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from verify.models.kind import Model
@@ -111,13 +111,6 @@ class Discrete(Model):
         from verify.exact.error_laws import check_carried
 
         check_carried(self.name, beam, count, frequency_hz)
-
-    @property
-    def error_law(self) -> "Callable[[Beam, int, int], float]":
-        """By its dispersion where a sine fits the ends, else the leading law."""
-        from verify.exact.error_laws import expected_error
-
-        return lambda beam, mode, count: expected_error(self.name, beam, mode, count)
 
 
 class Segments(Discrete):

@@ -8,7 +8,7 @@ import msgspec
 
 from verify.beam import Beam
 from verify.errors import InputError, NoBracketError
-from verify.models.catalogue import MODELS, bounding
+from verify.models.catalogue import MODELS, bounding, discrete
 from verify.models.naming import MEAN
 
 if TYPE_CHECKING:
@@ -92,6 +92,28 @@ def check_size(beam: Beam, model: str, count: int, n_modes: int) -> None:
     """Raise InputError for a size that cannot be solved at all, before any work on it."""
     found = MODELS.named(model)
     found.check(beam, max(min(n_modes, found.n_elastic(beam, count)), 1), count)
+
+
+def comparable(beam: Beam, counts: Iterable[int], n_modes: int) -> tuple[list[str], dict[str, str]]:
+    """(models of parts whose modes can be compared at these sizes, why those of other packages are left out).
+
+    Raises InputError for a size that a model of this package cannot solve.
+    """
+    names, left_out, sizes = [], {}, tuple(counts)
+    for model in discrete():
+        try:
+            if why := model.refuses(beam):
+                raise InputError(why)
+            for count in sizes:
+                check_size(beam, model.name, count, n_modes)
+            if model.name not in MODELS.built_in:  # nobody knows whether it does what it says
+                model.solve_modes(beam, max(min(n_modes, model.n_elastic(beam, sizes[0])), 1), sizes[0])
+            names.append(model.name)
+        except InputError as problem:
+            if model.name in MODELS.built_in:
+                raise
+            left_out[model.name] = f"model {model.name} is left out: {problem}"
+    return names, left_out
 
 
 class Workbench:

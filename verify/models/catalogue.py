@@ -1,8 +1,21 @@
 """Which models there are: those of the package, and any that is registered under `verify.models`."""
 
+from typing import TYPE_CHECKING
+
 from verify.errors import InputError
 from verify.models.kind import Model
 from verify.registry import Registry
+
+if TYPE_CHECKING:
+    from verify.beam import Beam
+
+
+def _wrong(model: object) -> str:
+    """What a model from outside cannot be."""
+    if not isinstance(model, Model):
+        return "is no subclass of verify.models.kind.Model: make it one"
+    return "bounds nothing here: two models of the package do, leave `bounds` out" if model.bounds else ""
+
 
 MODELS: Registry[Model] = Registry(
     "model",
@@ -12,17 +25,19 @@ MODELS: Registry[Model] = Registry(
         "segment": "verify.judge.subjects:Segments",
         "fem": "verify.judge.subjects:Elements",
     },
+    refuses=_wrong,
 )
 
 
-def discrete(verb: str = "solve_modes") -> tuple[Model, ...]:
-    """All models of parts that have a verb."""
-    return tuple(model for model in MODELS.values() if model.sized and model.can(verb))
+def discrete(verb: str = "solve_modes", beam: "Beam | None" = None) -> tuple[Model, ...]:
+    """All models of parts that have a verb and, if one is given, take the beam."""
+    able = (model for model in MODELS.values() if model.sized and model.can(verb))
+    return tuple(model for model in able if beam is None or not model.refuses(beam))
 
 
 def bounding() -> tuple[Model, Model]:
     """The model that is known to lie below the exact frequencies, and the one above."""
-    sides = {MODELS[name].bounds: MODELS[name] for name in MODELS.own()}
+    sides = {MODELS[name].bounds: MODELS[name] for name in MODELS.built_in}
     return sides["below"], sides["above"]
 
 

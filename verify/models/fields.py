@@ -20,7 +20,7 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Steady motion Re(w(x) e^{+i omega t}) of one model under harmonic point forces."""
 
     model: str
-    """analytic, fem or segment."""
+    """Its name."""
     count: int | None
     """Elements or segments; None for the exact beam."""
     beam: Beam

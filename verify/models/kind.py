@@ -1,6 +1,6 @@
 """What a model of a vibrating beam is: a name, words, a colour, and the verbs that it has."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from verify.errors import InputError
@@ -27,7 +27,7 @@ class Model:
     parts: str = "parts"
     """What a count of it counts: 'segments'."""
     title: str = ""
-    """What a chart or a table calls it; `parts` unless given."""
+    """What a chart or a table calls it; its name unless given."""
     colour: str = "#8f5bd1"
     """Of its lines in charts."""
     sized: bool = True
@@ -46,6 +46,14 @@ class Model:
     """About."""
     library: str = ""
     """What it needs beside numpy and scipy, which a scene that does not ask for it does not load."""
+
+    def __init_subclass__(cls) -> None:
+        """One that has no title is called by its name."""
+        cls.title = cls.title or getattr(cls, "name", "")
+
+    def refuses(self, beam: "Beam") -> str:
+        """Why it does not take a beam at all, so that studies leave it out; empty where it does."""
+        return ""
 
     def can(self, verb: str) -> bool:
         """Whether it has a verb of its own."""
@@ -73,23 +81,23 @@ class Model:
 
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes. Raises InputError."""
-        raise self._has_no("modes")
+        raise self._has_no("solve_modes", "modes")
 
     def solve_harmonic(
         self, beam: "Beam", forces: "Sequence[PointForce]", frequency_hz: float, count: int | None, **settings: Any
     ) -> "HarmonicField":
         """The steady field under harmonic forces. Raises InputError."""
-        raise self._has_no("harmonic fields")
+        raise self._has_no("solve_harmonic", "harmonic fields")
 
     def unit_responses(
         self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
     ) -> "ComplexArray":
         """Deflection at x under a unit force at each position, (n_f, n_positions, len(x)), m/N. Raises InputError."""
-        raise self._has_no("harmonic fields")
+        raise self._has_no("unit_responses", "fields of unit forces")
 
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """Its free modes for motion in time; an endless model keeps the first `modes`. Raises InputError."""
-        raise self._has_no("motion in time")
+        raise self._has_no("time_basis", "motion in time")
 
     def wavenumber(self, beam: "Beam", count: int, frequency_hz: float) -> complex:
         """At which waves run in it, 1/m; that of the beam itself unless a model knows its own. Raises InputError."""
@@ -100,11 +108,8 @@ class Model:
     def check_carried(self, beam: "Beam", count: int, frequency_hz: float) -> None:
         """Raise CutOffError for a frequency at which no wave runs along its parts."""
 
-    @property
-    def error_law(self) -> "Callable[[Beam, int, int], float] | None":
-        """(beam, mode, count) -> the relative frequency error to expect; None where nobody knows."""
-        return None
+    def _has_no(self, verb: str, what: str) -> InputError:
+        from verify.models.catalogue import MODELS
 
-    def _has_no(self, what: str) -> InputError:
-        able = "another one"
-        return InputError(f"model = {self.name!r} has no {what}: choose {able}")
+        able = ", ".join(model.name for model in MODELS.values() if model.can(verb))
+        return InputError(f"model = {self.name!r} has no {what} ({verb}): choose one of {able}")

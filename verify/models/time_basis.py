@@ -15,7 +15,7 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """All modes that one model moves in, of unit modal mass (SI)."""
 
     model: str
-    """analytic, fem or segment."""
+    """Its name."""
     count: int | None
     """Segments or elements; None for the exact beam, whose modes are cut off."""
     beam: Beam

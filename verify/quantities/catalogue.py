@@ -48,6 +48,12 @@ def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     return checked(data, found.arguments)
 
 
+def models_named(arguments: Arguments) -> tuple[str, ...]:
+    """The models that arguments name, whatever the argument is called."""
+    fields = msgspec.structs.fields(arguments)
+    return tuple(str(getattr(arguments, field.name)) for field in fields if among_of(field.type))
+
+
 def _is_list(kind: Any) -> bool:
     """Whether an argument is a list of values, or nothing."""
     return get_origin(kind) is tuple or any(_is_list(arm) for arm in get_args(kind) if get_origin(kind) is not Literal)

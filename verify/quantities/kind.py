@@ -34,6 +34,7 @@ ModesModel = Annotated[str, model_meta("which model", "solve_modes")]
 DiscreteModel = Annotated[str, model_meta("which discrete model", "solve_modes", sized=True)]
 FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
 DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
+UnitModel = Annotated[str, model_meta("which model", "unit_responses")]
 MovingModel = Annotated[str, model_meta("which model", "time_basis")]
 Theory = Annotated[
     Literal["euler-bernoulli", "rayleigh", "timoshenko"], Meta(description="beam theory of the analytic model")

@@ -7,7 +7,16 @@ from msgspec import Meta
 from verify import options
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
-from verify.quantities.kind import AtFrequency, DiscreteField, DriveArguments, FieldModel, Size, Sizes, check_count
+from verify.quantities.kind import (
+    AtFrequency,
+    DiscreteField,
+    DriveArguments,
+    FieldModel,
+    Size,
+    Sizes,
+    UnitModel,
+    check_count,
+)
 
 Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
 
@@ -116,7 +125,7 @@ class BestFrequency(InWindow, frozen=True, kw_only=True):
 class Receptance(AtFrequency, frozen=True, kw_only=True):
     """One place under a unit force at another."""
 
-    model: FieldModel = "analytic"
+    model: UnitModel = "analytic"
     count: Size | None = None
     loss_factor: Loss | None = None
     position: Annotated[float, Meta(ge=0, description="of the force, metres from the left end")]
@@ -129,7 +138,7 @@ class Receptance(AtFrequency, frozen=True, kw_only=True):
 class Sensitivity(DriveArguments, frozen=True, kw_only=True):
     """The reflection about a point of frequency and phase, in the middle half of the beam."""
 
-    model: FieldModel = "analytic"
+    model: UnitModel = "analytic"
     count: Size | None = None
     loss_factor: Loss | None = None
     drive: Imposed | None = None

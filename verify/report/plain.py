@@ -33,7 +33,7 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
 
 def _studies_as_plain(result: "RunResult") -> Iterator[tuple[str, Any]]:
     """Every study by its name, what it says of nothing where the scene did not ask for it."""
-    for name in STUDIES.own():
+    for name in dict.fromkeys((*STUDIES.built_in, *result.found)):
         yield name, result.found[name].plain() if name in result.found else STUDIES[name].nothing
 
 
@@ -97,6 +97,14 @@ def accuracy(text: str) -> float:
     return error
 
 
-def choice_as_plain(bench: "Workbench", mode: int, error: float, choices: "list[Choice]") -> dict[str, Any]:
+def choice_as_plain(
+    bench: "Workbench", mode: int, error: float, choices: "list[Choice]", left_out: dict[str, str]
+) -> dict[str, Any]:
     """An answer of `verify choose --json`."""
-    return {"mode": mode, "error": error, "exact_hz": bench.exact_hz(mode), "choices": msgspec.to_builtins(choices)}
+    return {
+        "mode": mode,
+        "error": error,
+        "exact_hz": bench.exact_hz(mode),
+        "choices": msgspec.to_builtins(choices),
+        "left_out": left_out,
+    }

@@ -130,7 +130,7 @@ def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
     return table
 
 
-def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]") -> None:
+def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]", left_out: dict[str, str]) -> None:
     """What `verify choose` found, and which of the models costs less."""
     console = Terminal()
     console.print(
@@ -154,6 +154,8 @@ def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choic
         console.print(Text(f"{names[one.model]}: N = {one.count - 1} does not; {one.known_by}"))
         if one.smaller:
             console.print(Text(f"  N = {one.smaller} happens to do as well, with {percent(one.smaller_error)}"))
+    for model, why in left_out.items():
+        console.print(Text(f"– {model} is left out: {why}", style="dim"))
     console.print("[dim]errors solved at N; time of a warm solve, set-up included[/]")
 
 

@@ -7,7 +7,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.workbench import Need
-from verify.quantities.catalogue import arguments_of, needs_of, quantity
+from verify.quantities.catalogue import arguments_of, models_named, needs_of, quantity
 from verify.quantities.kind import Work
 from verify.scenes.claims import Claim
 from verify.studies.catalogue import asked_of
@@ -77,7 +77,7 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
         name=one.id,
         work=found.work,
         needs=needs,
-        models=(*found.models, *([arguments.model] if hasattr(arguments, "model") else [])),
+        models=(*found.models, *models_named(arguments)),
         slides=found.arguments.slides,
     )
 

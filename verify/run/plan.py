@@ -125,10 +125,11 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
         left.append(Choice("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
     else:
         used = {need.model for ask in asks for need in ask.needs} | {name for ask in asks for name in ask.models}
+        libraries = {MODELS[name].library for name in used if name in MODELS}
         left += [
             Choice(model.library, f"nothing asked needs the model {model.name}, {model.title}")
-            for model in (MODELS[name] for name in MODELS.own())
-            if model.library and model.name not in used
+            for model in (MODELS[name] for name in MODELS.built_in)
+            if model.library and model.library not in libraries
         ]
     if scene.drive is None:
         left.append(Choice("harmonic response", "the scene has no drive"))
@@ -150,5 +151,5 @@ def _skipped_slider(scene: "Scene", asks: list[Ask]) -> list[Choice]:
 
 def _skipped_studies(scene: "Scene") -> list[Choice]:
     asked = {study.name for study, _ in asked_of(scene)}
-    studies = [STUDIES[name] for name in STUDIES.own() if name not in asked]
+    studies = [STUDIES[name] for name in STUDIES.built_in if name not in asked]
     return [Choice(f"{study.name} study", study.skipped(scene)) for study in studies]

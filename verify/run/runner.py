@@ -2,15 +2,17 @@
 
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import msgspec
 
+from verify.errors import InputError
 from verify.judge.workbench import Solve, Workbench
 from verify.run.asks import asks_of
 from verify.run.gates import GateResult, judge
 from verify.scenes.scene import Scene, load_scene
-from verify.studies.catalogue import asked_of
-from verify.studies.kind import Progress
+from verify.studies.catalogue import STUDIES, asked_of
+from verify.studies.kind import Progress, Study
 from verify.studies.told import Found
 
 
@@ -53,7 +55,7 @@ def run_scene(scene: Scene | str | Path, progress: Progress = lambda step: None)
         gates.append(judge(gate, asked_scene, bench))
     found: dict[str, Found] = {}
     for study, asked in asked_of(asked_scene):
-        found[study.name] = study.run(asked, asked_scene, bench, found, progress)
+        found[study.name] = _done(study, asked, asked_scene, bench, found, progress)
     return RunResult(
         scene=asked_scene,
         gates=tuple(gates),
@@ -63,6 +65,21 @@ def run_scene(scene: Scene | str | Path, progress: Progress = lambda step: None)
         n_motions=bench.n_motions + sum(one.motions() for one in found.values()),
         seconds=perf_counter() - start,
     )
+
+
+def _done(
+    study: Study[Any, Any], asked: Any, scene: Scene, bench: Workbench, found: dict[str, Found], progress: Progress
+) -> Found:
+    """What a study found. Raises InputError, also for one of another package that breaks, by its name."""
+    try:
+        done: Found = study.run(asked, scene, bench, found, progress)
+    except InputError:
+        raise
+    except Exception as error:
+        if study.name in STUDIES.built_in:
+            raise
+        raise InputError(f"study = {study.name!r} breaks: {type(error).__name__}: {error}") from error
+    return done
 
 
 def n_steps(scene: Scene) -> int:

@@ -1,6 +1,6 @@
 """What somebody published about a scene, and which readings of it to try. Data, no numerics."""
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
@@ -8,9 +8,6 @@ from msgspec import Meta
 from verify.beam import check_number
 from verify.errors import InputError
 from verify.motion.figures import RUN_FIGURES
-
-if TYPE_CHECKING:
-    pass
 
 Sign = Literal["negative", "positive"]
 Read = Literal["stated", "figure", "follows"]

@@ -23,6 +23,32 @@ class Section(Protocol):
         """Raise InputError where the scene has not what it takes."""
 
 
+TAKEN = (
+    "name",
+    "title",
+    "description",
+    "beam",
+    "drive",
+    "slider",
+    "claim",
+    "gate",
+    "gates",
+    "scene",
+    "passed",
+    "solves",
+    "seconds",
+    "report",
+)
+"""Names that a scene or its JSON has already."""
+
+
+def _wrong(study: Section) -> str:
+    """What a study from outside cannot be."""
+    if study.name in TAKEN:
+        return "is a name that scenes or their results have already: choose another"
+    return "" if getattr(study, "section", None) is not None else "has no section: give it the type of one"
+
+
 SECTIONS: Registry[Section] = Registry(
     "study",
     "verify.studies",
@@ -36,6 +62,7 @@ SECTIONS: Registry[Section] = Registry(
         "claims": "verify.studies.claims:ClaimsStudy",
         "axial_inertia": "verify.studies.axial_inertia:AxialInertiaStudy",
     },
+    refuses=_wrong,
 )
 """Run in this order."""
 ON_WHAT_EXISTS = ("motion", "claims")

@@ -37,7 +37,9 @@ class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
         """Each model at each size."""
         from verify.judge.workbench import Need
 
-        return tuple(Need(m.name, count, max(asked.modes)) for count in asked.counts for m in discrete())
+        return tuple(
+            Need(m.name, count, max(asked.modes)) for count in asked.counts for m in discrete("solve_modes", scene.beam)
+        )
 
     def n_steps(self, asked: Convergence, scene: "Scene") -> int:
         """One for each size."""

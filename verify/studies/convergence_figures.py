@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.judge.workbench import Workbench, check_size
-from verify.models.catalogue import MODELS, discrete
+from verify.judge.workbench import Workbench, comparable
+from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
 from verify.patience import check_work
 from verify.studies.kind import Progress
@@ -109,10 +109,8 @@ def _figures(row: Row) -> list[float | None]:
 
 def convergence(bench: Workbench, asked: "Convergence", progress: Progress = lambda step: None) -> tuple[Row, ...]:
     """Rows by mode, then by size. `progress` is told the size about to be solved. Raises InputError."""
-    models = tuple(model.name for model in discrete())
-    for count in asked.counts:
-        for model in models:
-            check_size(bench.beam, model, count, max(asked.modes))
+    names, left_out = comparable(bench.beam, asked.counts, max(asked.modes))
+    models = tuple(names)
     _check_together(bench.beam, models, asked.counts, max(asked.modes))
     seconds = {}
     for count in asked.counts:
@@ -122,7 +120,7 @@ def convergence(bench: Workbench, asked: "Convergence", progress: Progress = lam
     for mode in asked.modes:
         previous: Row | None = None
         for count in asked.counts:
-            previous = _row(bench, mode, count, seconds[count], previous)
+            previous = _row(bench, mode, count, seconds[count], previous, tuple(left_out.values()))
             rows.append(previous)
     return tuple(rows)
 
@@ -147,7 +145,9 @@ def _timed(bench: Workbench, models: tuple[str, ...], count: int, n_modes: int) 
     return dict(zip(models, interleaved_medians(list(solves.values())), strict=True))
 
 
-def _row(bench: Workbench, mode: int, count: int, seconds: dict[str, float], previous: Row | None) -> Row:
+def _row(
+    bench: Workbench, mode: int, count: int, seconds: dict[str, float], previous: Row | None, left_out: tuple[str, ...]
+) -> Row:
     cells, notes = {}, []
     for model, time in seconds.items():
         cells[model], note = _cell(bench, model, mode, count, time, previous)
@@ -165,7 +165,7 @@ def _row(bench: Workbench, mode: int, count: int, seconds: dict[str, float], pre
         cells=cells,
         bracket_width=width,
         mean_error=mean_error,
-        notes=tuple(notes),
+        notes=(*notes, *left_out),
     )
 
 

@@ -105,7 +105,7 @@ def _convergence(rows: "tuple[Row, ...]") -> Chart:
         + f"Grey: reference slopes. At about {100.0 * EIGENVALUE_FLOOR:.0e} % rounding takes over.",
         data=[*_named_once(data), *guides, *keys],
         layout=axes(
-            "segments or elements N",
+            "number of parts N",
             "size of the frequency error, %",
             xaxis=sizes_axis(row.count for row in rows),
             yaxis=LOG,
@@ -171,7 +171,7 @@ def _bracket(rows: "tuple[Row, ...]") -> Chart:
         caption="The exact frequency (zero) lies in the grey band for every N: no reference solution is needed to know "
         "that.",
         data=[upper, lower, mean] if group else [],
-        layout=axes("segments or elements N", "against the exact frequency, %", xaxis=sizes_axis(counts)),
+        layout=axes("number of parts N", "against the exact frequency, %", xaxis=sizes_axis(counts)),
     )
 
 

@@ -45,15 +45,16 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
     def told(self, asked: MotionAsk, scene: "Scene") -> str:
         """On what, and at which sizes."""
         sizes = ", ".join(str(n) for n in asked.counts)
-        return f"slider on segments, elements and the exact beam, work against error at N = {sizes}"
+        titles = ", ".join(model.title or model.name for model in discrete("time_basis", scene.beam))
+        return f"slider on {titles} and the exact beam, work against error at N = {sizes}"
 
     def n_steps(self, asked: MotionAsk, scene: "Scene") -> int:
         """A step for each model, for the steady wave, and for each round."""
-        return len(discrete("time_basis")) + 1 + 1 + ROUNDS
+        return len(discrete("time_basis", scene.beam)) + 1 + 1 + ROUNDS
 
     def n_motions(self, asked: MotionAsk, scene: "Scene") -> int:
         """Of each model, turned round where a claim asks for it, and what work against error takes."""
-        models = len(discrete("time_basis"))
+        models = len(discrete("time_basis", scene.beam))
         once = (models + 1) * (2 if asks_for_turned(scene.claim) else 1)
         return once + DRIFTS + EXACT + ROUNDS * models * len(set(asked.counts))
 

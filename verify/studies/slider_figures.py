@@ -121,7 +121,7 @@ def slider_study(scene: "Scene", progress: Progress = lambda step: None) -> Slid
     assert asked is not None
     runs, conditions, figures = {}, {}, {}
     back = reversed_scene(scene) if asks_for_turned(scene.claim) else None
-    models: dict[str, int | None] = {model.name: asked.count for model in discrete("time_basis")}
+    models: dict[str, int | None] = {model.name: asked.count for model in discrete("time_basis", scene.beam)}
     for model, count in (models | {"analytic": None}).items():
         progress(f"slider on {model}")
         runs[model] = run_once(scene, model, count, ledger=True, samples=max(asked.samples, every_step(scene)))

@@ -16,8 +16,7 @@ def margins_table(study: "SliderFound") -> Table:
     """Every run with its coupling, its margins and its books."""
     return Table(
         title="How far these runs can be believed",
-        before=f"{study.condition.words[:1].upper()}{study.condition.words[1:]}; elements and the exact beam under the "
-        "same condition.",
+        before=f"{study.condition.words[:1].upper()}{study.condition.words[1:]}; all models under the same condition.",
         columns=(
             Column("model", left=True),
             Column("displacement, nm", "+.4g", 1e9),

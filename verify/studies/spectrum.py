@@ -34,7 +34,7 @@ class SpectrumStudy(Study[Spectrum, "SpectrumFound"]):
         """Each model once."""
         from verify.judge.workbench import Need
 
-        return tuple(Need(model.name, asked.count, asked.modes) for model in discrete())
+        return tuple(Need(model.name, asked.count, asked.modes) for model in discrete("solve_modes", scene.beam))
 
     def run(
         self, asked: Spectrum, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.exact.closed_forms import THEORIES, frequency_hz
-from verify.judge.workbench import Workbench, check_size, is_bracketed
-from verify.models.catalogue import MODELS, discrete
+from verify.judge.workbench import Workbench, comparable, is_bracketed
+from verify.models.catalogue import MODELS
 from verify.studies.told import Chart, Found
 from verify.words import percent
 
@@ -24,6 +24,8 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     """Errors of other beam theories against Euler-Bernoulli; empty where they have no closed form."""
     bracketed: bool
     """Whether the models bound the exact frequency from both sides."""
+    left_out: tuple[str, ...] = ()
+    """Which models of other packages are not here, and why."""
 
     def charts(self) -> tuple[Chart, ...]:
         """Signed errors, and their sizes beside the theories'."""
@@ -40,7 +42,7 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
         ]
         found += [f"{theory.capitalize()} theory {percent(values[-1])}" for theory, values in self.theories.items()]
         where = f"mode {self.modes[-1]} at N = {self.count} against Euler-Bernoulli"
-        return (f"{where}: {', '.join(found)}",) if found else ()
+        return (*((f"{where}: {', '.join(found)}",) if found else ()), *self.left_out)
 
     def plain(self) -> object:
         """Errors by the model's name."""
@@ -57,9 +59,7 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
 
 def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
     """Errors of modes 1..modes at one size. Raises InputError for a size that cannot be solved."""
-    models = [model.name for model in discrete()]
-    for model in models:
-        check_size(bench.beam, model, asked.count, asked.modes)
+    models, left_out = comparable(bench.beam, (asked.count,), asked.modes)
     modes = tuple(range(1, asked.modes + 1))
     return SpectrumFound(
         count=asked.count,
@@ -67,6 +67,7 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
         errors={m: tuple(bench.error_or_why(m, asked.count, n)[0] for n in reversed(modes))[::-1] for m in models},
         theories=_theory_errors(bench.beam, modes),
         bracketed=is_bracketed(bench.beam),
+        left_out=tuple(left_out.values()),
     )
 
 

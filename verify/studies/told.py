@@ -4,6 +4,8 @@ from typing import Any, Literal
 
 import msgspec
 
+from verify.errors import InputError
+
 
 class Column(msgspec.Struct, frozen=True):
     """One column of a table."""
@@ -36,6 +38,11 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     """Where a run shows it; `verify table` shows it anyway."""
     folded: bool = False
     """On the page: behind its title until it is opened."""
+
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            if len(row) != len(self.columns):
+                raise InputError(f"a table has a row of {len(row)} cells under {len(self.columns)} columns: match them")
 
 
 class Chart(msgspec.Struct, frozen=True):

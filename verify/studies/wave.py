@@ -55,7 +55,8 @@ class WaveStudy(Study[Wave, "WaveFound"]):
         """Raise InputError for a scene without two forces, or a model of the map that has no fields."""
         if len(scene.forces) != 2:
             raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
-        Among("solve_harmonic").check(asked.model, "wave.model")
+        for verb in ("solve_harmonic", "unit_responses"):
+            Among(verb).check(asked.model, "wave.model")
 
     def models(self, asked: Wave, scene: "Scene") -> tuple[str, ...]:
         """All that can."""
@@ -64,11 +65,12 @@ class WaveStudy(Study[Wave, "WaveFound"]):
     def told(self, asked: Wave, scene: "Scene") -> str:
         """Sizes."""
         sizes = ", ".join(str(n) for n in asked.counts)
-        return f"harmonic fields of segments and elements at N = {sizes}, one map"
+        titles = " and ".join(model.title or model.name for model in discrete("solve_harmonic", scene.beam))
+        return f"harmonic fields of {titles} at N = {sizes}, one map"
 
     def n_steps(self, asked: Wave, scene: "Scene") -> int:
         """A step for each model at each size, and the map."""
-        return len(discrete("solve_harmonic")) * len(asked.counts) + 1
+        return len(discrete("solve_harmonic", scene.beam)) * len(asked.counts) + 1
 
     def run(
         self, asked: Wave, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -163,7 +163,7 @@ def _sizes(study: "WaveFound") -> Chart:
         "carries nearly as pure a wave as the exact beam.",
         data,
         axes(
-            "segments or elements N",
+            "number of parts N",
             "difference to exact",
             xaxis=sizes_axis(row.count for row in study.rows if row.count),
             yaxis=LOG,

@@ -68,7 +68,9 @@ def motor_rows_table(rows: "Sequence[MotorRow]") -> Table:
     return Table(
         title="The motor over sizes",
         columns=(Column("model", left=True), Column("N"), *_OPERATION, Column("best Hz", ".2f"), *_OPERATION),
-        rows=tuple((row.model, row.count, *_cells(row.drive)[1:], *_cells(row.best)) for row in rows),
+        rows=tuple(
+            (MODELS[row.model].title or row.model, row.count, *_cells(row.drive)[1:], *_cells(row.best)) for row in rows
+        ),
         notes=(
             "window [L/4, 3L/4], axis ratios as the mean over its whole half wavelengths, for the forces of the scene; "
             f"left at {drive}, the drive's frequency, right at the model's own best",
@@ -228,19 +230,19 @@ def _operation(case: DrivenCase, bench: "Workbench") -> Operation:
     )
 
 
-def models_of_waves() -> list[str]:
-    """Models of parts that have harmonic fields."""
-    return [model.name for model in discrete("solve_harmonic")]
+def models_of_waves(beam: Beam) -> list[str]:
+    """Models of parts that have harmonic fields of a beam."""
+    return [model.name for model in discrete("solve_harmonic", beam)]
 
 
 def motor_table(
     scene: "Scene", bench: "Workbench", counts: tuple[int, ...], progress: Progress = lambda step: None
 ) -> tuple[MotorRow, ...]:
     """The exact beam, then every model of parts at every size. Raises InputError."""
-    for model in models_of_waves():
+    for model in models_of_waves(scene.beam):
         check_fields(scene.beam, model, counts, SEARCHED)
     rows = [motor_row(scene, bench, "analytic", None)]
-    for model in models_of_waves():
+    for model in models_of_waves(scene.beam):
         for count in counts:
             progress(f"{model}, N = {count}")
             rows.append(motor_row(scene, bench, model, count))
@@ -255,7 +257,7 @@ def wave_study(scene: "Scene", bench: "Workbench", asked: "Wave", progress: Prog
     eta = scene.beam.loss_factor or asked.operating_loss_factor
     chosen: dict[str, Any] = {"model": model, "loss_factor": eta} | ({"count": count} if count else {})
     axes = (Axis("frequency_hz", _steps(asked.frequency_hz)), Axis("phase_deg", _steps(asked.phase_deg)))
-    sizes = {"analytic": None} | dict.fromkeys(models_of_waves(), asked.count)
+    sizes = {"analytic": None} | dict.fromkeys(models_of_waves(scene.beam), asked.count)
     fields = {name: driven(case_on(scene, name, n), bench) for name, n in sizes.items()}
     case = driven_case(Driven(model=model, count=count, loss_factor=eta), scene)
     points, problems = operating_points(case, asked.reflection_limit)

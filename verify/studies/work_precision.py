@@ -127,7 +127,7 @@ def work_of(scene: "Scene", counts: tuple[int, ...], progress: Progress = lambda
     _check_rounds(scene, counts)
     exact, floor = _exact(scene)
     check_reference(exact)
-    cases = [(model.name, n) for model in discrete("time_basis") for n in sorted(set(counts))]
+    cases = [(model.name, n) for model in discrete("time_basis", scene.beam) for n in sorted(set(counts))]
     runs: dict[tuple[str, int], list[Motion]] = {case: [] for case in cases}
     for number in range(ROUNDS):
         progress(f"slider, work against error, round {number + 1}")
