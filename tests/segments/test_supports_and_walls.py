@@ -248,6 +248,16 @@ def test_a_welded_half_lies_at_its_clamped_wall(titanium_strip, supports, halves
     assert mirrored == pytest.approx(0.73 - nodes[::-1], abs=1e-15)
 
 
+@pytest.mark.parametrize("end", [0, 1])
+def test_a_welded_half_stands_still_whatever_the_chain_does(titanium_strip, end):
+    supports = ("clamped", "free") if end == 0 else ("free", "clamped")
+    beam = replace(titanium_strip, supports=supports)
+    modes, half = segment_model.solve_modes(beam, 3, 9, wall="welded"), 0.73 / 9.5 / 2.0
+    inside, beyond = (abs(part * half - end * 0.73) for part in (np.array([0.0, 0.31, 0.93]), np.array([1.21])))
+    for derivative in (0, 1):
+        assert abs(modes.shapes(inside, derivative)).max() < 1e-11 * abs(modes.shapes(beyond, derivative)).min()
+
+
 def test_welded_shapes_of_both_mirror_images_are_of_order_two(titanium_strip):
     for supports in (("clamped", "free"), ("free", "clamped")):
         beam, errors = replace(titanium_strip, supports=supports), []
