@@ -120,11 +120,8 @@ def _on_page(table: "Table", shared: tuple[str, ...]) -> dict[str, Any]:
 def environment() -> dict[str, str]:
     """What the figures were made with: versions, of other packages that bring models too, platform, processors. No paths, no names."""
     versions = {name: metadata.version(name) for name in _PACKAGES}
-    points = (
-        point
-        for group in ("models", "quantities", "studies")
-        for point in metadata.entry_points(group=f"verify.{group}")
-    )
+    groups = ("verify.models", "verify.quantities", "verify.studies")
+    points = (point for group in groups for point in metadata.entry_points(group=group))
     versions |= {point.dist.name: point.dist.version for point in points if point.dist}
     return {
         "Python": platform.python_version(),
