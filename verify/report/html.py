@@ -118,7 +118,7 @@ def _on_page(table: "Table", shared: tuple[str, ...]) -> dict[str, Any]:
 
 
 def environment() -> dict[str, str]:
-    """What the figures were made with: versions, of other packages that bring models too, platform, processors. No paths, no names."""
+    """What the figures were made with: versions, those of packages that bring models too, platform, processors."""
     versions = {name: metadata.version(name) for name in _PACKAGES}
     groups = ("verify.models", "verify.quantities", "verify.studies")
     points = (point for group in groups for point in metadata.entry_points(group=group))
