@@ -137,7 +137,9 @@ def test_plan_names_what_runs_what_is_skipped_and_what_cannot_work(verify):
 def test_plan_counts_a_wave_study_and_its_gates_as_harmonic(verify):
     data = json.loads(verify("plan", "paper-wave", "--json")[1])
     assert data["closed_forms"] == []
-    assert any(who.startswith("wave (harmonic fields of segments and Hermite elements at N = 49") for who in data["harmonic"])
+    assert any(
+        who.startswith("wave (harmonic fields of segments and Hermite elements at N = 49") for who in data["harmonic"]
+    )
     left_out = {skipped["what"] for skipped in data["skipped"]}
     assert not left_out & {"numpy, scipy, scikit-fem", "scikit-fem", "harmonic response"}
     bare = json.loads(verify("plan", "free-free-bar", "--json")[1])

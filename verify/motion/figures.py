@@ -10,8 +10,6 @@ from verify.models.catalogue import MODELS
 if TYPE_CHECKING:
     from verify.models.arrays import Array
     from verify.motion.result import Ride
-    from verify.scenes.scene import Scene
-    from verify.slider import Slider
 
 CHAIN = "chain"
 """What a condition calls the nonlinear chain, which is no model of small vibration."""
@@ -140,31 +138,3 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
             f"{self.run_words}, {self.force_words}, mu = {self.mu:g}{slope}, from x = {self.position:g} m, "
             f"{self.model_words}"
         )
-
-
-def _normal_in(model: str, slider: "Slider") -> str:
-    """Whether the slider is held on this model's surface, and whether that is fed back."""
-    if model == CHAIN or slider.normal == "massless":
-        return "massless"
-    return "held, one-way," if slider.coupling == "one-way" else "held"
-
-
-def condition_of(scene: "Scene", model: str, count: int | None) -> Condition:
-    """How the scene's own slider is run on a model."""
-    slider, asked = scene.slider, scene.motion
-    assert slider is not None
-    assert asked is not None
-    return Condition(
-        kinematics=slider.kinematics,
-        normal=_normal_in(model, slider),
-        start=asked.start,
-        soft_start_periods=asked.soft_start_periods,
-        forces=tuple(force.amplitude for force in scene.forces),
-        law=slider.law,
-        mu=slider.mu,
-        slope=slider.slope,
-        position=slider.start_on(scene.beam),
-        model=model,
-        count=count,
-        duration=asked.duration,
-    )

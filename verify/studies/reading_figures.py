@@ -8,9 +8,10 @@ import msgspec
 from msgspec.structs import replace
 
 from verify.errors import InputError
-from verify.motion.figures import CHAIN, Condition, condition_of
+from verify.motion.figures import CHAIN, Condition
 from verify.scenes.claims import Claim, asks_for_turned
 from verify.studies.chain_rides import Chains
+from verify.studies.conditions import condition_of
 from verify.studies.kind import Progress
 from verify.studies.readings import ReadingsAsk
 from verify.studies.slider_figures import every_step, figures_of, reversed_scene

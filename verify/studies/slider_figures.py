@@ -6,9 +6,10 @@ import msgspec
 from msgspec.structs import replace
 
 from verify.models.catalogue import bounding, discrete
-from verify.motion.figures import RUN_FIGURES, Condition, condition_of
+from verify.motion.figures import RUN_FIGURES, Condition
 from verify.motion.result import Motion, Ride
 from verify.scenes.claims import asks_for_turned
+from verify.studies.conditions import condition_of
 from verify.studies.kind import Progress
 from verify.studies.told import Chart, Found, Table
 from verify.studies.work_precision import (
