@@ -446,6 +446,17 @@ def test_a_study_that_breaks_is_named(scene):
         run_scene(scene)
 
 
+def test_a_table_as_data_is_in_the_units_above_it_and_loses_no_column():
+    class Twice(Found, frozen=True, eq=False, kw_only=True):
+        """Two columns of one head, one of which is scaled."""
+
+        def tables(self):
+            heads = (Column("model", left=True), Column("rms, µm", ".3g", 1e6), Column("rms, µm", ".3g"))
+            return (Table(columns=(*heads, Column("error %", "bare percent")), rows=(("a", 2.5e-6, 7.0, -0.03),)),)
+
+    assert Twice().records() == [{"model": "a", "rms, µm": 2.5, "rms, µm 2": 7.0, "error %": -3.0}]
+
+
 def test_a_row_that_does_not_fit_its_table_is_said():
     with pytest.raises(InputError, match="a row of 2 cells under 1 columns"):
         Table(columns=(Column("one"),), rows=((1, 2),))

@@ -266,3 +266,10 @@ def test_the_plan_counts_the_steps_of_this_beam():
     assert steps() == pytest.approx(1448, rel=0.1)
     assert steps("beam.thickness=0.003") == pytest.approx(3 * steps(), rel=0.05)
     assert steps("axial_inertia.count=98") == pytest.approx(4 * steps(), rel=0.05)
+
+
+def test_a_study_as_rows_holds_every_departure_under_a_name_of_its_own(study):
+    row = study.records()[1]
+    assert len(row) == 12
+    assert (row["transverse_rms"], row["elastic_rms"]) == (study.rows[1].transverse.rms, study.rows[1].elastic.rms)
+    assert row["deflection_rms"] == study.rows[1].deflection_rms

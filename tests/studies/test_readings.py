@@ -301,3 +301,12 @@ def test_a_steady_beam_has_no_start_among_what_is_searched():
     found = studied(steady)
     assert "start 0 periods" not in searched_words(found)
     assert found.readings[0].condition.start == "steady"
+
+
+def test_readings_as_rows_are_all_readings_with_what_they_meet(study):
+    rows = study.records()
+    assert len(rows) == len(study.readings)
+    for row, one in zip(rows, study.readings, strict=True):
+        assert row["slider.mean_speed"] == one.speed
+        assert [row[f"meets {claim.id}"] for claim in study.claims] == list(one.met)
+        assert row["mu"] == one.condition.mu

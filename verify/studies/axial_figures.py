@@ -117,9 +117,27 @@ class AxialFound(Found, frozen=True, eq=False, kw_only=True):
             "beside": msgspec.to_builtins(self.beside),
         }
 
+    def records(self) -> list[dict[str, Any]]:
+        """A row for each force, SI."""
+        return [_flat(row) for row in self.rows]
+
     def motions(self) -> int:
         """Three under each force, and each model once."""
         return STEPPED * len(self.rows) + len(self.lines)
+
+
+def _flat(row: ForceRow) -> dict[str, Any]:
+    flat: dict[str, Any] = {
+        "force": row.force,
+        "deflection_rms": row.deflection_rms,
+        "size": row.size,
+        "linear": row.linear,
+        "along_least": row.along[0],
+        "along_largest": row.along[1],
+    }
+    for links, one in (("full", row.full), ("transverse", row.transverse), ("elastic", row.elastic)):
+        flat |= {f"{links}_at_end": one.at_end, f"{links}_rms": one.rms}
+    return flat
 
 
 def force_row(driven: Driven, force: float, unit: Array) -> ForceRow:

@@ -161,6 +161,20 @@ class ReadingsFound(Found, frozen=True, eq=False, kw_only=True):
             "bounds": msgspec.to_builtins(self.bounds),
         }
 
+    def records(self) -> list[dict[str, Any]]:
+        """A row for each reading: how it was run, what was found, which claims it meets, SI."""
+        claims = [claim.id for claim in self.claims]
+        return [
+            {**msgspec.to_builtins(one.condition), "forces": max(one.condition.forces), "mass": one.mass}
+            | {name: one.figures.get(name) for name in self._figures()}
+            | {f"meets {claim}": met for claim, met in zip(claims, one.met, strict=True)}
+            | {"stopped": one.stopped}
+            for one in self.readings
+        ]
+
+    def _figures(self) -> list[str]:
+        return list(dict.fromkeys(name for one in self.readings for name in one.figures))
+
     def motions(self) -> int:
         """All runs."""
         return self.n_runs

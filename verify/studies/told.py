@@ -6,6 +6,9 @@ import msgspec
 
 from verify.errors import InputError
 
+PERCENTS = ("percent", "size", "bare percent", "bare size")
+"""Forms that write a relative figure in per cent."""
+
 
 class Column(msgspec.Struct, frozen=True):
     """One column of a table."""
@@ -75,10 +78,32 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return msgspec.to_builtins(self)
 
     def records(self) -> list[dict[str, Any]]:
-        """Rows with one level of names, for CSV and Markdown: those of the first table unless a study knows better."""
+        """Rows with one level of names, for CSV and Markdown: those of the first table unless a study knows better.
+
+        Numbers are in the unit that stands above them; a head that stands twice is numbered.
+        """
         first = next(iter(self.tables()), Table(columns=(), rows=()))
-        return [dict(zip((column.head for column in first.columns), row, strict=True)) for row in first.rows]
+        names = numbered([column.head for column in first.columns])
+        return [dict(zip(names, map(in_its_unit, row, first.columns), strict=True)) for row in first.rows]
 
     def motions(self) -> int:
         """How many simulations in time were done for it."""
         return 0
+
+
+def numbered(heads: list[str]) -> list[str]:
+    """Names of which none stands twice: 'rms', 'rms 2'."""
+    seen: dict[str, int] = {}
+    names = []
+    for head in heads:
+        seen[head] = seen.get(head, 0) + 1
+        names.append(head if seen[head] == 1 else f"{head} {seen[head]}")
+    return names
+
+
+def in_its_unit(value: Any, column: Column) -> Any:
+    """A number as its column writes it, with all digits; anything else as it is."""
+    if not isinstance(value, float | int) or isinstance(value, bool):
+        return value
+    scale = 100.0 if column.form in PERCENTS else column.factor
+    return value if scale == 1.0 else scale * value
