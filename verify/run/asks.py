@@ -83,9 +83,9 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
 
 
 def _study_asks(scene: "Scene") -> Iterable[Ask]:
-    """Those that are not told figure by figure, as claims are."""
+    """Those that a plan lists as a whole."""
     for study, asked in asked_of(scene):
-        if study.section is None and study.work == "closed form":
+        if not study.listed:
             continue
         yield Ask(
             kind="study",

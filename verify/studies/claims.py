@@ -123,6 +123,7 @@ class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
     """Those about the slider's run are found on the runs of its study, others as `verify measure` finds them."""
 
     name, title = "claims", "Published claims"
+    listed = False
     nothing = ()
 
     def asked(self, scene: "Scene") -> tuple[Claim, ...] | None:

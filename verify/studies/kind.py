@@ -37,6 +37,8 @@ class Study(Generic[Asked, Out]):
     work: "ClassVar[Work]" = "closed form"
     slides: ClassVar[bool] = False
     """Whether it runs the scene's slider."""
+    listed: ClassVar[bool] = True
+    """Whether a plan lists it; not one whose figures a plan lists one by one."""
     nothing: ClassVar[Any] = None
     """In JSON where the scene does not ask for it."""
 
