@@ -6,9 +6,9 @@ Run: python benchmarks/orders.py
 from itertools import combinations_with_replacement
 from math import log2
 
-from verify.beam import SUPPORTS, Beam
+from verify.beam import Beam
 from verify.judge.workbench import Workbench
-from verify.options import WALLS
+from verify.options import SUPPORTS, WALLS
 
 
 def main() -> None:

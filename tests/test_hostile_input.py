@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from verify import patience
-from verify.beam import Beam, PointForce, Section, check_frequency
+from verify.beam import Beam, PointForce, check_frequency
 from verify.cli import status_of
 from verify.elements import linear as fem_beam
 from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
@@ -27,6 +27,7 @@ from verify.run import gates
 from verify.scenes.checked import checked
 from verify.scenes.scene import Gate, load_scene
 from verify.scenes.toml import literal
+from verify.section import Section
 from verify.segments import linear as segment_model
 from verify.words import figure, number
 

@@ -6,14 +6,16 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify.beam import SUPPORTS, Beam, Section
+from verify.beam import Beam
 from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.models.division import part_counts
+from verify.options import SUPPORTS
 from verify.quantities.catalogue import QUANTITIES
+from verify.section import Section
 from verify.segments import linear as segment_model
 from verify.segments import links as chain_of_links
 

@@ -1,133 +1,76 @@
-"""What a beam is: geometry, material, supports and the forces on it. Data, no numerics."""
+"""What a beam is: geometry, material, supports, what stands on it and the forces on it. Data, no numerics."""
 
-from math import inf, log10, pi, sqrt
-from operator import index
-from sys import float_info
+from functools import lru_cache
+from math import pi, sqrt
+from typing import Any
 
 import msgspec
 
-from verify.errors import InputError, near_name, shown
+from verify.attached import PointMass, PointSpring
+from verify.checks import check_number
+from verify.errors import InputError, near_name
 from verify.options import SUPPORTS, Support
+from verify.section import Piece, Section, Sizes, check_decades, merged, piece_of
 
-LARGEST = float_info.max
-FIGURE_DECADES = 100
-"""Powers of ten within which a beam's derived figures lie, so that their squares and cubes are numbers too."""
 SHORTEST_SECTION = 1e-6
 """Of the beam's length."""
 CONTRAST = 1e15
 """Of EI / l^3 between two sections: beyond it the softer one is lost in the rounding of the stiffer one."""
 MOST_WAVES = 1e6
 """Along a beam, from end to end: more take too many points, and their phase loses its digits."""
+_HOLDS = {"pinned": (True, False), "clamped": (True, True), "guided": (False, True), "free": (False, False)}
+"""Whether a support holds deflection and slope."""
 
 
-def check_number(
-    field: str, value: object, unit: str, *, above: float = -inf, below: float = inf, at_least: float = -inf
-) -> None:
-    """Raise InputError unless `value` is a finite number, at least `at_least`, strictly between `above` and `below`."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if number and -LARGEST <= value <= LARGEST and above < value < below and value >= at_least:  # type: ignore[operator]
-        return
-    limits = [f"above {above:g}"] * (above > -inf) + [f"of at least {at_least:g}"] * (at_least > -inf)
-    limits += [f"below {below:g}"] * (below < inf)
-    wanted = " ".join(["a finite number", " and ".join(limits)]).strip()
-    raise InputError(f"{field} = {shown(value)}: give {wanted} ({unit})")
+class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A straight beam, uniform or stepped, vibrating across its thickness, with what stands on it.
 
-
-def check_whole(field: str, value: object, least: int) -> None:
-    """Raise InputError unless `value` is a whole number of at least `least`."""
-    try:
-        whole = index(value)  # type: ignore[arg-type]
-    except TypeError:
-        raise InputError(f"{field} = {shown(value)}: give a whole number of at least {least}") from None
-    if isinstance(value, bool) or whole < least:
-        raise InputError(f"{field} = {shown(value)}: give a whole number of at least {least}")
-
-
-class Section(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A piece of a stepped beam. What it leaves out is as in the beam it belongs to. SI."""
-
-    length: float
-    """Metres."""
-    width: float | None = None
-    thickness: float | None = None
-    youngs_modulus: float | None = None
-    density: float | None = None
-
-    def __post_init__(self) -> None:
-        for field in ("length", "width", "thickness", "youngs_modulus", "density"):
-            if (value := getattr(self, field)) is not None:
-                check_number(f"beam.section.{field}", value, "SI", above=0)
-
-
-class Piece(msgspec.Struct, frozen=True, kw_only=True):
-    """A stretch of constant section, everything stated."""
-
-    length: float
-    """Metres."""
-    youngs_modulus: float
-    """Pascals."""
-    second_moment: float
-    """I, metres to the fourth."""
-    mass_per_length: float
-    """Rho A, kg/m."""
-    area: float
-    """A, square metres."""
-
-    @property
-    def axial_stiffness(self) -> float:
-        """EA, newton."""
-        return self.youngs_modulus * self.area
-
-    @property
-    def bending_stiffness(self) -> float:
-        """EI, N m^2."""
-        return self.youngs_modulus * self.second_moment
-
-
-class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A straight beam of rectangular section, uniform or stepped, vibrating across its thickness.
-
-    All values are SI: metres, pascals, kilograms per cubic metre. Raises InputError where a size is not a
-    finite positive number or a support is unknown.
+    Its section is a shape with its sizes, E and rho, or plainly `bending_stiffness` and `mass_per_length`; those two
+    are known of every beam. All values are SI. Raises InputError where a size is not a finite positive number, where
+    what makes a section is missing or contradicts itself, a support is unknown, or something stands off the beam.
     """
 
     length: float
     """L, metres."""
-    width: float
-    """Width of the section, metres."""
-    thickness: float
-    """h, the height of the section in the direction of vibration, metres."""
-    youngs_modulus: float
-    """E, pascals."""
-    density: float
-    """rho, kg/m^3."""
     supports: tuple[Support, Support] = ("pinned", "pinned")
     """Left (x = 0) and right (x = L) end: pinned, clamped, free or guided."""
     poissons_ratio: float = 0.33
     """nu; used by Timoshenko's theory alone."""
-    shear_coefficient: float = 5.0 / 6.0
-    """kappa of a rectangle; used by Timoshenko's theory alone."""
+    shear_coefficient: float | None = None
+    """kappa, used by Timoshenko's theory alone; 5/6 of a rectangle and Cowper's of a round section unless given."""
     loss_factor: float = 0.0
     """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2."""
     section: tuple[Section, ...] = ()
     """Pieces from left to right where the beam is stepped; their lengths add up to `length`."""
+    mass: tuple[PointMass, ...] = ()
+    """Rigid bodies fixed to it."""
+    spring: tuple[PointSpring, ...] = ()
+    """Springs from it to the ground."""
+    tension: float = 0.0
+    """Axial force, newton, along the undeformed beam; negative is compression."""
+    foundation: float = 0.0
+    """Stiffness of the ground below, N/m^2 (N/m of deflection on every metre)."""
 
     def __post_init__(self) -> None:
         check_number("beam.length", self.length, "metres", above=0)
-        check_number("beam.width", self.width, "metres", above=0)
-        check_number("beam.thickness", self.thickness, "metres", above=0)
-        check_number("beam.youngs_modulus", self.youngs_modulus, "pascals", above=0)
-        check_number("beam.density", self.density, "kg/m^3", above=0)
+        self.check_sizes("beam")
         check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, below=0.5000001)
-        check_number("beam.shear_coefficient", self.shear_coefficient, "dimensionless", above=0)
+        if self.shear_coefficient is not None:
+            check_number("beam.shear_coefficient", self.shear_coefficient, "dimensionless", above=0)
         check_number("beam.loss_factor", self.loss_factor, "0 means undamped", at_least=0, below=10)
+        check_number("beam.tension", self.tension, "newton, negative is compression")
+        check_number("beam.foundation", self.foundation, "N/m^2, 0 means none", at_least=0)
+        self._check_supports()
+        check_decades(self, self.length, "beam")
+        self._check_sections()
+        self._check_attached()
+
+    def _check_supports(self) -> None:
         if len(self.supports) != 2:
             raise InputError(f"beam.supports = {self.supports!r}: give two, for the left and the right end")
         for support in self.supports:
             if support not in SUPPORTS:
                 raise InputError(f"beam.supports has {support!r}: {near_name(str(support), SUPPORTS)}")
-        self._check_figures("beam", Section(length=self.length))
-        self._check_sections()
 
     def _check_sections(self) -> None:
         total = sum(section.length for section in self.section)
@@ -141,7 +84,7 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
                     f"beam.section[{i}].length = {section.length!r} m is less than {SHORTEST_SECTION:g} of "
                     f"beam.length = {self.length!r} m: leave it out or check its unit"
                 )
-            self._check_figures(f"beam.section[{i}]", section)
+            check_decades(merged(section, self), self.length, f"beam.section[{i}]")
         stiff = [piece.bending_stiffness / piece.length**3 for piece in self.pieces]
         if max(stiff) > CONTRAST * min(stiff):
             stiffest, softest = stiff.index(max(stiff)), stiff.index(min(stiff))
@@ -151,93 +94,168 @@ class Beam(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
                 "too short to bend"
             )
 
-    def _check_figures(self, where: str, section: Section) -> None:
-        """Raise InputError where a size, or a figure made of several, leaves what floating point carries."""
-        b, h, e, rho = (log10(value) for value in self._sizes(section))
-        length = log10(self.length)
-        decades = {
-            "width": b,
-            "thickness": h,
-            "youngs_modulus": e,
-            "density": rho,
-            "length": length,
-            "youngs_modulus * width * thickness^3": e + b + 3 * h,
-            "density * width * thickness": rho + b + h,
-            "youngs_modulus * thickness^2 / (density * length^4)": e - rho + 2 * h - 4 * length,
-        }
-        for figure, power in decades.items():
-            if abs(power) > FIGURE_DECADES:
+    def _check_attached(self) -> None:
+        """Raise InputError for what stands off the beam, and for what a support holds so that it does nothing."""
+        acts = [
+            (f"beam.mass[{i}]", m.position, ("mass", "rotary_inertia"), (m.mass, m.rotary_inertia))
+            for i, m in enumerate(self.mass)
+        ]
+        acts += [
+            (f"beam.spring[{i}]", s.position, ("stiffness", "rotational"), (s.stiffness, s.rotational))
+            for i, s in enumerate(self.spring)
+        ]
+        for where, position, fields, values in acts:
+            if position > self.length:
                 raise InputError(
-                    f"{where}: {figure} is about 1e{power:+.0f} (SI), and beyond 1e+-{FIGURE_DECADES} figures made of "
-                    "it leave floating point: check their units"
+                    f"{where}.position = {position!r} lies off the beam: give one between 0 and {self.length!r} m"
                 )
+            for at, support in zip((0.0, self.length), self.supports, strict=True):
+                for field, value, held in zip(fields, values, _HOLDS[support], strict=True):
+                    if value and held and position == at:
+                        raise InputError(
+                            f"{where}.{field} = {value!r} stands at a {support} end, which holds it so that it would "
+                            "do nothing: leave it out, or choose another support"
+                        )
 
     @property
-    def stepped(self) -> bool:
-        """Whether any piece differs from the beam's own section."""
-        own = (self.youngs_modulus, self.second_moment, self.mass_per_length)
-        return any((p.youngs_modulus, p.second_moment, p.mass_per_length) != own for p in self.pieces)
+    def own(self) -> Piece:
+        """The beam's own section over all its length, where no piece says otherwise."""
+        return _own(self)
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
         """The stretches of constant section from left to right; one for a uniform beam."""
-        return tuple(self._piece(section) for section in self.section or (Section(length=self.length),))
+        return _pieces(self)
 
-    def _sizes(self, section: Section) -> tuple[float, float, float, float]:
-        """(width, thickness, E, rho) of a section, the beam's own where it says nothing."""
-        return (
-            self.width if section.width is None else section.width,
-            self.thickness if section.thickness is None else section.thickness,
-            self.youngs_modulus if section.youngs_modulus is None else section.youngs_modulus,
-            self.density if section.density is None else section.density,
-        )
+    @property
+    def bending_stiffness(self) -> float:  # type: ignore[override]
+        """EI, N m^2, where no section says otherwise: as it is given, or as the shape makes it."""
+        return self.own.bending_stiffness
 
-    def _piece(self, section: Section) -> Piece:
-        width, thickness, modulus, density = self._sizes(section)
-        return Piece(
-            length=section.length,
-            youngs_modulus=modulus,
-            second_moment=width * thickness**3 / 12.0,
-            mass_per_length=density * (width * thickness),
-            area=width * thickness,
-        )
+    @property
+    def mass_per_length(self) -> float:
+        """Rho A, kg/m, likewise."""
+        return self.own.mass_per_length
+
+    @property
+    def stepped(self) -> bool:
+        """Whether any piece differs from the beam's own section."""
+        own = self.own
+        return bool(self.section) and any(msgspec.structs.replace(p, length=own.length) != own for p in self.pieces)
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """What there is beside one section between two supports, by the names of the fields."""
+        there = {
+            "section": self.stepped,
+            "mass": self.mass,
+            "spring": self.spring,
+            "tension": self.tension,
+            "foundation": self.foundation,
+        }
+        return tuple(name for name, value in there.items() if value)
+
+    @property
+    def uniform(self) -> bool:
+        """Whether it has one section and nothing on it: what closed forms are of."""
+        return not self.added
+
+    def check_added(self, who: str, takes: tuple[str, ...] = ()) -> None:
+        """Raise InputError for what `who` does not take: whatever is added beside `takes`."""
+        for name in self.added:
+            if name not in takes:
+                raise InputError(f"beam.{name}: {who} takes none, leave it out or ask for something else")
+
+    @property
+    def rigid_lines(self) -> tuple[tuple[float, float], ...]:
+        """The rigid motions w = a + b x that nothing resists, as (a, b) with x in metres: none, one or two."""
+        ends = zip((0.0, self.length), self.supports, strict=True)
+        places = {at for at, support in ends if _HOLDS[support][0]}
+        places |= {spring.position for spring in self.spring if spring.stiffness}
+        turned = any(_HOLDS[support][1] for support in self.supports) or bool(self.tension)
+        turned |= any(spring.rotational for spring in self.spring)
+        if self.foundation or len(places) > 1 or (places and turned):
+            return ()
+        if places:
+            return ((-places.pop(), 1.0),)
+        return ((1.0, 0.0),) if turned else ((1.0, 0.0), (-0.5 * self.length, 1.0))
 
     @property
     def rigid_motions(self) -> int:
-        """How many rigid motions the supports leave: 0, 1 or 2."""
-        held = sum(support in ("pinned", "clamped") for support in self.supports)
-        turned = any(support in ("clamped", "guided") for support in self.supports)
-        return int(held == 0) + int(held <= 1 and not turned)
+        """How many rigid motions supports and springs leave: 0, 1 or 2."""
+        return len(self.rigid_lines)
 
     def mirrored(self) -> "Beam":
         """The same beam seen from the other side."""
         left, right = self.supports
-        return msgspec.structs.replace(self, supports=(right, left), section=self.section[::-1])
+
+        def turned(one: Any) -> Any:
+            return msgspec.structs.replace(one, position=self.length - one.position)
+
+        return msgspec.structs.replace(
+            self,
+            supports=(right, left),
+            section=self.section[::-1],
+            mass=tuple(map(turned, self.mass[::-1])),
+            spring=tuple(map(turned, self.spring[::-1])),
+        )
+
+    @property
+    def surface_distance(self) -> float:
+        """From the neutral line to the surface, metres. Raises InputError where it is not known, or not the same."""
+        distances = {piece.extreme_fibre for piece in self.pieces}
+        if len(distances) > 1:
+            raise InputError(
+                "beam.section has a surface of its own: a surface is followed at one distance from the neutral line, "
+                "give the same extreme_fibre or thickness everywhere"
+            )
+        if (distance := distances.pop()) is None:
+            raise InputError(
+                "beam.extreme_fibre is missing: the motion of a surface depends on how far it lies from the neutral "
+                "line, give it in metres"
+            )
+        return distance
 
     @property
     def area(self) -> float:
-        """A, square metres, where no section says otherwise; so for the following."""
-        return self.width * self.thickness
+        """A, square metres, where no section says otherwise. Raises InputError where it is not known."""
+        return self._of_shape(self.own.area)
 
     @property
     def second_moment(self) -> float:
-        """I, metres to the fourth."""
-        return self.width * self.thickness**3 / 12.0
+        """I, metres to the fourth, likewise."""
+        return self._of_shape(self.own.second_moment)
 
-    @property
-    def bending_stiffness(self) -> float:
-        """EI, N m^2."""
-        return self.youngs_modulus * self.second_moment
-
-    @property
-    def mass_per_length(self) -> float:
-        """Rho A, kg/m."""
-        return self.density * self.area
+    def _of_shape(self, value: float | None) -> float:
+        if value is None:
+            raise InputError("beam.shape: a section given by its stiffness has no sizes, give its shape and sizes")
+        return value
 
     @property
     def wave_constant(self) -> float:
-        """Sqrt(EI / (rho A)), m^2/s: omega = beta^2 times this."""
-        return float((self.youngs_modulus / self.density / 12.0) ** 0.5 * self.thickness)
+        """Sqrt(EI / (rho A)), m^2/s: omega = beta^2 times this, where no section says otherwise."""
+        made = (self.youngs_modulus, self.density, self.thickness)
+        if None not in made and self.shape in (None, "rectangle"):
+            modulus, density, thickness = made
+            return float((modulus / density / 12.0) ** 0.5 * thickness)  # type: ignore[operator]
+        return sqrt(self.bending_stiffness / self.mass_per_length)
+
+
+@lru_cache(maxsize=256)
+def _own(beam: Beam) -> Piece:
+    return piece_of(beam, beam.length, "beam", beam.poissons_ratio, beam.shear_coefficient)
+
+
+@lru_cache(maxsize=256)
+def _pieces(beam: Beam) -> tuple[Piece, ...]:
+    if not beam.section:
+        return (beam.own,)
+    nu, kappa = beam.poissons_ratio, beam.shear_coefficient
+    pieces = ((merged(section, beam), section.length) for section in beam.section)
+    return tuple(
+        piece_of(section, length, f"beam.section[{i}]", nu, kappa, beam.own)
+        for i, (section, length) in enumerate(pieces)
+    )
 
 
 def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:

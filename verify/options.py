@@ -6,6 +6,14 @@ Support = Literal["pinned", "clamped", "free", "guided"]
 SUPPORTS: tuple[str, ...] = get_args(Support)
 """An end of a beam. pinned: it does not move. clamped: nor turn. free: nothing holds it. guided: it does not turn."""
 
+Shape = Literal["rectangle", "round", "tube"]
+SHAPES: tuple[str, ...] = get_args(Shape)
+"""A beam's section. rectangle: width and thickness. round: a diameter. tube: a diameter and a wall_thickness."""
+
+Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko"]
+THEORIES: tuple[str, ...] = get_args(Theory)
+"""What of a beam's thickness counts. euler-bernoulli: nothing. rayleigh: the section's rotary inertia. timoshenko: its shear as well."""
+
 Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
 WALLS: tuple[str, ...] = get_args(Wall)
 """How a chain is held at a clamped end, by the weights of its joints from the wall on (`segments.walls`).
@@ -14,9 +22,14 @@ gregory: 3/8, 7/6, 23/24, frequencies of order 4. half: the literature's k = 2EI
 part of the wall, order 2. third-order: 5/12, 13/12. five-joint: order 4 and a little more for low modes.
 """
 
-Joints = Literal["series", "printed"]
+Joints = Literal["series", "printed", "tensioned"]
 JOINTS: tuple[str, ...] = get_args(Joints)
-"""The paper's Eq. (1) between two links. series: two half links in a row. printed: with its indices as they stand."""
+"""The spring between two links. series: the paper's Eq. (1), two half links in a row. printed: with its indices as they
+stand. tensioned: series less T l/12 under a tension T, order 4 in vibration under axial force."""
+
+Attachment = Literal["reciprocal", "lever"]
+ATTACHMENTS: tuple[str, ...] = get_args(Attachment)
+"""A point mass or spring on a chain. reciprocal: felt by four joints, order 4. lever: as it sits on its rigid link."""
 
 Load = Literal["reciprocal", "lever"]
 LOADS: tuple[str, ...] = get_args(Load)

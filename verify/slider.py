@@ -4,7 +4,8 @@ from typing import get_args
 
 import msgspec
 
-from verify.beam import Beam, check_number
+from verify.beam import Beam
+from verify.checks import check_number
 from verify.errors import InputError, near_name
 from verify.options import CouplingChoice, Kinematics, Law, Line, NormalChoice
 

@@ -5,13 +5,13 @@ import pytest
 from chain_reference import elastica_tip, woinowsky_krieger
 from msgspec.structs import replace
 
-from verify.beam import Section
 from verify.errors import InputError
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.run.gates import judge
 from verify.run.plan import plan_scene
 from verify.run.runner import workbench_for
 from verify.scenes.scene import Gate, MotionAsk, load_scene
+from verify.section import Section
 
 CHAIN = load_scene("chain")
 

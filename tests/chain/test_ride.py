@@ -102,7 +102,7 @@ def test_what_a_chain_cannot_carry_is_refused(paper_beam, times, changed, words)
 
 
 def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
-    from verify.beam import Section
+    from verify.section import Section
 
     with pytest.raises(InputError, match=r"slider.line = 'raw': a nonlinear chain is touched along its spline"):
         ridden(paper_beam, 1.0, slider=replace(SLIDER, line="raw"), duration=2e-5)

@@ -8,13 +8,13 @@ from chain_reference import woinowsky_krieger
 from test_dynamics import beam, odd_chain
 from test_stepping import driven, rms
 
-from verify.beam import Section
 from verify.chain.dynamics import at_rest
 from verify.chain.splitting import modal_basis, simulate_linear
 from verify.chain.stepping import simulate
 from verify.chain.stretching import elastic_step_limit, simulate_elastic
 from verify.chain.system import Actuator, LinkLoad, Rotation, axial_stiffness, build_system
 from verify.errors import InputError
+from verify.section import Section
 
 EA = beam().youngs_modulus * beam().area
 

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce, Section
+from verify.beam import Beam, PointForce
 from verify.elements import linear, mesh, pencil
 from verify.elements.in_time import time_basis
 from verify.elements.stock import stock_frequency_hz
 from verify.errors import InputError
 from verify.judge.extended_precision import eigenvalue_error
 from verify.scenes.scene import load_scene
+from verify.section import Section
 
 PAPER = load_scene("paper").beam
 STRIP = Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0)

@@ -3,13 +3,13 @@
 import pytest
 from msgspec.structs import replace
 
-from verify.beam import Section
 from verify.errors import InputError
 from verify.exact import error_laws
 from verify.judge import sizing
 from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
 from verify.scenes.scene import load_scene
+from verify.section import Section
 
 
 def errors_of(bench, model, mode, sizes, settings=()):

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP
 
-from verify.beam import Beam, Section
+from verify.beam import Beam
 from verify.elements import in_time as fem_motion
 from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements, point_loads
@@ -17,6 +17,7 @@ from verify.models.fields import phasor
 from verify.models.time_basis import taylor_table
 from verify.motion.forcing import SMOOTH_STEP
 from verify.motion.surface import Growth, Steps, basis_of, stages_from_rest, steady_stage
+from verify.section import Section
 from verify.segments import in_time as segment_motion
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.beam import SUPPORTS, Section
 from verify.exact.closed_forms import frequency_hz
 from verify.motion.validity import axial_inertia_size, discretisation, model_form, nearest_mode
+from verify.options import SUPPORTS
+from verify.section import Section
 
 
 @pytest.mark.parametrize("supports", list(product(SUPPORTS, SUPPORTS)), ids="-".join)

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.beam import SUPPORTS
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, NoBracketError
 from verify.exact import closed_forms, error_laws
 from verify.exact import modes as analytic_modes
 from verify.judge import compare
 from verify.judge.workbench import Workbench
-from verify.options import WALLS
+from verify.options import SUPPORTS, WALLS
 from verify.segments import linear as segment_model
 from verify.segments.walls import wall_factors
 
@@ -160,7 +159,7 @@ def test_the_bracket_holds_for_every_mode_a_chain_has(titanium_strip, supports):
     ],
 )
 def test_a_bracket_that_is_no_theorem_is_refused_with_the_reason(titanium_strip, change, settings, reason):
-    from verify.beam import Section
+    from verify.section import Section
 
     if "section" in change:
         change = {"section": (Section(length=0.3), Section(length=0.43, thickness=0.001))}

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from verify.beam import SUPPORTS, PointForce
+from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes
 from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
 from verify.models.fields import wavenumber
+from verify.options import SUPPORTS
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain
 from verify.segments.loads import four_weights, joint_weights

@@ -16,6 +16,7 @@ from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, bui
 from verify.chain.work import MOST, STATIC_LINKS, check_links, check_modes_of
 from verify.errors import InputError
 from verify.options import Wall
+from verify.section import Piece
 from verify.segments.links import link_inertia
 
 Progress = Callable[[float], None]
@@ -162,12 +163,19 @@ def _check_hinged(beam: Beam, n_segments: int) -> None:
 
 def _radius(beam: Beam) -> float:
     """Sqrt(I / A) of a uniform beam, metres. Raises InputError where sections differ: no sine is their first mode."""
-    first, *others = ((p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) for p in beam.pieces)
+    first, *others = (_figures(p) for p in beam.pieces)
     if any(other != first for other in others):
         raise InputError(
             "beam.section: the first mode of unlike sections is no sine, as the amplitude asks for; give a uniform beam"
         )
     return sqrt(first[1] / first[3])
+
+
+def _figures(piece: Piece) -> tuple[float, float, float, float]:
+    """EI, I, rho A, A. Raises InputError where they are not known."""
+    if piece.second_moment is None or piece.area is None:
+        raise InputError("beam.shape: this figure takes a section's sizes, give its shape, sizes and youngs_modulus")
+    return piece.bending_stiffness, piece.second_moment, piece.mass_per_length, piece.area
 
 
 def _check_height(height: float, system: ChainSystem) -> None:

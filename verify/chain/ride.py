@@ -11,7 +11,7 @@ from time import perf_counter
 import msgspec
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce
 from verify.chain.dynamics import at_rest
 from verify.chain.result import ChainMotion
 from verify.chain.stepping import simulate
@@ -26,6 +26,7 @@ from verify.chain.system import (
     straight_chain,
 )
 from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
+from verify.checks import check_number
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array, ComplexArray
 from verify.models.eigen import forced_response
@@ -110,7 +111,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
         friction=slider.mass * kept[:, 2],
         surface_speed=kept[:, 3],
         coupling=coupling,
-        ledger=_ledger(slider, 0.5 * beam.thickness, times[ends], kept, local[ends], given.edges),
+        ledger=_ledger(slider, beam.surface_distance, times[ends], kept, local[ends], given.edges),
         notes=(coupling.note if coupling else "coupling: one-way; no harmonic load says what the chain would feel",),
         statistics=statistics,
     )
@@ -127,8 +128,7 @@ def check_rideable(system: ChainSystem, beam: Beam, slider: Slider) -> None:
         raise InputError("slider.coupling = 'two-way': a nonlinear chain carries a slider one way, give 'one-way'")
     if slider.line != "spline":
         raise InputError(f"slider.line = {slider.line!r}: a nonlinear chain is touched along its spline, give 'spline'")
-    if any(section.thickness not in (None, beam.thickness) for section in beam.section):
-        raise InputError("beam.section has a thickness of its own: a slider rides on a beam of one thickness, give one")
+    beam.surface_distance  # noqa: B018  # one is known, everywhere the same
     if system.rotation != Rotation():
         raise InputError("chain.rotation: a slider rides on a chain whose base does not turn, give none")
     supports = straight_chain(system).supports
@@ -169,7 +169,7 @@ def _sized(system: ChainSystem, beam: Beam, slider: Slider, frequency_hz: float)
     loads = np.stack([drive, joint_weights(chain, x, "reciprocal")], axis=1)[free_joints(chain)]
     joints = with_ends(chain, forced_response(pencil, loads, omega**2, stiffness)).T
     real, imaginary = (contact_line(chain, part) for part in (joints.real, joints.imag))
-    speed = 0.5 * beam.thickness * omega * float(np.hypot(real(x, 1)[0], imaginary(x, 1)[0]))
+    speed = beam.surface_distance * omega * float(np.hypot(real(x, 1)[0], imaginary(x, 1)[0]))
     return coupling_of(slider, beam, frequency_hz, speed, complex(real(x)[1], imaginary(x)[1]))
 
 

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import check_number
 from verify.chain import kernels, records, splitting_kernels
 from verify.chain.dynamics import at_rest, flatten, linearise, project, workspace
 from verify.chain.modes import lowest_modes
@@ -25,6 +24,7 @@ from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.stepping import checked_times, how_started
 from verify.chain.system import ChainState, ChainSystem, circular, link_at
 from verify.chain.work import modal_work, refuse_work
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.motion.result import END

@@ -8,13 +8,13 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from verify.beam import check_number
 from verify.chain import kernels, records
 from verify.chain.dynamics import PIVOT_LOSS, flatten, held_rows, keep_pivots, project, workspace
 from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
 from verify.chain.work import fixed_steps, per_evaluation, refuse_work
+from verify.checks import check_number
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array
 from verify.motion.result import END

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import check_number
 from verify.chain import stretching_kernels as kernels
 from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
 from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.motion.result import END, Statistics

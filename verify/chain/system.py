@@ -10,7 +10,8 @@ from math import isfinite, pi, radians, sin
 
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_number
+from verify.beam import Beam, PointForce
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import divide
@@ -210,6 +211,7 @@ def build_system(
     and forces off the beam.
     """
     check_buildable(beam, wall)
+    beam.check_added("the nonlinear chain", ("section",))
     check_number("joint_dashpot", joint_dashpot, "N m s, 0 means none", at_least=0)
     chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
     unit, mass = chain.unit, beam.mass_per_length
@@ -229,7 +231,7 @@ def build_system(
 
 def axial_stiffness(beam: Beam, n_segments: int, grading: float = 1.0) -> Array:
     """EA of every link, each of its own section, (N,), newton. Raises InputError as `divide` does."""
-    return divide(beam, n_segments, grading).axial_stiffnesses * (beam.youngs_modulus * beam.area)
+    return divide(beam, n_segments, grading).axial_stiffnesses * beam.own.axial_stiffness
 
 
 def straight_chain(system: ChainSystem, *, unit: float = 1.0, mass: float = 1.0, spring: float = 1.0) -> Chain:

@@ -27,7 +27,7 @@ def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
     """
     check(beam, 1, n_elements)
     check_held(beam)
-    uniform = beam.supports == ("pinned", "pinned") and not beam.section and n_elements > 1
+    uniform = beam.supports == ("pinned", "pinned") and beam.uniform and not beam.section and n_elements > 1
     elements = build_elements(beam, n_elements)
     omegas, nodal, method = _pinned(beam, n_elements) if uniform else _dense(elements)
     parts, basis = elements.parts, elements.basis

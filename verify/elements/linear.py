@@ -5,7 +5,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_number, check_whole
+from verify.beam import Beam, PointForce
+from verify.checks import check_number, check_whole
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import element_pencil
 from verify.models.arrays import Array, ComplexArray

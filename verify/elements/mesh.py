@@ -46,6 +46,7 @@ class Elements(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def build_elements(beam: Beam, n_elements: int, grading: float = 1.0) -> Elements:
     """The elements of a beam. Raises InputError where it cannot be divided so."""
+    beam.check_added("the fem model", ("section",))
     parts = divide(beam, n_elements, grading)
     basis = basis_between(parts.nodes)
     return Elements(beam=beam, parts=parts, basis=basis, free=free_unknowns(basis, beam.supports))

@@ -21,7 +21,8 @@ def stock_frequency_hz(beam: Beam, mode: int, n_elements: int) -> float:
     NaN where K has lost so many digits that it is singular or its eigenvalue negative. Raises InputError for stepped
     beams, for rigid motions, which leave K singular, and for modes that the mesh or its solver does not have.
     """
-    if beam.stepped or beam.section:
+    beam.check_added("the comparison with stock scikit-fem", ("section",))
+    if beam.section:
         raise InputError("beam.section: stock scikit-fem is compared on uniform beams, leave the sections out")
     if beam.rigid_motions:
         raise InputError(f"beam.supports = {list(beam.supports)!r} leave rigid motions: hold the beam at both ends")

@@ -8,8 +8,7 @@ from math import atan, exp, pi, sqrt
 
 from verify.beam import Beam
 from verify.errors import InputError, near_name
-
-THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
+from verify.options import THEORIES
 
 # beta L = (n + c) pi + s(n) g atan(exp(-2 y/g)), the exponential form of cos y cosh y = +-1 and its kin.
 # pair -> (c, sign rule, g); the sign rule is 0, a constant, or "odd" for +1 at odd n and -1 at even n.
@@ -34,10 +33,14 @@ def check_mode(mode: int) -> None:
 
 
 def check_uniform(beam: Beam) -> None:
-    """Raise InputError where the beam is stepped, naming the models that can."""
+    """Raise InputError where the beam is stepped or something stands on it, naming the models that can."""
     if beam.stepped:
         raise InputError(
             f"beam.section: a beam of {len(beam.pieces)} sections has no closed form here, use the fem or segment model"
+        )
+    if beam.added:
+        raise InputError(
+            f"beam.{beam.added[0]}: a beam with it has no closed form here, use the fem or segment model, or none of it"
         )
 
 
@@ -89,10 +92,18 @@ def _thickness_factor(beam: Beam, beta: float, theory: str) -> float:
     With r^2 = I/A and g = E / (kappa G), Lambda = omega^2 / omega_EB^2 solves
     b^4 g Lambda^2 - (1 + b^2 (1 + g)) Lambda + 1 = 0 for b = beta r; the flexural root is the lower one.
     """
-    b2 = (beta * beam.thickness) ** 2 / 12.0
+    own = beam.own
+    if own.rotary_inertia is None:
+        raise InputError(f"beam.rotary_inertia is missing: theory = {theory!r} takes rho I of a section given plainly")
+    r2 = own.rotary_inertia / own.mass_per_length
+    b2 = beta * beta * r2
     if theory == "rayleigh":
         return 1.0 / (1.0 + b2)
-    g = 2.0 * (1.0 + beam.poissons_ratio) / beam.shear_coefficient
+    if own.shear_stiffness is None:
+        raise InputError(
+            f"beam.shear_stiffness is missing: theory = {theory!r} takes kappa G A of a section given plainly"
+        )
+    g = own.bending_stiffness / (own.shear_stiffness * r2)
     half = 1.0 + b2 * (1.0 + g)
     return 2.0 / (half + sqrt(half * half - 4.0 * b2 * b2 * g))
 

@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce, check_whole
+from verify.beam import Beam, PointForce
+from verify.checks import check_whole
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
 from verify.exact.modes import mode_shapes, solve_harmonic, solve_modes

@@ -9,7 +9,8 @@ from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
 
-from verify.beam import Beam, check_whole
+from verify.beam import Beam
+from verify.checks import check_whole
 from verify.errors import InputError
 from verify.exact.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.exact.harmonic import solve_harmonic, unit_responses
@@ -168,7 +169,7 @@ def _coefficients(
 
 def exact_frequency_hz(beam: Beam, mode: int) -> float:
     """The exact Euler-Bernoulli frequency of a uniform or stepped beam, Hz. Raises InputError."""
-    return stepped_frequency_hz(beam, mode) if beam.stepped else frequency_hz(beam, mode)
+    return stepped_frequency_hz(beam, mode) if beam.added == ("section",) else frequency_hz(beam, mode)
 
 
 def stepped_frequency_hz(beam: Beam, mode: int) -> float:

@@ -60,14 +60,14 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
 
 def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
     """Where to begin: the error law's answer, on a stepped beam the fewest parts that have the mode."""
-    if beam.stepped or model not in LAWS:
+    if not beam.uniform or model not in LAWS:
         return smallest_count(beam, mode)
     return parts_from_here_on(model, beam, mode, error)
 
 
 def _expected(model: str, beam: "Beam", mode: int, count: int) -> float | None:
     """The error that the model's own law expects; None on a stepped beam, and of a model without one."""
-    return None if beam.stepped or model not in LAWS else expected_error(model, beam, mode, count)
+    return None if not beam.uniform or model not in LAWS else expected_error(model, beam, mode, count)
 
 
 def enough_from(bench: Workbench, model: str, mode: int, error: float, settings: Settings = ()) -> Enough:
@@ -89,7 +89,7 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
 
     guess = count_guess(model, bench.beam, mode, error)
     smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
-    uniform = model in LAWS and not (bench.beam.section or settings)
+    uniform = model in LAWS and bench.beam.uniform and not (bench.beam.section or settings)
     if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:
         count = _around(reached, guess, smallest, model, error)
         return Enough(

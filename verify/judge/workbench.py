@@ -64,7 +64,9 @@ def for_model(model: str, settings: Settings) -> Settings:
 def check_bracket(beam: Beam, settings: Settings) -> None:
     """Raise NoBracketError, with the reason, where segments below and elements above is no theorem."""
     wall = dict(settings).get("wall", "gregory")
-    if beam.stepped or beam.section:
+    if added := [name for name in beam.added if name != "section"]:
+        reason = f"on a beam with beam.{added[0]} neither side is proven"
+    elif beam.section:
         reason = "on a stepped beam the chain may lie above the exact frequency"
     elif "grading" in dict(settings):
         reason = (
@@ -171,11 +173,14 @@ class Workbench:
     def exact_hz(self, mode: int) -> float:
         """The exact Euler-Bernoulli frequency, Hz: closed form, for stepped beams by counting. Raises InputError."""
         if mode not in self._exact:
-            if self.beam.stepped:
-                from verify.exact.modes import stepped_frequency_hz as exact
+            if self.beam.uniform:
+                from verify.exact.closed_forms import frequency_hz
+
+                self._exact[mode] = frequency_hz(self.beam, mode)
             else:
-                from verify.exact.closed_forms import frequency_hz as exact
-            self._exact[mode] = exact(self.beam, mode)
+                from verify.exact.modes import exact_frequency_hz
+
+                self._exact[mode] = exact_frequency_hz(self.beam, mode)
         return self._exact[mode]
 
     def frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:

@@ -3,9 +3,11 @@
 import msgspec
 import numpy as np
 
-from verify.beam import Beam, check_number
+from verify.beam import Beam
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.arrays import Array
+from verify.section import Piece
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -54,9 +56,7 @@ def divide(beam: Beam, count: int, grading: float = 1.0) -> Parts:
         )
     shares = part_counts([piece.length for piece in pieces], count)
     lengths = [_graded(piece.length / unit, n, grading) for piece, n in zip(pieces, shares, strict=True)]
-    base = np.array([beam.youngs_modulus, beam.second_moment, beam.mass_per_length, beam.area])
-    ratios = [(p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) / base for p in pieces]
-    moduli, moments, masses, areas = np.repeat(np.array(ratios), shares, axis=0).T
+    moduli, moments, masses, areas = np.repeat(_ratios(beam.own, pieces), shares, axis=0).T
     return Parts(
         unit=unit,
         lengths=np.concatenate(lengths),
@@ -66,6 +66,20 @@ def divide(beam: Beam, count: int, grading: float = 1.0) -> Parts:
         areas=areas,
         equal=False,
     )
+
+
+def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:
+    """E, I, rho A, A of every piece over the beam's own, (n_pieces, 4).
+
+    Where one is given plainly, E is one everywhere and I stands for EI; without areas they are not a number.
+    """
+    every = (own, *pieces)
+    if any(p.youngs_modulus is None for p in every):
+        rows = [(1.0, p.bending_stiffness, p.mass_per_length, np.nan) for p in every]
+    else:
+        rows = [(p.youngs_modulus, p.second_moment, p.mass_per_length, p.area) for p in every]  # type: ignore[misc]
+    table = np.array(rows, dtype=float)
+    return np.asarray(table[1:] / table[0])
 
 
 def check_division(beam: Beam, count: int, grading: float = 1.0) -> None:

@@ -49,7 +49,7 @@ def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis
     """How the slider is coupled where it is put on. Raises InputError."""
     x, omega = put_on(request, slider)[0], request.omega
     slope = abs(stage.drive_shapes(np.array([x]), 1))[:2]
-    speed = 0.5 * request.beam.thickness * omega * float(np.hypot(*slope[:, 0]))
+    speed = request.beam.surface_distance * omega * float(np.hypot(*slope[:, 0]))
     felt = (
         receptance(basis, x, omega, request.damping)
         if basis

@@ -27,7 +27,7 @@ def law_of(slider: Slider, beam: Beam) -> Law:
         static=float(static * pressing),
         slope=float(slider.slope),
         mass=float(slider.mass),
-        half=float(0.5 * beam.thickness),
+        half=float(beam.surface_distance),
         gravity=float(slider.gravity),
         following=slider.kinematics == "following",
         held=slider.normal == "held",
@@ -111,7 +111,7 @@ def larger(friction_size: float | None, normal_size: float) -> float | None:
 
 def surface_speed(field: "HarmonicField", x: float) -> float:
     """First-order speed amplitude of the surface at x, (h/2) omega |w'|, m/s."""
-    return 0.5 * field.beam.thickness * field.omega * float(abs(field.slope([x]))[0])
+    return field.beam.surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
 def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: float, receptance: complex) -> Coupling:
@@ -123,7 +123,7 @@ def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: 
     """
     omega = 2.0 * np.pi * frequency_hz
     k = float(np.sqrt(omega / beam.wave_constant))
-    lever = 0.5 * beam.thickness
+    lever = beam.surface_distance
     answer = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
     friction_size = float(answer / surface_speed) if surface_speed > 0.0 else None
     normal_size = float(slider.mass * omega**2 * abs(receptance))

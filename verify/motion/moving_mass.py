@@ -30,7 +30,7 @@ def receptance(basis: TimeBasis, x: float, omega: float, damping: float) -> comp
 
 def weighed_down(basis: TimeBasis, x: float, load: float) -> Array:
     """Modes of a beam at rest under a weight on its surface at x, (n,): it acts at the material x + (h/2) w' there."""
-    at, half = x, 0.5 * basis.beam.thickness
+    at, half = x, basis.beam.surface_distance
     still = np.zeros(len(basis.omegas))
     for _ in range(PASSES):
         still = -load * basis.shapes(np.array([at]), 0)[:, 0] / basis.omegas**2

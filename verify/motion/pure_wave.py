@@ -4,7 +4,8 @@ from math import isfinite
 
 import numpy as np
 
-from verify.beam import Beam, check_number
+from verify.beam import Beam
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.exact.closed_forms import check_uniform
 from verify.models.arrays import Array
@@ -64,7 +65,7 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
     for _ in range(3):
         stage = wave_stage(beam, amplitude, frequency_hz, mean)
         k = np.sqrt(stage.omega / beam.wave_constant)
-        reach = 2.0 * k * stage.omega * amplitude * (0.5 * beam.thickness + amplitude)
+        reach = 2.0 * k * stage.omega * amplitude * (beam.surface_distance + amplitude)
 
         def gained(speed: float, stage: Stage = stage) -> float:
             after = _period(stage, law, start, speed)[1]

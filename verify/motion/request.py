@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_number, check_whole
+from verify.beam import Beam, PointForce
+from verify.checks import check_number, check_whole
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS

@@ -45,7 +45,7 @@ def nearest_mode(beam: Beam, drive_hz: float) -> int:
 
 def model_form(beam: Beam, drive_hz: float) -> float | None:
     """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1; None without closed form."""
-    if beam.supports != ("pinned", "pinned") or beam.stepped:
+    if beam.supports != ("pinned", "pinned") or not beam.uniform:
         return None
     mode = nearest_mode(beam, drive_hz)
     return frequency_hz(beam, mode, "timoshenko") / frequency_hz(beam, mode) - 1.0
@@ -53,6 +53,6 @@ def model_form(beam: Beam, drive_hz: float) -> float | None:
 
 def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
     """The leading frequency error of a discrete model at the mode nearest the drive; None where no law is known."""
-    if count is None or beam.stepped or model not in LAWS:
+    if count is None or not beam.uniform or model not in LAWS:
         return None
     return leading_error(model, beam.supports, nearest_mode(beam, drive_hz), count)

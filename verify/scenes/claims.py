@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
-from verify.beam import check_number
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.motion.figures import RUN_FIGURES
 

@@ -8,7 +8,8 @@ from typing import Annotated, Any, Literal, TypeAlias, cast
 import msgspec
 from msgspec import Meta
 
-from verify.beam import Beam, PointForce, check_frequency, check_number
+from verify.beam import Beam, PointForce, check_frequency
+from verify.checks import check_number
 from verify.errors import InputError, near_name, shown
 from verify.files import exists
 from verify.options import DriveKind, Start

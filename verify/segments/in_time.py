@@ -33,7 +33,7 @@ def time_basis(
     if line not in LINES:
         raise InputError(f"line = {line!r} is not known: {near_name(line, LINES)}")
     chain = build_chain(beam, n_segments, wall=wall)
-    uniform = beam.supports == ("pinned", "pinned") and not beam.section
+    uniform = beam.supports == ("pinned", "pinned") and beam.uniform and not beam.section
     omegas, joints, method = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
 
     def loads(position: float) -> Array:

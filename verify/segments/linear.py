@@ -5,7 +5,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_number, check_whole
+from verify.beam import Beam, PointForce
+from verify.checks import check_number, check_whole
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division

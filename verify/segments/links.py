@@ -88,6 +88,7 @@ def build_chain(
     beam: Beam, n_segments: int, *, wall: Wall = "gregory", joints: Joints = "series", grading: float = 1.0
 ) -> Chain:
     """The chain of a beam: links of its sections, joints between and at the walls (see `segment_model`)."""
+    beam.check_added("the segment model", ("section",))
     parts = divide(beam, n_segments, grading)
     lengths, stiffness = parts.lengths, parts.stiffnesses
     if joints == "printed":

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 from msgspec import Meta
 
-from verify.beam import check_number
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.models.naming import Among, model_meta
@@ -126,7 +126,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
         beam, motion, slider = scene.beam, scene.motion, scene.slider
         assert motion is not None
         assert slider is not None
-        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or beam.stepped:
+        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or not beam.uniform:
             raise InputError(
                 f"readings.chain with beam.supports = {list(beam.supports)!r}: give a uniform beam, pinned or clamped "
                 "on the left and pinned, or free behind a clamp, on the right, or leave it out"

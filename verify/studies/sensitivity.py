@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 from msgspec import Meta
 
-from verify.beam import check_number
+from verify.checks import check_number
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import structs
 
-from verify.exact.closed_forms import frequency_hz
+from verify.exact.modes import exact_frequency_hz
 from verify.studies.told import Chart, Found
 
 if TYPE_CHECKING:
@@ -44,10 +44,12 @@ def sensitivity(beam: "Beam", asked: "Sensitivity", steps: int = 25) -> Sensitiv
     def spread(value: float, part: float, n: int) -> Iterator[float]:
         return (value * (1.0 + part * (2.0 * i / (n - 1) - 1.0)) for i in range(n))
 
+    assert beam.youngs_modulus is not None
+    assert beam.density is not None  # the study has checked both
     moduli = tuple(spread(beam.youngs_modulus, asked.modulus_spread, steps))
     densities = tuple(spread(beam.density, asked.density_spread, 5))
     table = tuple(
-        tuple(frequency_hz(structs.replace(beam, youngs_modulus=e, density=rho), asked.mode) for e in moduli)
+        tuple(exact_frequency_hz(structs.replace(beam, youngs_modulus=e, density=rho), asked.mode) for e in moduli)
         for rho in densities
     )
     return SensitivityFound(

@@ -2,9 +2,10 @@
 
 from typing import TYPE_CHECKING, Any
 
-from verify.exact.closed_forms import THEORIES, frequency_hz
+from verify.exact.closed_forms import frequency_hz
 from verify.judge.workbench import Workbench, comparable, is_bracketed
 from verify.models.catalogue import MODELS
+from verify.options import THEORIES
 from verify.studies.told import Chart, Found
 from verify.words import percent
 
@@ -72,6 +73,6 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
 
 
 def _theory_errors(beam: "Beam", modes: tuple[int, ...]) -> dict[str, tuple[float, ...]]:
-    if beam.supports != ("pinned", "pinned") or beam.stepped:
+    if beam.supports != ("pinned", "pinned") or not beam.uniform:
         return {}
     return {t: tuple(frequency_hz(beam, n, t) / frequency_hz(beam, n) - 1.0 for n in modes) for t in THEORIES[1:]}

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 
-from verify.beam import check_number
+from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.catalogue import discrete
 from verify.models.naming import Among, model_meta

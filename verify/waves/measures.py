@@ -195,7 +195,7 @@ def measures_of(
         tilt_deg=tilt,
         signed_area=area,
         signed_area_range=(low, mean_over(lambda at: ellipses(at)[2], window, 2 * halves), high),
-        ideal_axis_ratio=0.5 * waves.wavenumber.real * beam.thickness,
+        ideal_axis_ratio=waves.wavenumber.real * beam.surface_distance,
         crest_speed=float(crest_speed(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
         energy_flux=float(energy_flux(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
     )
@@ -203,7 +203,7 @@ def measures_of(
 
 def surface_motion(beam: Beam, slope: ComplexArray) -> ComplexArray:
     """u_x = -(h/2) w' of the upper surface, metres."""
-    return -0.5 * beam.thickness * slope
+    return -beam.surface_distance * slope
 
 
 def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
@@ -223,7 +223,7 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
 def crest_speed(beam: Beam, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
     """Speed of the surface at the crests, m/s; works on arrays of amplitudes alike."""
     plus, minus = abs(forward) ** 2, abs(backward) ** 2
-    return -omega * 0.5 * beam.thickness * np.real(k) * (plus - minus) / np.sqrt(plus + minus)
+    return -omega * beam.surface_distance * np.real(k) * (plus - minus) / np.sqrt(plus + minus)
 
 
 def energy_flux(beam: Beam, omega: Any, k: Any, forward: Any, backward: Any) -> Any:

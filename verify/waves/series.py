@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from verify.beam import Beam, check_number
+from verify.beam import Beam
+from verify.checks import check_number
 from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import wavenumber

@@ -5,7 +5,8 @@ from collections.abc import Callable
 import msgspec
 import numpy as np
 
-from verify.beam import Beam, check_number
+from verify.beam import Beam
+from verify.checks import check_number
 from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.catalogue import MODELS

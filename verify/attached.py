@@ -1,0 +1,42 @@
+"""What stands on a beam at a place: point masses and springs. Data, no numerics."""
+
+import msgspec
+
+from verify.checks import check_number
+from verify.errors import InputError
+
+
+class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A rigid body fixed to the beam at a point. Raises InputError where a value is none, or all are zero."""
+
+    position: float
+    """x of its fixing, metres from the left end."""
+    mass: float = 0.0
+    """Kilograms."""
+    rotary_inertia: float = 0.0
+    """About the point where it is fixed, kg m^2; it turns as the beam does there."""
+
+    def __post_init__(self) -> None:
+        check_number("beam.mass.position", self.position, "metres", at_least=0)
+        check_number("beam.mass.mass", self.mass, "kilograms", at_least=0)
+        check_number("beam.mass.rotary_inertia", self.rotary_inertia, "kg m^2", at_least=0)
+        if not (self.mass or self.rotary_inertia):
+            raise InputError(f"beam.mass at position = {self.position!r} weighs nothing: give mass or rotary_inertia")
+
+
+class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A spring from the beam to the ground at a point. Raises InputError where a value is none, or all are zero."""
+
+    position: float
+    """x, metres from the left end."""
+    stiffness: float = 0.0
+    """Against deflection, N/m."""
+    rotational: float = 0.0
+    """Against turning, N m/rad."""
+
+    def __post_init__(self) -> None:
+        check_number("beam.spring.position", self.position, "metres", at_least=0)
+        check_number("beam.spring.stiffness", self.stiffness, "N/m", at_least=0)
+        check_number("beam.spring.rotational", self.rotational, "N m/rad", at_least=0)
+        if not (self.stiffness or self.rotational):
+            raise InputError(f"beam.spring at position = {self.position!r} is slack: give stiffness or rotational")
