@@ -127,12 +127,12 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """The stretches of constant section from left to right; one for a uniform beam."""
         return _pieces(self)
 
-    @property
-    def bending_stiffness(self) -> float:  # type: ignore[override]
+    @property  # type: ignore[misc]
+    def bending_stiffness(self) -> float:
         """EI, N m^2, where no section says otherwise: as it is given, or as the shape makes it."""
         return self.own.bending_stiffness
 
-    @property
+    @property  # type: ignore[misc]
     def mass_per_length(self) -> float:
         """Rho A, kg/m, likewise."""
         return self.own.mass_per_length

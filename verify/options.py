@@ -12,7 +12,7 @@ SHAPES: tuple[str, ...] = get_args(Shape)
 
 Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko"]
 THEORIES: tuple[str, ...] = get_args(Theory)
-"""What of a beam's thickness counts. euler-bernoulli: nothing. rayleigh: the section's rotary inertia. timoshenko: its shear as well."""
+"""What of a beam's thickness counts. euler-bernoulli: nothing. rayleigh: its rotary inertia. timoshenko: shear too."""
 
 Wall = Literal["gregory", "half", "welded", "third-order", "five-joint"]
 WALLS: tuple[str, ...] = get_args(Wall)
