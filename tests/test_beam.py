@@ -24,10 +24,17 @@ def test_the_papers_beam_has_the_constants_of_its_own_figures(paper_beam):
 
 
 @pytest.mark.parametrize("field", SIZES)
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 0.0, -0.02, "long", None, True])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 0.0, -0.02, "long", True])
 def test_a_size_that_is_no_positive_number_is_refused_by_name_and_value(field, value):
     with pytest.raises(InputError, match=rf"beam\.{field} = .*give a finite number above 0"):
         Beam(**SIZES | {field: value})
+
+
+@pytest.mark.parametrize("field", SIZES)
+def test_a_size_that_is_missing_is_named_with_what_makes_a_section(field):
+    wanted = r"beam\.length = None" if field == "length" else rf"beam\.{field} is missing: a rectangle needs width"
+    with pytest.raises(InputError, match=wanted):
+        Beam(**SIZES | {field: None})
 
 
 def test_a_beam_whose_frequencies_would_overflow_is_refused():

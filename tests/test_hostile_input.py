@@ -137,7 +137,7 @@ def test_a_message_keeps_its_beginning_and_its_remedy_on_one_printable_line():
     [
         ({"thickness": 1e-110}, "thickness"),
         ({"thickness": 1e60, "width": 1e-70}, r"youngs_modulus \* width \* thickness\^3"),
-        ({"length": 1e-30, "thickness": 1e10}, r"youngs_modulus \* thickness\^2 / \(density \* length\^4\)"),
+        ({"length": 1e-30, "thickness": 1e10}, r"bending stiffness / \(mass per length \* length\^4\)"),
         ({"density": 5e-324}, "density"),
         ({"youngs_modulus": 1.7e308}, "youngs_modulus"),
     ],

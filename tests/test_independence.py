@@ -194,6 +194,15 @@ SHARED = [
         lambda: pinned_omega(22) / (2 * np.pi),
     ),
     Shared(
+        "section",
+        "a section a hundredth too heavy",
+        ("beam._pieces",),
+        after(lambda pieces: tuple(replace(p, mass_per_length=1.01 * p.mass_per_length) for p in pieces)),
+        "patched-strip",
+        ("elements-at-24",),
+        lambda: strip("fem"),
+    ),
+    Shared(
         "exact.closed_forms",
         "roots of one half wave too many",
         ("exact.closed_forms.root_parts",),
@@ -513,6 +522,15 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
     assert "models.eigen" in takers
 
 
+def test_numbers_are_checked_and_nothing_comes_of_it_but_a_refusal():
+    assert imported("checks", set()) == {"checks", "errors"}
+    for path in Path(verify.__file__).parent.rglob("*.py"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
+        for name in ("check_number", "check_whole"):
+            assert all(call in alone for call in calls_of(tree, name)), path.stem
+
+
 NAMES_ALONE = ("models.arrays", "options")
 """Kinds of arrays and words to choose from."""
 
@@ -529,7 +547,7 @@ def test_what_is_shared_as_names_alone_holds_no_figure_and_does_nothing(name):
 
 
 def test_every_module_that_two_models_stand_on_is_in_the_table():
-    """`errors` carries sentences, `patience` refusals, `NAMES_ALONE` names: no figures, as the tests above hold."""
+    """`errors` carries sentences, `patience` and `checks` refusals, `NAMES_ALONE` names: no figures, as the tests above hold."""
     faces = (
         ("exact.modes", "exact.in_time"),
         ("elements.linear", "elements.in_time", "elements.stock"),
@@ -545,4 +563,4 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
         "models.driven_pencil",
         "models.time_basis",
     }
-    assert shared - {"errors", "patience", *NAMES_ALONE} <= {row.module for row in SHARED}
+    assert shared - {"errors", "patience", "checks", *NAMES_ALONE} <= {row.module for row in SHARED}

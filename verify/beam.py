@@ -10,7 +10,7 @@ from verify.attached import PointMass, PointSpring
 from verify.checks import check_number
 from verify.errors import InputError, near_name
 from verify.options import SUPPORTS, Support
-from verify.section import Piece, Section, Sizes, check_decades, merged, piece_of
+from verify.section import Piece, Section, Sizes, check_decades, merged, piece_of, shear_coefficient
 
 SHORTEST_SECTION = 1e-6
 """Of the beam's length."""
@@ -36,8 +36,6 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Left (x = 0) and right (x = L) end: pinned, clamped, free or guided."""
     poissons_ratio: float = 0.33
     """nu; used by Timoshenko's theory alone."""
-    shear_coefficient: float | None = None
-    """kappa, used by Timoshenko's theory alone; 5/6 of a rectangle and Cowper's of a round section unless given."""
     loss_factor: float = 0.0
     """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2."""
     section: tuple[Section, ...] = ()
@@ -55,8 +53,6 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         check_number("beam.length", self.length, "metres", above=0)
         self.check_sizes("beam")
         check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, below=0.5000001)
-        if self.shear_coefficient is not None:
-            check_number("beam.shear_coefficient", self.shear_coefficient, "dimensionless", above=0)
         check_number("beam.loss_factor", self.loss_factor, "0 means undamped", at_least=0, below=10)
         check_number("beam.tension", self.tension, "newton, negative is compression")
         check_number("beam.foundation", self.foundation, "N/m^2, 0 means none", at_least=0)
@@ -137,6 +133,11 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Rho A, kg/m, likewise."""
         return self.own.mass_per_length
 
+    @property  # type: ignore[misc]
+    def shear_coefficient(self) -> float:
+        """Kappa of Timoshenko's theory, likewise."""
+        return shear_coefficient(self, self.poissons_ratio)
+
     @property
     def stepped(self) -> bool:
         """Whether any piece differs from the beam's own section."""
@@ -202,14 +203,9 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def surface_distance(self) -> float:
-        """From the neutral line to the surface, metres. Raises InputError where it is not known, or not the same."""
-        distances = {piece.extreme_fibre for piece in self.pieces}
-        if len(distances) > 1:
-            raise InputError(
-                "beam.section has a surface of its own: a surface is followed at one distance from the neutral line, "
-                "give the same extreme_fibre or thickness everywhere"
-            )
-        if (distance := distances.pop()) is None:
+        """From the neutral line to the surface of the beam's own section, metres. Raises InputError where not known."""
+        distance = self.own.extreme_fibre
+        if distance is None:
             raise InputError(
                 "beam.extreme_fibre is missing: the motion of a surface depends on how far it lies from the neutral "
                 "line, give it in metres"
@@ -243,17 +239,16 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 @lru_cache(maxsize=256)
 def _own(beam: Beam) -> Piece:
-    return piece_of(beam, beam.length, "beam", beam.poissons_ratio, beam.shear_coefficient)
+    return piece_of(beam, beam.length, "beam", beam.poissons_ratio)
 
 
 @lru_cache(maxsize=256)
 def _pieces(beam: Beam) -> tuple[Piece, ...]:
     if not beam.section:
         return (beam.own,)
-    nu, kappa = beam.poissons_ratio, beam.shear_coefficient
     pieces = ((merged(section, beam), section.length) for section in beam.section)
     return tuple(
-        piece_of(section, length, f"beam.section[{i}]", nu, kappa, beam.own)
+        piece_of(section, length, f"beam.section[{i}]", beam.poissons_ratio, beam.own)
         for i, (section, length) in enumerate(pieces)
     )
 

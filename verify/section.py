@@ -25,6 +25,7 @@ _UNITS = {
     "mass_per_length": "kg/m",
     "extreme_fibre": "metres",
     "shear_stiffness": "newton",
+    "shear_coefficient": "dimensionless",
     "rotary_inertia": "kg m",
 }
 
@@ -54,6 +55,8 @@ class Sizes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """How far the surface lies from the neutral line, metres; of a shape it is known."""
     shear_stiffness: float | None = None
     """kappa G A, newton, used by Timoshenko's theory alone; of a shape it is known."""
+    shear_coefficient: float | None = None
+    """kappa, used by Timoshenko's theory alone; 5/6 of a rectangle, Cowper's of a round section unless given."""
     rotary_inertia: float | None = None
     """Rho I per length, kg m, used by Rayleigh's and Timoshenko's theories alone; of a shape it is known."""
 
@@ -184,9 +187,7 @@ _MADE_OF = ("width", "thickness", "diameter", "wall_thickness", "youngs_modulus"
 """Of which a section's figures are made."""
 
 
-def piece_of(
-    section: Sizes, length: float, where: str, poissons_ratio: float, kappa: float | None, base: Piece | None = None
-) -> Piece:
+def piece_of(section: Sizes, length: float, where: str, poissons_ratio: float, base: Piece | None = None) -> Piece:
     """The figures of a section, `length` in metres, by its shape or as they are given.
 
     `base` is the piece of the beam that a section belongs to, whose figures stand where it gives none and has no
@@ -199,7 +200,7 @@ def piece_of(
     modulus, density = (section.youngs_modulus, section.density) if shaped else (None, None)
     area = form.area(section) if shaped else None
     moment = form.second_moment(section) if shaped else None
-    coefficient = form.shear_coefficient(section, poissons_ratio) if shaped and kappa is None else kappa
+    coefficient = shear_coefficient(section, poissons_ratio) if shaped else None
     shear_modulus = None if modulus is None else modulus / (2.0 * (1.0 + poissons_ratio))
     alike = base is not None and not any(_given(section, field) is not None for field in _MADE_OF)
     kept = base if alike else None
@@ -214,6 +215,12 @@ def piece_of(
         shear_stiffness=_known("shear_stiffness", section, _times(_times(coefficient, shear_modulus), area), kept),
         rotary_inertia=_known("rotary_inertia", section, _times(density, moment), kept),
     )
+
+
+def shear_coefficient(section: Sizes, poissons_ratio: float) -> float:
+    """Kappa as it is given, or as the shape has it."""
+    given = _given(section, "shear_coefficient")
+    return _FORMS[section.shape or "rectangle"].shear_coefficient(section, poissons_ratio) if given is None else given
 
 
 def _known(field: str, section: Sizes, made: float | None, base: Piece | None) -> float | None:
@@ -260,7 +267,7 @@ def merged(section: Section, whole: Sizes) -> Sizes:
     same = (section.shape or "rectangle") == (whole.shape or "rectangle") or section.shape is None
     sizes = _FORMS[shape or "rectangle"].sizes if same else ()
     plain = {"youngs_modulus": section.bending_stiffness, "density": section.mass_per_length}
-    inherited = [*sizes, *(field for field, given in plain.items() if given is None)]
+    inherited = [*sizes, *["shear_coefficient"] * same, *(field for field, given in plain.items() if given is None)]
     own = {field: _given(section, field) for field in _UNITS}
     filled = {field: _given(whole, field) for field in inherited if own[field] is None}
     return Sizes(**own | filled, shape=shape)

@@ -375,7 +375,29 @@ DEAD = [
         "drive.* slider.* motion.* beam.loss_factor",
         "free vibration without losses: nothing drives, nothing lies on it",
     ),
-    Dead("*", "beam.poissons_ratio beam.shear_coefficient", "of Timoshenko's theory alone", euler),
+    Dead(
+        "*",
+        "beam.poissons_ratio beam.*shear_coefficient beam.*shear_stiffness beam.*rotary_inertia",
+        "of Timoshenko's theory alone",
+        euler,
+    ),
+    Dead("mode.* drive.*", "beam.*extreme_fibre", "of a surface's motion alone"),
+    Dead(
+        "chain.axial_departure chain.contact_line_error chain.energy_drift chain.large_amplitude_frequency "
+        "chain.transient_deflection motion.deflection slider.loaded_deflection wave.best_frequency "
+        "wave.deflection wave.energy_flux wave.envelope wave.order wave.power_imbalance wave.receptance wave.reflection* "
+        "wave.signed_area_spread wave.standing_wave_ratio wave.travelling_index",
+        "beam.extreme_fibre",
+        "the neutral line moves whatever the surface does",
+    ),
+    Dead(
+        "slider.coupling_size",
+        "beam.extreme_fibre",
+        "only friction acts on a lever",
+        lambda a: a.arguments["of"] != "friction",
+    ),
+    Dead("*", "beam.section.*.extreme_fibre", "a surface is read and ridden on the beam's own section"),
+    Dead("*", "beam.*shape=rectangle", "a rectangle is what is meant where no shape is given"),
     Dead("mode.frequency mode.node_position mode.bracket drive.*", "beam.width", "EI / rho A has no width", uniform),
     Dead(
         RELATIVE,
@@ -579,6 +601,18 @@ OFF: dict[str, Any] = {
     "claim": [],
     "chain": True,
     "tolerance": 1e-6,
+    "diameter": 0.019,
+    "wall_thickness": 0.0012,
+    "bending_stiffness": 2.9,
+    "mass_per_length": 0.27,
+    "extreme_fibre": 0.0017,
+    "shear_stiffness": 1.9e6,
+    "shear_coefficient": 0.81,
+    "rotary_inertia": 1.3e-7,
+    "beam.mass": [{"position": 0.211, "mass": 0.013}],
+    "beam.spring": [{"position": 0.503, "stiffness": 370.0}],
+    "tension": 3.1,
+    "foundation": 2100.0,
 }
 """What an input is turned to that is nothing or not given."""
 WHOLE = ("gate", "claim")
@@ -616,15 +650,15 @@ def words_of(kind):
     return next((found for arm in get_args(kind) if (found := words_of(arm))), [])
 
 
-def turned(name, kind, value):
+def turned(name, kind, value, dotted=""):
     """Other values of an input, each well away from its own."""
     if words := words_of(kind):
         return [word for word in words if word != value]
     if name in WORDS:
         return [word for word in WORDS[name] if word != value]
     if not value or name in WHOLE:
-        assert name in OFF, f"{name} is off in a case: say in OFF what it is to be turned to"
-        return [OFF[name]]
+        assert {dotted, name} & set(OFF), f"{name} is off in a case: say in OFF what it is to be turned to"
+        return [OFF.get(dotted, OFF.get(name))]
     if isinstance(value, list):
         assert isinstance(value[0], int | float), f"{name} = {value!r}: say in turned() how to turn it"
         return [[*value[:i], turned(name, kind, one)[0], *value[i + 1 :]] for i, one in enumerate(value)]
@@ -706,7 +740,7 @@ def all_inputs(asked):
             here = data
             for step in path:
                 here = here[step]
-            values = turned(name, type_, here)
+            values = turned(name, type_, here, ".".join(map(str, path)))
             if here is None and name in OF_SCENE:
                 own = asked.scene
                 for step in OF_SCENE[name]:

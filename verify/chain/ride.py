@@ -128,7 +128,8 @@ def check_rideable(system: ChainSystem, beam: Beam, slider: Slider) -> None:
         raise InputError("slider.coupling = 'two-way': a nonlinear chain carries a slider one way, give 'one-way'")
     if slider.line != "spline":
         raise InputError(f"slider.line = {slider.line!r}: a nonlinear chain is touched along its spline, give 'spline'")
-    beam.surface_distance  # noqa: B018  # one is known, everywhere the same
+    if any(piece.extreme_fibre != beam.surface_distance for piece in beam.pieces):
+        raise InputError("beam.section has a thickness of its own: a slider rides on a beam of one thickness, give one")
     if system.rotation != Rotation():
         raise InputError("chain.rotation: a slider rides on a chain whose base does not turn, give none")
     supports = straight_chain(system).supports

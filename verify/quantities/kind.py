@@ -36,9 +36,7 @@ FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
 DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
 UnitModel = Annotated[str, model_meta("which model", "unit_responses")]
 MovingModel = Annotated[str, model_meta("which model", "time_basis")]
-Theory = Annotated[
-    Literal["euler-bernoulli", "rayleigh", "timoshenko"], Meta(description="beam theory of the analytic model")
-]
+Theory = Annotated[options.Theory, Meta(description="beam theory of the analytic model")]
 Reading = Annotated[
     str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default the first")
 ]

@@ -51,7 +51,8 @@ class AxialInertia(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
         """Raise InputError unless the beam is a chain with a tip that slides, undamped and driven by forces."""
         if drive is None or drive.kind != "force" or not drive.force:
             raise InputError("axial_inertia: the chain is driven by forces, give the scene a [drive] of kind force")
-        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or not beam.uniform:
+        beam.check_added("axial_inertia")
+        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")):
             raise InputError(
                 f"axial_inertia with beam.supports = {list(beam.supports)!r}: give a uniform beam that is pinned or "
                 "clamped on the left and pinned, or free behind a clamp, on the right"

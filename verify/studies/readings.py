@@ -126,7 +126,8 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
         beam, motion, slider = scene.beam, scene.motion, scene.slider
         assert motion is not None
         assert slider is not None
-        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")) or not beam.uniform:
+        beam.check_added("readings.chain")
+        if beam.supports not in (("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "free")):
             raise InputError(
                 f"readings.chain with beam.supports = {list(beam.supports)!r}: give a uniform beam, pinned or clamped "
                 "on the left and pinned, or free behind a clamp, on the right, or leave it out"
