@@ -11,6 +11,7 @@ from verify.models.catalogue import MODELS
 from verify.motion.case import MotionCase
 from verify.motion.request import STEPS_PER_PERIOD
 from verify.motion.result import Motion
+from verify.motion.starting import soft_start
 from verify.quantities.cases import drive_forces, drive_frequency
 from verify.quantities.kind import Arguments
 from verify.quantities.motion_arguments import (
@@ -69,7 +70,7 @@ def motion_case(a: InTime, scene: "Scene") -> MotionCase:
     start = a.start or (motion.start if motion else "rest")
     soft = a.soft_start_periods
     if soft is None:
-        soft = motion.soft_start_periods if motion and start == "rest" else 0.0
+        soft = soft_start(start, motion.soft_start_periods if motion and start == "rest" else None)
     forces = drive_forces(a, scene)
     return MotionCase(
         beam=scene.beam,

@@ -12,6 +12,7 @@ from verify.beam import Beam, PointForce, check_frequency
 from verify.checks import check_number
 from verify.errors import InputError, near_name, shown
 from verify.files import exists
+from verify.motion.starting import soft_start
 from verify.options import DriveKind, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
@@ -65,8 +66,9 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     duration: float = 1e-3
     """Seconds."""
     start: Start = "rest"
-    soft_start_periods: float = 0.0
-    """Over which the forces grow; 0 is a step load, because cos(0) = 1."""
+    soft_start_periods: float | None = None
+    """Over which the forces grow: two from rest unless given. 0 is a step load, because cos(0) = 1, under which a
+    slider's path does not converge with the size."""
     modal_damping: float | None = None
     """Ratio of every mode; half the beam's loss factor unless given."""
     count: Count = 49
@@ -79,7 +81,8 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
     def __post_init__(self) -> None:
         check_number("motion.duration", self.duration, "seconds", above=0)
-        check_number("motion.soft_start_periods", self.soft_start_periods, "periods", at_least=0)
+        if self.soft_start_periods is not None:
+            check_number("motion.soft_start_periods", self.soft_start_periods, "periods", at_least=0)
         if self.modal_damping is not None:
             check_number("motion.modal_damping", self.modal_damping, "ratio", at_least=0, below=1)
         if self.start == "steady" and self.soft_start_periods:
@@ -87,6 +90,11 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
                 f"motion.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
                 "start, leave it out"
             )
+
+    @property
+    def soft_start(self) -> float:
+        """Periods over which the forces grow; 0 where the motion has no start."""
+        return soft_start(self.start, self.soft_start_periods)
 
 
 class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -25,7 +25,7 @@ def condition_of(scene: "Scene", model: str, count: int | None) -> Condition:
         kinematics=slider.kinematics,
         normal=_normal_in(model, slider),
         start=asked.start,
-        soft_start_periods=asked.soft_start_periods,
+        soft_start_periods=asked.soft_start,
         forces=tuple(force.amplitude for force in scene.forces),
         law=slider.law,
         mu=slider.mu,

@@ -185,7 +185,7 @@ def searched_of(scene: "Scene", asked: ReadingsAsk) -> dict[str, tuple[float | s
     slider, motion = scene.slider, scene.motion
     assert slider is not None
     assert motion is not None
-    soft = motion.soft_start_periods if motion.start == "rest" else None
+    soft = motion.soft_start if motion.start == "rest" else None
     own: dict[str, float | str | None] = {
         "kinematics": slider.kinematics,
         "normal": slider.normal,

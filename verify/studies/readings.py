@@ -172,7 +172,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     def n_chain(self, scene: "Scene") -> int:
         """How many readings the nonlinear chain takes: those without a soft start."""
         assert scene.motion is not None
-        starts = self.soft_start_periods or (scene.motion.soft_start_periods,)
+        starts = self.soft_start_periods or (scene.motion.soft_start,)
         return self.n_readings // len(starts) * starts.count(0.0) if self.chain else 0
 
     def n_runs(self, scene: "Scene") -> int:
