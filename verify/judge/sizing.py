@@ -8,6 +8,7 @@ import msgspec
 
 from verify.errors import InputError, PairingError
 from verify.exact.error_laws import LAWS, expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
+from verify.judge.variants import Rules, Variant, beside
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.timing import interleaved_medians
@@ -41,6 +42,8 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     """The parts of one model from which on an accuracy is kept, and what they cost."""
 
     model: str
+    settings: Settings = ()
+    """Other than the model's defaults: (("wall", "half"),) is the literature's wall."""
     count: int
     """From here on enough."""
     unknowns: int
@@ -166,8 +169,13 @@ def _unreached(model: str, error: float, count: int) -> InputError:
     return InputError(f"error = {error!r}: the {model} model does not reach it up to count = {count}")
 
 
-def choose_of_all(bench: Workbench, mode: int, error: float) -> tuple[list[Choice], dict[str, str]]:
-    """(choices of every model of parts, why those of other packages are left out that have none). Raises InputError."""
+def choose_of_all(
+    bench: Workbench, mode: int, error: float, rules: Rules | None = None
+) -> tuple[list[Choice], dict[str, str]]:
+    """(choices of every model of parts, why those are left out that have none). Raises InputError.
+
+    By its defaults and, on a beam where the literature has another rule, by that as well; or by the rules given.
+    """
     names, left_out = [], {}
     for model in discrete():
         try:
@@ -178,32 +186,44 @@ def choose_of_all(bench: Workbench, mode: int, error: float) -> tuple[list[Choic
             names.append(model.name)
         except InputError as problem:
             left_out[model.name] = str(problem)
-    return choose(bench, mode, error, tuple(names)), left_out
+    asked = (rules or Rules()).variants(names)
+    variants, more = list(asked), [] if rules and rules.chosen else beside(bench.beam)
+    for one in more:
+        try:
+            enough_from(bench, one.model, mode, error, one.settings)
+            variants.append(one)
+        except InputError as problem:
+            left_out[one.title] = str(problem)
+    return choose(bench, mode, error, tuple(dict.fromkeys(variants))), left_out
 
 
-def choose(bench: Workbench, mode: int, error: float, models: tuple[str, ...] = ()) -> list[Choice]:
-    """For each model the size from which on it keeps `error`, and its time, taken in turns. Raises InputError.
+def choose(bench: Workbench, mode: int, error: float, variants: tuple[Variant, ...] = ()) -> list[Choice]:
+    """For each variant the size from which on it keeps `error`, and its time, taken in turns. Raises InputError.
 
-    Those of the package, unless `models` names others.
+    The models of the package by their defaults, unless `variants` names others.
     """
-    names = models or tuple(name for name in MODELS.built_in if MODELS[name].sized)
-    found = {model: enough_from(bench, model, mode, error) for model in names}
-    jobs = [_solver(bench, model, one.count, mode) for model, one in found.items()]
+    asked = variants or tuple(Variant(name) for name in MODELS.built_in if MODELS[name].sized)
+    found = {one: enough_from(bench, one.model, mode, error, one.settings) for one in asked}
+    jobs = [_solver(bench, one, enough.count, mode) for one, enough in found.items()]
     return [
         Choice(
-            model=model,
-            count=one.count,
-            unknowns=MODELS.named(model).unknowns(bench.beam, one.count),
-            error=bench.frequency_error(model, one.count, mode),
+            model=one.model,
+            settings=one.settings,
+            count=enough.count,
+            unknowns=MODELS.named(one.model).unknowns(bench.beam, enough.count),
+            error=bench.frequency_error(one.model, enough.count, mode, one.settings),
             run_time_s=seconds,
-            expected_error=_expected(model, bench.beam, mode, one.count),
-            smaller=one.smaller,
-            known_by=one.known_by,
-            smaller_error=None if one.smaller is None else bench.frequency_error(model, one.smaller, mode),
+            expected_error=None if one.settings else _expected(one.model, bench.beam, mode, enough.count),
+            smaller=enough.smaller,
+            known_by=enough.known_by,
+            smaller_error=None
+            if enough.smaller is None
+            else bench.frequency_error(one.model, enough.smaller, mode, one.settings),
         )
-        for (model, one), seconds in zip(found.items(), interleaved_medians(jobs), strict=True)
+        for (one, enough), seconds in zip(found.items(), interleaved_medians(jobs), strict=True)
     ]
 
 
-def _solver(bench: Workbench, model: str, count: int, mode: int) -> Callable[[], object]:
-    return lambda: MODELS.named(model).solve_modes(bench.beam, mode, count)
+def _solver(bench: Workbench, one: Variant, count: int, mode: int) -> Callable[[], object]:
+    settings = dict(one.settings)
+    return lambda: MODELS.named(one.model).solve_modes(bench.beam, mode, count, **settings)

@@ -125,6 +125,14 @@ class Segments(Discrete):
     field_settings = ("modal_damping", "joint_dashpot", "load", "reading")
     lines = ("spline", "raw")
 
+    def order(self, beam: "Beam", **settings: Any) -> int | None:
+        """4 on equal links between pinned, guided, free and Gregory's ends; 2 where one of them is not so."""
+        if settings.get("joints") == "printed" and beam.stepped:
+            return 1
+        uneven = beam.stepped or beam.section or settings.get("grading", 1.0) != 1.0
+        loose = "clamped" in beam.supports and settings.get("wall") in ("half", "welded")
+        return 2 if uneven or loose else 4
+
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """All its modes."""
         from verify.segments.in_time import time_basis
@@ -144,6 +152,10 @@ class Elements(Discrete):
     field_settings = ("modal_damping",)
     unknowns_per_part = 2
     library = "scikit-fem"
+
+    def order(self, beam: "Beam", **settings: Any) -> int | None:
+        """4: nodes stand on the steps."""
+        return 4
 
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """All its modes."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from verify.models.modes import Modes
     from verify.motion.result import Motion
 
+EULER = "euler-bernoulli"
 Settings: TypeAlias = tuple[tuple[str, str | float], ...]
 """Keyword settings of a model's solve_modes other than their defaults, for instance (("wall", "half"),)."""
 
@@ -132,7 +133,7 @@ class Workbench:
         self._wanted = merged(needs)
         self._modes: dict[Key, Modes] = {}
         self._index: dict[tuple[Key, int], int] = {}
-        self._exact: dict[int, float] = {}
+        self._exact: dict[tuple[int, str], float] = {}
         self.fields: dict[Any, HarmonicField] = {}
         """Harmonic fields by everything that makes them."""
         self.motions: dict[Any, Motion] = {}
@@ -170,18 +171,21 @@ class Workbench:
         self.solves.append(Solve(model, count, settings, n_modes, unknowns, modes.method, seconds))
         return modes
 
-    def exact_hz(self, mode: int) -> float:
-        """The exact Euler-Bernoulli frequency, Hz: closed form, for stepped beams by counting. Raises InputError."""
-        if mode not in self._exact:
-            if self.beam.uniform:
-                from verify.exact.closed_forms import frequency_hz
+    def exact_hz(self, mode: int, theory: object = None) -> float:
+        """The exact frequency by a theory, Hz: in closed form, else by counting. Raises InputError."""
+        key = mode, str(theory or EULER)
+        if key not in self._exact:
+            self._exact[key] = self._exact_of(*key)
+        return self._exact[key]
 
-                self._exact[mode] = frequency_hz(self.beam, mode)
-            else:
-                from verify.exact.modes import exact_frequency_hz
+    def _exact_of(self, mode: int, theory: str) -> float:
+        if self.beam.uniform and theory == EULER:
+            from verify.exact.closed_forms import frequency_hz
 
-                self._exact[mode] = exact_frequency_hz(self.beam, mode)
-        return self._exact[mode]
+            return frequency_hz(self.beam, mode)
+        from verify.exact.modes import exact_frequency_hz
+
+        return exact_frequency_hz(self.beam, mode, theory)
 
     def frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """The frequency of mode number `mode` by rank, Hz; model "mean" is the middle of the bracket."""
@@ -215,15 +219,16 @@ class Workbench:
         return self._index[key]
 
     def frequency_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
-        """Signed, relative to the exact Euler-Bernoulli frequency. Raises InputError."""
+        """Signed, relative to the exact frequency by the same theory. Raises InputError."""
         from verify.judge import compare
 
-        return compare.relative_error(self.paired_frequency_hz(model, count, mode, settings), self.exact_hz(mode))
+        exact = self.exact_hz(mode, dict(settings).get("theory"))
+        return compare.relative_error(self.paired_frequency_hz(model, count, mode, settings), exact)
 
-    def error_or_why(self, model: str, count: int, mode: int) -> tuple[float | None, str]:
+    def error_or_why(self, model: str, count: int, mode: int, settings: Settings = ()) -> tuple[float | None, str]:
         """(signed frequency error, '') or (None, why there is none)."""
         try:
-            return self.frequency_error(model, count, mode), ""
+            return self.frequency_error(model, count, mode, settings), ""
         except InputError as error:
             return None, str(error)
 

@@ -75,6 +75,10 @@ class Model:
         """How many unknowns are solved for."""
         return self.unknowns_per_part * count
 
+    def order(self, beam: "Beam", **settings: Any) -> int | None:
+        """The order in the number of parts at which its frequencies converge on a beam; None where nobody says."""
+        return None
+
     def method(self, beam: "Beam", n_modes: int, count: int) -> str:
         """How its eigenvectors are found, in a word or two."""
         return self.title or self.parts

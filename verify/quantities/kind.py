@@ -9,6 +9,7 @@ from msgspec import Meta
 from verify import options
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
+from verify.judge.variants import DEFAULTS
 from verify.judge.workbench import Need, Settings, Workbench
 from verify.models import catalogue
 from verify.models.catalogue import MODELS
@@ -36,7 +37,7 @@ FieldModel = Annotated[str, model_meta("which model", "solve_harmonic")]
 DiscreteField = Annotated[str, model_meta("which discrete model", "solve_harmonic", sized=True)]
 UnitModel = Annotated[str, model_meta("which model", "unit_responses")]
 MovingModel = Annotated[str, model_meta("which model", "time_basis")]
-Theory = Annotated[options.Theory, Meta(description="beam theory of the analytic model")]
+Theory = Annotated[options.Theory, Meta(description="of the beam: with its rotary inertia, and its shear as well")]
 Reading = Annotated[
     str, Meta(description="segment: corrected (y + delta^2 y / 12) or raw; fem: nodal; default the first")
 ]
@@ -45,6 +46,9 @@ Wall = Annotated[
     Meta(description="how segments are held at a clamped end; half is the literature's k = 2EI/l"),
 ]
 Joints = Annotated[options.Joints, Meta(description="Eq. (1) of the segments' joints: put right, or as printed")]
+Attachment = Annotated[
+    options.Attachment, Meta(description="how segments feel point masses and springs: order 4, or as on a rigid link")
+]
 Grading = Annotated[float, Meta(gt=0, description="length of a section's last part over its first")]
 
 
@@ -69,15 +73,14 @@ class Divided(Arguments, frozen=True, kw_only=True):
     wall: Wall = "gregory"
     joints: Joints = "series"
     grading: Grading = 1.0
+    theory: Theory = "euler-bernoulli"
+    attachment: Attachment = "reciprocal"
 
     @property
     def settings(self) -> Settings:
         """Those that are not the default."""
-        chosen: list[tuple[str, str | float]] = []
-        chosen += [("wall", self.wall)] if self.wall != "gregory" else []
-        chosen += [("joints", self.joints)] if self.joints != "series" else []
-        chosen += [("grading", self.grading)] if self.grading != 1.0 else []
-        return tuple(chosen)
+        pairs = ((name, getattr(self, name)) for name in DEFAULTS)
+        return tuple((name, value) for name, value in pairs if value != DEFAULTS[name])
 
     def check_settings(self, model: str) -> None:
         """Raise InputError for a setting that the model does not have."""
@@ -94,14 +97,9 @@ class AtSize(Divided, frozen=True, kw_only=True):
     model: AnyModel
     mode: Mode
     count: Size | None = None
-    theory: Theory = "euler-bernoulli"
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
-        if self.count is not None and self.theory != "euler-bernoulli":
-            raise InputError(
-                f"theory = {self.theory!r} belongs to model = analytic: the {self.model} model is Euler-Bernoulli"
-            )
         self.check_settings(self.model)
 
 

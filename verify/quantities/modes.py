@@ -46,20 +46,14 @@ def _over_sizes(a: OverSizes, scene: "Scene") -> tuple[Need, ...]:
 
 def _frequency(a: AtSize, scene: "Scene", bench: Workbench) -> float:
     if a.count is None:
-        if a.theory == "euler-bernoulli":
-            return bench.exact_hz(a.mode)
-        from verify.exact.closed_forms import frequency_hz
-
-        return frequency_hz(scene.beam, a.mode, a.theory)
+        return bench.exact_hz(a.mode, a.theory)
     return bench.frequency_hz(a.model, a.count, a.mode, a.settings)
 
 
 def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
     if a.count is None:
-        from verify.exact.closed_forms import frequency_hz
-
-        exact = frequency_hz(scene.beam, a.mode)
-        return (frequency_hz(scene.beam, a.mode, a.theory) - exact) / exact
+        exact = bench.exact_hz(a.mode)
+        return (bench.exact_hz(a.mode, a.theory) - exact) / exact
     return bench.frequency_error(a.model, a.count, a.mode, a.settings)
 
 
@@ -142,7 +136,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "mode.frequency_error",
         "1",
-        "Signed error relative to the exact Euler-Bernoulli frequency.",
+        "Signed error relative to the exact frequency by the same theory; of a theory itself, to Euler-Bernoulli's.",
         AtSize,
         "modes",
         _frequency_error,

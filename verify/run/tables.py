@@ -104,7 +104,7 @@ def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple
     """A wave quantity over one or two axes. Raises InputError."""
     from verify.studies.design_map import design_map, parse_axis
 
-    axes = tuple(parse_axis(text) for text in sweeps)
+    axes = tuple(parse_axis(text, scene.drive.frequency_hz if scene.drive else None) for text in sweeps)
     given = given_arguments(arguments)
     n_points = math.prod(len(axis.values) for axis in axes)
     return Job(n_points, lambda step: design_map(quantity, given, axes, scene, Workbench(scene.beam), step))

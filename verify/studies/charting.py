@@ -13,6 +13,8 @@ Figure = dict[str, Any]
 GREY = "#8a8f98"
 MEAN_COLOUR, RAYLEIGH, TIMOSHENKO = "#2a9d5c", "#9b6bdf", "#d6427a"
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash")
+PALETTE = ("#2a9d5c", "#d6427a", "#9b6bdf", "#c79a00", "#00a3a3", "#7a5c3e", "#5c6773")
+"""Of lines that are told from each other by nothing else."""
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x")
 LOG: Figure = {"type": "log", "exponentformat": "power"}
 

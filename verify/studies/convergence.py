@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
-import msgspec
 from msgspec import Meta
 
+from verify.judge.variants import Rules, every_rule
 from verify.models.catalogue import discrete
 from verify.studies.kind import Progress, Study
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 Counts: TypeAlias = Annotated[tuple[Annotated[int, Meta(ge=1)], ...], Meta(min_length=1)]
 
 
-class Convergence(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for the error of a few modes of the discrete models over several sizes."""
+class Convergence(Rules, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for the error of a few modes of the discrete models over several sizes, each rule of them side by side."""
 
     modes: Counts = (1, 5, 22)
     counts: Counts = (10, 20, 49, 98)
@@ -34,12 +34,13 @@ class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
     nothing = ()
 
     def needs(self, asked: Convergence, scene: "Scene") -> "tuple[Need, ...]":
-        """Each model at each size."""
+        """Each model at each size; for the last mode every rule of the chain that makes a difference."""
         from verify.judge.workbench import Need
 
-        return tuple(
-            Need(m.name, count, max(asked.modes)) for count in asked.counts for m in discrete("solve_modes", scene.beam)
-        )
+        last = max(asked.modes)
+        variants = asked.variants(model.name for model in discrete("solve_modes", scene.beam))
+        every = (*variants, *every_rule(scene.beam))
+        return tuple(Need(one.model, count, last, one.settings) for count in asked.counts for one in every)
 
     def n_steps(self, asked: Convergence, scene: "Scene") -> int:
         """One for each size."""
@@ -49,6 +50,6 @@ class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
         self, asked: Convergence, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
     ) -> "ConvergenceFound":
         """See `convergence_figures.convergence`."""
-        from verify.studies.convergence_figures import ConvergenceFound, convergence
+        from verify.studies.convergence_figures import found
 
-        return ConvergenceFound(rows=convergence(bench, asked, step))
+        return found(bench, asked, step)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
-from verify.judge.workbench import Workbench, comparable
+from verify.judge.variants import Variant, every_rule
+from verify.judge.workbench import Settings, Workbench, comparable
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
 from verify.patience import check_work
@@ -38,7 +39,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     count: int
     exact_hz: float
     cells: dict[str, Cell]
-    """By model."""
+    """By the label of each variant: 'segment', 'segment wall=half'."""
     bracket_width: float | None
     """(upper - lower) / mean; None where there is no bracket."""
     mean_error: float | None
@@ -47,21 +48,52 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     """Why a cell is empty."""
 
 
+class RuleErrors(msgspec.Struct, frozen=True, kw_only=True):
+    """The error of one mode by one rule of the chain over sizes."""
+
+    variant: Variant
+    mode: int
+    counts: tuple[int, ...]
+    errors: tuple[float | None, ...]
+
+
 class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
     """Rows by mode, then by size."""
 
     rows: tuple[Row, ...]
+    variants: tuple[Variant, ...] = ()
+    """Of the cells."""
+    slopes: tuple[tuple[str, int], ...] = ()
+    """(label of a variant, order at which it converges on this beam, as theory has it)."""
+    rules: tuple[RuleErrors, ...] = ()
+    """Every rule of the chain that makes a difference on this beam; none where there is but one."""
 
     def tables(self) -> tuple[Table, ...]:
-        """One for each mode."""
+        """One for each mode, of some variants at a time where there are many."""
         groups = [tuple(group) for _, group in groupby(self.rows, key=lambda row: row.mode)]
-        return tuple(_mode_table(group) for group in groups)
+        parts = [self.variants[i : i + ABREAST] for i in range(0, len(self.variants), ABREAST)]
+        tables = [(group, part) for group in groups for part in parts]
+        return (*(_mode_table(group, part) for group, part in tables), *self._rules_table())
+
+    def _rules_table(self) -> tuple[Table, ...]:
+        if not self.rules:
+            return ()
+        first = self.rules[0]
+        columns = [Column("N"), *(Column(_rule(one.variant), "bare percent") for one in self.rules)]
+        rows = zip(first.counts, *(one.errors for one in self.rules), strict=True)
+        return (
+            Table(
+                title=f"mode {first.mode} by every rule of the chain, error in %",
+                columns=tuple(columns),
+                rows=tuple(rows),
+            ),
+        )
 
     def charts(self) -> tuple[Chart, ...]:
-        """Errors over sizes, the bracket, run time against error."""
+        """Errors over sizes, the rules of the chain, the bracket, run time against error."""
         from verify.studies.mode_charts import convergence_charts
 
-        return convergence_charts(self.rows)
+        return convergence_charts(self)
 
     def records(self) -> list[dict[str, Any]]:
         """Rows with one level of names."""
@@ -86,82 +118,128 @@ READ_SO = (
 )
 
 
-def _mode_table(rows: tuple[Row, ...]) -> Table:
+ABREAST = 2
+"""Variants in one table: more do not fit into a terminal."""
+
+
+def _rule(variant: Variant) -> str:
+    """A rule of the chain above a column."""
+    return ", ".join(f"{name} {value}" for name, value in variant.settings) or "default"
+
+
+def _head(variant: Variant) -> str:
+    """What stands above a variant's frequencies."""
+    words = MODELS[variant.model].title.split()[0] or variant.model
+    return " ".join([words, *(str(value) for _, value in variant.settings)])
+
+
+def _mode_table(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> Table:
     columns = [Column("N")]
-    for model in rows[0].cells:
+    for one in variants:
         error, order, time = Column("error %", "bare percent"), Column("order", ".2f"), Column("ms", ".3g", 1e3)
-        columns += [Column(MODELS[model].title.split()[0] or model, ".7g"), error, order, time]
+        columns += [Column(_head(one), ".7g"), error, order, time]
     columns += [Column("bracket", "bare size"), Column("mean %", "bare percent", wide=True)]
     notes = tuple(dict.fromkeys(note for row in rows for note in row.notes))
     return Table(
         title=f"mode {rows[0].mode}, exact {rows[0].exact_hz:.4f} Hz",
         columns=tuple(columns),
-        rows=tuple((row.count, *_figures(row), row.bracket_width, row.mean_error) for row in rows),
+        rows=tuple((row.count, *_figures(row, variants), row.bracket_width, row.mean_error) for row in rows),
         notes=(*notes, READ_SO),
     )
 
 
-def _figures(row: Row) -> list[float | None]:
-    return [
-        value for cell in row.cells.values() for value in (cell.frequency_hz, cell.error, cell.order, cell.run_time_s)
-    ]
+def _figures(row: Row, variants: tuple[Variant, ...]) -> list[float | None]:
+    cells = [row.cells[one.label] for one in variants]
+    return [value for cell in cells for value in (cell.frequency_hz, cell.error, cell.order, cell.run_time_s)]
 
 
-def convergence(bench: Workbench, asked: "Convergence", progress: Progress = lambda step: None) -> tuple[Row, ...]:
-    """Rows by mode, then by size. `progress` is told the size about to be solved. Raises InputError."""
-    names, left_out = comparable(bench.beam, asked.counts, max(asked.modes))
-    models = tuple(names)
-    _check_together(bench.beam, models, asked.counts, max(asked.modes))
+def found(bench: Workbench, asked: "Convergence", progress: Progress = lambda step: None) -> ConvergenceFound:
+    """Everything a [convergence] asks for. `progress` is told the size about to be solved. Raises InputError."""
+    last = max(asked.modes)
+    names, left_out = comparable(bench.beam, asked.counts, last)
+    variants = asked.variants(names)
+    _check_together(bench.beam, variants, asked.counts, last)
     seconds = {}
     for count in asked.counts:
         progress(f"{count} segments and elements")
-        seconds[count] = _timed(bench, models, count, max(asked.modes))
+        seconds[count] = _timed(bench, variants, count, last)
     rows: list[Row] = []
     for mode in asked.modes:
         previous: Row | None = None
         for count in asked.counts:
-            previous = _row(bench, mode, count, seconds[count], previous, tuple(left_out.values()))
+            previous = _row(bench, mode, count, seconds[count], previous, asked.chosen, tuple(left_out.values()))
             rows.append(previous)
-    return tuple(rows)
+    orders = ((one.label, one.order(bench.beam)) for one in variants)
+    return ConvergenceFound(
+        rows=tuple(rows),
+        variants=variants,
+        slopes=tuple((label, order) for label, order in orders if order),
+        rules=_rules(bench, variants, last, asked.counts),
+    )
 
 
-def _check_together(beam: "Beam", models: tuple[str, ...], counts: tuple[int, ...], n_modes: int) -> None:
+def _rules(
+    bench: Workbench, variants: tuple[Variant, ...], mode: int, counts: tuple[int, ...]
+) -> tuple[RuleErrors, ...]:
+    """Errors by every rule of the chain on this beam, the default first; none where it has one rule alone."""
+    every = every_rule(bench.beam)
+    models = dict.fromkeys(one.model for one in every)
+    plain = [Variant(model) for model in models]
+    shown = dict.fromkeys((*plain, *(one for one in variants if one.model in models), *every))
+    return tuple(
+        RuleErrors(
+            variant=one,
+            mode=mode,
+            counts=counts,
+            errors=tuple(bench.error_or_why(one.model, n, mode, one.settings)[0] for n in counts),
+        )
+        for one in (shown if every else ())
+    )
+
+
+def _check_together(beam: "Beam", variants: tuple[Variant, ...], counts: tuple[int, ...], n_modes: int) -> None:
     """Raise InputError where all solves, each done and then timed, would take too long."""
     from verify.models.eigen import solve_seconds
 
-    sizes = [(MODELS[model], count) for count in counts for model in models]
+    sizes = [(MODELS[one.model], count) for count in counts for one in variants]
     seconds = sum(solve_seconds(model.unknowns(beam, n), min(n_modes, model.n_elastic(beam, n))) for model, n in sizes)
     check_work("counts", list(counts), 2.0 * seconds, "give fewer or smaller ones")
 
 
-def _timed(bench: Workbench, models: tuple[str, ...], count: int, n_modes: int) -> dict[str, float]:
-    """Seconds of a warm solve for each model, medians of rounds in which the models take turns."""
-    solves = {}
-    for name in models:
-        model = MODELS[name]
+def _timed(bench: Workbench, variants: tuple[Variant, ...], count: int, n_modes: int) -> dict[Variant, float]:
+    """Seconds of a warm solve for each variant, medians of rounds in which they take turns."""
+    solves = []
+    for one in variants:
+        model, settings = MODELS[one.model], dict(one.settings)
         n = min(n_modes, model.n_elastic(bench.beam, count))
-        solves[name] = lambda model=model, n=n: model.solve_modes(bench.beam, n, count)
-        bench.modes(name, count, n)
-    return dict(zip(models, interleaved_medians(list(solves.values())), strict=True))
+        solves.append(lambda model=model, n=n, how=settings: model.solve_modes(bench.beam, n, count, **how))
+        bench.modes(one.model, count, n, one.settings)
+    return dict(zip(variants, interleaved_medians(solves), strict=True))
 
 
 def _row(
-    bench: Workbench, mode: int, count: int, seconds: dict[str, float], previous: Row | None, left_out: tuple[str, ...]
+    bench: Workbench,
+    mode: int,
+    count: int,
+    seconds: dict[Variant, float],
+    previous: Row | None,
+    chosen: Settings,
+    left_out: tuple[str, ...],
 ) -> Row:
     cells, notes = {}, []
-    for model, time in seconds.items():
-        cells[model], note = _cell(bench, model, mode, count, time, previous)
+    for one, time in seconds.items():
+        cells[one.label], note = _cell(bench, one, mode, count, time, previous)
         notes += [note] if note else []
     width = mean_error = None
     try:
-        found = bench.bracket(mode, count)
-        width, mean_error = found.relative_width, bench.frequency_error(MEAN, count, mode)
+        found = bench.bracket(mode, count, chosen)
+        width, mean_error = found.relative_width, bench.frequency_error(MEAN, count, mode, chosen)
     except InputError as error:
         notes += [str(error)] if not notes else []
     return Row(
         mode=mode,
         count=count,
-        exact_hz=bench.exact_hz(mode),
+        exact_hz=bench.exact_hz(mode, dict(chosen).get("theory")),
         cells=cells,
         bracket_width=width,
         mean_error=mean_error,
@@ -170,13 +248,13 @@ def _row(
 
 
 def _cell(
-    bench: Workbench, model: str, mode: int, count: int, seconds: float, previous: Row | None
+    bench: Workbench, one: Variant, mode: int, count: int, seconds: float, previous: Row | None
 ) -> tuple[Cell, str]:
-    error, note = bench.error_or_why(model, count, mode)
+    error, note = bench.error_or_why(one.model, count, mode, one.settings)
     if error is None:
         return Cell(), note
-    order = _local_order(previous.count, previous.cells[model].error, count, error) if previous else None
-    frequency = bench.paired_frequency_hz(model, count, mode)
+    order = _local_order(previous.count, previous.cells[one.label].error, count, error) if previous else None
+    frequency = bench.paired_frequency_hz(one.model, count, mode, one.settings)
     return Cell(frequency_hz=frequency, error=error, order=order, run_time_s=seconds), ""
 
 

@@ -22,6 +22,7 @@ from verify.quantities.kind import Quantity
 from verify.quantities.wave_arguments import Driven, InWindow
 from verify.studies.kind import Progress
 from verify.studies.told import Column, Found, Table
+from verify.studies.wave import around
 from verify.waves.measures import middle_half
 from verify.waves.unit_waves import Gaps, UnitDrive, superposed
 
@@ -37,6 +38,7 @@ AXES = {
     "count": "49:98:50",
 }
 """What a map can run over, each with an example."""
+AXIS_STEPS = 241
 COARSE = (13, 7)
 """Rows and columns of a map that are shown at most."""
 MOST_STEPS, MOST_POINTS = 10_000, 4_000_000
@@ -134,11 +136,14 @@ def finite_or_none(value: float) -> float | None:
     return value if isfinite(value) else None
 
 
-def parse_axis(text: str) -> Axis:
-    """'frequency_hz=4000:4600:241' as an axis. Raises InputError."""
-    name, _, span = text.partition("=")
+def parse_axis(text: str, drive_hz: float | None = None) -> Axis:
+    """'frequency_hz=4000:4600:241' as an axis, or its name alone: about the drive, or as in AXES. Raises InputError."""
+    name, equals, span = text.partition("=")
     if name not in AXES:
         raise InputError(f"--sweep {text!r}: {name!r} is no axis, {near_name(name, tuple(AXES))}")
+    if not equals:
+        about = None if drive_hz is None else around(drive_hz, AXIS_STEPS)
+        span = ":".join(map(str, about)) if about and name == "frequency_hz" else AXES[name]
     try:
         start, end, steps = span.split(":")
         ends, n = (float(start), float(end)), int(steps)

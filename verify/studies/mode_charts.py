@@ -12,6 +12,7 @@ from verify.studies.charting import (
     GREY,
     LOG,
     MEAN_COLOUR,
+    PALETTE,
     RAYLEIGH,
     SYMBOLS,
     TIMOSHENKO,
@@ -25,7 +26,9 @@ from verify.studies.charting import (
 from verify.studies.told import Chart
 
 if TYPE_CHECKING:
-    from verify.studies.convergence_figures import Row
+    from collections.abc import Sequence
+
+    from verify.studies.convergence_figures import ConvergenceFound, Row
     from verify.studies.sensitivity_figures import SensitivityFound
     from verify.studies.spectrum_figures import SpectrumFound
 
@@ -38,9 +41,48 @@ def spectrum_charts(study: "SpectrumFound") -> tuple[Chart, ...]:
     return tuple(one for one in charts if one.data)
 
 
-def convergence_charts(rows: "tuple[Row, ...]") -> tuple[Chart, ...]:
-    """Errors over sizes, the bracket, run time against error."""
-    return tuple(one for one in (_convergence(rows), _bracket(rows), _work(rows)) if one.data)
+def convergence_charts(found: "ConvergenceFound") -> tuple[Chart, ...]:
+    """Errors over sizes, the rules of the chain, the bracket, run time against error."""
+    charts = (_convergence(found), _rules(found), _bracket(found), _work(found))
+    return tuple(one for one in charts if one.data)
+
+
+def _variant_line(
+    found: "ConvergenceFound | SpectrumFound",
+    label: str,
+    x: "Sequence[float]",
+    y: "Sequence[float | None]",
+    **style: Figure,
+) -> Figure:
+    """The line of a variant: its model's where there is one of it, else a colour of its own."""
+    one = next(variant for variant in found.variants if variant.label == label)
+    kin = [variant for variant in found.variants if variant.model == one.model]
+    if len(kin) == 1 or kin[0] == one:
+        return model_line(one.model, x, y, **style) | {"name": one.title}
+    return line(one.title, PALETTE[kin.index(one) % len(PALETTE)], x, y, **style)
+
+
+def _rules(found: "ConvergenceFound") -> Chart:
+    """One line for each rule of the chain, the default in the model's colour."""
+    data = []
+    for i, one in enumerate(found.rules):
+        y = percent(one.errors, size=True)
+        plain = line(one.variant.title, PALETTE[i % len(PALETTE)], one.counts, y)
+        data.append(plain if one.variant.settings else model_line(one.variant.model, one.counts, y))
+    mode = found.rules[0].mode if found.rules else 0
+    return Chart(
+        id="rules",
+        title=f"Every rule of the chain on this beam, mode {mode}",
+        caption="Walls, joints and attachments side by side. A dip is where an error changes its sign: after it the "
+        "error grows once more before it falls for good.",
+        data=data,
+        layout=axes(
+            "number of segments N",
+            "size of the frequency error, %",
+            xaxis=sizes_axis(n for one in found.rules for n in one.counts),
+            yaxis=LOG,
+        ),
+    )
 
 
 def _signed_errors(study: "SpectrumFound") -> Chart:
@@ -48,15 +90,15 @@ def _signed_errors(study: "SpectrumFound") -> Chart:
     return Chart(
         id="mode-errors",
         title=f"Frequency error over mode number, N = {study.count}",
-        caption=f"Signed, against exact Euler-Bernoulli.{below}",
-        data=[model_line(model, study.modes, percent(values)) for model, values in study.errors.items()],
+        caption=f"Signed, against exact {study.theory}.{below}",
+        data=[_variant_line(study, label, study.modes, percent(values)) for label, values in study.errors.items()],
         layout=axes("mode number", "frequency error, %"),
     )
 
 
 def _model_form(study: "SpectrumFound") -> Chart:
     errors = study.errors if study.theories else {}  # without a theory beside them they say nothing new
-    data = [model_line(model, study.modes, percent(values, size=True)) for model, values in errors.items()]
+    data = [_variant_line(study, label, study.modes, percent(v, size=True)) for label, v in errors.items()]
     for theory, values in study.theories.items():
         sizes = percent(values, size=True)
         data.append(line(theory.capitalize(), _THEORIES[theory], study.modes, sizes, line={"dash": "dash"}))
@@ -87,22 +129,24 @@ def _mean_line(x: list[int], y: list[float | None], **style: Figure) -> Figure:
     return line("mean of both", MEAN_COLOUR, x, y, **style)
 
 
-def _convergence(rows: "tuple[Row, ...]") -> Chart:
+def _convergence(found: "ConvergenceFound") -> Chart:
+    rows = found.rows
     data, keys = [], []
     for group, style, key in _mode_styles(rows):
         counts = [row.count for row in group]
         errors = {m: percent([row.cells[m].error for row in group], size=True) for m in group[0].cells}
-        traces = [model_line(m, counts, values, **style) for m, values in errors.items()]
+        traces = [_variant_line(found, label, counts, values, **style) for label, values in errors.items()]
         traces.append(_mean_line(counts, percent([row.mean_error for row in group], size=True), **style))
         data += [trace for trace in traces if any(v is not None for v in trace["y"])]
         keys.append(key)
     means = any(row.mean_error is not None for row in rows)
-    guides = [_slope(rows, 4), *([_slope(rows, 6)] if means else [])]
+    guides = [_slope(found, order) for order in (*dict.fromkeys(o for _, o in found.slopes), *([6] if means else []))]
     return Chart(
         id="convergence",
         title="Convergence with the number of segments or elements",
         caption=(mean_in_words(rows) + " " if means else "")
-        + f"Grey: reference slopes. At about {100.0 * EIGENVALUE_FLOOR:.0e} % rounding takes over.",
+        + "Grey: the slopes that theory gives these models on this beam. "
+        f"At about {100.0 * EIGENVALUE_FLOOR:.0e} % rounding takes over.",
         data=[*_named_once(data), *guides, *keys],
         layout=axes(
             "number of parts N",
@@ -125,7 +169,7 @@ def _named_once(traces: list[Figure]) -> list[Figure]:
 
 def mean_in_words(rows: "tuple[Row, ...]") -> str:
     """What the mean of both models is good for, by what was solved: it is farther off than elements on few parts."""
-    above = bounding()[1].name
+    above = next((label for label in rows[0].cells if label.split()[0] == bounding()[1].name), "")
     errors = [(row, row.mean_error, row.cells[above].error) for row in rows]
     farther = [f"mode {row.mode} at N = {row.count}" for row, m, e in errors if m and e and abs(m) >= abs(e)]
     order = "The mean of both is of order 6, because the leading errors cancel"
@@ -135,14 +179,14 @@ def mean_in_words(rows: "tuple[Row, ...]") -> str:
     return f"{order}, but farther off than elements alone beyond about n = {MEAN_LIMIT / pi:.1f} N: {named}."
 
 
-def _slope(rows: "tuple[Row, ...]", order: int) -> Figure:
-    """A reference slope through the coarsest solved point of the last mode that has two sizes."""
-    below = bounding()[0].name
-    points = [(row.count, row.mean_error if order == 6 else row.cells[below].error) for row in rows]
+def _slope(found: "ConvergenceFound", order: int) -> Figure:
+    """A reference slope above the coarsest solved point of a variant that has this order; 6 is that of the mean."""
+    label = next((label for label, own in found.slopes if own == order), None)
+    points = [(row.count, row.cells[label].error if label else row.mean_error) for row in found.rows]
     start = next(((n, e) for n, e in points if e), None)
     if start is None:
         return {"type": "scatter", "x": [], "y": [], "name": f"slope {order}"}
-    counts = sorted({row.count for row in rows if row.count >= start[0]})
+    counts = sorted({row.count for row in found.rows if row.count >= start[0]})
     y = [250.0 * abs(start[1]) * (start[0] / n) ** order for n in counts]
     return {
         "type": "scatter",
@@ -151,17 +195,18 @@ def _slope(rows: "tuple[Row, ...]", order: int) -> Figure:
         "x": counts,
         "y": y,
         "hoverinfo": "skip",
-        "line": {"color": GREY, "width": 1, "dash": "dot" if order == 6 else "solid"},
+        "line": {"color": GREY, "width": 1, "dash": "dot" if label is None else "solid"},
     }
 
 
-def _bracket(rows: "tuple[Row, ...]") -> Chart:
+def _bracket(found: "ConvergenceFound") -> Chart:
     """The bound of the highest mode, relative to the exact frequency."""
-    mode, group = max(_by_mode(rows).items())
+    mode, group = max(_by_mode(found.rows).items())
+    labels = {model.name: next(one.label for one in found.variants if one.model == model.name) for model in bounding()}
     group = [row for row in group if row.bracket_width is not None]
     counts = [row.count for row in group]
     lower, upper = (
-        model_line(model.name, counts, percent([row.cells[model.name].error for row in group])) for model in bounding()
+        model_line(name, counts, percent([row.cells[label].error for row in group])) for name, label in labels.items()
     )
     lower |= {"fill": "tonexty", "fillcolor": "rgba(138,143,152,0.18)"}
     mean = _mean_line(counts, percent([row.mean_error for row in group]))
@@ -175,13 +220,14 @@ def _bracket(rows: "tuple[Row, ...]") -> Chart:
     )
 
 
-def _work(rows: "tuple[Row, ...]") -> Chart:
+def _work(found: "ConvergenceFound") -> Chart:
     data, keys = [], []
-    for group, style, key in _mode_styles(rows):
-        for model in group[0].cells:
-            solved = [(row.cells[model], row.count) for row in group if row.cells[model].error is not None]
+    for group, style, key in _mode_styles(found.rows):
+        for label in group[0].cells:
+            solved = [(row.cells[label], row.count) for row in group if row.cells[label].error is not None]
             times = [1e3 * (cell.run_time_s or 0.0) for cell, _ in solved]
-            trace = model_line(model, times, percent([cell.error for cell, _ in solved], size=True), **style)
+            sizes = percent([cell.error for cell, _ in solved], size=True)
+            trace = _variant_line(found, label, times, sizes, **style)
             data += [trace | {"text": [f"N = {count}" for _, count in solved]}] if solved else []
         keys.append(key)
     return Chart(

@@ -38,6 +38,23 @@ class SensitivityStudy(Study[Sensitivity, "SensitivityFound"]):
     name, section = "sensitivity", Sensitivity
     title = "Modulus and density"
 
+    def asked(self, scene: "Scene") -> Sensitivity | None:
+        """What the scene asks, where its beam has one modulus and one density to turn."""
+        given: Sensitivity | None = getattr(scene, self.name, None)
+        return None if given is None or self._missing(scene) else given
+
+    def skipped(self, scene: "Scene") -> str:
+        """Why it is left out."""
+        return (self._missing(scene) if getattr(scene, self.name, None) else "") or super().skipped(scene)
+
+    def _missing(self, scene: "Scene") -> str:
+        beam = scene.beam
+        if beam.section:
+            return f"a beam of {len(beam.pieces)} sections has more than one modulus and density to turn"
+        if beam.youngs_modulus is None or beam.density is None:
+            return "a section given by its stiffness and mass has no modulus and density to turn"
+        return ""
+
     def run(
         self, asked: Sensitivity, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
     ) -> "SensitivityFound":

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-import msgspec
 from msgspec import Meta
 
+from verify.judge.variants import Rules
 from verify.models.catalogue import discrete
 from verify.studies.kind import Progress, Study
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from verify.studies.told import Found
 
 
-class Spectrum(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for the error of modes 1..modes of the discrete models at one size."""
+class Spectrum(Rules, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Ask for the error of modes 1..modes of the discrete models at one size, each rule of them side by side."""
 
     modes: Annotated[int, Meta(ge=1, le=10_000)] = 22
     count: Annotated[int, Meta(ge=1)] = 49
@@ -31,10 +31,11 @@ class SpectrumStudy(Study[Spectrum, "SpectrumFound"]):
     title = "Error spectrum"
 
     def needs(self, asked: Spectrum, scene: "Scene") -> "tuple[Need, ...]":
-        """Each model once."""
+        """Each variant once."""
         from verify.judge.workbench import Need
 
-        return tuple(Need(model.name, asked.count, asked.modes) for model in discrete("solve_modes", scene.beam))
+        variants = asked.variants(model.name for model in discrete("solve_modes", scene.beam))
+        return tuple(Need(one.model, asked.count, asked.modes, one.settings) for one in variants)
 
     def run(
         self, asked: Spectrum, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

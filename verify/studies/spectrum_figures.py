@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.exact.closed_forms import frequency_hz
+from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench, comparable, is_bracketed
-from verify.models.catalogue import MODELS
 from verify.options import THEORIES
 from verify.studies.told import Chart, Found
 from verify.words import percent
@@ -20,11 +20,15 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     count: int
     modes: tuple[int, ...]
     errors: dict[str, tuple[float | None, ...]]
-    """By model; None for a mode that it does not have or that no mode of its looks like."""
+    """By the label of each variant; None for a mode that it does not have or that no mode of its looks like."""
     theories: dict[str, tuple[float, ...]]
     """Errors of other beam theories against Euler-Bernoulli; empty where they have no closed form."""
+    theory: str
+    """Against which the errors are."""
     bracketed: bool
     """Whether the models bound the exact frequency from both sides."""
+    variants: tuple[Variant, ...] = ()
+    """Of the errors."""
     left_out: tuple[str, ...] = ()
     """Which models of other packages are not here, and why."""
 
@@ -37,16 +41,16 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     def facts(self) -> tuple[str, ...]:
         """The last mode's errors."""
         found = [
-            f"{MODELS[model].title} {percent(values[-1])}"
-            for model, values in self.errors.items()
-            if values[-1] is not None
+            f"{one.title} {percent(value)}"
+            for one in self.variants
+            if (value := self.errors[one.label][-1]) is not None
         ]
         found += [f"{theory.capitalize()} theory {percent(values[-1])}" for theory, values in self.theories.items()]
-        where = f"mode {self.modes[-1]} at N = {self.count} against Euler-Bernoulli"
+        where = f"mode {self.modes[-1]} at N = {self.count} against {self.theory}"
         return (*((f"{where}: {', '.join(found)}",) if found else ()), *self.left_out)
 
     def plain(self) -> object:
-        """Errors by the model's name."""
+        """Errors by the variant's label."""
         return {"count": self.count, "modes": self.modes, **self.errors, "theories": self.theories}
 
     def records(self) -> list[dict[str, Any]]:
@@ -61,15 +65,25 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
 def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
     """Errors of modes 1..modes at one size. Raises InputError for a size that cannot be solved."""
     models, left_out = comparable(bench.beam, (asked.count,), asked.modes)
+    variants = asked.variants(models)
+    errors = {one.label: _errors(bench, one, asked) for one in variants}
     modes = tuple(range(1, asked.modes + 1))
     return SpectrumFound(
         count=asked.count,
         modes=modes,
-        errors={m: tuple(bench.error_or_why(m, asked.count, n)[0] for n in reversed(modes))[::-1] for m in models},
+        errors=errors,
+        variants=variants,
+        theory=" and ".join(word.capitalize() for word in dict.fromkeys(one.theory for one in variants)),
         theories=_theory_errors(bench.beam, modes),
-        bracketed=is_bracketed(bench.beam),
+        bracketed=is_bracketed(bench.beam) and len(variants) == len(models) and not asked.chosen,
         left_out=tuple(left_out.values()),
     )
+
+
+def _errors(bench: Workbench, one: Variant, asked: "Spectrum") -> tuple[float | None, ...]:
+    """Errors of modes 1..modes; the last first, so that one solve serves all."""
+    modes = range(asked.modes, 0, -1)
+    return tuple(bench.error_or_why(one.model, asked.count, n, one.settings)[0] for n in modes)[::-1]
 
 
 def _theory_errors(beam: "Beam", modes: tuple[int, ...]) -> dict[str, tuple[float, ...]]:

@@ -28,21 +28,34 @@ class Wave(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     counts: Counts = (49, 98, 196)
     model: Annotated[str, model_meta("of the map", "solve_harmonic")] = "segment"
     quantity: str = "wave.standing_wave_ratio"
-    frequency_hz: tuple[float, float, int] = (4000.0, 4600.0, 121)
-    """Start, end and steps of the map."""
+    frequency_hz: tuple[float, float, int] | None = None
+    """Start, end and steps of the map; a tenth below and above the scene's drive unless given."""
     phase_deg: tuple[float, float, int] = (0.0, 180.0, 91)
     reflection_limit: float = 0.1
     operating_loss_factor: float = 1e-3
     """For the operating points where the beam is undamped: without losses the crest speed has no bound."""
 
     def __post_init__(self) -> None:
-        for name in ("frequency_hz", "phase_deg"):
-            start, end, steps = getattr(self, name)
+        spans = {"frequency_hz": self.frequency_hz, "phase_deg": self.phase_deg}
+        for name, span in spans.items():
+            if span is None:
+                continue
+            start, end, steps = span
             check_number(f"wave.{name}[0]", start, "start of the map", above=0 if name == "frequency_hz" else -3600)
             check_number(f"wave.{name}[1]", end, "end of the map", above=start)
             check_number(f"wave.{name}[2]", steps, "steps of the map", above=1, below=2001)
         check_number("wave.reflection_limit", self.reflection_limit, "relative", above=0, below=1)
         check_number("wave.operating_loss_factor", self.operating_loss_factor, "eta", above=0, below=1)
+
+
+MAP_STEPS = 121
+SPREAD = 0.1
+"""Of the drive's frequency, below and above it, that a map covers unless it is told."""
+
+
+def around(drive_hz: float, steps: int) -> tuple[float, float, int]:
+    """Start, end and steps of the frequencies about a drive's."""
+    return (1.0 - SPREAD) * drive_hz, (1.0 + SPREAD) * drive_hz, steps
 
 
 class WaveStudy(Study[Wave, "WaveFound"]):

@@ -15,6 +15,7 @@ from verify.quantities.wave_arguments import Driven
 from verify.studies.design_map import Axis, DesignMap, design_map
 from verify.studies.kind import Progress
 from verify.studies.told import Chart, Column, Found, Table
+from verify.studies.wave import MAP_STEPS, around
 from verify.waves.case import DrivenCase
 from verify.waves.driven import SEARCH_SPAN, SEARCHED, check_fields, driven, measures, quietest_drive
 from verify.waves.measures import surface_motion
@@ -256,7 +257,9 @@ def wave_study(scene: "Scene", bench: "Workbench", asked: "Wave", progress: Prog
     model, count = asked.model, asked.count if MODELS.named(asked.model).sized else None
     eta = scene.beam.loss_factor or asked.operating_loss_factor
     chosen: dict[str, Any] = {"model": model, "loss_factor": eta} | ({"count": count} if count else {})
-    axes = (Axis("frequency_hz", _steps(asked.frequency_hz)), Axis("phase_deg", _steps(asked.phase_deg)))
+    assert scene.drive is not None
+    span = asked.frequency_hz or around(scene.drive.frequency_hz, MAP_STEPS)
+    axes = (Axis("frequency_hz", _steps(span)), Axis("phase_deg", _steps(asked.phase_deg)))
     sizes = {"analytic": None} | dict.fromkeys(models_of_waves(scene.beam), asked.count)
     fields = {name: driven(case_on(scene, name, n), bench) for name, n in sizes.items()}
     case = driven_case(Driven(model=model, count=count, loss_factor=eta), scene)

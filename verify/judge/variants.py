@@ -1,0 +1,116 @@
+"""A model together with its settings: what stands side by side in a table, a chart or a choice."""
+
+from collections.abc import Iterable
+from itertools import product
+from typing import Annotated, Any, TypeAlias
+
+import msgspec
+from msgspec import Meta
+
+from verify.beam import Beam
+from verify.errors import InputError
+from verify.judge.workbench import Settings
+from verify.models.catalogue import MODELS, discrete
+from verify.options import WALLS, Attachment, Joints, Theory, Wall
+
+DEFAULTS: dict[str, str | float] = {
+    "wall": "gregory",
+    "joints": "series",
+    "grading": 1.0,
+    "theory": "euler-bernoulli",
+    "attachment": "reciprocal",
+}
+"""Of the settings that models share, in the order in which they are told."""
+
+Grading: TypeAlias = Annotated[float, Meta(gt=0)]
+
+
+class Variant(msgspec.Struct, frozen=True):
+    """A model with settings other than its defaults."""
+
+    model: str
+    settings: Settings = ()
+
+    @property
+    def label(self) -> str:
+        """Its name in data: 'segment', 'segment wall=half'."""
+        return " ".join([self.model, *(f"{name}={value}" for name, value in self.settings)])
+
+    @property
+    def title(self) -> str:
+        """Its name in a table or a chart: 'segments', 'segments, wall half'."""
+        words = [str(value) if name == "theory" else f"{name} {value}" for name, value in self.settings]
+        return ", ".join([MODELS[self.model].title, *words])
+
+    @property
+    def theory(self) -> str:
+        """Of the beam."""
+        return str(dict(self.settings).get("theory", DEFAULTS["theory"]))
+
+    def order(self, beam: Beam) -> int | None:
+        """The order at which its frequencies converge on a beam, as theory has it; None where nobody says."""
+        return MODELS[self.model].order(beam, **dict(self.settings))
+
+
+class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How models are set up; several words stand side by side."""
+
+    wall: Wall | tuple[Wall, ...] = "gregory"
+    """How segments are held at a clamped end."""
+    joints: Joints | tuple[Joints, ...] = "series"
+    """The spring between two links."""
+    grading: Grading | tuple[Grading, ...] = 1.0
+    """Length of a section's last part over its first."""
+    theory: Theory | tuple[Theory, ...] = "euler-bernoulli"
+    """Of the beam, in every model."""
+    attachment: Attachment | tuple[Attachment, ...] = "reciprocal"
+    """How segments feel point masses and springs."""
+
+    def variants(self, models: Iterable[str]) -> tuple[Variant, ...]:
+        """Each model with each of the settings that it has. Raises InputError for one that no model has."""
+        names = tuple(models)
+        self._check_known(names)
+        found: dict[Variant, None] = {}
+        for model in names:
+            known = [name for name in DEFAULTS if name in MODELS.named(model).modal_settings]
+            for values in product(*(self._several(name) for name in known)):
+                pairs = zip(known, values, strict=True)
+                found[Variant(model, tuple((name, value) for name, value in pairs if value != DEFAULTS[name]))] = None
+        return tuple(found)
+
+    def _several(self, name: str) -> tuple[Any, ...]:
+        value = getattr(self, name)
+        return value if isinstance(value, tuple) else (value,)
+
+    def _check_known(self, models: tuple[str, ...]) -> None:
+        for name, default in DEFAULTS.items():
+            turned = [value for value in self._several(name) if value != default]
+            if turned and not any(name in MODELS.named(model).modal_settings for model in models):
+                raise InputError(f"{name} = {turned[0]!r} is a setting of none of {', '.join(models)}: leave it out")
+
+    @property
+    def chosen(self) -> Settings:
+        """Those that are one word, other than the default."""
+        single = ((name, self._several(name)) for name in DEFAULTS)
+        return tuple((name, words[0]) for name, words in single if len(words) == 1 and words[0] != DEFAULTS[name])
+
+
+def models_with(name: str) -> tuple[str, ...]:
+    """The models of parts that have a setting."""
+    return tuple(model.name for model in discrete() if name in model.modal_settings)
+
+
+def beside(beam: Beam) -> tuple[Variant, ...]:
+    """The rule that stands beside the default on this beam: the literature's wall, the joint that axial force mends."""
+    other = [("wall", "half")] * ("clamped" in beam.supports) + [("joints", "tensioned")] * bool(beam.tension)
+    return tuple(Variant(model, (one,)) for one in other for model in models_with(one[0]))
+
+
+def every_rule(beam: Beam) -> tuple[Variant, ...]:
+    """Every rule of a chain that makes a difference on this beam: walls, joints, attachments."""
+    walls = [w for w in WALLS[1:] if w != "welded" or not beam.section] if "clamped" in beam.supports else []
+    rules = [("wall", wall) for wall in walls]
+    rules += [("joints", "printed")] * (beam.stepped and all(p.youngs_modulus for p in beam.pieces))
+    rules += [("joints", "tensioned")] * bool(beam.tension)
+    rules += [("attachment", "lever")] * bool(beam.mass or beam.spring)
+    return tuple(Variant(model, (rule,)) for rule in rules for model in models_with(rule[0]))
