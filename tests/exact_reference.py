@@ -1,5 +1,7 @@
 """Beams with everything on them, by two other ways: plain transfer matrices of many digits, and Ritz's polynomials."""
 
+from itertools import pairwise
+
 import mpmath
 import numpy as np
 from scipy.linalg import eigh, null_space
@@ -14,7 +16,7 @@ def cut(beam):
     for piece in beam.pieces:
         end = start + piece.length
         inner = [start, *sorted(p for p in places if start + 1e-12 < p < end - 1e-12), end]
-        parts += [(piece, a, b) for a, b in zip(inner, inner[1:], strict=False)]
+        parts += [(piece, a, b) for a, b in pairwise(inner)]
         start = end
     return parts
 

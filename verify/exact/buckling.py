@@ -45,6 +45,6 @@ def check_stable(beam: Beam) -> None:
     """Raise InputError where an axial compression is as large as the buckling load or larger."""
     if beam.tension < 0.0 and -beam.tension >= (load := buckling_load(beam)):
         raise InputError(
-            f"beam.tension = {beam.tension!r} N compresses the beam beyond its buckling load of {load:.6g} N: it has no "
-            "vibration about its straight shape, compress it less or hold it more"
+            f"beam.tension = {beam.tension!r} N compresses the beam beyond its buckling load of {load:.6g} N: it has "
+            "no vibration about its straight shape, compress it less or hold it more"
         )

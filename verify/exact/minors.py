@@ -5,11 +5,11 @@ The two motions that the left end leaves free are carried along the beam not the
 then leave a common factor, of short ones nothing cancels, and no stiffness is assembled whose small eigenvalues
 could drown.
 
-Minors of w, psi, M, V are listed as u = p12, p13, p14 + p23, p24, p34; p14 = p23 throughout, by reciprocity. Of the beam
-to the left of a place they hold its stiffness against w and psi there: [[u3, -u2], [-u2, u1]] / u0, of determinant u4 / u0.
+Minors of w, psi, M, V are listed as u = p12, p13, p14, p24, p34; p23 = p14 throughout, by reciprocity. Of the beam to
+the left of a place they hold its stiffness against w and psi there, [[u3, -u2], [-u2, u1]] / u0, determinant u4 / u0.
 The count of Wittrick and Williams (Q. J. Mech. Appl. Math. 24, 1971) needs no other matrix: the negative eigenvalues at
-every joint, and what each stretch has of its own with both ends clamped, by its pinned ends (Howson and Williams, J. Sound
-Vib. 26, 1973).
+every joint, and what each stretch has of its own with both ends clamped, found by way of pinned ends (Howson and
+Williams, J. Sound Vib. 26, 1973).
 """
 
 from math import cos, exp, expm1, floor, pi, sin, sqrt
@@ -46,7 +46,10 @@ class Carry(NamedTuple):
     lift: float
     turn: float
     bend: float
-    """E1 - m g3, e1 + m g3, e1 - t g3, c e1 + (2 + c m) g3, p e1 - (p m + 2 q) g3, of e1 = g2', m = p + c q, t = p - c q."""
+    """E1 - m g3, e1 + m g3, e1 - t g3, c e1 + (2 + c m) g3, p e1 - (p m + 2 q) g3.
+
+    Of e1 = g2', m = p + c q, t = p - c q.
+    """
 
 
 class Found(NamedTuple):

@@ -10,12 +10,14 @@ from verify.beam import Beam
 from verify.exact.lineup import Lineup, line_up
 from verify.exact.roots import wavenumber_length
 from verify.exact.spans import Spans, solver, spans_of
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Numbers
 
 _POINTS = 12
 """Of Gauss's rule on every span."""
 _PAIR = 1e-9
 """Relative: frequencies that lie closer share a plane of shapes, of which orthogonal ones are taken."""
+_TRIES = 6
+"""Forces, of which one is sure to be far from what does no work on the mode."""
 _STILL = 1e-9
 """Of the largest deflection: what is less does not show where a beam first moves."""
 
@@ -37,9 +39,9 @@ def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, 
     for mode in modes:
         found = _mode(beam, mode, theory)
         span, states = found.spans.states(found.states, xi)
-        rows.append(found.spans.derivative(span, states, derivative)[:, 0])
+        rows.append(np.real(found.spans.derivative(span, states, derivative)[:, 0]))
     size = (beam.mass_per_length * beam.length) ** -0.5 / beam.length**derivative
-    return np.array(rows).reshape(len(rows), len(xi)) * size
+    return np.asarray(np.array(rows).reshape(len(rows), len(xi)) * size)
 
 
 @lru_cache(maxsize=1000)
@@ -57,11 +59,13 @@ def _mode(beam: Beam, mode: int, theory: str) -> _Mode:
     return _Mode(spans, states * _sign(spans, states, mode))
 
 
-def _free(solve: Callable[[Array], Array], spans: Spans, mode: int) -> Array:
-    """The motion that needs no force: the answer to any, a resonance away from all others (inverse iteration)."""
-    jumps = np.cos(np.arange(4.0 * len(spans.ends)) * (1.0 + 0.37 * mode)).reshape(-1, 4, 1)
-    states = solve(jumps) - jumps
-    return np.asarray(states / abs(states).max())
+def _free(solve: Callable[[Numbers], Numbers], spans: Spans, mode: int) -> Array:
+    """The motion that needs no force: of the answers to a few, at resonance, the largest (inverse iteration)."""
+    phases = np.arange(4.0 * len(spans.ends))[:, None] * (1.0 + 0.37 * mode + 0.11 * np.arange(_TRIES))
+    answers = solve(np.cos(phases).reshape(-1, 4, _TRIES))
+    sizes = abs(answers).max(axis=(0, 1))
+    best = int(sizes.argmax())
+    return np.real(answers[:, :, best : best + 1] / sizes[best])
 
 
 def _inner(line: Lineup, spans: Spans, one: Array, other: Array) -> float:
@@ -69,10 +73,11 @@ def _inner(line: Lineup, spans: Spans, one: Array, other: Array) -> float:
     points, weights = np.polynomial.legendre.leggauss(_POINTS)
     lengths = np.diff(spans.ends)
     x = (spans.ends[:-1, None] + 0.5 * lengths[:, None] * (points + 1.0)).ravel()
-    total = 0.0
     values = [spans.states(states, x)[1][:, :, 0].reshape(len(lengths), _POINTS, 4) for states in (one, other)]
     w, turn = (values[0][:, :, k] * values[1][:, :, k] @ weights * 0.5 * lengths for k in (0, 1))
-    mass, turning = (np.array([getattr(s, name) for s in line.stretches])[spans.stretch] for name in ("mass", "turning"))
+    mass, turning = (
+        np.array([getattr(s, name) for s in line.stretches])[spans.stretch] for name in ("mass", "turning")
+    )
     total = float(w @ mass + turn @ turning * spans.sizes[1] ** 2)
     for i, joint in enumerate(line.joints):
         at = int(np.searchsorted(spans.stretch, i))

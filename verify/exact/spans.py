@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 
 from verify.exact.lineup import HELD, Lineup
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, Indices, Numbers
 
 _REACH = 1.5
 """Wavenumber times length of a span, at most."""
@@ -28,29 +28,30 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     ends: Array
     """(n + 1,), of the beam's length."""
-    rates: ComplexArray
-    """(n, 4, 4), d/dx of (w, psi, M, V) by themselves, each relative to its own size; real where nothing is lost."""
-    over: ComplexArray
+    rates: Numbers
+    """(stretches, 4, 4), d/dx of (w, psi, M, V) by themselves, each relative to its own size; real without loss."""
+    over: Array
     """(n + 1, 4, 4), from left to right of what is fixed at each end of a span."""
     sizes: Array
     """(4,), what a unit of each is: 1, k, k^2, k^3."""
     supports: tuple[str, str]
-    stretch: Array
-    """(n,), to which stretch of the line each belongs, whole numbers."""
+    stretch: Indices
+    """(n,), to which stretch of the line each belongs."""
 
-    def states(self, at_ends: ComplexArray, x: Array) -> tuple[Array, ComplexArray]:
+    def states(self, at_ends: Numbers, x: Array) -> tuple[Indices, Numbers]:
         """(span, states (len(x), 4, k)) at x, of the beam's length, from those right of each end, (n + 1, 4, k)."""
-        span = np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.rates) - 1)
-        return span, carried(self.rates[span], x - self.ends[span], at_ends[span])
+        span = np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.stretch) - 1)
+        return span, carried(self.rates[self.stretch[span]], x - self.ends[span], at_ends[span])
 
-    def derivative(self, span: Array, states: ComplexArray, order: int) -> ComplexArray:
+    def derivative(self, span: Indices, states: Numbers, order: int) -> Numbers:
         """A derivative of the deflection by x / L, (len(x), k), of any order, from states of the same places."""
+        rates = self.rates[self.stretch[span]]
         for _ in range(order):
-            states = self.rates[span] @ states
+            states = np.asarray(rates @ states)
         return np.asarray(states[:, 0])
 
 
-def carried(rates: ComplexArray, distances: Array, states: ComplexArray) -> ComplexArray:
+def carried(rates: Numbers, distances: Array, states: Numbers) -> Numbers:
     """e^(rate distance) state, (m, 4, k), by its power series."""
     term = total = np.broadcast_to(states, (len(rates), *states.shape[1:]))
     steps = rates * distances[:, None, None]
@@ -76,7 +77,7 @@ def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:
         n = max(ceil(squares**0.5 * stretch.length / _REACH), 1)
         rate = np.zeros((4, 4), dtype=kind)
         rate[0, 1], rate[0, 3], rate[1, 2], rate[2, 1], rate[2, 3], rate[3, 0] = 1.0, -shear, bend, p, 1.0, q
-        rates += [rate * scale] * n
+        rates.append(rate * scale)
         ends.append(places[i] + stretch.length * np.arange(n) / n)
         belongs += [i] * n
     return Spans(
@@ -89,7 +90,7 @@ def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:
     )
 
 
-def _over(line: Lineup, omega2: float, belongs: Array, scale: Array) -> Array:
+def _over(line: Lineup, omega2: float, belongs: Indices, scale: Array) -> Array:
     """The matrices of what is fixed, (n + 1, 4, 4)."""
     over = np.tile(np.eye(4), (len(belongs) + 1, 1, 1))
     for i, joint in enumerate(line.joints):
@@ -99,19 +100,18 @@ def _over(line: Lineup, omega2: float, belongs: Array, scale: Array) -> Array:
     return over
 
 
-def solver(spans: Spans) -> Callable[[ComplexArray], ComplexArray]:
+def solver(spans: Spans) -> Callable[[Numbers], Numbers]:
     """Jumps of the state at the ends, (n + 1, 4, k), to states right of each end, (n + 1, 4, k).
 
     A banded factorisation of the end conditions and of what carries each state to the next.
     """
     from scipy.linalg import solve_banded
 
-    n = len(spans.rates)
-    lengths = np.diff(spans.ends)
-    transfer = carried(spans.rates, lengths, np.broadcast_to(np.eye(4), (n, 4, 4)))
+    n = len(spans.stretch)
+    transfer = carried(spans.rates[spans.stretch], np.diff(spans.ends), np.broadcast_to(np.eye(4), (n, 4, 4)))
     matrix = _banded(spans, transfer)
 
-    def solve(jumps: ComplexArray) -> ComplexArray:
+    def solve(jumps: Numbers) -> Numbers:
         right = np.zeros((4 * n + 4, jumps.shape[2]), dtype=np.result_type(matrix, jumps))
         right[2 : 4 * n + 2] = (transfer @ jumps[:-1]).reshape(4 * n, -1)
         right[4 * n + 2 :] = -jumps[-1][list(HELD[spans.supports[1]])]
@@ -121,7 +121,7 @@ def solver(spans: Spans) -> Callable[[ComplexArray], ComplexArray]:
     return solve
 
 
-def _banded(spans: Spans, transfer: ComplexArray) -> ComplexArray:
+def _banded(spans: Spans, transfer: Numbers) -> Numbers:
     """The matrix by its diagonals, (2 band + 1, 4 n + 4), of states left of each end."""
     n = len(transfer)
     matrix = np.zeros((2 * _BAND + 1, 4 * n + 4), dtype=transfer.dtype)
