@@ -12,7 +12,6 @@ from verify.elements import mesh as element_mesh
 from verify.elements import pencil as element_pencil
 from verify.elements import stock
 from verify.exact import closed_forms, minors, roots
-from verify.exact import modes as analytic_modes
 from verify.judge import compare, sizing, workbench
 from verify.models import division, eigen
 from verify.quantities.catalogue import QUANTITIES, Quantity
