@@ -46,7 +46,9 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
     for n_modes < 1, an unknown theory, what a theory lacks, and compression beyond buckling.
     """
     check_whole("n_modes", n_modes, 1)
-    frequencies = np.array([exact_frequency_hz(beam, n, theory) for n in range(1, n_modes + 1)])
+    plain = theory == "euler-bernoulli" and beam.uniform
+    solve = frequency_hz if plain else exact_frequency_hz
+    frequencies = np.array([solve(beam, n, theory) for n in range(1, n_modes + 1)])
 
     def shapes(x: Array, derivative: int) -> Array:
         return mode_shapes(beam, n_modes, x, derivative, theory)
@@ -66,7 +68,7 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
         sampled=nowhere,
         curvature_points=empty,
         curvatures=nowhere,
-        method="closed form" if has_closed_form(beam, n_modes, theory) else "counted",
+        method="closed form" if plain or has_closed_form(beam, n_modes, theory) else "counted",
     )
 
 
