@@ -57,6 +57,13 @@ def determinant(beam, theory, omega):
     return mpmath.det(mpmath.matrix([[whole[i, j] for j in moves] for i in HELD[beam.supports[1]]]))
 
 
+def a_root_lies_within(beam, theory, found, rel, digits=40):
+    """Whether the determinant changes its sign within a relative distance of a frequency in Hz."""
+    with mpmath.workdps(digits):
+        sides = [determinant(beam, theory, 2 * mpmath.pi * found * (1 + side * mpmath.mpf(rel))) for side in (-1, 1)]
+        return sides[0] * sides[1] < 0
+
+
 def near_root_hz(beam, theory, found, digits=50, beside=1e-7):
     """The root of the determinant next to a frequency, Hz."""
     with mpmath.workdps(digits):

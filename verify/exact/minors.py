@@ -25,6 +25,8 @@ _TERMS = 16
 """Of those series, to rounding."""
 _CLOSE = 16.0
 """Of (sigma1 - sigma2)^2 / (sigma1 sigma2), below which two squares of wavenumbers count as close."""
+_TINY = 1e-120
+"""In place of a minor that is zero to the last digit, where a stiffness is infinite."""
 _CANCELLED = 1e-3
 """Of a determinant that is left of its products, below which another form of it is trusted."""
 
@@ -248,7 +250,7 @@ def _at_joint(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float, 
 
     ahead: p12 at the far end of that stretch, whose sign is that of the determinant.
     """
-    corner = 2.0 * (c * by.g2 + by.h4)
+    corner = 2.0 * (c * by.g2 + by.h4) or _TINY
     force, slope, moment = (part / corner for part in (by.tip, by.g2 - (p + c * q) * by.h4, by.turn))
     if left == "clamped":
         return 0
@@ -256,14 +258,14 @@ def _at_joint(u: Minors, by: Carry, c: float, p: float, q: float, ahead: float, 
         return int(u[4] / u[3] + moment < 0.0)
     if left == "guided":
         return int(u[4] / u[1] + force < 0.0)
-    base = u[0] or 1e-300
+    base = u[0] or _TINY
     ww, wp, pp = u[3] / base + force, slope - u[2] / base, u[1] / base + moment
     return _negatives(ww, wp, pp, ahead * base * corner)
 
 
 def _at_end(u: Minors, support: str) -> int:
     """Negative eigenvalues of the beam's stiffness at its right end, where that is free to move."""
-    base = u[0] or 1e-300
+    base = u[0] or _TINY
     if support == "free":
         return _negatives(u[3] / base, -u[2] / base, u[1] / base, u[4] * base)
     return int(support != "clamped" and u[_END[support]] / base < 0.0)

@@ -189,6 +189,8 @@ def exact_frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -
     are counted by, so that none is missed. Modes rank by frequency: above its cut-off sqrt(kappa G A / rho I) a
     Timoshenko beam has a second family among them. Raises InputError, also for compression beyond buckling.
     """
+    if theory == "euler-bernoulli" and beam.uniform:
+        return frequency_hz(beam, mode)
     check_mode(mode)
     if has_closed_form(beam, mode, theory):
         return frequency_hz(beam, mode, theory)
