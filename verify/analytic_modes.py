@@ -1,11 +1,21 @@
-"""The exact Euler-Bernoulli beam: modes, shapes, harmonic fields, motion in time. The room is `verify.exact`."""
+"""The exact beam: modes, shapes, harmonic fields, buckling, motion in time. The room is `verify.exact`."""
 
+from verify.exact.buckling import buckling_load
 from verify.exact.closed_forms import frequency_hz
 from verify.exact.harmonic import solve_harmonic, unit_responses
 from verify.exact.in_time import time_basis
-from verify.exact.modes import mode_shape, mode_shapes, modes_below, solve_modes, stepped_frequency_hz
+from verify.exact.modes import (
+    exact_frequency_hz,
+    mode_shape,
+    mode_shapes,
+    modes_below,
+    solve_modes,
+    stepped_frequency_hz,
+)
 
 __all__ = [
+    "buckling_load",
+    "exact_frequency_hz",
     "frequency_hz",
     "mode_shape",
     "mode_shapes",

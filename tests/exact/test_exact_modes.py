@@ -114,7 +114,7 @@ def test_timoshenkos_frequency_solves_the_equations_of_motion(titanium_strip):
         k = mode * mpmath.pi / beam.length
         e_i, rho_a = mpmath.mpf(beam.bending_stiffness), mpmath.mpf(beam.mass_per_length)
         rho_i = mpmath.mpf(beam.density) * beam.second_moment
-        shear = beam.shear_coefficient * beam.youngs_modulus / (2 * (1 + mpmath.mpf(beam.poissons_ratio))) * beam.area
+        shear = mpmath.mpf(5) / 6 * beam.youngs_modulus / (2 * (1 + mpmath.mpf(beam.poissons_ratio))) * beam.area
         stiffness = mpmath.matrix([[shear * k**2, -shear * k], [-shear * k, e_i * k**2 + shear]])
         trace = stiffness[0, 0] / rho_a + stiffness[1, 1] / rho_i
         det = mpmath.det(stiffness) / (rho_a * rho_i)

@@ -119,14 +119,15 @@ def test_short_sections_cost_no_digit(supports, lengths):
         assert found == pytest.approx(near_root(beam, found), rel=1e-14)
 
 
-def test_a_count_alone_is_blurred_where_sections_are_short():
-    """Compared subject: the count bisected to rest, as it stood here before, on a beam of 718 mm."""
+def test_the_count_is_as_sharp_as_the_minor_where_sections_are_short():
+    """Bisected to rest it gives the digits too: no stiffness is assembled whose small eigenvalues could drown."""
     beam = many_sections(("guided", "clamped"), (0.3, 0.0012, 0.02, 0.0009, 0.13, 0.004, 0.06, 0.11, 0.002, 0.01, 0.08))
-    low, high = 0.0, 4.0
-    while low < (middle := 0.5 * (low + high)) < high:
-        low, high = (low, middle) if analytic_modes.modes_below(beam, middle) >= 1 else (middle, high)
-    counted = high**2 * beam.wave_constant / (2 * np.pi * beam.length**2)
-    assert 1e-10 < abs(counted / analytic_modes.stepped_frequency_hz(beam, 1) - 1) < 1e-3
+    for mode in (1, 3):
+        low, high = 0.0, 16.0
+        while low < (middle := 0.5 * (low + high)) < high:
+            low, high = (low, middle) if analytic_modes.modes_below(beam, middle) >= mode else (middle, high)
+        counted = high**2 * beam.wave_constant / (2 * np.pi * beam.length**2)
+        assert counted == pytest.approx(analytic_modes.stepped_frequency_hz(beam, mode), rel=1e-13)
 
 
 def test_sections_beyond_what_counting_can_tell_are_refused():
@@ -232,13 +233,8 @@ def test_parts_follow_the_sections():
 
 
 def test_what_has_no_closed_form_is_refused_with_the_models_that_can():
-    for ask in (
-        lambda: analytic_modes.solve_modes(STEPPED, 3),
-        lambda: closed_forms.frequency_hz(STEPPED, 3),
-        lambda: analytic_modes.mode_shape(STEPPED, 1, np.zeros(1)),
-    ):
-        with pytest.raises(InputError, match="use the fem or segment model"):
-            ask()
+    with pytest.raises(InputError, match="use the fem or segment model"):
+        closed_forms.frequency_hz(STEPPED, 3)
     with pytest.raises(InputError, match="2 sections needs at least as many"):
         fem_beam.solve_modes(STEPPED, 1, 1)
     with pytest.raises(InputError, match="add up to"):
@@ -258,53 +254,6 @@ def test_sections_alike_but_other_than_the_beam_are_what_counts():
         assert analytic_modes.stepped_frequency_hz(beam, 3) == pytest.approx(exact, rel=1e-7)
         assert fem_beam.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-5)
         assert segment_model.solve_modes(beam, 3, 80).frequencies_hz[2] == pytest.approx(exact, rel=1e-4)
-
-
-@pytest.mark.parametrize("y", [0.03, 0.4, 0.97, 1.03, 1.9, 2.6])
-def test_the_series_and_the_functions_of_a_section_are_its_dynamic_stiffness(y):
-    """Forces and moments at its ends under end deflections and slopes, from the four wave functions, in 50 digits."""
-    with mpmath.workdps(50):
-        z = mpmath.mpf(y)
-        ends = [[f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)] for t in (0, z) for d in (0, 1)]
-        shears = [
-            [s * f(t, d) for f in (mpmath_cos, mpmath_sin, mpmath_cosh, mpmath_sinh)]
-            for t, d, s in ((0, 3, 1), (0, 2, -1), (z, 3, -1), (z, 2, 1))
-        ]
-        exact = mpmath.matrix(shears) * mpmath.matrix(ends) ** -1
-    functions = (exact[0, 0], exact[0, 1], exact[1, 1], exact[0, 2], exact[0, 3], exact[1, 3])
-    expected = [float(v) for v in functions]
-    solvers = [analytic_modes._stiffness_series] if y < 1.0 else [analytic_modes._stiffness_functions]
-    if 0.9 < y < 2.0:
-        solvers = [analytic_modes._stiffness_series, analytic_modes._stiffness_functions]
-    for solver in solvers:
-        assert solver(y) == pytest.approx(expected, rel=2e-12), solver.__name__
-
-
-def mpmath_cos(t, d):
-    return mpmath.cos(t + d * mpmath.pi / 2)
-
-
-def mpmath_sin(t, d):
-    return mpmath.sin(t + d * mpmath.pi / 2)
-
-
-def mpmath_cosh(t, d):
-    return mpmath.sinh(t) if d % 2 else mpmath.cosh(t)
-
-
-def mpmath_sinh(t, d):
-    return mpmath.cosh(t) if d % 2 else mpmath.sinh(t)
-
-
-def test_a_section_that_hardly_waves_is_a_static_beam():
-    """EI / l^3 times 12, 6 l, 4 l^2, -12, 6 l, 2 l^2, less what inertia takes: 13/35, 11/210, 1/105, 9/70 of it."""
-    beta, length = 0.02, 0.7
-    found = analytic_modes._dynamic_stiffness(beta, length)
-    k = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], dtype=float)
-    m = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) / 420
-    turn = np.diag([1, length, 1, length])
-    expected = turn @ (k / length**3 - beta**4 * length * m) @ turn
-    assert found == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

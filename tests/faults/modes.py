@@ -11,8 +11,7 @@ from verify.elements import linear as fem_beam
 from verify.elements import mesh as element_mesh
 from verify.elements import pencil as element_pencil
 from verify.elements import stock
-from verify.exact import closed_forms, section_minors
-from verify.exact import modes as analytic_modes
+from verify.exact import closed_forms, minors, roots
 from verify.judge import compare, sizing, workbench
 from verify.models import division, eigen
 from verify.quantities.catalogue import QUANTITIES, Quantity
@@ -227,14 +226,24 @@ def section_order_reversed(patch):
 
 
 def sections_carried_in_the_wrong_order(patch):
-    true = analytic_modes._stretches
-    patch.setattr(analytic_modes, "_stretches", lambda beam: true(beam)[::-1])
+    true = roots.trials
+
+    def reversed_stretches(line):
+        return true(structs.replace(line, stretches=line.stretches[::-1], joints=line.joints[::-1]))
+
+    patch.setattr(roots, "trials", reversed_stretches)
 
 
 def minors_without_their_rest(patch):
-    """What a minor keeps of itself, (1 + cos cosh) / 2, a millionth short."""
-    true = section_minors._waves
-    patch.setattr(section_minors, "_waves", lambda y: (*true(y)[:-1], (1.0 - 1e-6) * true(y)[-1]))
+    """What a minor keeps of itself, of which cos cosh is the large part, a millionth short."""
+    true = minors.carry
+
+    def short(*given):
+        by = true(*given)
+        return by._replace(both=(1.0 - 1e-6) * by.both)
+
+    patch.setattr(minors, "carry", short)
+    patch.setattr(roots, "trials", lambda line: lambda beta_length: minors.trial(line, beta_length**4))
 
 
 def printed_equation_for_the_series_form(patch):

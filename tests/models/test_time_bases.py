@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 from motion_reference import FORCES, FREQUENCY, STRIP
 
+from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.elements import in_time as fem_motion
 from verify.elements import linear as fem_beam
@@ -107,8 +109,29 @@ def test_a_stepped_beam_has_its_modes_too():
         assert basis.omegas[:5] / (2 * np.pi) == pytest.approx(
             module.solve_modes(beam, 5, 40).frequencies_hz, rel=1e-10
         )
-    with pytest.raises(InputError, match="section"):
-        basis_of(beam, "analytic", None, 30)
+    exact = basis_of(beam, "analytic", None, 30)
+    assert basis.omegas[:3] == pytest.approx(exact.omegas[:3], rel=1e-5)
+
+
+def test_the_exact_beam_of_sections_with_a_mass_is_its_shapes_in_every_cell():
+    """Higher derivatives by beta^4 of the section that is there; what loses nothing has no damping ratio."""
+    sections = (Section(length=0.2), Section(length=0.23, thickness=0.002))
+    beam = replace(held(("clamped", "pinned")), section=sections, mass=(PointMass(position=0.31, mass=0.02),))
+    basis = basis_of(beam, "analytic", None, 25)
+    assert {0.2, 0.31} <= set(np.round(basis.edges, 12))
+    table = taylor_table(basis.shapes, basis.edges, 0, len(basis.edges) - 1, basis.degree)
+    for x in np.random.default_rng(3).uniform(0.0, 0.43, 40):
+        assert read(table, basis.edges, x) == pytest.approx(basis.shapes(np.array([x]), 0)[:, 0], abs=1e-9)
+    field = analytic_modes.solve_harmonic(beam, FORCES, FREQUENCY)
+    stage = steady_stage(field, Steps(1, 1e-4, 1), 0.0, basis, 0.0)
+    table = taylor_table(stage.rows, stage.edges, 0, len(stage.edges) - 1, stage.degree)
+    places = np.random.default_rng(4).uniform(0.0, 0.43, 40)
+    found = np.array([read(table, stage.edges, x) for x in places]).T
+    true = stage.rows(places)
+    assert np.all(abs(found - true).max(axis=1) <= 1e-9 * abs(true).max(axis=1))
+    sprung = replace(beam, spring=(PointSpring(position=0.1, stiffness=50.0),))
+    with pytest.raises(InputError, match=r"beam\.spring: the exact beam in time takes none"):
+        basis_of(sprung, "analytic", None, 25)
 
 
 @pytest.mark.parametrize(("model", "count", "order"), [("segment", 12, 3), ("fem", 12, 2)])

@@ -80,7 +80,7 @@ def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> floa
         if beam.supports != ("pinned", "pinned"):
             raise InputError(
                 f"theory = {theory!r} has a closed form here for pinned-pinned beams only, "
-                f"not {'-'.join(beam.supports)}: use euler-bernoulli"
+                f"not {'-'.join(beam.supports)}: use euler-bernoulli, or exact_frequency_hz"
             )
         omega *= sqrt(_thickness_factor(beam, beta, theory))
     return omega / (2.0 * pi)

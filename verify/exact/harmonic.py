@@ -1,4 +1,4 @@
-"""The exact harmonic field of a uniform beam: what `analytic_modes.solve_harmonic` returns."""
+"""The exact harmonic field: what `analytic_modes.solve_harmonic` returns. Of a uniform beam in closed form."""
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -8,20 +8,33 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
-from verify.exact.closed_forms import check_uniform
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, refuse_resonance, wavenumber
 
 
-def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> HarmonicField:
+def solve_harmonic(
+    beam: Beam, forces: Sequence[PointForce], frequency_hz: float, theory: str = "euler-bernoulli"
+) -> HarmonicField:
     """The exact steady field under harmonic point forces, e^{+i omega t}, with the beam's loss factor.
 
-    Pinned-pinned in closed form without truncation; other supports in exponentials that decay from where they
-    start, so that no frequency overflows; below |k| L = 1, where both lose digits, in power series. Raises
-    InputError; an undamped resonance is refused.
+    Of a uniform Euler-Bernoulli beam: pinned-pinned in closed form without truncation; other supports in exponentials
+    that decay from where they start, so that no frequency overflows; below |k| L = 1, where both lose digits, in power
+    series. Of any other span by span (`exact.driven`); the loss factor acts on its bending and shear stiffness, not on
+    springs, foundation or axial force. Raises InputError; an undamped resonance is refused.
     """
-    check_uniform(beam)
+    if theory != "euler-bernoulli" or not beam.uniform:
+        from verify.exact.driven import general_field
+
+        shapes = general_field(beam, forces, frequency_hz, theory)
+    else:
+        shapes = _closed_form(beam, forces, frequency_hz)
+    return HarmonicField(
+        model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces), shapes=shapes
+    )
+
+
+def _closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> Callable[[Array, int], ComplexArray]:
     check_drive(beam, forces, frequency_hz)
     if not beam.loss_factor:
         mode = _nearest_mode(beam, frequency_hz)
@@ -30,14 +43,7 @@ def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float
     k = wavenumber(beam, frequency_hz)
     slow, pinned = abs(k) * beam.length < 1.0, beam.supports == ("pinned", "pinned")
     solve = slow_shapes if slow else pinned_shapes if pinned else spliced_shapes
-    return HarmonicField(
-        model="analytic",
-        count=None,
-        beam=beam,
-        frequency_hz=frequency_hz,
-        forces=tuple(forces),
-        shapes=solve(beam, forces, k),
-    )
+    return solve(beam, forces, k)
 
 
 def _nearest_mode(beam: Beam, frequency_hz: float) -> int:
@@ -177,12 +183,21 @@ def _exponentials(k: complex, ends: Array, span: int, x: Array, derivative: int)
     return np.array(rows)
 
 
-def unit_responses(beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array) -> ComplexArray:
+def unit_responses(
+    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, theory: str = "euler-bernoulli"
+) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
     NaN at the frequencies of undamped resonances.
     """
     responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    if theory != "euler-bernoulli" or not beam.uniform:
+        from verify.exact.driven import general_responses
+
+        for i, frequency in enumerate(frequencies_hz):
+            with suppress(ResonanceError):
+                responses[i] = general_responses(beam, positions, float(frequency), x, theory)
+        return responses
     for i, j in np.ndindex(*responses.shape[:2]):
         with suppress(ResonanceError):
             force = PointForce(position=positions[j])

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.checks import check_whole
 from verify.errors import InputError
-from verify.exact.closed_forms import check_uniform
+from verify.exact.lineup import line_up
 from verify.exact.modes import mode_shapes, solve_harmonic, solve_modes
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import phasor
@@ -23,15 +23,19 @@ MOST = 5000
 
 
 def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
-    """The first n_modes exact modes. Raises InputError for stepped beams, rigid motions and n_modes not in 1..MOST."""
-    check_uniform(beam)
+    """The first n_modes exact modes, of a beam of sections and point masses too.
+
+    A damping ratio is the same in every mode, as the material's loss factor makes it: springs, foundation and axial
+    force, which lose nothing, are refused. Raises InputError for them, rigid motions and n_modes not in 1..MOST.
+    """
+    beam.check_added("the exact beam in time", ("section", "mass"))
     check_held(beam)
     check_whole("modes", n_modes, 1)
     if n_modes > MOST:
         raise InputError(f"modes = {n_modes!r}: the exact beam keeps at most {MOST}, the rest follow at once")
     modes = solve_modes(beam, n_modes)
     omegas = 2.0 * np.pi * modes.frequencies_hz
-    fourth = omegas**2 / beam.wave_constant**2  # beta^4
+    fourth = omegas**2 / beam.wave_constant**2  # beta^4 of the beam's own section
 
     known: dict[tuple[bytes, int], Array] = {}  # a table asks for the same places many times
 
@@ -42,9 +46,8 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
             if len(known) >= KNOWN:
                 known.clear()
             known[key] = mode_shapes(beam, n_modes, x, rest)
-        return np.asarray(known[key] * fourth[:, None] ** turns)
+        return np.asarray(known[key] * (fourth[:, None] * _ratio(beam, x)) ** turns)
 
-    cells = int(np.ceil(beam.length * float(fourth[-1]) ** 0.25 / 0.4)) + 1
     return TimeBasis(
         model="analytic",
         count=None,
@@ -52,11 +55,33 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
         omegas=omegas,
         shapes=shapes,
         loads=lambda position: shapes(np.array([position]), 0)[:, 0],
-        edges=np.linspace(0.0, beam.length, cells + 1),
+        edges=_edges(beam, float(fourth[-1])),
         degree=DEGREE,
         method=f"the first {n_modes} exact modes, the rest following at once",
         tail=lambda forces, frequency, damping: _tail(beam, omegas, shapes, forces, frequency, damping),
     )
+
+
+def _ratio(beam: Beam, x: Array) -> Array:
+    """Rho A / EI at x over that of the beam's own section, (len(x),) or (1,): what beta^4 goes with."""
+    line = line_up(beam)
+    ratios = np.array([stretch.mass / stretch.stiffness for stretch in line.stretches])
+    if len(ratios) == 1:
+        return ratios
+    inner = np.array(line.places[1:-1]) * beam.length
+    return np.asarray(ratios[np.searchsorted(inner, x, side="right")])
+
+
+def _edges(beam: Beam, fourth: float) -> Array:
+    """Ends of cells of 0.4 wavenumbers of the fastest mode at most, at all sections and masses too."""
+    line, edges = line_up(beam), [np.zeros(1)]
+    for stretch, start in zip(line.stretches, line.places, strict=False):
+        beta = (fourth * stretch.mass / stretch.stiffness) ** 0.25
+        cells = int(np.ceil(stretch.length * beam.length * beta / 0.4)) + 1
+        end = start + stretch.length
+        edges.append(np.linspace(start * beam.length, end * beam.length, cells + 1)[1:])
+    edges[-1][-1] = beam.length
+    return np.concatenate(edges)
 
 
 def _tail(
@@ -75,7 +100,7 @@ def _tail(
 
     def rest(x: Array, derivative: int) -> ComplexArray:
         turns, left = divmod(derivative, 4)
-        exact = field.shapes(x, left) * field.wavenumber ** (4 * turns)
+        exact = field.shapes(x, left) * (field.wavenumber**4 * _ratio(beam, x)) ** turns
         return np.asarray(exact - kept @ shapes(x, derivative))
 
     return rest

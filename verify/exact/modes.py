@@ -1,26 +1,27 @@
-"""Exact Euler-Bernoulli modes: uniform beams with any pair of supports, free of overflow at any mode.
-
-For stepped beams the exact frequencies, from the transfer of the end conditions through the sections.
-"""
+"""Exact modes: uniform Euler-Bernoulli beams in closed form, free of overflow at any mode; all others by transfer."""
 
 from collections.abc import Sequence
 from functools import lru_cache
-from math import cos, exp, pi, sin, sqrt
+from math import exp, pi, sqrt
 
 import numpy as np
 
 from verify.beam import Beam
 from verify.checks import check_whole
-from verify.errors import InputError
-from verify.exact.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
+from verify.exact.buckling import check_stable
+from verify.exact.closed_forms import check_mode, frequency_hz, root_parts
 from verify.exact.harmonic import solve_harmonic, unit_responses
-from verify.exact.section_minors import end_minor
+from verify.exact.lineup import check_theory
+from verify.exact.roots import general_frequency_hz, modes_below
 from verify.models.arrays import Array
 from verify.models.modes import Modes
+from verify.options import THEORIES
 
 __all__ = [
     "exact_frequency_hz",
     "mode_shape",
+    "mode_shapes",
+    "modes_below",
     "solve_harmonic",
     "solve_modes",
     "stepped_frequency_hz",
@@ -37,21 +38,20 @@ _MIRRORED = {
 }
 
 
-_LEAST = 1e-9
-"""Of beta L: below it a count sees rounding alone."""
+def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Modes:
+    """The first `n_modes` exact elastic modes by a beam theory.
 
-
-def solve_modes(beam: Beam, n_modes: int) -> Modes:
-    """The first `n_modes` exact elastic modes.
-
-    Roots in the exponential form y = (n + c) pi + s g atan(exp(-2 y / g)), shapes with decaying exponentials
-    from both ends. Raises InputError for n_modes < 1.
+    Of uniform Euler-Bernoulli beams roots in the exponential form y = (n + c) pi + s g atan(exp(-2 y / g)), shapes with
+    decaying exponentials from both ends; of all others as `exact_frequency_hz` and `exact.shapes`. Raises InputError
+    for n_modes < 1, an unknown theory, what a theory lacks, and compression beyond buckling.
     """
     check_whole("n_modes", n_modes, 1)
-    frequencies = np.array([frequency_hz(beam, n) for n in range(1, n_modes + 1)])
+    plain = theory == "euler-bernoulli" and beam.uniform
+    solve = frequency_hz if plain else exact_frequency_hz
+    frequencies = np.array([solve(beam, n, theory) for n in range(1, n_modes + 1)])
 
     def shapes(x: Array, derivative: int) -> Array:
-        return mode_shapes(beam, n_modes, x, derivative)
+        return mode_shapes(beam, n_modes, x, derivative, theory)
 
     def nowhere() -> Array:
         return np.empty((n_modes, 0))
@@ -68,24 +68,28 @@ def solve_modes(beam: Beam, n_modes: int) -> Modes:
         sampled=nowhere,
         curvature_points=empty,
         curvatures=nowhere,
+        method="closed form" if plain or has_closed_form(beam, n_modes, theory) else "counted",
     )
 
 
-def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0) -> Array:
+def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
     """Mass-normalised shape of one exact mode or its derivative (0 to 3), (len(x),), SI.
 
-    x in metres. Positive where the beam first moves off its left end. Raises InputError.
+    x in metres. Positive where the beam first moves off its left end. Of everything that has mass: point masses and
+    rotary inertia too. By Timoshenko's theory the deflection, and the slope of its line, not the section's turn.
+    Raises InputError.
     """
-    return np.asarray(_shapes(beam, (mode,), x, derivative)[0])
+    return np.asarray(_shapes(beam, (mode,), x, derivative, theory)[0])
 
 
-def mode_shapes(beam: Beam, n_modes: int, x: Array, derivative: int = 0) -> Array:
+def mode_shapes(beam: Beam, n_modes: int, x: Array, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
     """The same of the first `n_modes` modes, (n_modes, len(x))."""
-    return _shapes(beam, range(1, n_modes + 1), x, derivative)
+    return _shapes(beam, range(1, n_modes + 1), x, derivative, theory)
 
 
-def _shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int) -> Array:
-    check_uniform(beam)
+def _shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory: str) -> Array:
+    if theory != "euler-bernoulli" or not beam.uniform:
+        return _general(beam, modes, x, derivative, theory)
     xi = np.asarray(x, dtype=float) / beam.length
     left, right = beam.supports
     if (left, right) in _MIRRORED:
@@ -94,6 +98,17 @@ def _shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int) -> Arra
     else:
         values = _unit_shapes((left, right), modes, xi, 1.0 - xi, derivative)
     return np.asarray(values / sqrt(beam.mass_per_length * beam.length) / beam.length**derivative)
+
+
+def _general(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory: str) -> Array:
+    """Shapes without closed form."""
+    from verify.exact.shapes import general_shapes
+
+    for mode in modes:
+        check_mode(mode)
+    check_theory(beam, theory)
+    check_stable(beam)
+    return general_shapes(beam, modes, x, derivative, theory)
 
 
 @lru_cache(maxsize=20_000)
@@ -167,124 +182,37 @@ def _coefficients(
     return side, -side * sigma, a, b
 
 
-def exact_frequency_hz(beam: Beam, mode: int) -> float:
-    """The exact Euler-Bernoulli frequency of a uniform or stepped beam, Hz. Raises InputError."""
-    return stepped_frequency_hz(beam, mode) if beam.added == ("section",) else frequency_hz(beam, mode)
+def exact_frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:
+    """The exact frequency of one elastic mode of any beam by a beam theory, Hz, to rounding.
+
+    In closed form where there is one; else the root of one characteristic equation (`exact.minors`), which frequencies
+    are counted by, so that none is missed. Modes rank by frequency: above its cut-off sqrt(kappa G A / rho I) a
+    Timoshenko beam has a second family among them. Raises InputError, also for compression beyond buckling.
+    """
+    if theory == "euler-bernoulli" and beam.uniform:
+        return frequency_hz(beam, mode)
+    check_mode(mode)
+    if has_closed_form(beam, mode, theory):
+        return frequency_hz(beam, mode, theory)
+    check_theory(beam, theory)
+    check_stable(beam)
+    return general_frequency_hz(beam, mode, theory)
+
+
+def has_closed_form(beam: Beam, mode: int, theory: str) -> bool:
+    """Whether a mode has a frequency in closed form."""
+    if theory == "euler-bernoulli" or theory not in THEORIES or not beam.uniform:
+        return beam.uniform
+    if beam.supports != ("pinned", "pinned"):
+        return False
+    shear, turning = beam.own.shear_stiffness, beam.own.rotary_inertia
+    if theory == "rayleigh" or shear is None or turning is None:
+        return True
+    return 2.0 * pi * frequency_hz(beam, mode, theory) < sqrt(shear / turning)
 
 
 def stepped_frequency_hz(beam: Beam, mode: int) -> float:
-    """The exact frequency of one elastic mode of a beam of any number of sections, Hz, to 1e-14.
-
-    The transfer matrix of each section is rearranged into its dynamic stiffness, which does not overflow, and
-    frequencies below a trial value are counted (Wittrick and Williams, Q. J. Mech. Appl. Math. 24, 1971), so
-    that none is missed. The count is bisected until it has singled one out; the digits come from the minors of the
-    transfer, since a count is blurred by (L / shortest section)^3 eps, which is 1e-5 on beams that somebody might
-    build. Raises InputError for mode < 1, and where rounding tells a frequency from its neighbours in no interval.
-    """
+    """The exact frequency of one elastic mode of a beam of any number of sections, Hz; as `exact_frequency_hz`."""
     check_mode(mode)
-    wanted = mode + beam.rigid_motions
-    low, high = 0.0, 1.0
-    while modes_below(beam, high) < wanted:
-        low, high = high, 2.0 * high
-    while low < (middle := 0.5 * (low + high)) < high and high > _LEAST:
-        if low > 0.0 and (root := _root_near(beam, low, high)) is not None:
-            return root * root * beam.wave_constant / (2.0 * pi * beam.length**2)
-        low, high = (low, middle) if modes_below(beam, middle) >= wanted else (middle, high)
-    raise InputError(
-        f"mode = {mode}: rounding does not tell this frequency of a beam of {len(beam.pieces)} sections from its "
-        "neighbours, make the shortest section longer"
-    )
-
-
-def _root_near(beam: Beam, low: float, high: float) -> float | None:
-    """The root of the frequency equation in or beside an interval of beta L; None where there it is not alone.
-
-    The interval is widened to three times its length: its ends are as blurred as the count that set them.
-    """
-    stretches = _stretches(beam)
-    low, high = max(2.0 * low - high, 0.5 * low), 2.0 * high - low
-    above = end_minor(stretches, beam.supports, high) > 0.0
-    if modes_below(beam, high) - modes_below(beam, low) != 1 or above == (
-        end_minor(stretches, beam.supports, low) > 0.0
-    ):
-        return None
-    while low < (middle := 0.5 * (low + high)) < high:
-        same = (end_minor(stretches, beam.supports, middle) > 0.0) == above
-        low, high = (low, middle) if same else (middle, high)
-    return high
-
-
-def modes_below(beam: Beam, beta_length: float) -> int:
-    """How many frequencies, rigid ones included, lie below omega = beta^2 sqrt(EI / rho A), by beta L.
-
-    Every section counts its own with both ends clamped; the assembled dynamic stiffness adds its negative
-    eigenvalues.
-    """
-    stretches = _stretches(beam)
-    stiffness, below = np.zeros((2 * len(stretches) + 2, 2 * len(stretches) + 2)), 0
-    for i, (length, bending, mass) in enumerate(stretches):
-        beta = beta_length * (mass / bending) ** 0.25
-        ends = slice(2 * i, 2 * i + 4)
-        stiffness[ends, ends] += bending * _dynamic_stiffness(beta, length)
-        below += _clamped_below(beta * length)
-    free = [k for k in range(len(stiffness)) if k not in _held(beam, 2 * len(stretches))]
-    return below + int((np.linalg.eigvalsh(stiffness[np.ix_(free, free)]) < 0).sum())
-
-
-def _stretches(beam: Beam) -> list[tuple[float, float, float]]:
-    """(length, EI, rho A) of the sections, relative to the beam's."""
-    base = beam.bending_stiffness, beam.mass_per_length
-    return [(p.length / beam.length, p.bending_stiffness / base[0], p.mass_per_length / base[1]) for p in beam.pieces]
-
-
-def _held(beam: Beam, right: int) -> set[int]:
-    """Which of deflection and slope at both ends the supports hold, as rows of the dynamic stiffness."""
-    held = set()
-    for first, support in zip((0, right), beam.supports, strict=True):
-        held |= {first} if support in ("pinned", "clamped") else set()
-        held |= {first + 1} if support in ("clamped", "guided") else set()
-    return held
-
-
-def _clamped_below(y: float) -> int:
-    """How many roots of cos y cosh y = 1 lie below y."""
-    n = max(int(y / pi - 0.5), 1)
-    while n > 0 and wavenumber_length(("clamped", "clamped"), n) >= y:
-        n -= 1
-    return n + int(wavenumber_length(("clamped", "clamped"), n + 1) < y)
-
-
-def _dynamic_stiffness(beta: float, length: float) -> Array:
-    """Forces and moments at both ends of a section by end deflections and slopes, EI = 1, (4, 4)."""
-    y = beta * length
-    ww, wt, tt, ww2, wt2, tt2 = _stiffness_functions(y) if y > 1.0 else _stiffness_series(y)
-    ww, ww2, wt, wt2, tt, tt2 = ww * beta**3, ww2 * beta**3, wt * beta**2, wt2 * beta**2, tt * beta, tt2 * beta
-    return np.array([[ww, wt, ww2, wt2], [wt, tt, -wt2, tt2], [ww2, -wt2, ww, -wt], [wt2, tt2, -wt, tt]])
-
-
-def _stiffness_functions(y: float) -> tuple[float, ...]:
-    """The six functions of y = beta l over 1 - cos y cosh y; both carry the same e^{-y}, so nothing overflows."""
-    c, s, tail = cos(y), sin(y), exp(-y)
-    ch, sh = 0.5 * (1.0 + tail * tail), 0.5 * (1.0 - tail * tail)
-    upper = (s * ch + c * sh, s * sh, s * ch - c * sh, -(sh + s * tail), ch - c * tail, sh - s * tail)
-    return tuple(value / (tail - c * ch) for value in upper)
-
-
-def _stiffness_series(y: float) -> tuple[float, ...]:
-    """The same for short sections by their power series, in which nothing cancels.
-
-    With z = (1 + i) y: cos z = cos y cosh y - i sin y sinh y, sin z = sin y cosh y + i cos y sinh y; powers of
-    1 + i are whole numbers.
-    """
-    sums, turn, term = [0.0] * 7, 1 + 0j, 1.0  # term is y^n / n!
-    for n in range(40):
-        re, im, sign = turn.real, turn.imag, (-1.0) ** (n // 2)
-        if n % 2:
-            parts = (sign * (re + im), 0.0, sign * (re - im), 0.0)
-        else:
-            parts = (0.0, -sign * im, 0.0, -sign * re if n else 0.0)
-        plain = (-2.0 * (n % 4 == 1), 2.0 * (n % 4 == 2), 2.0 * (n % 4 == 3))
-        for i, value in enumerate((*parts, *plain)):
-            sums[i] += value * term
-        turn, term = turn * (1 + 1j), term * y / (n + 1)
-    return tuple(sums[i] / sums[3] for i in (0, 1, 2, 4, 5, 6))
+    check_stable(beam)
+    return general_frequency_hz(beam, mode)

@@ -227,7 +227,7 @@ def steady_stage(field: "HarmonicField", steps: Steps, origin: float, basis: Tim
         edges, degree = np.union1d(edges, basis.edges), max(degree, basis.degree)
 
     def drive(x: Array, derivative: int) -> Array:
-        higher, rest = divmod(derivative, 4) if field.count is None else (0, derivative)
+        higher, rest = divmod(derivative, 4) if field.count is None and field.beam.uniform else (0, derivative)
         values = field.shapes(x, rest) * field.wavenumber ** (4 * higher)
         return np.array([values.real, values.imag])
 
@@ -262,8 +262,12 @@ def steady_edges(field: "HarmonicField") -> tuple[Array, int]:
     """Where the pieces of a field begin, metres, and the degree of its polynomials."""
     length = field.beam.length
     if field.count is None:
-        cells = int(np.ceil(length * abs(field.wavenumber) / 0.3)) + 1
-        return np.union1d(np.linspace(0.0, length, cells + 1), [f.position for f in field.forces]), ANALYTIC_DEGREE
+        beam = field.beam
+        softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
+        cells = int(np.ceil(length * abs(field.wavenumber) * softest**0.25 / 0.3)) + 1
+        steps = np.cumsum([piece.length for piece in beam.pieces[:-1]])
+        places = [place.position for place in (*field.forces, *beam.mass, *beam.spring)]
+        return np.union1d(np.linspace(0.0, length, cells + 1), [*steps, *places]), ANALYTIC_DEGREE
     from verify.models.division import divide
 
     parts: Any = divide(field.beam, field.count)

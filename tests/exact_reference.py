@@ -1,0 +1,135 @@
+"""Beams with everything on them, by two other ways: plain transfer matrices of many digits, and Ritz's polynomials."""
+
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+HELD = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
+
+
+def cut(beam):
+    """(piece, length) from left to right, ending wherever anything stands."""
+    places = {x.position for x in (*beam.mass, *beam.spring)}
+    parts, start = [], 0.0
+    for piece in beam.pieces:
+        end = start + piece.length
+        inner = [start, *sorted(p for p in places if start + 1e-12 < p < end - 1e-12), end]
+        parts += [(piece, a, b) for a, b in pairwise(inner)]
+        start = end
+    return parts
+
+
+def determinant(beam, theory, omega):
+    """End conditions carried by exponentials of the equations of motion for (w, psi, M, S), in extended precision.
+
+    S is the shear force, kappa G A (psi - w') with its sign, so that tension stands in the balance of V = S - T w'.
+    """
+    mp = mpmath.mpf
+    thick = theory != "euler-bernoulli"
+    omega2, tension, ground = omega**2, mp(beam.tension), mp(beam.foundation)
+
+    def joint(x):
+        matrix = mpmath.eye(4)
+        for m in beam.mass:
+            if abs(m.position - x) < 1e-12:
+                matrix[3, 0] += omega2 * mp(m.mass)
+                matrix[2, 1] -= omega2 * mp(m.rotary_inertia)
+        for s in beam.spring:
+            if abs(s.position - x) < 1e-12:
+                matrix[3, 0] -= mp(s.stiffness)
+                matrix[2, 1] += mp(s.rotational)
+        return matrix
+
+    whole = joint(0.0)
+    for piece, a, b in cut(beam):
+        rate = mpmath.zeros(4)
+        rate[0, 1] = 1
+        rate[0, 3] = -1 / mp(piece.shear_stiffness) if theory == "timoshenko" else 0
+        rate[1, 2] = 1 / mp(piece.bending_stiffness)
+        rate[2, 3] = 1
+        rate[2, 1] = tension - (mp(piece.rotary_inertia) * omega2 if thick else 0)
+        rate[3, 0] = mp(piece.mass_per_length) * omega2 - ground
+        length = mp(piece.length) if b - a > 0.999999999 * piece.length else mp(b) - mp(a)
+        whole = joint(b) * mpmath.expm(rate * length, method="taylor") * whole
+    moves = [k for k in range(4) if k not in HELD[beam.supports[0]]]
+    return mpmath.det(mpmath.matrix([[whole[i, j] for j in moves] for i in HELD[beam.supports[1]]]))
+
+
+def a_root_lies_within(beam, theory, found, rel, digits=40):
+    """Whether the determinant changes its sign within a relative distance of a frequency in Hz."""
+    with mpmath.workdps(digits):
+        sides = [determinant(beam, theory, 2 * mpmath.pi * found * (1 + side * mpmath.mpf(rel))) for side in (-1, 1)]
+        return sides[0] * sides[1] < 0
+
+
+def near_root_hz(beam, theory, found, digits=50, beside=1e-7):
+    """The root of the determinant next to a frequency, Hz."""
+    with mpmath.workdps(digits):
+        omega = 2 * mpmath.pi * mpmath.mpf(found)
+        near = (omega * (1 - mpmath.mpf(beside)), omega * (1 + mpmath.mpf(beside) / 2))
+        root = mpmath.findroot(lambda w: determinant(beam, theory, w), near, tol=1e-60, verify=False, maxsteps=30)
+        return float(root / (2 * mpmath.pi))
+
+
+def ritz(beam, theory, degree=14, parts=1):
+    """(frequencies in Hz, shapes: x -> (n, len(x)) of w) by Legendre polynomials on every stretch, all of them."""
+    timoshenko, n = theory == "timoshenko", degree + 1
+    stretches = [
+        (piece, a + (b - a) * i / parts, a + (b - a) * (i + 1) / parts)
+        for piece, a, b in cut(beam)
+        for i in range(parts)
+    ]
+    fields = 2 if timoshenko else 1
+    size = fields * n * len(stretches)
+    stiffness, mass, rules = np.zeros((size, size)), np.zeros((size, size)), []
+    z, weights = np.polynomial.legendre.leggauss(degree + 2)
+
+    def row(i, x, field, derivative):
+        """Coefficients of a field (0 w, 1 turn) on stretch i at x."""
+        _, a, b = stretches[i]
+        values = np.zeros(size)
+        if field == 1 and not timoshenko:
+            field, derivative = 0, derivative + 1
+        at = (i * fields + field) * n
+        where = 2 * (x - a) / (b - a) - 1
+        for k in range(n):
+            unit = np.polynomial.legendre.legder(np.eye(n)[k], derivative) if derivative else np.eye(n)[k]
+            values[at + k] = np.polynomial.legendre.legval(where, unit) * (2 / (b - a)) ** derivative
+        return values
+
+    for i, (piece, a, b) in enumerate(stretches):
+        for point, weight in zip((a + b) / 2 + (b - a) / 2 * z, (b - a) / 2 * weights, strict=True):
+            w, slope, turn, bend = (row(i, point, *what) for what in ((0, 0), (0, 1), (1, 0), (1, 1)))
+            stiffness += weight * piece.bending_stiffness * np.outer(bend, bend)
+            stiffness += weight * (beam.foundation * np.outer(w, w) + beam.tension * np.outer(slope, slope))
+            mass += weight * piece.mass_per_length * np.outer(w, w)
+            if theory != "euler-bernoulli":
+                mass += weight * piece.rotary_inertia * np.outer(turn, turn)
+            if timoshenko:
+                stiffness += weight * piece.shear_stiffness * np.outer(slope - turn, slope - turn)
+    for i in range(len(stretches) - 1):
+        at = stretches[i][2]
+        rules += [row(i, at, field, 0) - row(i + 1, at, field, 0) for field in (0, 1)]
+    for i, end, support in ((0, 0.0, beam.supports[0]), (len(stretches) - 1, stretches[-1][2], beam.supports[1])):
+        rules += [row(i, end, field, 0) for field in HELD[support] if field < 2]
+
+    def at(x):
+        return next(i for i, (_, a, b) in enumerate(stretches) if a - 1e-12 <= x <= b + 1e-12)
+
+    for m in beam.mass:
+        w, turn = (row(at(m.position), m.position, field, 0) for field in (0, 1))
+        mass += m.mass * np.outer(w, w) + m.rotary_inertia * np.outer(turn, turn)
+    for s in beam.spring:
+        w, turn = (row(at(s.position), s.position, field, 0) for field in (0, 1))
+        stiffness += s.stiffness * np.outer(w, w) + s.rotational * np.outer(turn, turn)
+    rules = np.array([rule / np.linalg.norm(rule) for rule in rules]) if rules else np.zeros((0, size))
+    basis = null_space(rules) if len(rules) else np.eye(size)
+    values, vectors = eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis)
+    vectors = basis @ vectors
+
+    def shapes(x, derivative=0):
+        return np.array([row(at(one), one, 0, derivative) @ vectors for one in x]).T
+
+    return np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi), shapes

@@ -1,0 +1,76 @@
+"""The exact harmonic field of any beam under point forces: stepped, with masses, springs, axial force, foundation.
+
+E (1 + i eta) is the beam's material: the loss factor acts on its bending and shear stiffness, not on springs,
+foundation or axial force, which lose nothing.
+"""
+
+from collections.abc import Callable, Sequence
+from math import pi, sqrt
+
+import numpy as np
+
+from verify.beam import Beam, PointForce
+from verify.exact.buckling import check_stable
+from verify.exact.lineup import Lineup, line_up, place_of
+from verify.exact.roots import general_frequency_hz, trials
+from verify.exact.spans import Spans, solver, spans_of
+from verify.models.arrays import Array, ComplexArray, Numbers
+from verify.models.fields import RESONANCE, check_drive, phasor, refuse_resonance
+
+
+def general_field(
+    beam: Beam, forces: Sequence[PointForce], frequency_hz: float, theory: str
+) -> Callable[[Array, int], ComplexArray]:
+    """The field, (x, derivative of any order) -> (len(x),) complex, SI. Raises InputError, for resonances too."""
+    check_drive(beam, forces, frequency_hz)
+    places = tuple(force.position for force in forces)
+    spans, states = _under_unit_forces(beam, places, frequency_hz, theory)
+    amplitudes = np.array([phasor(force) for force in forces])
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        return _read(beam, spans, states @ amplitudes[:, None], x, derivative)[:, 0]
+
+    return shapes
+
+
+def general_responses(
+    beam: Beam, positions: Sequence[float], frequency_hz: float, x: Array, theory: str
+) -> ComplexArray:
+    """Deflection at x under a unit force at each position, (n_positions, len(x)) complex, m/N. Raises InputError."""
+    check_drive(beam, [PointForce(position=at) for at in positions], frequency_hz)
+    spans, states = _under_unit_forces(beam, tuple(positions), frequency_hz, theory)
+    return _read(beam, spans, states, x, 0).T
+
+
+def _under_unit_forces(
+    beam: Beam, positions: tuple[float, ...], frequency_hz: float, theory: str
+) -> tuple[Spans, Numbers]:
+    """Spans that end at every force, and the states under each force of 1 N, (n + 1, 4, n_forces)."""
+    check_stable(beam)
+    line = line_up(beam, theory, positions)
+    beta_length = sqrt(2.0 * pi * frequency_hz / beam.wave_constant) * beam.length
+    if not beam.loss_factor:
+        _refuse_resonance(beam, line_up(beam, theory), beta_length, frequency_hz, theory)
+    spans = spans_of(line, beta_length**4, beam.loss_factor)
+    places = line.places
+    jumps = np.zeros((len(spans.ends), 4, len(positions)))
+    for i, position in enumerate(positions):
+        at = int(np.searchsorted(spans.stretch, place_of(places, position / beam.length)))
+        jumps[at, 3, i] = beam.length**3 / beam.bending_stiffness / spans.sizes[3]
+    return spans, solver(spans)(jumps)
+
+
+def _refuse_resonance(beam: Beam, line: Lineup, beta_length: float, frequency_hz: float, theory: str) -> None:
+    """Raise ResonanceError where a frequency lies within RESONANCE of one of the beam's own."""
+    say = trials(line)
+    below, up_to = (say(beta_length * (1.0 + side * 0.5 * RESONANCE)).below for side in (-1, 1))
+    mode = up_to - beam.rigid_motions
+    if up_to > below and mode > 0:
+        refuse_resonance("analytic", frequency_hz, mode, general_frequency_hz(beam, mode, theory))
+
+
+def _read(beam: Beam, spans: Spans, states: Numbers, x: Array, derivative: int) -> ComplexArray:
+    """Deflections or derivatives, (len(x), n), SI."""
+    xi = np.minimum(np.asarray(x, dtype=float) / beam.length, 1.0)
+    span, here = spans.states(states, xi)
+    return np.asarray(spans.derivative(span, here, derivative) / beam.length**derivative, dtype=complex)

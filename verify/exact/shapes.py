@@ -1,0 +1,95 @@
+"""Mode shapes of any beam at its exact frequencies, with their derivatives."""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam
+from verify.exact.lineup import Lineup, line_up
+from verify.exact.roots import wavenumber_length
+from verify.exact.spans import Spans, solver, spans_of
+from verify.models.arrays import Array, Numbers
+
+_POINTS = 12
+"""Of Gauss's rule on every span."""
+_PAIR = 1e-9
+"""Relative: frequencies that lie closer share a plane of shapes, of which orthogonal ones are taken."""
+_TRIES = 6
+"""Forces, of which one is sure to be far from what does no work on the mode."""
+_STILL = 1e-9
+"""Of the largest deflection: what is less does not show where a beam first moves."""
+
+
+class _Mode(msgspec.Struct, frozen=True, eq=False):
+    """One mode: its spans and the states right of their ends, (n + 1, 4, 1), of modal mass 1 over rho A L."""
+
+    spans: Spans
+    states: Array
+
+
+def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory: str) -> Array:
+    """Mass-normalised shapes or derivatives of them, of any order, (modes, len(x)), SI; x in metres.
+
+    Positive where the beam first moves off its left end. From the right where a derivative jumps.
+    """
+    xi = np.minimum(np.asarray(x, dtype=float) / beam.length, 1.0)
+    rows = []
+    for mode in modes:
+        found = _mode(beam, mode, theory)
+        span, states = found.spans.states(found.states, xi)
+        rows.append(np.real(found.spans.derivative(span, states, derivative)[:, 0]))
+    size = (beam.mass_per_length * beam.length) ** -0.5 / beam.length**derivative
+    return np.asarray(np.array(rows).reshape(len(rows), len(xi)) * size)
+
+
+@lru_cache(maxsize=1000)
+def _mode(beam: Beam, mode: int, theory: str) -> _Mode:
+    """One mode; of a pair of one frequency the second is orthogonal to the first."""
+    line, beta = line_up(beam, theory), wavenumber_length(beam, mode, theory)
+    omega2 = beta**4
+    spans = spans_of(line, omega2)
+    solve = solver(spans)
+    states = _free(solve, spans, mode)
+    if mode > 1 and beta - wavenumber_length(beam, mode - 1, theory) < _PAIR * beta:
+        other = _free(solve, spans, mode - 1)
+        states = states - other * (_inner(line, spans, states, other) / _inner(line, spans, other, other))
+    states = states / np.sqrt(_inner(line, spans, states, states))
+    return _Mode(spans, states * _sign(spans, states, mode))
+
+
+def _free(solve: Callable[[Numbers], Numbers], spans: Spans, mode: int) -> Array:
+    """The motion that needs no force: of the answers to a few, at resonance, the largest (inverse iteration)."""
+    phases = np.arange(4.0 * len(spans.ends))[:, None] * (1.0 + 0.37 * mode + 0.11 * np.arange(_TRIES))
+    answers = solve(np.cos(phases).reshape(-1, 4, _TRIES))
+    sizes = abs(answers).max(axis=(0, 1))
+    best = int(sizes.argmax())
+    return np.real(answers[:, :, best : best + 1] / sizes[best])
+
+
+def _inner(line: Lineup, spans: Spans, one: Array, other: Array) -> float:
+    """The modal mass that two motions share, over rho A L: deflection and turning, of the beam and what is on it."""
+    points, weights = np.polynomial.legendre.leggauss(_POINTS)
+    lengths = np.diff(spans.ends)
+    x = (spans.ends[:-1, None] + 0.5 * lengths[:, None] * (points + 1.0)).ravel()
+    values = [spans.states(states, x)[1][:, :, 0].reshape(len(lengths), _POINTS, 4) for states in (one, other)]
+    w, turn = (values[0][:, :, k] * values[1][:, :, k] @ weights * 0.5 * lengths for k in (0, 1))
+    mass, turning = (
+        np.array([getattr(s, name) for s in line.stretches])[spans.stretch] for name in ("mass", "turning")
+    )
+    total = float(w @ mass + turn @ turning * spans.sizes[1] ** 2)
+    for i, joint in enumerate(line.joints):
+        at = int(np.searchsorted(spans.stretch, i))
+        total += joint.mass * float(one[at, 0, 0] * other[at, 0, 0])
+        total += joint.inertia * float(one[at, 1, 0] * other[at, 1, 0]) * spans.sizes[1] ** 2
+    return total
+
+
+def _sign(spans: Spans, states: Array, mode: int) -> float:
+    """+1 or -1, so that the shape is positive where it first moves off the left end."""
+    near = np.array([1e-3 / mode])
+    first = spans.states(states, near)[1][:, 0, 0]
+    deflections = np.concatenate([first, states[:, 0, 0]])
+    moved = deflections[abs(deflections) > _STILL * abs(deflections).max()]
+    return float(np.sign(moved[0])) if len(moved) else 1.0
