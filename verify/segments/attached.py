@@ -45,7 +45,7 @@ def felt_at(chain: Chain, position: float, rule: str) -> tuple[Array, Array]:
         return joint_weights(chain, position, rule), np.array([np.interp(place, middles, row) for row in np.eye(n)])
     deflection[link], deflection[link + 1] = 1.0 - s, s
     turn[link] = 1.0
-    if 0 < link and s == 0.0:
+    if link > 0 and s == 0.0:
         turn[link - 1 : link + 1] = 0.5
     return deflection, turn
 
@@ -98,7 +98,9 @@ def _mended(chain: Chain, link: int, s: float) -> tuple[Array, Array]:
     shares = [even, odd, outer] if chain.slips is not None else [even, odd]
     kernels = [bending, slipping] if chain.slips is not None else [bending]
     value = _without_selves(lagrange[0], np.array(shares), kernels, bending @ slope)
-    return _folded(chain, first, value, False), _turns(_folded(chain, first, slope, True))
+    turn = -np.cumsum(_folded(chain, first, slope, True))[:-1]
+    turn[: max(first, 0)] = turn[max(first, 0) + width :] = 0.0  # but for the rounding of the sum
+    return _folded(chain, first, value, False), turn
 
 
 def _five(s: float) -> Array:
@@ -152,11 +154,6 @@ def _folded(chain: Chain, first: int, weights: Array, slope: bool) -> Array:
     if slope:
         folded[0 if 2 * first < n else n] -= folded.sum()
     return folded
-
-
-def _turns(slope: Array) -> Array:
-    """Weights of the links' turns that are those of their joints, which add up to nothing, (N,)."""
-    return np.asarray(-np.cumsum(slope)[:-1])
 
 
 def rows_at(chain: Chain, positions: list[float], rule: str) -> tuple[Any, Any]:

@@ -19,7 +19,7 @@ from verify.models.arrays import Array
 from verify.models.division import Parts, divide, part_counts
 from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Attachment, Joints, Theory, Wall
-from verify.segments.walls import shear_factors, wall_factors, welded_halves
+from verify.segments.walls import shear_factors, tension_excess, wall_factors, welded_halves
 
 
 class Body(msgspec.Struct, frozen=True, kw_only=True):
@@ -147,14 +147,13 @@ def build_chain(
     Raises InputError where a tensioned joint would have no stiffness left.
     """
     parts = divide(beam, n_segments, grading)
-    lengths, stiffness = parts.lengths, parts.stiffnesses
+    lengths = parts.lengths
     tension = beam.tension * parts.unit**2 / beam.bending_stiffness if beam.tension else 0.0
-    if joints == "tensioned":
-        stiffness = _tensioned(beam, stiffness, lengths, tension)
     elastic = elastic_ends(beam, attachment)
-    compliances = _compliances(parts, stiffness, joints)
     factors = wall_factors(beam.supports, n_segments, wall, elastic)
-    compliances *= factors
+    compliances = series = _compliances(parts, parts.stiffnesses, joints) * factors
+    if joints == "tensioned" and tension:
+        compliances = _tensioned(beam, parts, tension, factors, tension_excess(wall), elastic)
     halves = welded_halves(beam.supports) if wall == "welded" else (0, 0)
     masses = lengths * parts.masses_per_length
     inertias = link_inertia(masses, lengths)
@@ -174,9 +173,7 @@ def build_chain(
     )
     if beam.added in ((), ("section",)) and theory != "timoshenko":
         return chain
-    eased = None
-    if joints == "tensioned":
-        eased = _compliances(parts, parts.stiffnesses, joints) / _compliances(parts, stiffness, joints)
+    eased = None if compliances is series else _ratio(series, compliances)
     added = _added(beam, chain, tension, attachment, elastic)
     if theory != "timoshenko":
         return replace(added, eased=eased)
@@ -195,22 +192,30 @@ def _compliances(parts: Parts, stiffness: Array, joints: str) -> Array:
     return np.concatenate([[lengths[0] / stiffness[0]], inner, [lengths[-1] / stiffness[-1]]])
 
 
-def _tensioned(beam: Beam, stiffness: Array, lengths: Array, tension: float) -> Array:
-    """EI - T l^2/12 of every link, (N,): what restores order 4 under axial force (`loaded`).
+def _ratio(series: Array, compliances: Array) -> Array:
+    """Of two compliances, one where an end has none, (N + 1,)."""
+    return np.divide(series, compliances, out=np.ones(len(series)), where=np.isfinite(series))
 
-    Raises InputError where nothing is left of one.
+
+def _tensioned(
+    beam: Beam, parts: Parts, tension: float, factors: Array, excess: float, elastic: tuple[bool, bool]
+) -> Array:
+    """1/k of joints 0..N with EI - T l^2/12 for every link's EI, which restores order 4 under axial force (`loaded`).
+
+    The first joint of a clamped wall gives up `excess` more. Raises InputError where no stiffness is left.
     """
-    found = stiffness - tension * lengths**2 / 12.0
-    if (found <= 0.0).any():
-        worst = int(found.argmin())
-        most = (
-            12.0 * stiffness[worst] / lengths[worst] ** 2 * beam.bending_stiffness * len(lengths) ** 2 / beam.length**2
-        )
+    stiffness = parts.stiffnesses - tension * parts.lengths**2 / 12.0
+    found = _compliances(parts, stiffness, "series") * factors
+    for end, support, turns in zip((0, -1), beam.supports, elastic, strict=True):
+        if support == "clamped" or turns:
+            found[end] = 1.0 / (1.0 / found[end] - tension * parts.lengths[end] * excess / 12.0 / factors[end] ** 2)
+    if (stiffness <= 0.0).any() or (found <= 0.0).any():
         raise InputError(
-            f"joints = 'tensioned': beam.tension = {beam.tension!r} N leaves no stiffness in the joints of link "
-            f"{worst + 1}, which takes less than 12 EI/l^2 = {most:.6g} N: raise n_segments or choose joints = 'series'"
+            f"joints = 'tensioned': beam.tension = {beam.tension!r} N leaves no stiffness in a joint of "
+            f"{len(stiffness)} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of it: "
+            "raise n_segments or choose joints = 'series'"
         )
-    return np.asarray(found)
+    return found
 
 
 def _of_links(beam: Beam, n_segments: int, of_pieces: list[float]) -> Array:

@@ -49,6 +49,16 @@ def wall_factors(
     return factors
 
 
+def tension_excess(wall: str) -> float:
+    """What a clamped wall adds to the weights 1/c of the tensioned joints' T l/12, in l (`loaded`).
+
+    Corrections a_k of the joints turn link i by -l kappa sum_{k>i} a_k from the smooth line; axial force feels the
+    squares of that. 5/24 for Gregory's.
+    """
+    turned = np.cumsum(np.array(_CORRECTIONS[wall])[:0:-1])
+    return float(12.0 * (turned**2).sum())
+
+
 def welded_halves(supports: tuple[str, str]) -> tuple[int, int]:
     """Which ends have half a segment welded to the wall."""
     left, right = (int(support == "clamped") for support in supports)
