@@ -31,6 +31,8 @@ class Body(msgspec.Struct, frozen=True, kw_only=True):
     rotary_inertia: float = 0.0
     stiffness: float = 0.0
     rotational: float = 0.0
+    give: float = 0.0
+    """Compliance of the slip that a mass stands on where joints slip (`attached`)."""
 
 
 class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -177,8 +179,7 @@ def build_chain(
     added = _added(beam, chain, tension, attachment, elastic)
     if theory != "timoshenko":
         return replace(added, eased=eased)
-    softness = _softness(beam, chain)
-    return replace(added, softness=softness, slips=softness * shear_factors(beam.supports, n_segments, wall))
+    return _slipping(beam, added, wall)
 
 
 def _compliances(parts: Parts, stiffness: Array, joints: str) -> Array:
@@ -228,6 +229,52 @@ def _softness(beam: Beam, chain: Chain) -> Array:
     shear = [float(piece.shear_stiffness or 0.0) for piece in beam.pieces]
     links = beam.bending_stiffness / (_of_links(beam, chain.n_segments, shear) * chain.unit**2) * chain.lengths
     return np.concatenate([links[:1], 0.5 * (links[1:] + links[:-1]), links[-1:]])
+
+
+def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
+    """The chain with joints that slip. A body slips too: at an end beyond a joint of its own, inside by its `give`.
+
+    A spring without a body is in series with that slip, so that no position is without mass.
+    """
+    softness, n = _softness(beam, chain), chain.n_segments
+    free = {at: joint for at, joint in ((0.0, 0), (beam.length, n)) if beam.supports[bool(joint)] == "free"}
+    places = {body.position for body in chain.bodies if body.mass or body.stiffness}
+    loaded = (beam.supports[0] == "free" and 0.0 in places, beam.supports[1] == "free" and beam.length in places)
+    if chain.attachment == "lever":
+        return replace(chain, softness=softness, slips=softness * shear_factors(beam.supports, n, wall))
+    slips = softness * shear_factors(beam.supports, n, wall, loaded)
+    bodies = []
+    for place in sorted({body.position for body in chain.bodies}):
+        body = _one_body([body for body in chain.bodies if body.position == place])
+        end = free.get(place)
+        give = _give(chain, softness, place) if end is None else slips[end]
+        if body.stiffness and not body.mass:
+            body = replace(body, stiffness=1.0 / (1.0 / body.stiffness + give))
+            if end is not None:
+                slips[end] = np.inf
+        elif body.mass and end is None:
+            body = replace(body, give=give)
+        bodies.append(body)
+    return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips)
+
+
+def _give(chain: Chain, softness: Array, place: float) -> float:
+    """Compliance of the slip of what stands at a place inside, or at a guided end, which stands for both its sides."""
+    from verify.segments.attached import felt_at, shear_give
+
+    felt = felt_at(chain, place, chain.attachment)[0]
+    nearest = int(abs(chain.nodes - place).argmin())
+    if place in (0.0, chain.nodes[-1]) and nearest in (0, chain.n_segments):
+        inward = felt if nearest == 0 else felt[::-1]
+        both = np.concatenate([0.5 * inward[:0:-1], inward[:1], 0.5 * inward[1:]])
+        return float(2.0 * softness[nearest] * shear_give(both))
+    return float(softness[nearest] * shear_give(felt))
+
+
+def _one_body(bodies: list[Body]) -> Body:
+    """Everything that stands at one place."""
+    fields = ("mass", "rotary_inertia", "stiffness", "rotational")
+    return Body(position=bodies[0].position, **{field: sum(getattr(body, field) for body in bodies) for field in fields})
 
 
 def elastic_ends(beam: Beam, attachment: str) -> tuple[bool, bool]:

@@ -1,7 +1,7 @@
 """A chain with what it carries: axial force, foundation, bodies and springs, elastic ends, joints that slip.
 
 Its unknowns are the free joint positions, the turns of bodies beyond elastic ends, and p = slip / sqrt(c) of every
-joint that slips with a compliance c, so that stiff shear leaves a small mass and no large stiffness. A joint that slips
+joint and then every body that slips with a compliance c, so that stiff shear leaves a small mass and no large stiffness. A joint that slips
 stands at the mean of both links' ends there. All strains are applied as differences of positions and turns.
 
 Energies of a link of length l, turn theta and middle z, halved: foundation k_f l z^2 + k_f l^3/12 theta^2, axial force
@@ -29,13 +29,13 @@ import numpy as np
 from verify.models.arrays import Array, ComplexArray
 from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
 from verify.segments.attached import rows_at
-from verify.segments.links import Chain
+from verify.segments.links import Body, Chain
 
 
 def loaded_pencil(chain: Chain) -> FactoredPencil:
     """K = B^T diag(d) B over joint angles, slips and what resists positions and turns, and M."""
     placed = _placed_rows(chain)
-    strains = (chain.compliances[_jointed(chain)], np.ones(int(_slipping(chain).sum())))
+    strains = (chain.compliances[_jointed(chain)], np.ones(_n_slips(chain)))
     return FactoredPencil(
         n=n_unknowns(chain),
         rigid=_rigid(chain),
@@ -49,7 +49,7 @@ def loaded_pencil(chain: Chain) -> FactoredPencil:
 
 def n_unknowns(chain: Chain) -> int:
     """How many positions, turns beyond the ends and slips."""
-    return _n_free(chain) + len(_turning(chain)) + int(_slipping(chain).sum())
+    return _n_free(chain) + len(_turning(chain)) + _n_slips(chain)
 
 
 def lossy_stiffness(chain: Chain, stiffness: Array, loss_factor: float, dashpots: float) -> ComplexArray:
@@ -64,7 +64,7 @@ def lossy_stiffness(chain: Chain, stiffness: Array, loss_factor: float, dashpots
     own = 1.0 / (chain.compliances - series)[there]
     beam = own if chain.eased is None else own / chain.eased[there]
     lossy = own + 1j * (loss_factor * beam + dashpots)
-    n, slipping = len(own), int(_slipping(chain).sum())
+    n, slipping = len(own), _n_slips(chain)
     found[:n] = 1.0 / (1.0 / lossy + series[there])
     found[n : n + slipping] *= 1.0 + 1j * loss_factor
     return np.asarray(found)
@@ -88,6 +88,11 @@ def _jointed(chain: Chain) -> Any:
 def _slipping(chain: Chain) -> Any:
     """Which of joints 0..N slip, (N + 1,)."""
     return np.zeros(chain.n_segments + 1, dtype=bool) if chain.slips is None else np.isfinite(chain.slips)
+
+
+def _n_slips(chain: Chain) -> int:
+    """How many joints and bodies slip."""
+    return int(_slipping(chain).sum()) + sum(body.give > 0.0 for body in chain.bodies)
 
 
 def _held_turns(chain: Chain) -> tuple[list[int], Array]:
@@ -117,7 +122,8 @@ def slips(chain: Chain, free: Any) -> Any:
     found = np.zeros((chain.n_segments + 1, free.shape[1]), dtype=free.dtype)
     if chain.slips is not None:
         there = _slipping(chain)
-        found[there] = np.sqrt(chain.slips[there])[:, None] * free[_n_free(chain) + len(_turning(chain)) :]
+        first = _n_free(chain) + len(_turning(chain))
+        found[there] = np.sqrt(chain.slips[there])[:, None] * free[first : first + there.sum()]
     return found
 
 
@@ -199,8 +205,19 @@ def corrections(chain: Chain, free: Array) -> Array:
     return np.asarray((squares[:, None] / 24.0 * (bent - _shear_change(chain, free))).T)
 
 
-def _placed_rows(chain: Chain) -> tuple[Array, Any, Any, Any]:
-    """What resists middles, turns and places: stiffnesses (r,) and rows over joints, middles and turns, sparse."""
+def _own_slips(chain: Chain, bodies: list[Body]) -> Any:
+    """Slips of bodies that slip as a sparse array over the unknowns, (b, n)."""
+    from scipy.sparse import csr_array
+
+    giving = [body for body in chain.bodies if body.give > 0.0]
+    first = n_unknowns(chain) - len(giving)
+    found = [(row, first + giving.index(b), np.sqrt(b.give)) for row, b in enumerate(bodies) if b.give > 0.0]
+    rows, columns, values = zip(*found, strict=True) if found else ((), (), ())
+    return csr_array((values, (rows, columns)), (len(bodies), n_unknowns(chain)), dtype=float)
+
+
+def _placed_rows(chain: Chain) -> tuple[Array, Any, Any, Any, Any]:
+    """What resists middles, turns and places: stiffnesses, and rows over joints, middles, turns and unknowns, sparse."""
     from scipy.sparse import csr_array, eye_array, vstack
 
     n = chain.n_segments
@@ -222,14 +239,16 @@ def _placed_rows(chain: Chain) -> tuple[Array, Any, Any, Any]:
         [b.stiffness for b in springs],
         [b.rotational for b in rotational],
     ]
-    return np.concatenate(stiffness), vstack(over_joints), vstack(over_middles), vstack(over_turns)
+    total = n_unknowns(chain)
+    slipping = [csr_array((apart, total)), _own_slips(chain, springs), csr_array((len(rotational), total))]
+    return np.concatenate(stiffness), *map(vstack, (over_joints, over_middles, over_turns, slipping))
 
 
-def _strain(chain: Chain, placed: tuple[Array, Any, Any, Any], free: Array) -> Array:
+def _strain(chain: Chain, placed: tuple[Array, Any, Any, Any, Any], free: Array) -> Array:
     """Everything that costs energy, (m, k)."""
-    _, over_joints, over_middles, over_turns = placed
+    _, over_joints, over_middles, over_turns, over_slips = placed
     resisted = over_joints @ positions(chain, free) + over_middles @ middles(chain, free)
-    resisted = resisted + over_turns @ turns(chain, free)
+    resisted = resisted + over_turns @ turns(chain, free) + over_slips @ free
     slipped = free[_n_free(chain) + len(_turning(chain)) :]
     held = end_turns(chain, free)[_held_turns(chain)[0]]
     return np.concatenate([angles(chain, free)[_jointed(chain)], slipped, resisted, held])
@@ -245,26 +264,26 @@ def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
     ends = csr_array(
         (np.ones(len(_turning(chain))), (_turning(chain), range(free, free + len(_turning(chain))))), (2, total)
     )
-    there = np.flatnonzero(_slipping(chain))
+    there, first = np.flatnonzero(_slipping(chain)), free + len(_turning(chain))
     roots = np.sqrt(chain.slips[there]) if chain.slips is not None else np.zeros(0)
-    parts = csr_array((_shares(chain)[there] * roots, (there, range(total - len(there), total))), (n + 1, total))
+    parts = csr_array((_shares(chain)[there] * roots, (there, range(first, first + len(there)))), (n + 1, total))
     before, after = slice(0, n), slice(1, n + 1)
     centres = 0.5 * (joints[after] + joints[before]) + 0.5 * (parts[before] - parts[after])
     tilts = diags_array(1.0 / chain.lengths) @ (joints[after] - joints[before] - parts[after] - parts[before])
     return joints, centres, tilts.tocsr(), ends
 
 
-def _strain_matrix(chain: Chain, placed: tuple[Array, Any, Any, Any]) -> Any:
+def _strain_matrix(chain: Chain, placed: tuple[Array, Any, Any, Any, Any]) -> Any:
     """B of `_strain` as a sparse array (m, n)."""
     from scipy.sparse import eye_array, vstack
 
     joints, centres, tilts, ends = _maps(chain)
-    _, over_joints, over_middles, over_turns = placed
+    _, over_joints, over_middles, over_turns, over_slips = placed
     around = vstack([ends[[0]], tilts, ends[[1]]]).tocsr()
     bent = (around[1:] - around[:-1])[np.flatnonzero(_jointed(chain))]
-    total, slipping = n_unknowns(chain), int(_slipping(chain).sum())
+    total, slipping = n_unknowns(chain), _n_slips(chain)
     slipped = eye_array(slipping, total, k=total - slipping)
-    resisted = over_joints @ joints + over_middles @ centres + over_turns @ tilts
+    resisted = over_joints @ joints + over_middles @ centres + over_turns @ tilts + over_slips
     return vstack([bent, slipped, resisted, ends[_held_turns(chain)[0]]]).tocsc()
 
 
@@ -282,7 +301,7 @@ def _mass(chain: Chain) -> Any:
         for body in chain.bodies:
             if body.mass or body.rotary_inertia:
                 felt, turned = (csr_array(row) for row in rows_at(chain, [body.position], chain.attachment))
-                felt, turned = felt @ joints, turned @ tilts
+                felt, turned = felt @ joints + _own_slips(chain, [body]), turned @ tilts
                 mass = mass + body.mass * (felt.T @ felt) + body.rotary_inertia * (turned.T @ turned)
         return mass.toarray() if n_unknowns(chain) <= DENSE_UNKNOWNS else mass.tocsc()
 

@@ -65,11 +65,13 @@ def welded_halves(supports: tuple[str, str]) -> tuple[int, int]:
     return left, right
 
 
-def shear_factors(supports: tuple[str, str], n_segments: int, wall: str) -> Array:
+def shear_factors(
+    supports: tuple[str, str], n_segments: int, wall: str, loaded: tuple[bool, bool] = (False, False)
+) -> Array:
     """The same for the compliances against slipping, (N + 1,): the quadrature of Q^2 / (kappa G A).
 
     A clamped wall takes its correction; a pinned one half a joint, exact by reflection; guided and free ends carry no
-    shear force.
+    shear force, but where they are `loaded` by a body or a spring.
     """
     held = {"clamped": "clamped", "pinned": "guided", "guided": "free", "free": "free"}
-    return wall_factors((held[supports[0]], held[supports[1]]), n_segments, wall)
+    return wall_factors((held[supports[0]], held[supports[1]]), n_segments, wall, loaded)
