@@ -34,11 +34,13 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     strain: Callable[[Array], Array]
     """v (n, k) -> B v (m, k), by differences of differences."""
     stiffness: Array
-    """d, (m,), positive."""
+    """d, (m,), positive, but where `inverse` is true: K is positive then all the same, rigid motions left out."""
     strain_matrix: Callable[[], Any]
     """() -> B as a sparse array (m, n); asked for only where a factorisation needs it."""
     mass_matrix: Callable[[], Any]
     """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
+    inverse: bool = False
+    """Whether dense vectors too come from the inverse: d may be negative, and M and d span many orders."""
 
     @property
     def rigid_modes(self) -> int:
@@ -111,7 +113,9 @@ def method_name(n_unknowns: int, n_modes: int) -> str:
 
 def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
     """The lowest `n_modes` elastic eigenpairs. The caller has checked the size with `check_size`."""
-    if pencil.n <= DENSE_UNKNOWNS:
+    if pencil.inverse and uses_dense(pencil.n, n_modes):
+        vectors = _inverse_vectors(pencil, n_modes)
+    elif pencil.n <= DENSE_UNKNOWNS:
         vectors = _dense_vectors(pencil, n_modes)
     elif uses_dense(pencil.n, n_modes):
         vectors = _svd_vectors(pencil, n_modes)
@@ -138,6 +142,25 @@ def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
     _, vectors = eigh(stiffness, pencil.mass_matrix(), driver="gvd", check_finite=False)
     return np.asarray(vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes])
+
+
+def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+    """Vectors from all of L^T K^{-1} L, M = L L^T, K^{-1} through the mixed matrix as `_sparse_vectors` has it."""
+    from scipy.linalg import cholesky, eigh
+
+    mass = pencil.mass_matrix()
+    lower = cholesky(mass.toarray() if hasattr(mass, "toarray") else mass, lower=True)
+    mixed, free = mixed_matrix(pencil)
+    inertia = np.asarray(mass @ pencil.rigid)
+    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
+    loads = np.zeros((mixed.shape[0], pencil.n))
+    loads[-len(free) :] = (lower - inertia @ (motions.T @ lower))[free]
+    answers = np.zeros((pencil.n, pencil.n))
+    answers[free] = factorised(mixed).solve(loads)[-len(free) :]
+    answers -= motions @ (inertia.T @ answers)
+    flexible = lower.T @ answers
+    _, vectors = eigh(0.5 * (flexible + flexible.T))
+    return np.asarray(answers @ vectors[:, ::-1][:, :n_modes])
 
 
 def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:

@@ -1,7 +1,9 @@
 """Finite segments: rigid links and joint springs, linearised about the straight chain. Modes and harmonic field."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -11,32 +13,53 @@ from verify.errors import InputError, near_name
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import Eigenpairs, FactoredPencil, check_size, lowest, method_name
+from verify.models.eigen import Eigenpairs, FactoredPencil, check_size, forced_response, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
-from verify.options import JOINTS, LOADS, READINGS, WALLS, Joints, Load, Reading, Wall
-from verify.segments.links import (
-    Chain,
-    build_chain,
-    chain_pencil,
-    free_joints,
-    joint_curvatures,
-    with_ends,
+from verify.options import (
+    ATTACHMENTS,
+    JOINTS,
+    LOADS,
+    READINGS,
+    THEORIES,
+    WALLS,
+    Attachment,
+    Joints,
+    Load,
+    Reading,
+    Theory,
+    Wall,
 )
+from verify.segments.links import Chain, build_chain, chain_pencil, elastic_ends, free_joints
 from verify.segments.loads import joint_weights
-from verify.segments.reading import corrected_reading, spline_at
+from verify.segments.reading import (
+    joint_curvatures,
+    joint_positions,
+    joint_readings,
+    link_middles,
+    link_slopes,
+    spline_at,
+)
 
 FIELD = "n_segments"
 
 
-def unknowns(beam: Beam, n_segments: int) -> int:
-    """How many joint positions the supports leave free."""
-    return n_segments + 1 - sum(support in ("pinned", "clamped") for support in beam.supports)
+def unknowns(
+    beam: Beam, n_segments: int, theory: Theory = "euler-bernoulli", attachment: Attachment = "reciprocal"
+) -> int:
+    """How many joint positions the supports leave free, slips of joints and turns of bodies beyond end joints."""
+    held = sum(support in ("pinned", "clamped") for support in beam.supports)
+    slips = n_segments - 1 + held if theory == "timoshenko" else 0
+    weighty = {m.position for m in beam.mass if m.rotary_inertia}
+    ends = zip((0.0, beam.length), elastic_ends(beam, attachment), strict=True)
+    return n_segments + 1 - held + slips + sum(elastic and at in weighty for at, elastic in ends)
 
 
-def n_elastic(beam: Beam, n_segments: int) -> int:
+def n_elastic(
+    beam: Beam, n_segments: int, theory: Theory = "euler-bernoulli", attachment: Attachment = "reciprocal"
+) -> int:
     """How many elastic modes the chain has: unknowns less rigid motions."""
-    return max(unknowns(beam, n_segments) - beam.rigid_motions, 0)
+    return max(unknowns(beam, n_segments, theory, attachment) - beam.rigid_motions, 0)
 
 
 def solve_modes(
@@ -47,19 +70,28 @@ def solve_modes(
     wall: Wall = "gregory",
     joints: Joints = "series",
     grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
 ) -> Modes:
     """The first `n_modes` elastic modes of the beam as `n_segments` rigid links.
 
     Links have their own rotary inertia m l^2/12 (the paper, Section II.A). `joints` is Eq. (1) in its
-    "series" form or as "printed"; `wall` says how a clamped end is held (`options.WALLS`); `grading` is the
-    length of a section's last link over its first. Frequencies are those of the chain to rounding. Shapes are
+    "series" form or as "printed", or "tensioned" for beams under axial force; `wall` says how a clamped end is held
+    (`options.WALLS`); `grading` is the length of a section's last link over its first. `theory` adds the links'
+    thickness inertia ("rayleigh") and joints that slip ("timoshenko"); `attachment` says how masses and springs sit
+    on their links (`attached`). Frequencies are those of the chain to rounding. Shapes are
     read at the joints with the correction y + delta^2 y / 12 (order 4, next to a clamped wall 2; the raw y,
     order 2, is the reading "raw") and through a cubic spline between. Raises InputError for unknown settings,
-    more modes than the chain has or sizes that do not fit into memory.
+    more modes than the chain has, sizes that do not fit into memory, and compression beyond the chain's buckling.
     """
-    check(beam, n_modes, n_segments, wall=wall, joints=joints, grading=grading)
-    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
+    settings = _settings(wall, joints, grading, theory, attachment)
+    check(beam, n_modes, n_segments, **settings)
+    chain = build_chain(beam, n_segments, **settings)
     return _modes(beam, chain, lowest(chain_pencil(chain), n_modes))
+
+
+def _settings(wall: Wall, joints: Joints, grading: float, theory: Theory, attachment: Attachment) -> dict[str, Any]:
+    return {"wall": wall, "joints": joints, "grading": grading, "theory": theory, "attachment": attachment}
 
 
 def check(
@@ -70,33 +102,66 @@ def check(
     wall: str = "gregory",
     joints: str = "series",
     grading: float = 1.0,
+    theory: str = "euler-bernoulli",
+    attachment: str = "reciprocal",
 ) -> None:
-    """Raise InputError, before anything is allocated, where `solve_modes` would refuse."""
-    if wall not in WALLS:
-        raise InputError(f"wall = {wall!r} is not known: {near_name(wall, WALLS)}")
-    if joints not in JOINTS:
-        raise InputError(f"joints = {joints!r} is not known: {near_name(joints, JOINTS)}")
+    """Raise InputError, before anything large is allocated, where `solve_modes` would refuse."""
+    words = (
+        ("wall", wall, WALLS),
+        ("joints", joints, JOINTS),
+        ("theory", theory, THEORIES),
+        ("attachment", attachment, ATTACHMENTS),
+    )
+    for field, word, known in words:
+        if word not in known:
+            raise InputError(f"{field} = {word!r} is not known: {near_name(word, known)}")
     check_whole("n_modes", n_modes, 1)
     check_whole(FIELD, n_segments, 2)  # a single link does not bend
-    if wall == "welded" and (beam.section or grading != 1.0):
-        raise InputError("wall = 'welded' is for uniform beams of equal segments: choose another wall")
+    if wall == "welded" and (beam.added or grading != 1.0 or theory != "euler-bernoulli"):
+        raise InputError(
+            "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
+        )
     check_division(beam, n_segments, grading)
-    check_size(unknowns(beam, n_segments), n_modes, n_elastic(beam, n_segments), FIELD, n_segments)
+    _check_theory(beam, theory)
+    available = n_elastic(beam, n_segments, theory, attachment)  # type: ignore[arg-type]
+    check_size(unknowns(beam, n_segments, theory, attachment), n_modes, available, FIELD, n_segments)  # type: ignore[arg-type]
+    if beam.tension:
+        from verify.segments.buckling import check_loaded
+
+        check_loaded(beam, n_segments, wall, joints, grading, attachment)
+
+
+def _check_theory(beam: Beam, theory: str) -> None:
+    """Raise InputError for axial force in a theory of thick beams, and for what such a theory needs to know."""
+    if theory == "euler-bernoulli":
+        return
+    if beam.tension:
+        raise InputError(
+            f"beam.tension with theory = {theory!r}: there is more than one theory of thick beams under axial force, "
+            "choose theory = 'euler-bernoulli'"
+        )
+    needed = ("rotary_inertia", "shear_stiffness") if theory == "timoshenko" else ("rotary_inertia",)
+    for field in needed:
+        if any(getattr(piece, field) is None for piece in beam.pieces):
+            raise InputError(
+                f"beam.{field} is missing: theory = {theory!r} needs it, give it beside bending_stiffness and "
+                "mass_per_length, or give the section's shape and material"
+            )
 
 
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / chain.unit**2
-    raw = with_ends(chain, pairs.vectors).T * _sign(chain, pairs.vectors)[:, None]
-    raw /= sqrt(beam.mass_per_length * chain.unit)
+    vectors = pairs.vectors * (_sign(chain, pairs.vectors) / sqrt(beam.mass_per_length * chain.unit))
+    raw = joint_positions(chain, vectors)
 
     def corrected() -> Array:
-        return corrected_reading(chain, raw)
+        return joint_readings(chain, vectors)
 
     def shapes(x: Array, derivative: int) -> Array:
         return spline_at(chain, corrected(), x, derivative)
 
     def curvatures() -> Array:
-        return joint_curvatures(chain, raw)
+        return joint_curvatures(chain, vectors)
 
     nodes = chain.nodes
     return Modes(
@@ -133,6 +198,8 @@ def solve_harmonic(
     wall: Wall = "gregory",
     joints: Joints = "series",
     grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
 ) -> HarmonicField:
     """The steady field of the chain under harmonic point forces, e^{+i omega t}.
 
@@ -140,30 +207,43 @@ def solve_harmonic(
     paper's contact line (Section II.B) through the "corrected" or the "raw" joints, or that of the rigid "links"
     themselves: straight, its slope the link's, the mean of both at a joint. Damping: the beam's loss factor;
     `modal_damping` zeta of every mode (equivalent near a resonance: eta = 2 zeta); `joint_dashpot` c in N m s
-    at every joint (eta = omega c / k). Raises InputError; an undamped resonance of the chain is refused.
+    at every joint (eta = omega c / k). Springs, ground and axial force have no loss. Raises InputError; an undamped resonance of the chain is refused.
     """
-    check(beam, 1, n_segments, wall=wall, joints=joints, grading=grading)
+    settings = _settings(wall, joints, grading, theory, attachment)
+    check(beam, 1, n_segments, **settings)
     _check_harmonic(beam, forces, frequency_hz, load, reading, modal_damping, joint_dashpot)
-    chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
+    chain = build_chain(beam, n_segments, **settings)
     pencil = chain_pencil(chain)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * chain.unit**4
     if not (beam.loss_factor or modal_damping or joint_dashpot):
-        refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve_modes, n_segments)
-    loads = _loads(chain, forces, load) * (chain.unit**3 / beam.bending_stiffness)
+        solve = partial(solve_modes, **settings)
+        refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments)
+    loads = _loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
     stiffness = _damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
-    raw = with_ends(chain, damped_response(pencil, loads, omega2, stiffness, modal_damping)).T
+    if modal_damping and beam.loss_factor and not chain.plain:
+        raise InputError(
+            "beam.loss_factor and modal_damping together: springs, ground and axial force have no loss, which couples "
+            "the modes, give one of the two"
+        )
+    free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
     return HarmonicField(
         model="segment",
         count=n_segments,
         beam=beam,
         frequency_hz=frequency_hz,
         forces=tuple(forces),
-        shapes=_field_shapes(chain, raw, reading),
+        shapes=_field_shapes(chain, free, reading),
     )
 
 
 def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:
     """The stiffness with the beam's loss factor and dashpots of omega c, N m, at every joint."""
+    if not chain.plain:
+        from verify.segments.loaded import lossy_stiffness
+
+        return lossy_stiffness(
+            chain, pencil.stiffness, beam.loss_factor, dashpots * chain.unit / beam.bending_stiffness
+        )
     lossy = pencil.stiffness * (1.0 + 1j * beam.loss_factor) + 1j * (dashpots * chain.unit / beam.bending_stiffness)
     return np.asarray(lossy, dtype=complex)
 
@@ -180,18 +260,19 @@ def _check_harmonic(
     check_number("joint_dashpot", dashpot, "N m s, 0 means none", at_least=0)
 
 
-def _loads(chain: Chain, forces: Sequence[PointForce], rule: str) -> ComplexArray:
-    """The forces on the free joints, (n, 1), newton."""
+def _loads(chain: Chain, forces: Sequence[PointForce], rule: str, n: int) -> ComplexArray:
+    """The forces on the n unknowns, (n, 1), newton: on the free joints, which come first."""
     total = sum(phasor(force) * joint_weights(chain, force.position, rule) for force in forces)
-    return np.asarray(total, dtype=complex)[free_joints(chain), None]
+    joints = np.asarray(total, dtype=complex)[free_joints(chain)]
+    return np.append(joints, np.zeros(n - len(joints)))[:, None]
 
 
-def _field_shapes(chain: Chain, raw: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
-    """The field between the joints; raw is (1, N + 1) complex."""
+def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
+    """The field between the joints; free is (n, 1) complex."""
     if reading == "links":
-        return lambda x, derivative: _link_reading(chain, raw[0], x, derivative)
-    parts = np.vstack([raw.real, raw.imag])
-    values = corrected_reading(chain, parts) if reading == "corrected" else parts
+        return lambda x, derivative: _link_reading(chain, free, x, derivative)
+    parts = np.hstack([free.real, free.imag])
+    values = joint_readings(chain, parts) if reading == "corrected" else joint_positions(chain, parts)
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
         real, imaginary = spline_at(chain, values, x, derivative)
@@ -200,23 +281,38 @@ def _field_shapes(chain: Chain, raw: ComplexArray, reading: str) -> Callable[[Ar
     return shapes
 
 
-def _link_reading(chain: Chain, joints: ComplexArray, x: Array, derivative: int) -> ComplexArray:
-    """The rigid links as they stand: deflection straight between the joints, slope of the link or links at x."""
-    nodes = chain.nodes
-    if derivative == 0:
-        return np.asarray(np.interp(x, nodes, joints.real) + 1j * np.interp(x, nodes, joints.imag))
+def _link_reading(chain: Chain, free: ComplexArray, x: Array, derivative: int) -> ComplexArray:
+    """The rigid links as they stand: deflection straight between the joints, slope of the link or links at x.
+
+    Between links that slip, the mean of both.
+    """
+    nodes, joints = chain.nodes, joint_positions(chain, free)[0]
     if derivative > 1:
         return np.zeros(len(x), dtype=complex)
-    slopes = np.diff(joints) / (chain.lengths * chain.unit)
     slack = 1e-9 * chain.unit
     before, after = (
         np.clip(np.searchsorted(nodes, x + side, side="right") - 1, 0, chain.n_segments - 1) for side in (-slack, slack)
     )
-    return np.asarray(0.5 * (slopes[before] + slopes[after]))
+    slopes = link_slopes(chain, free)[0]
+    if derivative == 1:
+        return np.asarray(0.5 * (slopes[before] + slopes[after]))
+    if chain.slips is None:
+        return np.asarray(np.interp(x, nodes, joints.real) + 1j * np.interp(x, nodes, joints.imag))
+    middles, centres = link_middles(chain, free)[0], 0.5 * (nodes[1:] + nodes[:-1])
+    ends = [middles[link] + slopes[link] * (x - centres[link]) for link in (before, after)]
+    return np.asarray(0.5 * (ends[0] + ends[1]))
 
 
 def unit_responses(
-    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, n_segments: int
+    beam: Beam,
+    positions: Sequence[float],
+    frequencies_hz: Array,
+    x: Array,
+    n_segments: int,
+    *,
+    theory: Theory = "euler-bernoulli",
+    joints: Joints = "series",
+    attachment: Attachment = "reciprocal",
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
@@ -224,16 +320,28 @@ def unit_responses(
     defaults of `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError for chains
     beyond the dense size.
     """
-    check(beam, 1, n_segments)
-    chain = build_chain(beam, n_segments)
+    settings = _settings("gregory", joints, 1.0, theory, attachment)
+    check(beam, 1, n_segments, **settings)
+    chain = build_chain(beam, n_segments, **settings)
     pencil = chain_pencil(chain)
-    weights = np.array([joint_weights(chain, p, "reciprocal")[free_joints(chain)] for p in positions]).T
+    weights = np.zeros((pencil.n, len(positions)))
+    loads = [joint_weights(chain, p, "reciprocal")[free_joints(chain)] for p in positions]
+    weights[: len(loads[0]) if loads else 0] = np.array(loads).T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * chain.unit**4
+    scale = chain.unit**3 / beam.bending_stiffness
+    if beam.loss_factor and not chain.plain:  # what has no loss couples the modes
+        stiffness = _damped(beam, chain, pencil, 0.0)
+        driven = [forced_response(pencil, weights, float(square), stiffness) for square in omega2]
+        return np.array([_read_at(chain, free.real, x) + 1j * _read_at(chain, free.imag, x) for free in driven]) * scale
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
-    shapes = spline_at(chain, corrected_reading(chain, with_ends(chain, modes).T), x, 0)
-    return np.asarray(receptance @ shapes) * (chain.unit**3 / beam.bending_stiffness)
+    return np.asarray(receptance @ _read_at(chain, modes, x)) * scale
 
 
-def method(beam: Beam, n_modes: int, n_segments: int) -> str:
+def _read_at(chain: Chain, free: Array, x: Array) -> Array:
+    """The corrected reading of the unknowns (n, k) at x, (k, len(x))."""
+    return spline_at(chain, joint_readings(chain, free), x, 0)
+
+
+def method(beam: Beam, n_modes: int, n_segments: int, theory: Theory = "euler-bernoulli") -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
-    return method_name(unknowns(beam, n_segments), n_modes)
+    return method_name(unknowns(beam, n_segments, theory), n_modes)

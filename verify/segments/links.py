@@ -3,19 +3,36 @@
 Unknowns are the transverse positions of the joints, which keep the mass matrix well conditioned. Inside, a
 length is measured in mean link lengths, a stiffness and a mass in those of the beam, so that equal links have
 length 1 exactly.
+
+What a chain carries beside its links (axial force, foundation, bodies, springs, slipping joints) `loaded` adds.
 """
 
 from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
+from verify.errors import InputError
 from verify.models.arrays import Array
-from verify.models.division import Parts, divide
+from verify.models.division import Parts, divide, part_counts
 from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
-from verify.options import Joints, Wall
-from verify.segments.walls import wall_factors, welded_halves
+from verify.options import Attachment, Joints, Theory, Wall
+from verify.segments.walls import shear_factors, tension_excess, wall_factors, welded_halves
+
+
+class Body(msgspec.Struct, frozen=True, kw_only=True):
+    """A point mass or spring on a chain, in the chain's units but for its place."""
+
+    position: float
+    """Metres."""
+    mass: float = 0.0
+    rotary_inertia: float = 0.0
+    stiffness: float = 0.0
+    rotational: float = 0.0
+    give: float = 0.0
+    """Compliance of the slip that a mass stands on where joints slip (`attached`)."""
 
 
 class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -36,6 +53,33 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(N,)."""
     inertias: Array
     """(N,), about each link's middle."""
+    tension: float = 0.0
+    """Negative compresses."""
+    foundation: float = 0.0
+    bodies: tuple[Body, ...] = ()
+    """Where they are felt is `attached`'s matter, by the rule `attachment`."""
+    attachment: str = "reciprocal"
+    elastic: tuple[bool, bool] = (False, False)
+    """Whether the left and the right end turn in a joint of their own, with a spring or a body beyond it."""
+    end_inertias: tuple[float, float] = (0.0, 0.0)
+    """Rotary inertias beyond those joints."""
+    end_springs: tuple[float, float] = (0.0, 0.0)
+    """Rotational springs beyond those joints that hold such a body."""
+    end_compliances: tuple[float, float] = (0.0, 0.0)
+    """Of rotational springs beyond those joints that hold none: part of the joint's compliance."""
+    slips: Array | None = None
+    """(N + 1,), compliances of the joints against slipping, infinite where an end has none; None: nothing slips."""
+    softness: Array | None = None
+    """(N + 1,), what they would be inside: of the length of beam that each stands for."""
+    eased: Array | None = None
+    """(N + 1,), the joints' own stiffness over that of the beam alone; None: one everywhere."""
+    lines: tuple[tuple[float, float], ...] = ()
+    """Of a chain that is not plain: the rigid motions a + b x that nothing resists, metres."""
+
+    @property
+    def plain(self) -> bool:
+        """Whether there is nothing but links, joints and walls."""
+        return not (self.tension or self.foundation or self.bodies or self.slips is not None)
 
     @property
     def n_segments(self) -> int:
@@ -52,6 +96,12 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def walls(self) -> tuple[bool, bool]:
         """Whether the left and the right end keep their slope, through a joint at the wall."""
         left, right = (support in ("clamped", "guided") for support in self.supports)
+        return left, right
+
+    @property
+    def jointed(self) -> tuple[bool, bool]:
+        """Whether the left and the right end have a joint that bends: at a wall, or with an elastic support beyond."""
+        left, right = (wall or elastic for wall, elastic in zip(self.walls, self.elastic, strict=True))
         return left, right
 
     @property
@@ -85,35 +135,202 @@ def link_inertia(mass: Any, length: Any) -> Any:
 
 
 def build_chain(
-    beam: Beam, n_segments: int, *, wall: Wall = "gregory", joints: Joints = "series", grading: float = 1.0
+    beam: Beam,
+    n_segments: int,
+    *,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
 ) -> Chain:
-    """The chain of a beam: links of its sections, joints between and at the walls (see `segment_model`)."""
-    beam.check_added("the segment model", ("section",))
+    """The chain of a beam: links of its sections, joints between and at the walls (see `segment_model`).
+
+    Raises InputError where a tensioned joint would have no stiffness left.
+    """
     parts = divide(beam, n_segments, grading)
-    lengths, stiffness = parts.lengths, parts.stiffnesses
-    if joints == "printed":
-        inner = printed_compliance(parts)
-    else:
-        inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
-    # an end joint as if the end link went on beyond it; the factors of the walls say how much of it is there
-    compliances = np.concatenate([[lengths[0] / stiffness[0]], inner, [lengths[-1] / stiffness[-1]]])
-    compliances *= wall_factors(beam.supports, n_segments, wall)
+    lengths = parts.lengths
+    tension = beam.tension * parts.unit**2 / beam.bending_stiffness if beam.tension else 0.0
+    elastic = elastic_ends(beam, attachment)
+    factors = wall_factors(beam.supports, n_segments, wall, elastic)
+    compliances = series = _compliances(parts, parts.stiffnesses, joints) * factors
+    if joints == "tensioned" and tension:
+        compliances = _tensioned(beam, parts, tension, factors, tension_excess(wall), elastic)
     halves = welded_halves(beam.supports) if wall == "welded" else (0, 0)
     masses = lengths * parts.masses_per_length
-    return Chain(
+    inertias = link_inertia(masses, lengths)
+    unit = beam.length / (n_segments + 0.5 * sum(halves))
+    if theory != "euler-bernoulli":
+        thick = _of_links(beam, n_segments, [float(piece.rotary_inertia or 0.0) for piece in beam.pieces])
+        inertias = inertias + lengths * thick / (beam.mass_per_length * unit**2)
+    chain = Chain(
         supports=beam.supports,
         rigid_motions=beam.rigid_motions,
-        unit=beam.length / (n_segments + 0.5 * sum(halves)),
+        unit=unit,
         start=0.5 * halves[0],
         lengths=lengths,
         compliances=compliances,
         masses=masses,
-        inertias=link_inertia(masses, lengths),
+        inertias=inertias,
+    )
+    if beam.added in ((), ("section",)) and theory != "timoshenko":
+        return chain
+    eased = None if compliances is series else _ratio(series, compliances)
+    added = _added(beam, chain, tension, attachment, elastic)
+    if theory != "timoshenko":
+        return replace(added, eased=eased)
+    return _slipping(beam, added, wall)
+
+
+def _compliances(parts: Parts, stiffness: Array, joints: str) -> Array:
+    """1/k of joints 0..N, (N + 1,), an end joint as if the end link went on beyond it."""
+    lengths = parts.lengths
+    if joints == "printed":
+        inner = printed_compliance(parts)
+    else:
+        inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
+    # the factors of the walls say how much of an end joint is there
+    return np.concatenate([[lengths[0] / stiffness[0]], inner, [lengths[-1] / stiffness[-1]]])
+
+
+def _ratio(series: Array, compliances: Array) -> Array:
+    """Of two compliances, one where an end has none, (N + 1,)."""
+    return np.divide(series, compliances, out=np.ones(len(series)), where=np.isfinite(series))
+
+
+def _tensioned(
+    beam: Beam, parts: Parts, tension: float, factors: Array, excess: float, elastic: tuple[bool, bool]
+) -> Array:
+    """1/k of joints 0..N with EI - T l^2/12 for every link's EI, which restores order 4 under axial force (`loaded`).
+
+    The first joint of a clamped wall gives up `excess` more. Raises InputError where no stiffness is left.
+    """
+    stiffness = parts.stiffnesses - tension * parts.lengths**2 / 12.0
+    found = _compliances(parts, stiffness, "series") * factors
+    for end, support, turns in zip((0, -1), beam.supports, elastic, strict=True):
+        if support == "clamped" or turns:
+            found[end] = 1.0 / (1.0 / found[end] - tension * parts.lengths[end] * excess / 12.0 / factors[end] ** 2)
+    if (stiffness <= 0.0).any() or (found <= 0.0).any():
+        raise InputError(
+            f"joints = 'tensioned': beam.tension = {beam.tension!r} N leaves no stiffness in a joint of "
+            f"{len(stiffness)} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of it: "
+            "raise n_segments or choose joints = 'series'"
+        )
+    return found
+
+
+def _of_links(beam: Beam, n_segments: int, of_pieces: list[float]) -> Array:
+    """A figure of the beam's pieces as that of the links, (N,), SI."""
+    return np.repeat(of_pieces, part_counts([piece.length for piece in beam.pieces], n_segments))
+
+
+def _softness(beam: Beam, chain: Chain) -> Array:
+    """1/k against slipping of joints 0..N, l/(kappa G A) as bending has l/(EI), two half links in series, (N + 1,)."""
+    shear = [float(piece.shear_stiffness or 0.0) for piece in beam.pieces]
+    links = beam.bending_stiffness / (_of_links(beam, chain.n_segments, shear) * chain.unit**2) * chain.lengths
+    return np.concatenate([links[:1], 0.5 * (links[1:] + links[:-1]), links[-1:]])
+
+
+def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
+    """The chain with joints that slip. A body slips too: at an end beyond a joint of its own, inside by its `give`.
+
+    A spring without a body is in series with that slip, so that no position is without mass.
+    """
+    softness, n = _softness(beam, chain), chain.n_segments
+    free = {at: joint for at, joint in ((0.0, 0), (beam.length, n)) if beam.supports[bool(joint)] == "free"}
+    places = {body.position for body in chain.bodies if body.mass or body.stiffness}
+    loaded = (beam.supports[0] == "free" and 0.0 in places, beam.supports[1] == "free" and beam.length in places)
+    if chain.attachment == "lever":
+        return replace(chain, softness=softness, slips=softness * shear_factors(beam.supports, n, wall))
+    slips = softness * shear_factors(beam.supports, n, wall, loaded)
+    bodies = []
+    for place in sorted({body.position for body in chain.bodies}):
+        body = _one_body([body for body in chain.bodies if body.position == place])
+        end = free.get(place)
+        give = _give(chain, softness, place) if end is None else slips[end]
+        if body.stiffness and not body.mass:
+            body = replace(body, stiffness=1.0 / (1.0 / body.stiffness + give))
+            if end is not None:
+                slips[end] = np.inf
+        elif body.mass and end is None:
+            body = replace(body, give=give)
+        bodies.append(body)
+    return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips)
+
+
+def _give(chain: Chain, softness: Array, place: float) -> float:
+    """Compliance of the slip of what stands at a place inside, or at a guided end, which stands for both its sides."""
+    from verify.segments.attached import felt_at, shear_give
+
+    felt = felt_at(chain, place, chain.attachment)[0]
+    nearest = int(abs(chain.nodes - place).argmin())
+    if place in (0.0, chain.nodes[-1]) and nearest in (0, chain.n_segments):
+        inward = felt if nearest == 0 else felt[::-1]
+        both = np.concatenate([0.5 * inward[:0:-1], inward[:1], 0.5 * inward[1:]])
+        return float(2.0 * softness[nearest] * shear_give(both))
+    return float(softness[nearest] * shear_give(felt))
+
+
+def _one_body(bodies: list[Body]) -> Body:
+    """Everything that stands at one place."""
+    fields = ("mass", "rotary_inertia", "stiffness", "rotational")
+    return Body(position=bodies[0].position, **{field: sum(getattr(body, field) for body in bodies) for field in fields})
+
+
+def elastic_ends(beam: Beam, attachment: str) -> tuple[bool, bool]:
+    """Whether a rotational spring or a rotary inertia stands at the left and the right end, felt as its end joint is."""
+    if attachment == "lever":
+        return (False, False)
+    turned = {s.position for s in beam.spring if s.rotational} | {m.position for m in beam.mass if m.rotary_inertia}
+    return (0.0 in turned, beam.length in turned)
+
+
+def _added(beam: Beam, chain: Chain, tension: float, attachment: str, elastic: tuple[bool, bool]) -> Chain:
+    """The chain with what stands on the beam; what turns with an end is put beyond its joint."""
+    unit, stiffness, mass = chain.unit, beam.bending_stiffness, beam.mass_per_length
+    bodies = [
+        Body(position=m.position, mass=m.mass / (mass * unit), rotary_inertia=m.rotary_inertia / (mass * unit**3))
+        for m in beam.mass
+    ]
+    bodies += [
+        Body(
+            position=s.position,
+            stiffness=s.stiffness * unit**3 / stiffness,
+            rotational=s.rotational * unit / stiffness,
+        )
+        for s in beam.spring
+    ]
+    ends = [
+        [b for b in bodies if there and b.position == at] for there, at in zip(elastic, (0.0, beam.length), strict=True)
+    ]
+    inertias = [sum(body.rotary_inertia for body in end) for end in ends]
+    springs = [sum(body.rotational for body in end) for end in ends]
+    beyond = [0.0 if inertia or not spring else 1.0 / spring for inertia, spring in zip(inertias, springs, strict=True)]
+    compliances = chain.compliances.copy()
+    compliances[[0, -1]] += beyond
+    at_ends = [body for end in ends for body in end]
+    standing = [replace(b, rotary_inertia=0.0, rotational=0.0) if b in at_ends else b for b in bodies]
+    return replace(
+        chain,
+        compliances=compliances,
+        tension=tension,
+        foundation=beam.foundation * unit**4 / stiffness,
+        bodies=tuple(standing),
+        attachment=attachment,
+        elastic=elastic,
+        end_inertias=(inertias[0], inertias[1]),
+        end_springs=(springs[0] * bool(inertias[0]), springs[1] * bool(inertias[1])),
+        end_compliances=(beyond[0], beyond[1]),
+        lines=beam.rigid_lines,
     )
 
 
 def chain_pencil(chain: Chain) -> FactoredPencil:
     """K = B^T diag(k) B over the joint angles, and M."""
+    if not chain.plain:
+        from verify.segments.loaded import loaded_pencil
+
+        return loaded_pencil(chain)
     left, right = chain.walls
     has_joint = np.concatenate([[left], np.ones(chain.n_segments - 1, dtype=bool), [right]])
     n = chain.n_segments + 1 - sum(chain.held)
@@ -196,7 +413,7 @@ def _between_zeros(rows: Any, left: bool, right: bool) -> Any:
     return padded
 
 
-def joint_curvatures(chain: Chain, joints: Array) -> Array:
+def plain_curvatures(chain: Chain, joints: Array) -> Array:
     """Curvature of the beam at every joint from the joint's moment over EI there, (k, N + 1), 1/m of `joints`.
 
     The joint's angle over its compliance is the moment; over the beam's own EI between the links it is the

@@ -8,7 +8,47 @@ from typing import Any
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.segments.links import Chain
+from verify.segments.links import Chain, plain_curvatures, with_ends
+
+
+def joint_positions(chain: Chain, free: Any) -> Any:
+    """Positions of joints 0..N of the unknowns (n, k), (k, N + 1)."""
+    return with_ends(chain, free[: chain.n_segments + 1 - sum(chain.held)]).T
+
+
+def joint_readings(chain: Chain, free: Array) -> Array:
+    """The beam's deflection at joints 0..N of the unknowns (n, k), order 4, (k, N + 1)."""
+    joints = joint_positions(chain, free)
+    if chain.slips is None:
+        return corrected_reading(chain, joints)
+    from verify.segments.loaded import corrections
+
+    return np.asarray(joints + corrections(chain, free))
+
+
+def joint_curvatures(chain: Chain, free: Array) -> Array:
+    """Curvature of the beam at joints 0..N of the unknowns (n, k), (k, N + 1), 1/m."""
+    if chain.plain:
+        return plain_curvatures(chain, joint_positions(chain, free))
+    from verify.segments.loaded import curvatures
+
+    return curvatures(chain, free)
+
+
+def link_slopes(chain: Chain, free: Any) -> Any:
+    """Turns of the links of the unknowns (n, k), (k, N), radians."""
+    if chain.slips is None:
+        return np.diff(joint_positions(chain, free)) / (chain.lengths * chain.unit)
+    from verify.segments.loaded import turns
+
+    return turns(chain, free).T / chain.unit
+
+
+def link_middles(chain: Chain, free: Any) -> Any:
+    """Positions of the links' middles, (k, N)."""
+    from verify.segments.loaded import middles
+
+    return middles(chain, free).T
 
 
 def node_curvatures(chain: Chain, joints: Array) -> Array:
@@ -45,11 +85,15 @@ def corrected_reading(chain: Chain, joints: Array) -> Array:
 def spline(chain: Chain, values: Array) -> Any:
     """Cubic C2 spline through a value at every joint, (k, N + 1): no moment at pinned and free ends, no slope at walls.
 
-    A scipy CubicSpline over metres along axis 1.
+    A scipy CubicSpline over metres along axis 1. Elastic ends, and those that shear bends or turns, go on as the last
+    two links do.
     """
     from scipy.interpolate import CubicSpline
 
-    ends = tuple((1 if wall else 2, np.zeros(len(values))) for wall in chain.walls)
+    ends: Any = tuple((1 if wall else 2, np.zeros(len(values))) for wall in chain.walls)
+    if any(chain.elastic) or chain.slips is not None:
+        known = [s == "guided" or (s == "pinned" and not e) for s, e in zip(chain.supports, chain.elastic, strict=True)]
+        ends = tuple(end if there else "not-a-knot" for there, end in zip(known, ends, strict=True))
     return CubicSpline(chain.nodes, values, axis=1, bc_type=ends)
 
 

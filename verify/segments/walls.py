@@ -23,12 +23,18 @@ _CORRECTIONS: dict[str, tuple[float, ...]] = {
 }
 
 
-def wall_factors(supports: tuple[str, str], n_segments: int, wall: str) -> Array:
+def wall_factors(
+    supports: tuple[str, str], n_segments: int, wall: str, elastic: tuple[bool, bool] = (False, False)
+) -> Array:
     """What to multiply the compliances of joints 0..N with, (N + 1,); infinite where an end has no joint.
 
     A guided wall has half a joint, which is exact by reflection. On short chains the corrections of both
     clamped ends overlap and add up; what falls on an end without a moment is dropped, because there is none.
+    An end that is `elastic` has a moment, and the joint of a clamped one.
     """
+    if any(elastic):
+        left, right = ("clamped" if turns else support for support, turns in zip(supports, elastic, strict=True))
+        supports = (left, right)
     factors = np.ones(n_segments + 1)
     for end, support in zip((0, n_segments), supports, strict=True):
         if support == "guided":
@@ -43,7 +49,29 @@ def wall_factors(supports: tuple[str, str], n_segments: int, wall: str) -> Array
     return factors
 
 
+def tension_excess(wall: str) -> float:
+    """What a clamped wall adds to the weights 1/c of the tensioned joints' T l/12, in l (`loaded`).
+
+    Corrections a_k of the joints turn link i by -l kappa sum_{k>i} a_k from the smooth line; axial force feels the
+    squares of that. 5/24 for Gregory's.
+    """
+    turned = np.cumsum(np.array(_CORRECTIONS[wall])[:0:-1])
+    return float(12.0 * (turned**2).sum())
+
+
 def welded_halves(supports: tuple[str, str]) -> tuple[int, int]:
     """Which ends have half a segment welded to the wall."""
     left, right = (int(support == "clamped") for support in supports)
     return left, right
+
+
+def shear_factors(
+    supports: tuple[str, str], n_segments: int, wall: str, loaded: tuple[bool, bool] = (False, False)
+) -> Array:
+    """The same for the compliances against slipping, (N + 1,): the quadrature of Q^2 / (kappa G A).
+
+    A clamped wall takes its correction; a pinned one half a joint, exact by reflection; guided and free ends carry no
+    shear force, but where they are `loaded` by a body or a spring.
+    """
+    held = {"clamped": "clamped", "pinned": "guided", "guided": "free", "free": "free"}
+    return wall_factors((held[supports[0]], held[supports[1]]), n_segments, wall, loaded)
