@@ -34,11 +34,13 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     strain: Callable[[Array], Array]
     """v (n, k) -> B v (m, k), by differences of differences."""
     stiffness: Array
-    """d, (m,), positive."""
+    """d, (m,), positive but for what an axial force takes (`uneven` then)."""
     strain_matrix: Callable[[], Any]
     """() -> B as a sparse array (m, n); asked for only where a factorisation needs it."""
     mass_matrix: Callable[[], Any]
     """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
+    uneven: bool = False
+    """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
 
     @property
     def rigid_modes(self) -> int:
@@ -111,7 +113,9 @@ def method_name(n_unknowns: int, n_modes: int) -> str:
 
 def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
     """The lowest `n_modes` elastic eigenpairs. The caller has checked the size with `check_size`."""
-    if pencil.n <= DENSE_UNKNOWNS:
+    if pencil.uneven and uses_dense(pencil.n, n_modes):
+        vectors = _inverse_vectors(pencil, n_modes)
+    elif pencil.n <= DENSE_UNKNOWNS:
         vectors = _dense_vectors(pencil, n_modes)
     elif uses_dense(pencil.n, n_modes):
         vectors = _svd_vectors(pencil, n_modes)
@@ -152,6 +156,30 @@ def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     last = pencil.n - pencil.rigid_modes
     wanted = right[last - n_modes : last][::-1].T
     return np.asarray(solve_triangular(lower, wanted, lower=True, trans="T"))
+
+
+def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+    """Vectors by LAPACK from L^T K^-1 L with M = L L^T and K^-1 through the mixed matrix, which takes any d.
+
+    What is very stiff has next to nothing in it, where K would drown all else in its rounding. Rigid motions are
+    projected out, as for Lanczos.
+    """
+    from scipy.linalg import cholesky, eigh, solve_triangular
+
+    mass = pencil.mass_matrix()
+    mass = np.asarray(mass.toarray() if hasattr(mass, "toarray") else mass)
+    lower = cholesky(mass, lower=True)
+    mixed, free = mixed_matrix(pencil)
+    inertia = mass @ pencil.rigid
+    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
+    loads = np.zeros((mixed.shape[0], pencil.n))
+    loads[-len(free) :] = (lower - inertia @ (motions.T @ lower))[free]
+    answer = np.zeros((pencil.n, pencil.n))
+    answer[free] = factorised(mixed).solve(loads)[-len(free) :]
+    flexibility = lower.T @ (answer - motions @ (inertia.T @ answer))
+    symmetric = 0.5 * (flexibility + flexibility.T)
+    _, vectors = eigh(symmetric, subset_by_index=(pencil.n - n_modes, pencil.n - 1), driver="evr")
+    return np.asarray(solve_triangular(lower, vectors[:, ::-1], lower=True, trans="T"))
 
 
 def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
