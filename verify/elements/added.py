@@ -20,6 +20,14 @@ from verify.models.eigen import FactoredPencil
 SAME_PLACE = 1e-9
 """Of a mean element: what stands so near to a node stands on it."""
 
+RIGID = 1e14
+"""Times the bending stiffness of an element: what is stiffer moves no frequency by 1e-13, and its strain is rounding."""
+
+
+def stiffest(elements: Elements) -> float:
+    """What stiffness is as good as rigid, in EI / unit^3."""
+    return RIGID * float(elements.parts.stiffnesses.max())
+
 
 def added_strains(elements: Elements, plain: FactoredPencil) -> FactoredPencil:
     """The pencil with the strains of axial force, foundation and springs after those of `plain`."""
@@ -94,7 +102,8 @@ def _springs(elements: Elements) -> Strained:
     lift = [(spring.position, spring.stiffness * unit**3) for spring in beam.spring if spring.stiffness]
     turn = [(spring.position, spring.rotational * unit) for spring in beam.spring if spring.rotational]
     matrix, stiffness = _felt(elements, lift, turn)
-    return lambda values: matrix @ values, lambda: matrix, stiffness / beam.bending_stiffness
+    stiffness = np.minimum(stiffness / beam.bending_stiffness, stiffest(elements))
+    return lambda values: matrix @ values, lambda: matrix, stiffness
 
 
 def added_mass(elements: Elements) -> Any:
@@ -147,7 +156,7 @@ def added_matrix(elements: Elements, own: Any) -> Any:
     if beam.foundation:
         ground = np.full(len(parts.lengths), ground_stiffness(beam, parts.unit))
         shear = elements.theory == "timoshenko"
-        total = total + (moving_matrix(basis, ground, 0.0 * ground) if shear else mass_matrix(basis, ground))
+        total = total + (moving_matrix if shear else mass_matrix)(basis, ground)
     if beam.spring:
         _, matrix, stiffness = _springs(elements)
         total = total + matrix().T @ diags_array(stiffness) @ matrix()

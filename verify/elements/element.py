@@ -22,8 +22,10 @@ from verify.models.arrays import Array, Indices
 _RULES = {
     "gauss": get_quadrature(RefLine, 6),
     "simpson": (np.array([[0.0, 0.5, 1.0]]), np.array([1.0, 4.0, 1.0]) / 6.0),
+    "boole": (np.array([[0.0, 0.25, 0.5, 0.75, 1.0]]), np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0),
 }
-"""Points and weights on [0, 1]. Simpson's are exact for the squares of curvatures and lie on floats."""
+"""Points and weights on [0, 1]. Simpson's are exact for squares of curvatures, Boole's for squares of slopes, and
+both lie on floats: what cancels in a sum over a cell does so exactly."""
 _MIDDLE = (np.array([[0.5]]), np.array([1.0]))
 
 
@@ -79,7 +81,7 @@ class LineBasis(CellBasis):  # type: ignore[misc]
     """
 
     def at(self, points: str) -> Any:
-        """The same elements at the points of a rule, "gauss" (of degree 6) or "simpson"."""
+        """The same elements at the points of a rule, "gauss" (of degree 6), "simpson" or "boole"."""
         return self._made(points, lambda: self._beside(_RULES[points]))
 
     def weights(self, x: Array, derivative: int = 0) -> tuple[Indices, list[Array]]:

@@ -107,7 +107,7 @@ def slope_matrix(basis: Any, weight: Array) -> Any:
     """The integral of `weight` u' v' over Hermite elements by scikit-fem, likewise; of T or of rho I, (N,)."""
     from verify.elements.element import per_cell, stretching
 
-    points = basis.at("gauss")
+    points = basis.at("boole")
     return stretching.assemble(points, weight=per_cell(weight, points))
 
 
@@ -129,13 +129,22 @@ def shear_matrix(basis: Any, stiffness: Array) -> Any:
     return shearing.assemble(points, stiffness=per_cell(stiffness, points))
 
 
-def moving_matrix(basis: Any, mass: Array, rotary: Array) -> Any:
-    """The consistent M of Timoshenko elements by scikit-fem, likewise, of rho A and rho I, (N,) each."""
+def moving_matrix(basis: Any, mass: Array) -> Any:
+    """The consistent M of what Timoshenko elements move across by scikit-fem, likewise, of rho A (N,)."""
     from verify.elements.element import per_cell
     from verify.elements.shear import moving
 
     points = basis.at("gauss")
-    return moving.assemble(points, mass=per_cell(mass, points), rotary=per_cell(rotary, points))
+    return moving.assemble(points, mass=per_cell(mass, points))
+
+
+def rolling_matrix(basis: Any, rotary: Array) -> Any:
+    """The part of M of their turning, of rho I (N,)."""
+    from verify.elements.element import per_cell
+    from verify.elements.shear import rolling
+
+    points = basis.at("boole")
+    return rolling.assemble(points, mass=per_cell(rotary, points))
 
 
 def point_loads(basis: Any, x: Array) -> Array:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam
-from verify.elements.added import added_mass, added_matrix, added_strains
+from verify.elements.added import added_mass, added_matrix, added_strains, stiffest
 from verify.elements.curvatures import (
     curvature_matrix,
     curvature_weights,
@@ -26,6 +26,7 @@ from verify.elements.mesh import (
     mass_matrix,
     moving_matrix,
     shear_matrix,
+    rolling_matrix,
     slope_matrix,
     stiffness_matrix,
     turn_matrix,
@@ -34,7 +35,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.compression import buckling_ratio
 from verify.models.driven_pencil import check_dense
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, weighed_squares
 from verify.options import Theory
 
 
@@ -54,7 +55,8 @@ def _pencil(elements: Elements) -> FactoredPencil:
     from skfem import condense
 
     lengths, free = elements.lengths, elements.free
-    mass = condense(inertia_matrix(elements), I=free, expand=False).tocsc()
+    masses = [condense(matrix, I=free, expand=False) for matrix in inertia_matrices(elements)]
+    mass = sum(masses[1:], start=masses[0]).tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
     own = curvature_matrix if elements.theory != "timoshenko" else shear_strain_matrix
@@ -66,6 +68,7 @@ def _pencil(elements: Elements) -> FactoredPencil:
         stiffness=own_weights(elements),
         strain_matrix=lambda: own(lengths)[:, free],
         mass_matrix=lambda: mass,
+        masses=None if len(masses) == 1 else lambda v: sum((weighed_squares(v, one) for one in masses), np.zeros(1)),
         uneven=elements.theory == "timoshenko" or bool(set(elements.beam.added) - {"section"}),
     )
     return added_strains(elements, plain)
@@ -137,22 +140,25 @@ def _timoshenko_stiffness(elements: Elements) -> tuple[Any, Any]:
     beam, parts, basis = elements.beam, elements.parts, elements.basis
     scale = parts.unit**2 / beam.bending_stiffness
     shear = of_pieces(beam, parts, [piece.shear_stiffness * scale for piece in beam.pieces])  # type: ignore[operator]
+    shear = np.minimum(shear, stiffest(elements))
     return turn_matrix(basis, parts.stiffnesses), shear_matrix(basis, shear)
 
 
-def inertia_matrix(elements: Elements) -> Any:
-    """M by scikit-fem with the masses that stand on the beam, over all degrees of freedom, sparse."""
+def inertia_matrices(elements: Elements) -> list[Any]:
+    """M by scikit-fem, what moves across and what turns, over all degrees of freedom, sparse.
+
+    Masses that stand on the beam are in the first. What turns is apart: of short elements of a thick beam it is far
+    larger, and all but cancels.
+    """
     beam, parts, basis = elements.beam, elements.parts, elements.basis
+    shear = elements.theory == "timoshenko"
+    mass = (moving_matrix if shear else mass_matrix)(basis, parts.masses_per_length)
+    mass = mass + added_mass(elements) if beam.mass else mass
     if elements.theory == "euler-bernoulli":
-        mass = mass_matrix(basis, parts.masses_per_length)
-    else:
-        scale = 1.0 / (beam.mass_per_length * parts.unit**2)
-        rotary = of_pieces(beam, parts, [piece.rotary_inertia * scale for piece in beam.pieces])  # type: ignore[operator]
-        if elements.theory == "rayleigh":
-            mass = mass_matrix(basis, parts.masses_per_length) + slope_matrix(basis, rotary)
-        else:
-            mass = moving_matrix(basis, parts.masses_per_length, rotary)
-    return mass + added_mass(elements) if beam.mass else mass
+        return [mass]
+    scale = 1.0 / (beam.mass_per_length * parts.unit**2)
+    rotary = of_pieces(beam, parts, [piece.rotary_inertia * scale for piece in beam.pieces])  # type: ignore[operator]
+    return [mass, (rolling_matrix if shear else slope_matrix)(basis, rotary)]
 
 
 def rigid_shapes(elements: Elements) -> Array:

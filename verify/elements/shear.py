@@ -97,5 +97,11 @@ def shearing(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
 
 @BilinearForm  # type: ignore[untyped-decorator]
 def moving(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
-    """Of inertia, rho A w w + rho I psi psi; `w.mass` is rho A, `w.rotary` rho I."""
-    return w.mass * u * v + w.rotary * p * q
+    """Of inertia, rho A w w, or of a foundation; `w.mass` is rho A or k_f."""
+    return w.mass * u * v
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def rolling(u: Any, p: Any, v: Any, q: Any, w: Any) -> Any:
+    """Of rotary inertia, rho I psi psi; `w.mass` is rho I."""
+    return w.mass * p * q
