@@ -4,11 +4,7 @@ from verify.beam import Beam
 from verify.errors import InputError, near_name
 from verify.options import THEORIES, Theory
 
-_TAKES: dict[str, tuple[str, ...]] = {
-    "euler-bernoulli": (),
-    "rayleigh": ("rotary_inertia",),
-    "timoshenko": ("rotary_inertia", "shear_stiffness"),
-}
+_TAKES = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "shear_stiffness")}
 """Figures of a section that a theory takes beside its bending stiffness and its mass."""
 
 
