@@ -1,4 +1,4 @@
-"""What scikit-fem is given: the cubic Hermite element, a line of them, and the two forms of a bending beam.
+"""What scikit-fem is given: the cubic Hermite element, a line of them, and the forms of a bending beam.
 
 Imports scikit-fem, so it is itself imported in functions alone. scikit-fem's own ElementLineHermite is the same
 element found by inverting a Vandermonde matrix in global coordinates, which costs it digits (`stock`).
@@ -22,8 +22,10 @@ from verify.models.arrays import Array, Indices
 _RULES = {
     "gauss": get_quadrature(RefLine, 6),
     "simpson": (np.array([[0.0, 0.5, 1.0]]), np.array([1.0, 4.0, 1.0]) / 6.0),
+    "boole": (np.array([[0.0, 0.25, 0.5, 0.75, 1.0]]), np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0),
 }
-"""Points and weights on [0, 1]. Simpson's are exact for the squares of curvatures and lie on floats."""
+"""Points and weights on [0, 1]. Simpson's are exact for squares of curvatures, Boole's for squares of slopes, and
+both lie on floats: what cancels in a sum over a cell does so exactly."""
 _MIDDLE = (np.array([[0.5]]), np.array([1.0]))
 
 
@@ -79,7 +81,7 @@ class LineBasis(CellBasis):  # type: ignore[misc]
     """
 
     def at(self, points: str) -> Any:
-        """The same elements at the points of a rule, "gauss" (of degree 6) or "simpson"."""
+        """The same elements at the points of a rule, "gauss" (of degree 6), "simpson" or "boole"."""
         return self._made(points, lambda: self._beside(_RULES[points]))
 
     def weights(self, x: Array, derivative: int = 0) -> tuple[Indices, list[Array]]:
@@ -88,13 +90,21 @@ class LineBasis(CellBasis):  # type: ignore[misc]
         What `probes` has in a sparse matrix, by the same finder, mapping and degrees of freedom, in a tenth of its
         time. An affine mapping stretches a cell alike all over.
         """
+        cells, xi, lift, turn = self._beneath(x, derivative)
+        w0, s0, w1, s1 = cubics(xi, derivative)
+        return self.element_dofs[:, cells], [w0 * lift, s0 * turn, w1 * lift, s1 * turn]
+
+    def turn_weights(self, x: Array) -> tuple[Indices, list[Array]]:
+        """Likewise of what a rotational spring or a rotary inertia at x feels: the slope."""
+        return self.weights(x, 1)
+
+    def _beneath(self, x: Array, derivative: int) -> tuple[Indices, Array, Array, Array]:
+        """The cells under x, x in each, and what deflections and slopes of a derivative are multiplied with there."""
         cells = self.mesh.element_finder(mapping=self.mapping)(x)
         xi = self.mapping.invF(x[None, :, None], tind=cells)[0, :, 0]
         lengths, shrinks = self._stretches
         lift = shrinks[cells] ** derivative
-        turn = lengths[cells] * lift
-        w0, s0, w1, s1 = cubics(xi, derivative)
-        return self.element_dofs[:, cells], [w0 * lift, s0 * turn, w1 * lift, s1 * turn]
+        return cells, xi, lift, lengths[cells] * lift
 
     def read(self, nodal: Any, x: Array, derivative: int = 0) -> Any:
         """The cubics or a derivative at x (in the mesh's coordinate), (k, len(x)); nodal is (k, 2N + 2)."""
@@ -147,6 +157,12 @@ def bending(u: Any, v: Any, w: Any) -> Any:
 def inertia(u: Any, v: Any, w: Any) -> Any:
     """Of inertia, rho A u v; `w.mass` is rho A."""
     return w.mass * u * v
+
+
+@BilinearForm  # type: ignore[untyped-decorator]
+def stretching(u: Any, v: Any, w: Any) -> Any:
+    """Of slopes, u' v': an axial force's, or rho I's; `w.weight` is T or rho I."""
+    return w.weight * u.grad[0] * v.grad[0]
 
 
 def per_cell(values: Array, basis: Any) -> DiscreteField:

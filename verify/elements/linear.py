@@ -1,56 +1,77 @@
-"""Modes and harmonic fields of Hermite elements: what the model answers, in metres, hertz and newtons."""
+"""Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers, in metres, hertz and newtons."""
 
 from collections.abc import Sequence
+from functools import partial
 from math import pi, sqrt
 
 import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
+from verify.elements.cuts import check_cuts
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
-from verify.elements.pencil import element_pencil
+from verify.elements.pencil import damped_stiffness, element_pencil, own_strains
+from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.division import Parts, check_division
+from verify.models.division import Parts
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
-from verify.models.fields import HarmonicField, check_drive, phasor
+from verify.models.eigen import (
+    Eigenpairs,
+    FactoredPencil,
+    check_size,
+    forced_response,
+    lowest,
+    method_name,
+    resonance_distance,
+)
+from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.models.theory import check_theory
+from verify.options import Theory
 
 FIELD = "n_elements"
 
 
-def unknowns(beam: Beam, n_elements: int) -> int:
-    """How many nodal values the supports leave free."""
+def unknowns(beam: Beam, n_elements: int, theory: Theory = "euler-bernoulli") -> int:
+    """How many nodal values the supports leave free, and two shear strains in each of Timoshenko's elements."""
     held = {"pinned": 1, "clamped": 2, "guided": 1, "free": 0}
-    return 2 * n_elements + 2 - sum(held[support] for support in beam.supports)
+    inside = 2 * n_elements if theory == "timoshenko" else 0
+    return 2 * n_elements + 2 + inside - sum(held[support] for support in beam.supports)
 
 
-def n_elastic(beam: Beam, n_elements: int) -> int:
+def n_elastic(beam: Beam, n_elements: int, theory: Theory = "euler-bernoulli") -> int:
     """How many elastic modes the model has."""
-    return unknowns(beam, n_elements) - beam.rigid_motions
+    return unknowns(beam, n_elements, theory) - beam.rigid_motions
 
 
-def solve_modes(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0) -> Modes:
-    """The first `n_modes` elastic modes with `n_elements` cubic Hermite elements and consistent mass.
+def solve_modes(
+    beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0, theory: Theory = "euler-bernoulli"
+) -> Modes:
+    """The first `n_modes` elastic modes with `n_elements` elements and consistent mass.
 
-    Elements end on the steps of the beam; `grading` is the length of a section's last element over its first.
-    Shapes are the elements' own cubics. Raises InputError for a wrong grading, more modes than unknowns or
-    sizes that do not fit into memory.
+    Cubic Hermite elements, under Timoshenko's theory with two shear strains in each. Elements end on the steps of the
+    beam and where masses and springs stand; `grading` is the length of a stretch's last element over its first.
+    Shapes are the elements' own cubics. Raises InputError for a wrong grading, more modes than unknowns, sizes that
+    do not fit into memory, what a theory lacks, or a compression at which the elements buckle.
     """
-    check(beam, n_modes, n_elements, grading=grading)
-    elements = build_elements(beam, n_elements, grading)
+    check(beam, n_modes, n_elements, grading=grading, theory=theory)
+    elements = build_elements(beam, n_elements, grading, theory)
     pairs = lowest(element_pencil(elements), n_modes)
     nodal = elements.all_values(pairs.vectors)
     nodal = nodal * _sign(elements, nodal)[:, None]
     return _modes(elements, nodal / sqrt(beam.mass_per_length * elements.parts.unit), pairs)
 
 
-def check(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0) -> None:
-    """Raise InputError, before anything is allocated, where `solve_modes` would refuse."""
+def check(
+    beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0, theory: Theory = "euler-bernoulli"
+) -> None:
+    """Raise InputError, before anything is allocated, where `solve_modes` would refuse all but a buckled mesh."""
     check_whole("n_modes", n_modes, 1)
     check_whole(FIELD, n_elements, 1)
-    check_division(beam, n_elements, grading)
-    check_size(unknowns(beam, n_elements), n_modes, n_elastic(beam, n_elements), FIELD, n_elements)
+    check_theory(beam, theory)
+    check_cuts(beam, n_elements, grading)
+    free, elastic = unknowns(beam, n_elements, theory), n_elastic(beam, n_elements, theory)
+    check_size(free, n_modes, elastic, FIELD, n_elements)
 
 
 def _modes(elements: Elements, nodal: Array, pairs: Eigenpairs) -> Modes:
@@ -101,25 +122,29 @@ def solve_harmonic(
     *,
     modal_damping: float = 0.0,
     grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
 ) -> HarmonicField:
-    """The steady field of the Hermite elements under harmonic point forces, e^{+i omega t}.
+    """The steady field of the elements under harmonic point forces, e^{+i omega t}.
 
     Stiffness stays factored, so the error has no floor that grows with the mesh. Damping: the beam's loss
     factor, or `modal_damping` zeta of every mode (near a resonance eta = 2 zeta). Raises InputError; an
-    undamped resonance of the mesh is refused.
+    undamped resonance of the mesh is refused, and both dampings together where springs, an axial force or a
+    foundation have no loss.
     """
-    check(beam, 1, n_elements, grading=grading)
+    check(beam, 1, n_elements, grading=grading, theory=theory)
     check_drive(beam, forces, frequency_hz)
     check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
-    elements = build_elements(beam, n_elements, grading)
+    elements = build_elements(beam, n_elements, grading, theory)
     pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit
+    _check_dampings(elements, pencil, modal_damping)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * unit**4
     if not (beam.loss_factor or modal_damping):
-        refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, solve_modes, n_elements)
+        near = partial(_around, theory=theory, grading=grading)
+        refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, near, n_elements)
     unit_loads = point_loads(basis, np.array([force.position for force in forces]) / unit)
     total = sum(phasor(force) * load for force, load in zip(forces, unit_loads, strict=True))
     loads = np.array(total, dtype=np.complex128)[elements.free, None] * (unit**3 / beam.bending_stiffness)
-    stiffness: ComplexArray = np.asarray(pencil.stiffness * (1.0 + 1j * beam.loss_factor), dtype=complex)
+    stiffness = damped_stiffness(elements, pencil)
     nodal = elements.all_values(damped_response(pencil, loads, omega2, stiffness, modal_damping))
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
@@ -131,24 +156,58 @@ def solve_harmonic(
     )
 
 
+def _check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:
+    if modal_damping and elements.beam.loss_factor and len(pencil.stiffness) > own_strains(elements):
+        raise InputError(
+            f"beam.loss_factor = {elements.beam.loss_factor!r} and modal_damping = {modal_damping!r} together: springs, "
+            "tension and foundation have no loss and couple the modes, give one of the two"
+        )
+
+
+def _around(beam: Beam, n_modes: int, n_elements: int, *, grading: float, theory: Theory) -> Modes:
+    """Modes among which that of a frequency is, `n_modes` of which a plain beam has below it: masses lower others."""
+    wanted = n_modes if beam.uniform and theory == "euler-bernoulli" else 2 * n_modes + 2 * len(beam.mass)
+    most = n_elastic(beam, n_elements, theory)
+    return solve_modes(beam, min(wanted, most), n_elements, grading=grading, theory=theory)
+
+
 def unit_responses(
-    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, n_elements: int
+    beam: Beam,
+    positions: Sequence[float],
+    frequencies_hz: Array,
+    x: Array,
+    n_elements: int,
+    *,
+    theory: Theory = "euler-bernoulli",
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
-    All modes of the mesh are solved once and summed exactly for every frequency. NaN at the frequencies of
+    All modes of the mesh are solved once and summed exactly for every frequency; where a loss factor couples them,
+    beside what has no loss, and under Timoshenko's theory, every frequency is solved. NaN at the frequencies of
     undamped resonances. Raises InputError for meshes beyond the dense size.
     """
-    check(beam, 1, n_elements)
-    elements = build_elements(beam, n_elements)
+    check(beam, 1, n_elements, theory=theory)
+    elements = build_elements(beam, n_elements, theory=theory)
     pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit
     weights = point_loads(basis, np.array(positions) / unit)[:, elements.free].T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4
+    coupled = beam.loss_factor and len(pencil.stiffness) > own_strains(elements)
+    if coupled or theory == "timoshenko":
+        found = [_one_by_one(elements, pencil, weights, value, x) for value in omega2]
+        return np.array(found) * (unit**3 / beam.bending_stiffness)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
     shapes: Array = interpolate(basis, elements.all_values(modes), x / unit)
     return np.asarray(receptance @ shapes) * (unit**3 / beam.bending_stiffness)
 
 
-def method(beam: Beam, n_modes: int, n_elements: int) -> str:
+def _one_by_one(elements: Elements, pencil: FactoredPencil, weights: Array, omega2: float, x: Array) -> ComplexArray:
+    """Responses to each load at one frequency, (n_loads, len(x)); NaN at an undamped resonance."""
+    if not elements.beam.loss_factor and abs(resonance_distance(pencil, omega2)) <= 2.0 * RESONANCE:
+        return np.full((weights.shape[1], len(x)), np.nan, dtype=complex)
+    nodal = elements.all_values(forced_response(pencil, weights, omega2, damped_stiffness(elements, pencil)))
+    return np.asarray(interpolate(elements.basis, nodal, x / elements.parts.unit))
+
+
+def method(beam: Beam, n_modes: int, n_elements: int, theory: Theory = "euler-bernoulli") -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
-    return method_name(unknowns(beam, n_elements), n_modes)
+    return method_name(unknowns(beam, n_elements, theory), n_modes)

@@ -1,8 +1,9 @@
-"""K = B^T diag(d) B and M of Hermite elements: B reads curvatures exactly, d and M are scikit-fem's.
+"""K = B^T diag(d) B and M of the elements: B reads strains exactly, d and M are scikit-fem's.
 
 scikit-fem assembles K and M. K drowns its low eigenvalues in the rounding of its high ones, so it is kept as the
 factors it is made of: what every element contributes is read off K's entries between its two nodes, and B is
 written as differences of differences. `factor_difference` holds the product against K, entry by entry.
+What an axial force, a foundation and springs add is in `added`.
 """
 
 from typing import Any
@@ -10,85 +11,180 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam
-from verify.elements.mesh import Elements, build_elements, mass_matrix, stiffness_matrix
-from verify.models.arrays import Array
+from verify.elements.added import added_mass, added_matrix, added_strains, stiffest
+from verify.elements.curvatures import (
+    curvature_matrix,
+    curvature_weights,
+    element_curvatures,
+    element_shear_strains,
+    shear_strain_matrix,
+)
+from verify.elements.cuts import of_pieces
+from verify.elements.mesh import (
+    Elements,
+    build_elements,
+    mass_matrix,
+    moving_matrix,
+    shear_matrix,
+    rolling_matrix,
+    slope_matrix,
+    stiffness_matrix,
+    turn_matrix,
+)
+from verify.errors import InputError
+from verify.models.arrays import Array, ComplexArray
+from verify.models.compression import buckling_ratio
 from verify.models.driven_pencil import check_dense
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, weighed_squares
+from verify.options import Theory
 
 
 def element_pencil(elements: Elements) -> FactoredPencil:
-    """K = B^T diag(d) B over two curvatures of each element, and M by scikit-fem."""
+    """K = B^T diag(d) B over the strains of each element, and M by scikit-fem.
+
+    First two curvatures of each element, then its two shear strains where it has them, then what is added to the
+    beam. Raises InputError for a compression at which the elements buckle.
+    """
+    pencil = _pencil(elements)
+    if elements.beam.tension < 0.0:
+        _check_stable(elements, pencil)
+    return pencil
+
+
+def _pencil(elements: Elements) -> FactoredPencil:
     from skfem import condense
 
-    lengths, basis, free = elements.lengths, elements.basis, elements.free
-    mass = condense(mass_matrix(basis, elements.parts.masses_per_length), I=free, expand=False).tocsc()
+    lengths, free = elements.lengths, elements.free
+    masses = [condense(matrix, I=free, expand=False) for matrix in inertia_matrices(elements)]
+    mass = sum(masses[1:], start=masses[0]).tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
-    return FactoredPencil(
+    own = curvature_matrix if elements.theory != "timoshenko" else shear_strain_matrix
+    read = element_curvatures if elements.theory != "timoshenko" else element_shear_strains
+    plain = FactoredPencil(
         n=len(free),
         rigid=rigid_shapes(elements)[free],
-        strain=lambda values: element_curvatures(lengths, elements.all_values(values).T),
-        stiffness=curvature_weights(lengths, stiffness_matrix(basis, elements.parts.stiffnesses)),
-        strain_matrix=lambda: curvature_matrix(lengths)[:, free],
+        strain=lambda values: read(lengths, elements.all_values(values).T),
+        stiffness=own_weights(elements),
+        strain_matrix=lambda: own(lengths)[:, free],
         mass_matrix=lambda: mass,
+        masses=None if len(masses) == 1 else lambda v: sum((weighed_squares(v, one) for one in masses), np.zeros(1)),
+        uneven=elements.theory == "timoshenko" or bool(set(elements.beam.added) - {"section"}),
     )
+    return added_strains(elements, plain)
 
 
-def curvature_weights(lengths: Array, stiffness: Any) -> Array:
-    """d, (2N,), of mean curvatures and their gradients: EI/l and 3 EI/l, from an assembled K, (2N + 2, 2N + 2).
+def _check_stable(elements: Elements, pencil: FactoredPencil) -> None:
+    force, load = elements.beam.tension, mesh_buckling_load(elements, pencil)
+    if -force >= load:
+        raise InputError(
+            f"beam.tension = {force!r} N compresses the beam beyond its buckling: {len(elements.lengths)} elements "
+            f"buckle at {load:.6g} N, lower it or hold the beam better"
+        )
 
-    Between its two nodes K has one element alone: -4 d_1 / l^2 for the deflections, d_1 - d_0 for the slopes.
+
+def mesh_buckling_load(elements: Elements, pencil: FactoredPencil) -> float:
+    """The compression at which the elements of a compressed beam buckle first, newton."""
+    from msgspec.structs import replace
+
+    if any(turn for _, turn in replace(elements.beam, tension=0.0).rigid_lines):
+        return 0.0
+    return -elements.beam.tension / buckling_ratio(pencil)
+
+
+def buckling_load(beam: Beam, n_elements: int, grading: float = 1.0) -> float:
+    """The compression at which `n_elements` elements buckle first, newton, whatever the beam's own axial force.
+
+    Infinite for a beam of which no motion tilts. Raises InputError where it cannot be divided so.
     """
-    beside = stiffness.diagonal(2)
-    gradients = -0.25 * lengths**2 * beside[::2]
-    return np.concatenate([gradients - beside[1::2], gradients])
+    from msgspec.structs import replace
+
+    scale = float(beam.bending_stiffness / beam.length**2)
+    elements = build_elements(replace(beam, tension=-scale), n_elements, grading)
+    return mesh_buckling_load(elements, _pencil(elements))
+
+
+def damped_stiffness(elements: Elements, pencil: FactoredPencil) -> ComplexArray:
+    """D with the beam's loss factor, which acts on its bending and shear and on nothing that is added, (m,)."""
+    stiffness = np.asarray(pencil.stiffness, dtype=complex)
+    stiffness[: own_strains(elements)] *= 1.0 + 1j * elements.beam.loss_factor
+    return stiffness
+
+
+def own_strains(elements: Elements) -> int:
+    """How many strains there are of the beam's own bending and shear."""
+    return len(elements.lengths) * (4 if elements.theory == "timoshenko" else 2)
+
+
+def own_weights(elements: Elements) -> Array:
+    """D of the beam's own bending and shear, (2N,) or (4N,), read off what scikit-fem assembles."""
+    lengths, basis = elements.lengths, elements.basis
+    if elements.theory != "timoshenko":
+        return curvature_weights(lengths, stiffness_matrix(basis, elements.parts.stiffnesses))
+    bending, shear = _timoshenko_stiffness(elements)
+    nodal = 2 * len(lengths) + 2
+    inside = shear.diagonal()[basis.interior_dofs]
+    return np.concatenate([curvature_weights(lengths, bending[:nodal, :nodal]), *inside])
+
+
+def own_matrix(elements: Elements) -> Any:
+    """K of the beam's own bending and shear by scikit-fem, over all degrees of freedom, sparse."""
+    if elements.theory != "timoshenko":
+        return stiffness_matrix(elements.basis, elements.parts.stiffnesses)
+    bending, shear = _timoshenko_stiffness(elements)
+    return bending + shear
+
+
+def _timoshenko_stiffness(elements: Elements) -> tuple[Any, Any]:
+    """Bending and shear in K."""
+    beam, parts, basis = elements.beam, elements.parts, elements.basis
+    scale = parts.unit**2 / beam.bending_stiffness
+    shear = of_pieces(beam, parts, [piece.shear_stiffness * scale for piece in beam.pieces])  # type: ignore[operator]
+    shear = np.minimum(shear, stiffest(elements))
+    return turn_matrix(basis, parts.stiffnesses), shear_matrix(basis, shear)
+
+
+def inertia_matrices(elements: Elements) -> list[Any]:
+    """M by scikit-fem, what moves across and what turns, over all degrees of freedom, sparse.
+
+    Masses that stand on the beam are in the first. What turns is apart: of short elements of a thick beam it is far
+    larger, and all but cancels.
+    """
+    beam, parts, basis = elements.beam, elements.parts, elements.basis
+    shear = elements.theory == "timoshenko"
+    mass = (moving_matrix if shear else mass_matrix)(basis, parts.masses_per_length)
+    mass = mass + added_mass(elements) if beam.mass else mass
+    if elements.theory == "euler-bernoulli":
+        return [mass]
+    scale = 1.0 / (beam.mass_per_length * parts.unit**2)
+    rotary = of_pieces(beam, parts, [piece.rotary_inertia * scale for piece in beam.pieces])  # type: ignore[operator]
+    return [mass, (rolling_matrix if shear else slope_matrix)(basis, rotary)]
 
 
 def rigid_shapes(elements: Elements) -> Array:
-    """The motions without strain that the supports leave, over all degrees of freedom, (2N + 2, 0 to 2)."""
-    beam, basis = elements.beam, elements.basis
+    """The motions without strain that supports and springs leave, over all degrees of freedom, (n_all, 0 to 2)."""
+    basis, unit = elements.basis, elements.parts.unit
     x, (deflections, slopes) = basis.mesh.p[0], basis.nodal_dofs
-    held = [end for end, support in zip((x[0], x[-1]), beam.supports, strict=True) if support in ("pinned", "clamped")]
-    lift, turn = np.zeros((2, basis.N))
-    lift[deflections], turn[slopes] = 1.0, 1.0
-    turn[deflections] = x - (held[0] if held else 0.5 * x[-1])
-    shapes = [lift] * (not held) + [turn] * (beam.rigid_motions > (not held))
-    return np.array(shapes).reshape(len(shapes), len(lift)).T
+    lines = elements.beam.rigid_lines
+    shapes = np.zeros((basis.N, len(lines)))
+    for shape, (lift, turn) in zip(shapes.T, lines, strict=True):
+        shape[deflections] = turn * x + (lift / unit if turn else lift)
+        shape[slopes] = turn
+    return shapes
 
 
-def element_curvatures(lengths: Array, nodal: Array) -> Array:
-    """Mean curvature and its gradient in every element, (2N, k), from nodal values (2N + 2, k).
-
-    theta_1 - theta_0 and theta_0 + theta_1 - 2 (w_1 - w_0)/l: their squares weighted with EI/l and 3 EI/l
-    are twice the bending energy of a cubic element. Written as differences of differences.
-    """
-    chord = np.diff(nodal[::2], axis=0) / lengths[:, None]
-    left, right = nodal[1:-1:2] - chord, nodal[3::2] - chord
-    return np.concatenate([np.diff(nodal[1::2], axis=0), left + right])
-
-
-def curvature_matrix(lengths: Array) -> Any:
-    """B of `element_curvatures` as a sparse array (2N, 2N + 2)."""
-    from scipy.sparse import csc_array
-
-    n = len(lengths)
-    e, one = np.arange(n), np.ones(n)
-    rows = np.concatenate([e, e, n + e, n + e, n + e, n + e])
-    columns = np.concatenate([2 * e + 1, 2 * e + 3, 2 * e, 2 * e + 1, 2 * e + 2, 2 * e + 3])
-    values = np.concatenate([-one, one, 2.0 / lengths, one, -2.0 / lengths, one])
-    return csc_array((values, (rows, columns)), shape=(2 * n, 2 * n + 2))
-
-
-def factor_difference(beam: Beam, n_elements: int, grading: float = 1.0) -> float:
+def factor_difference(
+    beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli"
+) -> float:
     """How far B^T diag(d) B is from the assembled K: the largest entry of the difference over sqrt(K_ii K_jj).
 
     Over the free unknowns, with B as the sparse array and as the differences that read the eigenvalues, the worse
     of both. Raises InputError where the beam cannot be divided so, and beyond the dense size.
     """
-    elements = build_elements(beam, n_elements, grading)
+    elements = build_elements(beam, n_elements, grading, theory)
     pencil = element_pencil(elements)
     check_dense(pencil, "the factored stiffness against the assembled one")
-    assembled = stiffness_matrix(elements.basis, elements.parts.stiffnesses)[elements.free][:, elements.free].toarray()
+    assembled = added_matrix(elements, own_matrix(elements))[elements.free][:, elements.free].toarray()
     scale = np.sqrt(assembled.diagonal())
     factors = (pencil.strain(np.eye(pencil.n)), pencil.strain_matrix().toarray())
     products = [strain.T @ (pencil.stiffness[:, None] * strain) for strain in factors]

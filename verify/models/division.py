@@ -39,15 +39,16 @@ class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.concatenate([[0.0], np.cumsum(self.lengths)])
 
 
-def divide(beam: Beam, count: int, grading: float = 1.0) -> Parts:
+def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ...] = ()) -> Parts:
     """Divide a beam into `count` parts whose ends fall on its steps.
 
     Every section gets parts in proportion to its length, at least one. `grading` is the length of a section's
-    last part over that of its first, in geometric progression. Raises InputError for fewer parts than sections
+    last part over that of its first, in geometric progression. `pieces`, at most `count`, stand in place of the
+    beam's own where it is divided at more places than its steps. Raises InputError for fewer parts than sections
     or a grading that is not positive and finite.
     """
     check_division(beam, count, grading)
-    pieces = beam.pieces
+    pieces = pieces or beam.pieces
     unit = beam.length / count
     if len(pieces) == 1 and not beam.stepped and grading == 1.0:
         one = np.ones(count)

@@ -43,7 +43,7 @@ def loaded_pencil(chain: Chain) -> FactoredPencil:
         stiffness=np.concatenate([1.0 / strains[0], strains[1], placed[0], _held_turns(chain)[1]]),
         strain_matrix=lambda: _strain_matrix(chain, placed),
         mass_matrix=_mass(chain),
-        inverse=True,
+        uneven=True,
     )
 
 
