@@ -152,6 +152,7 @@ def solve_harmonic(
         return values / unit**derivative
 
     return HarmonicField(
+        theory=theory,
         model="fem", count=n_elements, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces), shapes=shapes
     )
 

@@ -30,6 +30,7 @@ def solve_harmonic(
     else:
         shapes = _closed_form(beam, forces, frequency_hz)
     return HarmonicField(
+        theory=theory,
         model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces), shapes=shapes
     )
 

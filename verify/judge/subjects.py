@@ -16,18 +16,19 @@ if TYPE_CHECKING:
 
 
 class Exact(Model):
-    """The exact Euler-Bernoulli beam, which has no parts."""
+    """The exact beam, which has no parts."""
 
     name = "analytic"
     parts = title = "exact beam"
     colour = "#8a8f98"
     sized = False
+    modal_settings = field_settings = ("theory",)
 
     def solve_modes(self, beam: "Beam", n_modes: int, count: int | None = None, **settings: Any) -> "Modes":
-        """In closed form."""
+        """In closed form, or by the characteristic equation."""
         from verify.exact.modes import solve_modes
 
-        return solve_modes(beam, n_modes)
+        return solve_modes(beam, n_modes, **settings)
 
     def solve_harmonic(
         self, beam: "Beam", forces: "Sequence[PointForce]", frequency_hz: float, count: int | None, **settings: Any
@@ -35,7 +36,7 @@ class Exact(Model):
         """In closed form."""
         from verify.exact.harmonic import solve_harmonic
 
-        return solve_harmonic(beam, forces, frequency_hz)
+        return solve_harmonic(beam, forces, frequency_hz, **settings)
 
     def unit_responses(
         self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
@@ -121,8 +122,8 @@ class Segments(Discrete):
     colour = "#2f80ed"
     bounds = "below"
     fewest = 2
-    modal_settings = ("wall", "joints", "grading")
-    field_settings = ("modal_damping", "joint_dashpot", "load", "reading")
+    modal_settings = ("wall", "joints", "grading", "theory", "attachment")
+    field_settings = ("modal_damping", "joint_dashpot", "load", "reading", "wall", "joints", "theory", "attachment")
     lines = ("spline", "raw")
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:
@@ -148,8 +149,8 @@ class Elements(Discrete):
     parts, title = "elements", "Hermite elements"
     colour = "#e8760c"
     bounds = "above"
-    modal_settings = ("grading",)
-    field_settings = ("modal_damping",)
+    modal_settings = ("grading", "theory")
+    field_settings = ("modal_damping", "theory")
     unknowns_per_part = 2
     library = "scikit-fem"
 

@@ -28,6 +28,8 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     forces: tuple[PointForce, ...]
     shapes: Callable[[Array, int], ComplexArray]
     """(x, derivative) -> (len(x),) complex, metres per metre^derivative."""
+    theory: str = "euler-bernoulli"
+    """Of the beam."""
 
     @property
     def omega(self) -> float:
@@ -36,8 +38,8 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def wavenumber(self) -> complex:
-        """Of the exact beam, (rho A omega^2 / (EI (1 + i eta)))^{1/4}, 1/m; its imaginary part is never positive."""
-        return wavenumber(self.beam, self.frequency_hz)
+        """Of the exact beam by the same theory, 1/m; its imaginary part is never positive."""
+        return wavenumber(self.beam, self.frequency_hz, self.theory)
 
     def deflection(self, x: Any) -> ComplexArray:
         """Complex deflection at x (metres), (len(x),), metres. Raises InputError off the beam."""
@@ -57,10 +59,33 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return positions
 
 
-def wavenumber(beam: Beam, frequency_hz: float) -> complex:
-    """(rho A omega^2 / (EI (1 + i eta)))^{1/4} of a uniform beam, 1/m."""
+def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli") -> complex:
+    """At which waves run along the beam's own section, 1/m: (rho A omega^2 / (EI (1 + i eta)))^{1/4} if nothing acts.
+
+    Under a tension T and on a foundation k_f: EI k^4 + T k^2 = rho A omega^2 - k_f; `theory` adds what thickness does.
+    """
+    if beam.tension or beam.foundation or theory != "euler-bernoulli":
+        return _running(beam, 2.0 * np.pi * frequency_hz, theory)
     real = np.sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant)
     return complex(real * (1.0 + 1j * beam.loss_factor) ** -0.25)
+
+
+def _running(beam: Beam, omega: float, theory: str) -> complex:
+    """The root k of a k^4 + b k^2 = c that runs: of Euler-Bernoulli, Rayleigh and Timoshenko with both ends' signs.
+
+    Timoshenko (Phil. Mag. 41, 1921) with G = kappa G A: EI G k^4 - omega^2 (rho A EI + rho I G) k^2 =
+    rho A omega^2 (G - rho I omega^2), and omega^2 less k_f / rho A where only the deflection is held.
+    """
+    own, lossy = beam.own, 1.0 + 1j * beam.loss_factor
+    stiffness, load = own.bending_stiffness * lossy, own.mass_per_length * omega**2 - beam.foundation
+    turning = (own.rotary_inertia or 0.0) * omega**2 if theory != "euler-bernoulli" else 0.0
+    a, b, c = stiffness, beam.tension - turning, load
+    if theory == "timoshenko" and own.shear_stiffness is not None:
+        shear = own.shear_stiffness * lossy
+        a, b, c = stiffness, -(load * stiffness / shear + turning), load * (1.0 - turning / shear)
+    square = (-b + np.sqrt(b * b + 4.0 * a * c + 0j)) / (2.0 * a)
+    k = complex(np.sqrt(square))
+    return k if k.imag <= 0.0 else k.conjugate()
 
 
 def unit_response(beam: Beam, frequency_hz: float) -> float:

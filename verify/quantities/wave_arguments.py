@@ -6,15 +6,20 @@ from msgspec import Meta
 
 from verify import options
 from verify.errors import InputError
+from verify.judge.variants import DEFAULTS
 from verify.models.catalogue import MODELS
 from verify.quantities.kind import (
     AtFrequency,
+    Attachment,
     DiscreteField,
     DriveArguments,
     FieldModel,
+    Joints,
     Size,
     Sizes,
+    Theory,
     UnitModel,
+    Wall,
     check_count,
 )
 
@@ -36,6 +41,10 @@ class Driven(DriveArguments, frozen=True, kw_only=True):
     drive: Imposed | None = None
     load: Annotated[options.Load, Meta(description="how a force is shared among joints; segment")] = "reciprocal"
     reading: Annotated[options.Reading, Meta(description="how the chain is read between joints; segment")] = "corrected"
+    wall: Wall = "gregory"
+    joints: Joints = "series"
+    theory: Theory = "euler-bernoulli"
+    attachment: Attachment = "reciprocal"
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
@@ -56,6 +65,7 @@ class Driven(DriveArguments, frozen=True, kw_only=True):
     def settings(self) -> tuple[tuple[str, Any], ...]:
         """Keyword arguments of the model's solve_harmonic other than their defaults."""
         chosen = {"modal_damping": 0.0, "joint_dashpot": 0.0, "load": "reciprocal", "reading": "corrected"}
+        chosen |= {name: DEFAULTS[name] for name in ("wall", "joints", "theory", "attachment")}
         return tuple((name, getattr(self, name)) for name, default in chosen.items() if getattr(self, name) != default)
 
 

@@ -45,10 +45,11 @@ def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
     if a.x is None:
         return measured(a, scene, bench).mean_axis_ratio
-    from verify.waves.measures import ellipse, surface_motion
+    from verify.waves.measures import ellipse, medium_of, surface_motion
 
     field = field_of(a, scene, bench)
-    return float(ellipse(surface_motion(field.beam, field.slope(a.x)), field.deflection(a.x))[0][0])
+    turn = medium_of(field).turn(field.omega)
+    return float(ellipse(surface_motion(field.beam, field.slope(a.x), turn), field.deflection(a.x))[0][0])
 
 
 def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:

@@ -227,6 +227,7 @@ def solve_harmonic(
         )
     free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
     return HarmonicField(
+        theory=theory,
         model="segment",
         count=n_segments,
         beam=beam,

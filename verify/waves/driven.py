@@ -61,10 +61,15 @@ def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMe
 
 
 def own_wavenumber(field: HarmonicField) -> complex:
-    """The wavenumber at which waves run in the field's model, 1/m: exact, or by its discrete dispersion."""
-    if field.count is None:
+    """The wavenumber at which waves run in the field's model, 1/m: exact, or by its discrete dispersion.
+
+    That of the beam where no dispersion of the model is known: by another theory, under axial force, on the ground.
+    """
+    beam = field.beam
+    if field.count is None or field.theory != "euler-bernoulli" or beam.tension or beam.foundation:
         return field.wavenumber
-    return MODELS.named(field.model).wavenumber(field.beam, field.count, field.frequency_hz)
+    free = replace(beam, mass=(), spring=())
+    return MODELS.named(field.model).wavenumber(free, field.count, field.frequency_hz)
 
 
 def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:

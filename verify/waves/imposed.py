@@ -85,7 +85,13 @@ def _combined(
         for drive, f in zip(drives, acting, strict=True)
     )
     return HarmonicField(
-        model=first.model, count=first.count, beam=first.beam, frequency_hz=frequency_hz, forces=forces, shapes=shapes
+        model=first.model,
+        count=first.count,
+        beam=first.beam,
+        frequency_hz=frequency_hz,
+        forces=forces,
+        shapes=shapes,
+        theory=first.theory,
     )
 
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
-from verify.exact.closed_forms import check_uniform
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField, phasor, unit_response, wavenumber
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
 from verify.models.search import least_over
+from verify.waves.medium import Medium
 
 STANDING = 1e-12
 """A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
@@ -135,6 +135,11 @@ class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return "counter-clockwise" if self.signed_area_range[1] < 0 else "clockwise"
 
 
+def medium_of(field: HarmonicField) -> Medium:
+    """What the field's waves run in."""
+    return Medium(field.beam, field.theory)
+
+
 def measure(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> WaveMeasures:
     """Measure the wave that a field carries in a window (a, b) between the forces, metres.
 
@@ -143,17 +148,17 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
     there and for a fit that ends at its edge.
     """
     waves = two_waves(field, window, wave_number)
-    x = sample_points(window, wavenumber(field.beam, field.frequency_hz).real)
+    x = sample_points(window, field.wavenumber.real)
     parts = HILLS_OF_A_PART * (field.count or 0) * (window[1] - window[0]) / field.beam.length
     fine = x if len(x) > parts else np.linspace(*window, int(parts) + 1)
-    return measures_of(field.beam, field.omega, x, fine, field.deflection, field.slope, waves)
+    return measures_of(medium_of(field), field.omega, x, fine, field.deflection, field.slope, waves)
 
 
 def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> TwoWaves:
     """The two waves alone, fitted in the mean square over the whole window. Raises as `measure` does."""
-    check_uniform(field.beam)
+    field.beam.check_added("a wave's measure", ("mass", "spring", "tension", "foundation"))
     check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
-    start = wavenumber(field.beam, field.frequency_hz)
+    start = field.wavenumber
     rule = window_rule(window, start.real)
     deflection = field.deflection(rule.x)
     force = sum(abs(phasor(force)) for force in field.forces)
@@ -168,7 +173,7 @@ Along: TypeAlias = Callable[[Array], ComplexArray]
 
 
 def measures_of(
-    beam: Beam, omega: float, x: Array, fine: Array, deflection: Along, slope: Along, waves: TwoWaves
+    medium: Medium, omega: float, x: Array, fine: Array, deflection: Along, slope: Along, waves: TwoWaves
 ) -> WaveMeasures:
     """The measures of a field known at any place of the window: means and extremes do not depend on points.
 
@@ -177,7 +182,7 @@ def measures_of(
     window = float(x[0]), float(x[-1])
 
     def ellipses(at: Array) -> tuple[Array, Array, Array]:
-        return ellipse(surface_motion(beam, slope(at)), deflection(at))
+        return ellipse(surface_motion(medium.beam, slope(at), medium.turn(omega)), deflection(at))
 
     whole, halves = whole_halves(window, waves.wavenumber.real)
     rule = rule_over(whole, 2 * halves)
@@ -195,15 +200,15 @@ def measures_of(
         tilt_deg=tilt,
         signed_area=area,
         signed_area_range=(low, mean_over(lambda at: ellipses(at)[2], window, 2 * halves), high),
-        ideal_axis_ratio=waves.wavenumber.real * beam.surface_distance,
-        crest_speed=float(crest_speed(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
-        energy_flux=float(energy_flux(beam, omega, waves.wavenumber, waves.forward, waves.backward)),
+        ideal_axis_ratio=waves.wavenumber.real * medium.beam.surface_distance * medium.turn(omega),
+        crest_speed=float(crest_speed(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
+        energy_flux=float(energy_flux(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
     )
 
 
-def surface_motion(beam: Beam, slope: ComplexArray) -> ComplexArray:
-    """u_x = -(h/2) w' of the upper surface, metres."""
-    return -beam.surface_distance * slope
+def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0) -> ComplexArray:
+    """u_x of the upper surface, metres: -(h/2) times the turn of the section, `turn` of the slope w'."""
+    return -beam.surface_distance * turn * slope
 
 
 def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
@@ -220,24 +225,27 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
     return np.tan(chi), tilt, product.imag
 
 
-def crest_speed(beam: Beam, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+def crest_speed(medium: Medium, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
     """Speed of the surface at the crests, m/s; works on arrays of amplitudes alike."""
     plus, minus = abs(forward) ** 2, abs(backward) ** 2
-    return -omega * beam.surface_distance * np.real(k) * (plus - minus) / np.sqrt(plus + minus)
+    lever = medium.beam.surface_distance * medium.turn(omega)
+    return -omega * lever * np.real(k) * (plus - minus) / np.sqrt(plus + minus)
 
 
-def energy_flux(beam: Beam, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
+def energy_flux(medium: Medium, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
     """Power carried towards +x by both waves, watt, at the point where their amplitudes are meant.
 
     Shear force times deflection speed and moment times turning speed, 1/2 Re, with EI (1 + i eta); undamped
-    EI k^3 omega (|A+|^2 - |A-|^2). Works on arrays of amplitudes alike.
+    EI k^3 omega (|A+|^2 - |A-|^2). Axial force and rotary inertia add to the shear force. Works on arrays of
+    amplitudes alike.
     """
     k = np.asarray(k, dtype=complex)
     deflection, slope = forward + backward, 1j * k * (backward - forward)
     moment, shear = -(k**2) * deflection, 1j * k**3 * (forward - backward)
-    speed, turning = 1j * omega * deflection, 1j * omega * slope
-    stiffness = beam.bending_stiffness * (1.0 + 1j * beam.loss_factor)
-    return 0.5 * np.real(stiffness * (shear * np.conj(speed) - moment * np.conj(turning)))
+    speed, turn = 1j * omega * deflection, medium.turn(omega)
+    stiffness = medium.beam.bending_stiffness * (1.0 + 1j * medium.beam.loss_factor) * turn
+    across = stiffness * shear + medium.beside_shear(omega) * slope
+    return 0.5 * np.real(across * np.conj(speed) - stiffness * moment * np.conj(1j * omega * turn * slope))
 
 
 def travelling_index(deflection: ComplexArray, weights: Array) -> float:
@@ -313,6 +321,12 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
     start, end = window
     if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= beam.length):
         raise InputError(f"window = {list(window)}: give start and end, ascending, between 0 and {beam.length!r} m")
+    attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
+    if standing := [p for p in attached if start < p < end]:
+        raise WindowError(
+            f"window = {list(window)} holds a mass or a spring at {standing} m: two waves alone live beside it, "
+            "choose a window without one"
+        )
     places = sorted(places)
     inside = [p for p in places if start < p < end]
     if inside or (len(places) > 1 and not places[0] <= start < end <= places[-1]):

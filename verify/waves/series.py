@@ -8,6 +8,7 @@ from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import wavenumber
 from verify.waves.measures import STILL, WaveMeasures, fit_waves, fitted_wavenumber, measures_of
+from verify.waves.medium import Medium
 
 
 def check_series(times: Array, values: Array, frequency_hz: float) -> None:
@@ -79,4 +80,4 @@ def measure_series(
         return np.asarray(1j * waves.wavenumber * (waves.backward * turn - waves.forward / turn))
 
     spline = CubicSpline(x, deflection)
-    return measures_of(beam, 2.0 * np.pi * frequency_hz, x, x, spline, slope, waves)
+    return measures_of(Medium(beam), 2.0 * np.pi * frequency_hz, x, x, spline, slope, waves)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.checks import check_number
@@ -22,6 +23,7 @@ from verify.waves.measures import (
     window_rule,
     zero_field,
 )
+from verify.waves.medium import Medium
 
 MOST_READINGS = 50_000_000
 """Complex deflections that a map holds at once: 0.8 GB, and as much again twice while waves are fitted."""
@@ -101,9 +103,10 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         check_window(self.beam, list(self.places), frequency, self.window)
         if not np.isfinite(field).all():
             raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
-        if self.count is None:
+        if self.count is None or self.beam.tension or self.beam.foundation:
             return wavenumber(self.beam, frequency)
-        return MODELS.named(self.model).wavenumber(self.beam, self.count, frequency)
+        free = replace(self.beam, mass=(), spring=())
+        return MODELS.named(self.model).wavenumber(free, self.count, frequency)
 
     def _responses(self, frequencies: Array, x: Array) -> ComplexArray:
         """Deflection at x, (n, n_places, len(x))."""
@@ -143,26 +146,26 @@ def resonant(model: str, frequency_hz: float, held: str = "") -> ResonanceError:
     )
 
 
-def _reflection(beam: Beam, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray) -> Array:
+def _reflection(medium: Medium, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray) -> Array:
     sizes = np.sort(np.stack([abs(forward), abs(backward)]), axis=0)
     return np.asarray(sizes[0] / sizes[1])
 
 
 def _standing_wave_ratio(
-    beam: Beam, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray
+    medium: Medium, omega: Array, k: ComplexArray, forward: ComplexArray, backward: ComplexArray
 ) -> Array:
-    gamma = _reflection(beam, omega, k, forward, backward)
+    gamma = _reflection(medium, omega, k, forward, backward)
     travelling = gamma < 1.0 - STANDING
     return np.where(travelling, (1.0 + gamma) / np.where(travelling, 1.0 - gamma, 1.0), np.inf)
 
 
-FIGURES: dict[str, Callable[[Beam, Array, ComplexArray, ComplexArray, ComplexArray], Array]] = {
+FIGURES: dict[str, Callable[[Medium, Array, ComplexArray, ComplexArray, ComplexArray], Array]] = {
     "reflection": _reflection,
     "standing_wave_ratio": _standing_wave_ratio,
     "crest_speed": crest_speed,
     "energy_flux": energy_flux,
 }
-"""Figures of two waves from their amplitudes: (beam, omega, wavenumber, A+, A-) -> (n, p)."""
+"""Figures of two waves from their amplitudes: (medium, omega, wavenumber, A+, A-) -> (n, p)."""
 
 
 def superposed(
@@ -184,7 +187,7 @@ def superposed(
     found = []
     for name in names:
         values = np.full((len(frequencies), len(second)), np.nan)
-        figure = FIGURES[name](drive.beam, 2.0 * np.pi * f, k, forward, backward)
+        figure = FIGURES[name](Medium(drive.beam), 2.0 * np.pi * f, k, forward, backward)
         values[waves.known] = np.where(still, np.nan, figure)
         found.append(values)
     return found

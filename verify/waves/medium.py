@@ -1,0 +1,32 @@
+"""What a wave runs in: a beam by a theory, and how its section turns with its slope."""
+
+import msgspec
+
+from verify.beam import Beam
+
+
+class Medium(msgspec.Struct, frozen=True):
+    """A beam's own section by a theory."""
+
+    beam: Beam
+    theory: str = "euler-bernoulli"
+
+    def turn(self, omega: float) -> float:
+        """The turn of the section over the slope of the line in a running wave: 1 where nothing shears.
+
+        kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921).
+        """
+        shear = self.beam.own.shear_stiffness
+        if self.theory != "timoshenko" or shear is None:
+            return 1.0
+        from math import pi
+
+        from verify.models.fields import wavenumber
+
+        k2 = (wavenumber(self.beam, omega / (2.0 * pi), self.theory) ** 2).real
+        return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / (shear * k2)
+
+    def beside_shear(self, omega: float) -> float:
+        """What axial force and rotary inertia add to EI psi'' in the force across, times the slope, newton."""
+        turning = (self.beam.own.rotary_inertia or 0.0) * omega**2 if self.theory != "euler-bernoulli" else 0.0
+        return turning * self.turn(omega) - self.beam.tension
