@@ -39,12 +39,18 @@ class Exact(Model):
         return solve_harmonic(beam, forces, frequency_hz, **settings)
 
     def unit_responses(
-        self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
+        self,
+        beam: "Beam",
+        positions: "Sequence[float]",
+        frequencies_hz: "Array",
+        x: "Array",
+        count: int | None,
+        **settings: Any,
     ) -> "ComplexArray":
         """In closed form."""
         from verify.exact.harmonic import unit_responses
 
-        return unit_responses(beam, positions, frequencies_hz, x)
+        return unit_responses(beam, positions, frequencies_hz, x, **settings)
 
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """The first modes, the rest following at once."""
@@ -95,10 +101,16 @@ class Discrete(Model):
         return found
 
     def unit_responses(
-        self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
+        self,
+        beam: "Beam",
+        positions: "Sequence[float]",
+        frequencies_hz: "Array",
+        x: "Array",
+        count: int | None,
+        **settings: Any,
     ) -> "ComplexArray":
         """By all modes at once."""
-        found: ComplexArray = self.verbs.unit_responses(beam, positions, frequencies_hz, x, count)
+        found: ComplexArray = self.verbs.unit_responses(beam, positions, frequencies_hz, x, count, **settings)
         return found
 
     def wavenumber(self, beam: "Beam", count: int, frequency_hz: float) -> complex:

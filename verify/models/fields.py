@@ -79,7 +79,7 @@ def _running(beam: Beam, omega: float, theory: str) -> complex:
     own, lossy = beam.own, 1.0 + 1j * beam.loss_factor
     stiffness, load = own.bending_stiffness * lossy, own.mass_per_length * omega**2 - beam.foundation
     turning = (own.rotary_inertia or 0.0) * omega**2 if theory != "euler-bernoulli" else 0.0
-    a, b, c = stiffness, beam.tension - turning, load
+    a, b, c = stiffness, complex(beam.tension - turning), complex(load)
     if theory == "timoshenko" and own.shear_stiffness is not None:
         shear = own.shear_stiffness * lossy
         a, b, c = stiffness, -(load * stiffness / shear + turning), load * (1.0 - turning / shear)

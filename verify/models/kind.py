@@ -94,7 +94,13 @@ class Model:
         raise self._has_no("solve_harmonic", "harmonic fields")
 
     def unit_responses(
-        self, beam: "Beam", positions: "Sequence[float]", frequencies_hz: "Array", x: "Array", count: int | None
+        self,
+        beam: "Beam",
+        positions: "Sequence[float]",
+        frequencies_hz: "Array",
+        x: "Array",
+        count: int | None,
+        **settings: Any,
     ) -> "ComplexArray":
         """Deflection at x under a unit force at each position, (n_f, n_positions, len(x)), m/N. Raises InputError."""
         raise self._has_no("unit_responses", "fields of unit forces")

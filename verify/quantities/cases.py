@@ -51,6 +51,10 @@ def drive_kind(a: Driven | Sensitivity, scene: "Scene") -> str:
     return str(a.drive or (scene.drive.kind if scene.drive else "force"))
 
 
+def _theory_of(a: Sensitivity) -> tuple[tuple[str, str], ...]:
+    return () if a.theory == "euler-bernoulli" else (("theory", a.theory),)
+
+
 def driven_case(a: Driven | Sensitivity, scene: "Scene") -> "DrivenCase":
     """The driven beam that arguments describe. Raises InputError."""
     from verify.waves.case import DrivenCase
@@ -62,5 +66,5 @@ def driven_case(a: Driven | Sensitivity, scene: "Scene") -> "DrivenCase":
         forces=drive_forces(a, scene),
         frequency_hz=drive_frequency(a, scene),
         kind=drive_kind(a, scene),
-        settings=a.settings if isinstance(a, Driven) else (),
+        settings=a.settings if isinstance(a, Driven) else _theory_of(a),
     )

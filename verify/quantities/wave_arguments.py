@@ -140,6 +140,7 @@ class Receptance(AtFrequency, frozen=True, kw_only=True):
     loss_factor: Loss | None = None
     position: Annotated[float, Meta(ge=0, description="of the force, metres from the left end")]
     x: Annotated[float, Meta(ge=0, description="metres from the left end")]
+    theory: Theory = "euler-bernoulli"
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
@@ -152,6 +153,7 @@ class Sensitivity(DriveArguments, frozen=True, kw_only=True):
     count: Size | None = None
     loss_factor: Loss | None = None
     drive: Imposed | None = None
+    theory: Theory = "euler-bernoulli"
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)

@@ -74,7 +74,7 @@ def _order(a: WaveOrder, scene: "Scene", bench: Workbench) -> float:
 def _receptance(a: Receptance, scene: "Scene", bench: Workbench) -> complex:
     from verify.waves.unit_waves import receptance
 
-    return receptance(a.model, driven_beam(a, scene), a.position, drive_frequency(a, scene), a.x, a.count)
+    return receptance(a.model, driven_beam(a, scene), a.position, drive_frequency(a, scene), a.x, a.count, a.theory)
 
 
 def _sensitivity(name: str) -> Callable[[Sensitivity, "Scene", Workbench], float]:

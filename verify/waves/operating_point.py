@@ -38,6 +38,8 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
     count: int | None
     kind: str = "force"
     """What is imposed, force or displacement."""
+    theory: str = "euler-bernoulli"
+    """Of the beam."""
 
     def over(self, frequencies: Array, phases_deg: Array) -> tuple[Array, Array]:
         """(reflection, crest speed in m/s) on a grid, (n_frequencies, n_phases) each; window [L/4, 3L/4]."""
@@ -49,6 +51,7 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
             kind=self.kind,
             places=(first.position, second.position),
             window=middle_half(self.beam),
+            theory=self.theory,
         )
         turned = np.asarray(second.amplitude * np.exp(1j * np.deg2rad(phases_deg)), dtype=complex)
         gaps, figures = Gaps(), ("reflection", "crest_speed")
@@ -111,7 +114,14 @@ def landscape(case: DrivenCase) -> Landscape:
             f"the reflection has a phase between two forces, the scene has {len(case.forces)}: give it two"
         )
     first, second = case.forces
-    return Landscape(beam=case.beam, forces=(first, second), model=case.model, count=case.count, kind=case.kind)
+    return Landscape(
+        beam=case.beam,
+        forces=(first, second),
+        model=case.model,
+        count=case.count,
+        kind=case.kind,
+        theory=dict(case.settings).get("theory", "euler-bernoulli"),
+    )
 
 
 def edge_note(what: str, frequency: float) -> str:

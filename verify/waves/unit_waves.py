@@ -25,6 +25,7 @@ from verify.waves.measures import (
 )
 from verify.waves.medium import Medium
 
+EULER = "euler-bernoulli"
 MOST_READINGS = 50_000_000
 """Complex deflections that a map holds at once: 0.8 GB, and as much again twice while waves are fitted."""
 
@@ -72,6 +73,8 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
     """Force or displacement."""
     places: tuple[float, ...]
     window: tuple[float, float]
+    theory: str = "euler-bernoulli"
+    """Of the beam."""
 
     def waves(self, frequencies: Array, gaps: Gaps, points: int = 1) -> UnitWaves:
         """The waves over frequencies (n,). `gaps` counts those without, each for so many `points`.
@@ -79,7 +82,7 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         Raises InputError where the model or the window is none.
         """
         check_window(self.beam, list(self.places), float(frequencies.max()), self.window)  # or it suits none of them
-        rule = window_rule(self.window, wavenumber(self.beam, float(frequencies.max())).real)
+        rule = window_rule(self.window, wavenumber(self.beam, float(frequencies.max()), self.theory).real)
         if (n := len(frequencies) * len(self.places) * len(rule.x)) > MOST_READINGS:
             raise InputError(
                 f"frequency_hz: {len(frequencies)} frequencies read at {len(rule.x)} points each are {n:.1e} figures, "
@@ -103,8 +106,8 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         check_window(self.beam, list(self.places), frequency, self.window)
         if not np.isfinite(field).all():
             raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
-        if self.count is None or self.beam.tension or self.beam.foundation:
-            return wavenumber(self.beam, frequency)
+        if self.count is None or self.theory != EULER or self.beam.tension or self.beam.foundation:
+            return wavenumber(self.beam, frequency, self.theory)
         free = replace(self.beam, mass=(), spring=())
         return MODELS.named(self.model).wavenumber(free, self.count, frequency)
 
@@ -113,26 +116,37 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         places = np.array(self.places)
 
         def units(f: Array, at: Array) -> ComplexArray:
-            return unit_fields(self.model, self.beam, self.places, f, at, self.count)
+            return unit_fields(self.model, self.beam, self.places, f, at, self.count, self.theory)
 
         return units(frequencies, x) if self.kind == "force" else held_units(units, places, self.beam, frequencies, x)
 
 
 def unit_fields(
-    model: str, beam: Beam, places: tuple[float, ...], frequencies: Array, x: Array, count: int | None
+    model: str,
+    beam: Beam,
+    places: tuple[float, ...],
+    frequencies: Array,
+    x: Array,
+    count: int | None,
+    theory: str = EULER,
 ) -> ComplexArray:
     """Deflection at x under a unit force at each place by a model's name, (n, n_places, len(x)), m/N.
 
     NaN at undamped resonances. Raises InputError.
     """
-    return MODELS.named(model).unit_responses(beam, places, frequencies, x, count)
+    found, settings = MODELS.named(model), {} if theory == EULER else {"theory": theory}
+    if settings and "theory" not in found.field_settings:
+        raise InputError(f"theory = {theory!r} is no setting of model = {model}: leave it out")
+    return found.unit_responses(beam, places, frequencies, x, count, **settings)
 
 
-def receptance(model: str, beam: Beam, place: float, frequency_hz: float, x: float, count: int | None) -> complex:
+def receptance(
+    model: str, beam: Beam, place: float, frequency_hz: float, x: float, count: int | None, theory: str = EULER
+) -> complex:
     """Deflection at x under a unit force at `place`, m/N; both in metres. Raises InputError."""
     for name, value in (("position", place), ("x", x)):
         check_number(name, value, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
-    found = unit_fields(model, beam, (place,), np.array([frequency_hz]), np.array([x]), count)[0, 0, 0]
+    found = unit_fields(model, beam, (place,), np.array([frequency_hz]), np.array([x]), count, theory)[0, 0, 0]
     if not np.isfinite(found):
         raise resonant(model, frequency_hz)
     return complex(found)
@@ -187,7 +201,7 @@ def superposed(
     found = []
     for name in names:
         values = np.full((len(frequencies), len(second)), np.nan)
-        figure = FIGURES[name](Medium(drive.beam), 2.0 * np.pi * f, k, forward, backward)
+        figure = FIGURES[name](Medium(drive.beam, drive.theory), 2.0 * np.pi * f, k, forward, backward)
         values[waves.known] = np.where(still, np.nan, figure)
         found.append(values)
     return found
