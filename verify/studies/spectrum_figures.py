@@ -1,8 +1,9 @@
 """Errors of many modes at one size, and how they are told."""
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from verify.exact.closed_forms import frequency_hz
+from verify.errors import InputError
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench, comparable, is_bracketed
 from verify.options import THEORIES
@@ -10,7 +11,6 @@ from verify.studies.told import Chart, Found
 from verify.words import percent
 
 if TYPE_CHECKING:
-    from verify.beam import Beam
     from verify.studies.spectrum import Spectrum
 
 
@@ -22,7 +22,7 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     errors: dict[str, tuple[float | None, ...]]
     """By the label of each variant; None for a mode that it does not have or that no mode of its looks like."""
     theories: dict[str, tuple[float, ...]]
-    """Errors of other beam theories against Euler-Bernoulli; empty where they have no closed form."""
+    """Errors of other beam theories against Euler-Bernoulli; without those that the beam has no figures for."""
     theory: str
     """Against which the errors are."""
     bracketed: bool
@@ -74,7 +74,7 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
         errors=errors,
         variants=variants,
         theory=" and ".join(word.capitalize() for word in dict.fromkeys(one.theory for one in variants)),
-        theories=_theory_errors(bench.beam, modes),
+        theories=_theory_errors(bench, modes),
         bracketed=is_bracketed(bench.beam) and len(variants) == len(models) and not asked.chosen,
         left_out=tuple(left_out.values()),
     )
@@ -86,7 +86,17 @@ def _errors(bench: Workbench, one: Variant, asked: "Spectrum") -> tuple[float | 
     return tuple(bench.error_or_why(one.model, asked.count, n, one.settings)[0] for n in modes)[::-1]
 
 
-def _theory_errors(beam: "Beam", modes: tuple[int, ...]) -> dict[str, tuple[float, ...]]:
-    if beam.supports != ("pinned", "pinned") or not beam.uniform:
+MOST_GENERAL = 200
+"""Modes whose thick-beam frequencies are found one by one where they have no closed form."""
+
+
+def _theory_errors(bench: Workbench, modes: tuple[int, ...]) -> dict[str, tuple[float, ...]]:
+    """What each thicker theory changes, relative; none that the beam has not the figures or the patience for."""
+    closed = bench.beam.supports == ("pinned", "pinned") and bench.beam.uniform
+    if not closed and len(modes) > MOST_GENERAL:
         return {}
-    return {t: tuple(frequency_hz(beam, n, t) / frequency_hz(beam, n) - 1.0 for n in modes) for t in THEORIES[1:]}
+    found = {}
+    for theory in THEORIES[1:]:
+        with suppress(InputError):
+            found[theory] = tuple(bench.exact_hz(n, theory) / bench.exact_hz(n) - 1.0 for n in modes)
+    return found
