@@ -76,3 +76,8 @@ def cell(value: Any, form: str = "", factor: float = 1.0, unit: str = "") -> str
     if form in _FORMS:
         return _FORMS[form](factor * value) + unit
     return (format(factor * value, form) if form else f"{value}") + unit
+
+
+def theory_name(theory: str) -> str:
+    """'Euler-Bernoulli' of 'euler-bernoulli'."""
+    return "-".join(part.capitalize() for part in theory.split("-"))

@@ -24,6 +24,16 @@ class Exact(Model):
     sized = False
     modal_settings = field_settings = ("theory",)
 
+    def check(self, beam: "Beam", n_modes: int, count: int = 0, **settings: Any) -> None:
+        """Raise InputError for a theory that the beam has not the figures for, and for one that has buckled."""
+        from verify.exact.lineup import check_theory
+
+        check_theory(beam, settings.get("theory", "euler-bernoulli"))
+        if beam.tension < 0.0:
+            from verify.exact.buckling import check_stable
+
+            check_stable(beam)
+
     def solve_modes(self, beam: "Beam", n_modes: int, count: int | None = None, **settings: Any) -> "Modes":
         """In closed form, or by the characteristic equation."""
         from verify.exact.modes import solve_modes

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
-from verify.judge.workbench import Need, Settings, Workbench, for_model
+from verify.judge.workbench import Need, Settings, Workbench, check_bracket, for_model
 from verify.models.catalogue import MODELS, bounding
 from verify.models.naming import MEAN
 from verify.quantities.cases import drive_frequency
@@ -25,19 +25,45 @@ from verify.quantities.kind import (
 )
 
 if TYPE_CHECKING:
+    from verify.beam import Beam
     from verify.scenes.scene import Scene
 
 
-def _solved(model: str, count: int | None, n_modes: int, settings: Settings = ()) -> tuple[Need, ...]:
-    """The solves behind one figure; the middle of both models takes both."""
+def _solved(
+    model: str, count: int | None, n_modes: int, settings: Settings = (), beam: "Beam | None" = None
+) -> tuple[Need, ...]:
+    """The solves behind one figure; the middle of both takes both. Raises InputError where the exact beam has none."""
     if count is None:
+        if beam is not None:
+            MODELS.named(model).check(beam, n_modes, 0, **dict(settings))
         return ()
     models = bounding() if model == MEAN else (MODELS.named(model),)
     return tuple(Need(m.name, count, n_modes, for_model(m.name, settings)) for m in models)
 
 
 def _at_size(a: AtSize | DiscreteAtSize | NodeAt, scene: "Scene") -> tuple[Need, ...]:
-    return _solved(a.model, a.count, a.mode, a.settings)
+    return _solved(a.model, a.count, a.mode, a.settings, scene.beam)
+
+
+def _by_dispersion(a: FirstModes, scene: "Scene") -> tuple[Need, ...]:
+    from verify.exact.error_laws import dispersion_frequency_hz
+
+    dispersion_frequency_hz(a.model, scene.beam, a.modes, a.count)
+    return _solved(a.model, a.count, a.modes)
+
+
+def _beside_a_law(a: DiscreteAtSize, scene: "Scene") -> tuple[Need, ...]:
+    from verify.exact.closed_forms import check_uniform
+    from verify.exact.error_laws import law_of
+
+    law_of(a.model)
+    check_uniform(scene.beam)
+    return _at_size(a, scene)
+
+
+def _bracketed(a: BracketAt, scene: "Scene") -> tuple[Need, ...]:
+    check_bracket(scene.beam, a.settings)
+    return _solved(MEAN, a.count, a.mode, a.settings)
 
 
 def _over_sizes(a: OverSizes, scene: "Scene") -> tuple[Need, ...]:
@@ -149,7 +175,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         FirstModes,
         "modes",
         _dispersion_error,
-        needs=lambda a, s: _solved(a.model, a.count, a.modes),
+        needs=_by_dispersion,
     ),
     Quantity(
         "mode.law_ratio",
@@ -158,7 +184,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         DiscreteAtSize,
         "modes",
         _law_ratio,
-        needs=_at_size,
+        needs=_beside_a_law,
     ),
     Quantity(
         "mode.shape_error",
@@ -212,7 +238,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         BracketAt,
         "modes",
         lambda a, s, bench: bench.bracket(a.mode, a.count, a.settings),
-        needs=lambda a, s: _solved(MEAN, a.count, a.mode, a.settings),
+        needs=_bracketed,
     ),
     Quantity(
         "mode.count_needed",

@@ -24,6 +24,7 @@ from verify.studies.charting import (
     sizes_axis,
 )
 from verify.studies.told import Chart
+from verify.words import theory_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -101,7 +102,7 @@ def _model_form(study: "SpectrumFound") -> Chart:
     data = [_variant_line(study, label, study.modes, percent(v, size=True)) for label, v in errors.items()]
     for theory, values in study.theories.items():
         sizes = percent(values, size=True)
-        data.append(line(theory.capitalize(), _THEORIES[theory], study.modes, sizes, line={"dash": "dash"}))
+        data.append(line(theory_name(theory), _THEORIES[theory], study.modes, sizes, line={"dash": "dash"}))
     return Chart(
         id="model-form",
         title=f"Discretisation beside model form, N = {study.count}",

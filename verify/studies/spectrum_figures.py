@@ -8,7 +8,7 @@ from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench, comparable, is_bracketed
 from verify.options import THEORIES
 from verify.studies.told import Chart, Found
-from verify.words import percent
+from verify.words import percent, theory_name
 
 if TYPE_CHECKING:
     from verify.studies.spectrum import Spectrum
@@ -45,7 +45,7 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
             for one in self.variants
             if (value := self.errors[one.label][-1]) is not None
         ]
-        found += [f"{theory.capitalize()} theory {percent(values[-1])}" for theory, values in self.theories.items()]
+        found += [f"{theory_name(theory)} theory {percent(values[-1])}" for theory, values in self.theories.items()]
         where = f"mode {self.modes[-1]} at N = {self.count} against {self.theory}"
         return (*((f"{where}: {', '.join(found)}",) if found else ()), *self.left_out)
 
@@ -73,7 +73,7 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
         modes=modes,
         errors=errors,
         variants=variants,
-        theory=" and ".join(word.capitalize() for word in dict.fromkeys(one.theory for one in variants)),
+        theory=" and ".join(theory_name(word) for word in dict.fromkeys(one.theory for one in variants)),
         theories=_theory_errors(bench, modes),
         bracketed=is_bracketed(bench.beam) and len(variants) == len(models) and not asked.chosen,
         left_out=tuple(left_out.values()),
