@@ -1,6 +1,6 @@
 """A model together with its settings: what stands side by side in a table, a chart or a choice."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import product
 from typing import Annotated, Any, TypeAlias
 
@@ -106,11 +106,16 @@ def beside(beam: Beam) -> tuple[Variant, ...]:
     return tuple(Variant(model, (one,)) for one in other for model in models_with(one[0]))
 
 
-def every_rule(beam: Beam) -> tuple[Variant, ...]:
-    """Every rule of a chain that makes a difference on this beam: walls, joints, attachments."""
+def every_rule(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
+    """Every rule of a chain that makes a difference on this beam: walls, joints, attachments; the rest as chosen."""
     walls = [w for w in WALLS[1:] if w != "welded" or not beam.section] if "clamped" in beam.supports else []
     rules = [("wall", wall) for wall in walls]
     rules += [("joints", "printed")] * (beam.stepped and all(p.youngs_modulus for p in beam.pieces))
     rules += [("joints", "tensioned")] * bool(beam.tension)
     rules += [("attachment", "lever")] * bool(beam.mass or beam.spring)
-    return tuple(Variant(model, (rule,)) for rule in rules for model in models_with(rule[0]))
+    return tuple(Variant(model, told(dict(chosen) | dict([rule]))) for rule in rules for model in models_with(rule[0]))
+
+
+def told(settings: Mapping[str, str | float]) -> Settings:
+    """Settings other than their defaults, in the order in which they are told."""
+    return tuple((name, settings[name]) for name in DEFAULTS if settings.get(name, DEFAULTS[name]) != DEFAULTS[name])

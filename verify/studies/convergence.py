@@ -39,7 +39,7 @@ class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
 
         last = max(asked.modes)
         variants = asked.variants(model.name for model in discrete("solve_modes", scene.beam))
-        every = (*variants, *every_rule(scene.beam))
+        every = (*variants, *every_rule(scene.beam, asked.chosen))
         return tuple(Need(one.model, count, last, one.settings) for count in asked.counts for one in every)
 
     def n_steps(self, asked: Convergence, scene: "Scene") -> int:

@@ -15,6 +15,7 @@ from verify.patience import check_work
 from verify.studies.kind import Progress
 from verify.studies.told import Chart, Column, Found, Table
 from verify.timing import interleaved_medians
+from verify.words import theory_name
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -113,7 +114,7 @@ def flat_row(row: Row) -> dict[str, Any]:
 
 
 READ_SO = (
-    "Frequencies in Hz, errors against exact Euler-Bernoulli and the bracket's width in %, order from the size before, "
+    "Frequencies in Hz, errors against the exact beam by {} and the bracket's width in %, order from the size before, "
     "warm solve in ms. A dash under order: there is no size before it, or rounding or a change of sign between."
 )
 
@@ -124,7 +125,7 @@ ABREAST = 2
 
 def _rule(variant: Variant) -> str:
     """A rule of the chain above a column."""
-    return ", ".join(f"{name} {value}" for name, value in variant.settings) or "default"
+    return ", ".join(f"{n} {value}" for n, value in variant.settings if n != "theory") or "default"
 
 
 def _head(variant: Variant) -> str:
@@ -144,7 +145,7 @@ def _mode_table(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> Table:
         title=f"mode {rows[0].mode}, exact {rows[0].exact_hz:.4f} Hz",
         columns=tuple(columns),
         rows=tuple((row.count, *_figures(row, variants), row.bracket_width, row.mean_error) for row in rows),
-        notes=(*notes, READ_SO),
+        notes=(*notes, READ_SO.format(" and ".join(dict.fromkeys(theory_name(one.theory) for one in variants)))),
     )
 
 
@@ -174,18 +175,15 @@ def found(bench: Workbench, asked: "Convergence", progress: Progress = lambda st
         rows=tuple(rows),
         variants=variants,
         slopes=tuple((label, order) for label, order in orders if order),
-        rules=_rules(bench, variants, last, asked.counts),
+        rules=_rules(bench, variants, asked, last),
     )
 
 
-def _rules(
-    bench: Workbench, variants: tuple[Variant, ...], mode: int, counts: tuple[int, ...]
-) -> tuple[RuleErrors, ...]:
+def _rules(bench: Workbench, variants: tuple[Variant, ...], asked: "Convergence", mode: int) -> tuple[RuleErrors, ...]:
     """Errors by every rule of the chain on this beam, the default first; none where it has one rule alone."""
-    every = every_rule(bench.beam)
+    every, counts = every_rule(bench.beam, asked.chosen), asked.counts
     models = dict.fromkeys(one.model for one in every)
-    plain = [Variant(model) for model in models]
-    shown = dict.fromkeys((*plain, *(one for one in variants if one.model in models), *every))
+    shown = dict.fromkeys((*(one for one in variants if one.model in models), *every))
     return tuple(
         RuleErrors(
             variant=one,
