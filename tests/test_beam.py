@@ -3,9 +3,12 @@
 import math
 
 import pytest
+from msgspec.structs import replace
 
+from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
+from verify.section import Section
 
 SIZES = {"length": 0.73, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
 
@@ -56,3 +59,155 @@ def test_a_force_off_the_left_end_or_not_finite_is_refused():
         PointForce(position=-0.1)
     with pytest.raises(InputError, match=r"force\.amplitude = nan"):
         PointForce(position=0.1, amplitude=math.nan)
+
+
+def plain(**more):
+    return Beam(**{"length": 0.71, "bending_stiffness": 2.3, "mass_per_length": 0.19} | more)
+
+
+@pytest.mark.parametrize(
+    ("shape", "sizes", "area", "moment", "fibre"),
+    [
+        ("rectangle", {"width": 0.031, "thickness": 0.0023}, 7.13e-5, 0.031 * 0.0023**3 / 12, 0.00115),
+        ("round", {"diameter": 0.012}, math.pi * 36e-6, math.pi * 0.012**4 / 64, 0.006),
+        (
+            "tube",
+            {"diameter": 0.025, "wall_thickness": 0.0015},
+            math.pi * (0.0125**2 - 0.011**2),
+            math.pi * (0.025**4 - 0.022**4) / 64,
+            0.0125,
+        ),
+    ],
+)
+def test_a_section_is_known_by_its_shape(shape, sizes, area, moment, fibre):
+    beam = Beam(length=0.71, youngs_modulus=113e9, density=4470.0, shape=shape, **sizes)
+    assert beam.bending_stiffness == pytest.approx(113e9 * moment, rel=1e-13)
+    assert beam.mass_per_length == pytest.approx(4470 * area, rel=1e-13)
+    assert beam.own.rotary_inertia == pytest.approx(4470 * moment, rel=1e-13)
+    assert beam.surface_distance == pytest.approx(fibre, rel=1e-15)
+    assert beam.wave_constant == pytest.approx(math.sqrt(113e9 * moment / (4470 * area)), rel=1e-13)
+
+
+def test_shear_coefficients_are_those_of_cowper():
+    """J. Appl. Mech. 33 (1966): 6 (1 + nu)/(7 + 6 nu) of a circle, 2 (1 + nu)/(4 + 3 nu) of a thin tube."""
+    round_bar = {"length": 1.0, "youngs_modulus": 70e9, "density": 2700.0, "diameter": 0.02, "poissons_ratio": 0.27}
+    assert Beam(shape="round", **round_bar).shear_coefficient == pytest.approx(6 * 1.27 / (7 + 6 * 0.27), rel=1e-14)
+    thin = Beam(shape="tube", wall_thickness=1e-7, **round_bar)
+    assert thin.shear_coefficient == pytest.approx(2 * 1.27 / (4 + 3 * 0.27), rel=1e-4)
+    assert Beam(shape="round", shear_coefficient=0.81, **round_bar).shear_coefficient == 0.81
+
+
+def test_a_plain_section_needs_no_sizes_and_says_what_it_does_not_know():
+    beam = plain(extreme_fibre=0.004)
+    assert (beam.bending_stiffness, beam.mass_per_length, beam.surface_distance) == (2.3, 0.19, 0.004)
+    assert replace(beam, bending_stiffness=2.9).wave_constant == pytest.approx(math.sqrt(2.9 / 0.19), rel=1e-15)
+    for name, word in (("area", "shape"), ("second_moment", "shape")):
+        with pytest.raises(InputError, match=rf"beam\.{word}: a section given by its stiffness has no sizes"):
+            getattr(beam, name)
+    with pytest.raises(InputError, match=r"beam\.extreme_fibre is missing"):
+        _ = plain().surface_distance
+    with pytest.raises(InputError, match=r"has no axial one"):
+        _ = beam.own.axial_stiffness
+
+
+def test_a_stiffness_that_contradicts_a_shape_is_refused_and_one_that_repeats_it_is_not(titanium_strip):
+    own = titanium_strip.bending_stiffness
+    assert Beam(**SIZES, bending_stiffness=own).bending_stiffness == own
+    with pytest.raises(InputError, match=r"beam\.bending_stiffness = .* beside a shape and a material that make"):
+        Beam(**SIZES, bending_stiffness=1.001 * own)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"shape": "sqare"}, r"beam\.shape = 'sqare' is not known: known are rectangle"),
+        ({"shape": "round"}, r"beam\.width = 0\.031 is no size of a round: leave it out, or give shape = 'rectangle'"),
+        ({"diameter": 0.01}, r"beam\.diameter = 0\.01 is no size of a rectangle: .*shape = 'round'"),
+        ({"tension": math.nan}, r"beam\.tension = nan: give a finite number \(newton"),
+        ({"foundation": -3.0}, r"beam\.foundation = -3\.0: give a finite number of at least 0"),
+        ({"mass": (PointMass(position=0.74, mass=0.1),)}, r"beam\.mass\[0\]\.position = 0\.74 lies off the beam"),
+        (
+            {"spring": (PointSpring(position=0.9, stiffness=1.0),)},
+            r"beam\.spring\[0\]\.position = 0\.9 lies off the beam",
+        ),
+        ({"mass": (PointMass(position=0.73, mass=0.1),)}, r"beam\.mass\[0\]\.mass = 0\.1 stands at a pinned end"),
+        (
+            {"spring": (PointSpring(position=0.0, stiffness=5.0),)},
+            r"spring\[0\]\.stiffness = 5\.0 stands at a pinned end",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name_value_and_remedy(given, words):
+    with pytest.raises(InputError, match=words):
+        Beam(**SIZES | given)
+
+
+def test_a_tube_has_a_bore_and_a_body_or_a_spring_does_something():
+    with pytest.raises(InputError, match=r"beam\.wall_thickness = 0\.01: give .* above 0 and below 0\.01"):
+        Beam(length=1.0, shape="tube", diameter=0.02, wall_thickness=0.01, youngs_modulus=7e10, density=2700.0)
+    with pytest.raises(InputError, match="weighs nothing: give mass or rotary_inertia"):
+        PointMass(position=0.1)
+    with pytest.raises(InputError, match="is slack: give stiffness or rotational"):
+        PointSpring(position=0.1)
+    with pytest.raises(InputError, match=r"beam\.mass\.mass = -1"):
+        PointMass(position=0.1, mass=-1.0)
+
+
+def test_a_section_takes_from_its_beam_what_it_does_not_say():
+    steps = (
+        Section(length=0.3),
+        Section(length=0.43, thickness=0.0031),
+    )
+    beam = Beam(**SIZES, section=steps)
+    assert [piece.second_moment for piece in beam.pieces] == pytest.approx([0.031 * h**3 / 12 for h in (23e-4, 31e-4)])
+    glued = Beam(**SIZES, section=(Section(length=0.3, bending_stiffness=9.1), Section(length=0.43)))
+    assert glued.pieces[0].bending_stiffness == 9.1
+    assert glued.pieces[0].mass_per_length == glued.mass_per_length
+    assert glued.pieces[0].youngs_modulus is None
+    shaft = Section(length=0.3, shape="round", diameter=0.009)
+    assert Beam(**SIZES, section=(shaft, Section(length=0.43))).pieces[0].area == pytest.approx(math.pi * 0.0045**2)
+    with pytest.raises(InputError, match=r"beam\.section\[1\]\.width is missing: a rectangle needs width"):
+        plain(section=(Section(length=0.3), Section(length=0.41, thickness=0.002)))
+
+
+@pytest.mark.parametrize(
+    ("supports", "more", "lines"),
+    [
+        (("free", "free"), {}, [(1.0, 0.0), (-0.365, 1.0)]),
+        (("free", "free"), {"spring": (PointSpring(position=0.2, stiffness=1.0),)}, [(-0.2, 1.0)]),
+        (("free", "free"), {"spring": (PointSpring(position=0.2, rotational=1.0),)}, [(1.0, 0.0)]),
+        (("free", "free"), {"tension": 3.0}, [(1.0, 0.0)]),
+        (("free", "free"), {"foundation": 3.0}, []),
+        (("pinned", "free"), {}, [(-0.0, 1.0)]),
+        (("free", "pinned"), {}, [(-0.73, 1.0)]),
+        (("pinned", "free"), {"spring": (PointSpring(position=0.73, stiffness=1.0),)}, []),
+        (("guided", "free"), {}, [(1.0, 0.0)]),
+        (("guided", "guided"), {"spring": (PointSpring(position=0.4, stiffness=2.0),)}, []),
+    ],
+)
+def test_rigid_motions_are_what_nothing_resists(supports, more, lines):
+    assert list(Beam(**SIZES, supports=supports, **more).rigid_lines) == lines
+
+
+def test_a_mirrored_beam_has_everything_on_the_other_side():
+    bodies = {"mass": (PointMass(position=0.2, mass=0.1),), "spring": (PointSpring(position=0.6, stiffness=9.0),)}
+    beam = Beam(**SIZES, supports=("clamped", "free"), **bodies)
+    other = beam.mirrored()
+    assert other.supports == ("free", "clamped")
+    assert other.mass[0].position == pytest.approx(0.53)
+    assert other.spring[0].position == pytest.approx(0.13)
+    assert other.mirrored().mass[0].position == pytest.approx(0.2, rel=1e-15)
+
+
+def test_what_is_added_is_named():
+    everything = {
+        "section": (Section(length=0.3), Section(length=0.43, thickness=0.003)),
+        "mass": (PointMass(position=0.2, mass=0.1),),
+        "tension": -0.1,
+    }
+    beam = Beam(**SIZES, **everything)
+    assert beam.added == ("section", "mass", "tension")
+    assert not beam.uniform
+    assert Beam(**SIZES, section=(Section(length=0.73),)).uniform
+    with pytest.raises(InputError, match=r"beam\.mass: the wheel takes none, leave it out"):
+        beam.check_added("the wheel", ("section", "tension"))
