@@ -26,6 +26,7 @@ ROOMS = (
     "run",
     "report",
     "faces",
+    "commands",
     "doors",
 )
 """From the ground up: a room imports from those before it; the three models from none of each other."""
