@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 import click
 
 from verify import __version__
-from verify.commands import choose, measure, plan, quantities, run, scenes, table
+from verify.commands import choose, keys, measure, plan, quantities, run, scenes, table
 from verify.errors import InputError
 
 BAD_INPUT, INTERRUPTED, NO_READER = 2, 130, 141
@@ -50,6 +50,9 @@ for _command in (
     plan.plan,
     scenes.scenes,
     scenes.init,
+    scenes.show,
+    keys.keys,
+    keys.schema,
 ):
     cli.add_command(_command)
 

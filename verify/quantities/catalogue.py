@@ -12,7 +12,6 @@ import msgspec
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Workbench
-from verify.models.naming import Among
 from verify.quantities.chain import CHAIN_QUANTITIES
 from verify.quantities.kind import A, Arguments, Figure, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
@@ -20,6 +19,7 @@ from verify.quantities.motion import MOTION_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
 from verify.registry import Registry
 from verify.scenes.checked import checked
+from verify.scenes.described import among_of, type_words
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -57,13 +57,6 @@ def models_named(arguments: Arguments) -> tuple[str, ...]:
 def _is_list(kind: Any) -> bool:
     """Whether an argument is a list of values, or nothing."""
     return get_origin(kind) is tuple or any(_is_list(arm) for arm in get_args(kind) if get_origin(kind) is not Literal)
-
-
-def among_of(kind: Any) -> Among | None:
-    """Which models an argument may name; None where it names none."""
-    parts = (kind, *get_args(kind))
-    extras = [meta.extra for part in parts for meta in getattr(part, "__metadata__", ()) if meta.extra]
-    return next((extra["among"] for extra in extras if "among" in extra), None)
 
 
 def _one_name(given: dict[str, Any], known: set[str]) -> dict[str, Any]:
@@ -139,22 +132,8 @@ def _described_argument(field: Any) -> dict[str, Any]:
     default = None if field.required else field.default
     return {
         "name": field.name,
-        "type": _type_words(kind),
+        "type": type_words(kind),
         "required": field.required,
         "default": default if default is not None or field.required else "none",
         "meaning": meaning,
     }
-
-
-def _type_words(kind: Any) -> str:
-    """A type as a user would say it."""
-    if among := among_of(kind):
-        return " | ".join(among.names())
-    if hasattr(kind, "__metadata__"):
-        return _type_words(get_args(kind)[0])
-    if get_origin(kind) is Literal:
-        return " | ".join(map(str, get_args(kind)))
-    if get_origin(kind) is tuple:
-        return "list of " + _type_words(get_args(kind)[0])
-    arms = [arm for arm in get_args(kind) if arm is not type(None)]
-    return _type_words(arms[0]) if arms else {int: "whole number", float: "number", str: "word"}.get(kind, str(kind))

@@ -32,8 +32,11 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     position: float
     """Metres from the end that `measured_from` names."""
     measured_from: Literal["left", "right"] = "left"
+    """The end of the beam from which `position` counts."""
     amplitude: float = 1.0
+    """Newton, or metres where the drive imposes displacements."""
     phase_deg: float = 0.0
+    """Degrees, of cos(omega t + phase)."""
 
     def on(self, beam: Beam) -> PointForce:
         """The force in the beam's own coordinate. Raises InputError where it lies off the beam."""
@@ -51,9 +54,11 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """What shakes the beam at one frequency: harmonic point forces, or displacements imposed at points."""
 
     frequency_hz: float
+    """Hertz."""
     kind: DriveKind = "force"
     """What the amplitudes mean: newton, or metres. The paper does not say; its frequency rule fits forces."""
     force: tuple[SceneForce, ...] = ()
+    """Where it acts, how strongly and with which phase."""
 
     def __post_init__(self) -> None:
         check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)
@@ -76,6 +81,7 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     steps_per_period: Count = 128
     """At least; more where the start excites faster modes."""
     samples: Annotated[int, Meta(ge=2, le=100_000)] = 1001
+    """Instants that are kept, both ends among them."""
 
     def __post_init__(self) -> None:
         check_number("motion.duration", self.duration, "seconds", above=0)
@@ -93,7 +99,9 @@ class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A complex expectation, { re, im }."""
 
     re: float
+    """Real part, in the quantity's own unit."""
     im: float
+    """Imaginary part, likewise."""
 
     def __post_init__(self) -> None:
         check_number("expect.re", self.re, "in the quantity's own unit")
@@ -110,13 +118,21 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """
 
     id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+    """Letters, digits, _ and -; by it `--set gate.ID.within=...` and pytest name the gate."""
     quantity: str
+    """As `verify quantities` names it."""
     arguments: dict[str, Any] = {}
+    """Of the quantity, by name."""
     expect: float | Complex | None = None
+    """The middle of the band, in the quantity's own unit; { re, im } where it is complex."""
     within: float | None = None
+    """Half the width of the band; of a complex expectation its radius."""
     at_least: float | None = None
+    """The lowest value that passes."""
     at_most: float | None = None
+    """The highest value that passes."""
     why: Annotated[str, Meta(min_length=1)]
+    """Where the expectation comes from."""
 
     def __post_init__(self) -> None:
         for name in ("expect", "within", "at_least", "at_most"):
@@ -140,9 +156,11 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
-    """Also of its report's file, hence not longer."""
+    """Of the scene, also of its report's file, hence no longer than a file's name."""
     title: str = ""
+    """Above its report."""
     description: str = ""
+    """A sentence below the title."""
     beam: Beam
     drive: Drive | None = None
     slider: Slider | None = None
@@ -235,9 +253,15 @@ def scene_path(name_or_path: str) -> Path:
 
 def load_scene(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> Scene:
     """A packaged scene by name, any other by path, with 'key=value' overrides. Raises InputError."""
+    data = tables_of(name_or_path, overrides)
+    return checked(data, scene_type(data))
+
+
+def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict[str, Any]:
+    """The plain tables of a scene with its overrides, not yet checked. Raises InputError."""
     if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
         raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
     data = read_toml(scene_path(str(name_or_path)))
     for assignment in overrides:
         override(data, assignment)
-    return checked(data, scene_type(data))
+    return data

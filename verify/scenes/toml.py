@@ -9,18 +9,24 @@ from verify.files import exists
 _LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
 
 
-def read_toml(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
-    import tomllib
-
+def read_text(path: Path) -> str:
+    """The text of a scene file. Raises InputError where it cannot be read."""
     exists(path, "scene")
     try:
-        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-        return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in data.items()}
+        return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
         raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
+    import tomllib
+
+    text = read_text(path)
+    try:
+        return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in tomllib.loads(text).items()}
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
     except InputError:

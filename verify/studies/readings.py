@@ -42,6 +42,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     forces: tuple[float, ...] = ()
     """Newton: amplitudes that all forces of the drive take in turn."""
     mu: tuple[float, ...] = ()
+    """Coefficients of friction."""
     slope: tuple[float, ...] = ()
     """K, s/m."""
     positions: tuple[float, ...] = ()

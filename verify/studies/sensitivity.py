@@ -21,9 +21,13 @@ class Sensitivity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Ask how one exact frequency moves with modulus and density, beside a figure somebody published."""
 
     mode: Annotated[int, Meta(ge=1)]
+    """Which mode, from 1."""
     published_hz: float | None = None
+    """A figure to compare with, hertz."""
     modulus_spread: float = 0.03
+    """How far the modulus may lie off, relative."""
     density_spread: float = 0.03
+    """How far the density may lie off, relative."""
 
     def __post_init__(self) -> None:
         check_number("sensitivity.modulus_spread", self.modulus_spread, "relative", above=0, below=1)
