@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.attached import PointMass, PointSpring
-from verify.checks import check_number
+from verify.checks import Relative, check_number
 from verify.errors import InputError, near_name
 from verify.options import SUPPORTS, Support
 from verify.section import Piece, Section, Sizes, check_decades, merged, piece_of
@@ -38,7 +38,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """nu; used by Timoshenko's theory alone."""
     shear_coefficient: float | None = None
     """kappa, used by Timoshenko's theory alone; 5/6 of a rectangle and Cowper's of a round section unless given."""
-    loss_factor: float = 0.0
+    loss_factor: Relative = 0.0
     """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2."""
     section: tuple[Section, ...] = ()
     """Pieces from left to right where the beam is stepped; their lengths add up to `length`."""

@@ -67,7 +67,8 @@ def status_of(argv: list[str] | None = None) -> int:
         _hush()
         return NO_READER
     except InputError as error:
-        click.echo(f"verify: {error}", err=True)
+        for sentence in error.sentences:
+            click.echo(f"verify: {sentence}", err=True)
         return BAD_INPUT
     except click.ClickException as error:
         error.show()

@@ -43,7 +43,8 @@ def schema(section: str | None, path: str | None) -> None:
     import json
 
     from verify.quantities.catalogue import QUANTITIES
-    from verify.scenes.schema import TOP, section_schema
+    from verify.scenes.described import TOP
+    from verify.scenes.schema import section_schema
 
     text = json.dumps(section_schema(section or TOP, QUANTITIES), indent=2, allow_nan=False) + "\n"
     if path is None:

@@ -2,10 +2,12 @@
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 import click
+
+from verify.errors import InputError, raise_all
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -20,10 +22,25 @@ scene_name = click.argument("scene")
 
 
 def load(scene: str, overrides: tuple[str, ...]) -> "Scene":
-    """A scene with its overrides. Raises InputError."""
-    from verify.scenes.scene import load_scene
+    """A scene with its overrides. Raises InputError; where the scene is wrong, for its gates' figures as well."""
+    from verify.scenes.problems import MOST
+    from verify.scenes.scene import load_scene, tables_of
 
-    return load_scene(scene, overrides)
+    try:
+        loaded = load_scene(scene, overrides)
+    except InputError as error:
+        from verify.run.asks import wrong_figures
+
+        found = [*error.sentences]
+        with suppress(InputError):
+            found += wrong_figures(tables_of(scene, overrides))
+        raise_all(found, MOST)
+        raise
+    if any(text.rstrip().endswith("%") for text in overrides):
+        from verify.run.asks import check_per_cents
+
+        check_per_cents(loaded, overrides)
+    return loaded
 
 
 def print_json(data: Any) -> None:

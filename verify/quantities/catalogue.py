@@ -20,6 +20,7 @@ from verify.quantities.waves import WAVE_QUANTITIES
 from verify.registry import Registry
 from verify.scenes.checked import checked
 from verify.scenes.described import among_of, type_words
+from verify.scenes.given import as_meant
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -39,9 +40,9 @@ def quantity(name: str) -> Quantity[Any]:
 def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     """Arguments checked against the quantity's types; one number stands for a list of one. Raises InputError."""
     fields = msgspec.structs.fields(found.arguments)
-    lists = {f.name for f in fields if _is_list(f.type)}
-    data = {k: [v] if k in lists and not isinstance(v, list) else v for k, v in given.items()}
-    data = _one_name(data, {f.name for f in fields})
+    kinds = {f.name: f.type for f in fields}
+    data = {k: as_meant(v, kinds.get(k), k) for k, v in _one_name(given, set(kinds)).items()}
+    data = {k: [v] if _is_list(kinds.get(k)) and not isinstance(v, list) else v for k, v in data.items()}
     for field in fields:
         if (among := among_of(field.type)) and isinstance(name := data.get(field.name), str):
             among.check(name, field.name)

@@ -7,6 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from verify import options
+from verify.checks import Relative
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Settings, Workbench
@@ -189,7 +190,7 @@ class ToError(Divided, frozen=True, kw_only=True):
 
     model: DiscreteModel
     mode: Mode
-    error: Annotated[float, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
+    error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
     of: Annotated[
         Literal["enough", "least"],
         Meta(description="from here on enough; or the least that does, where an error changes its sign below that"),

@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from msgspec import Meta
 
 from verify import options
+from verify.checks import Relative
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities.kind import (
@@ -84,7 +85,7 @@ class InTime(DriveArguments, frozen=True, kw_only=True):
     soft_start_periods: (
         Annotated[float, Meta(ge=0, description="over which the forces grow; default: the scene's")] | None
     ) = None
-    modal_damping: Annotated[float, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
+    modal_damping: Annotated[Relative, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
     modes: Annotated[int, Meta(ge=1, description="the exact beam keeps from rest; default 400")] | None = None
     force: Annotated[float, Meta(ge=0, description="of every force, newton; default: the scene's")] | None = None
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def print_sections(listed: list[dict[str, Any]]) -> None:
     """Every section with how many keys it has and what it is."""
     console = Terminal()
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     table.add_column("section", no_wrap=True)
     table.add_column("keys", justify="right")
     table.add_column("what it is")
@@ -30,8 +30,8 @@ def print_keys(section: str, meaning: str, keys: "tuple[Key, ...]") -> None:
     console = Terminal()
     console.print(Text(f"{section}: {meaning}", style="bold"))
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-    for name, widest in (("key", None), ("type", 22), ("default", 16), ("unit and meaning", None)):
-        table.add_column(name, no_wrap=name == "key", max_width=widest)
+    for name, widest in (("key", None), ("type", 20), ("default", 14), ("unit and meaning", None)):
+        table.add_column(name, no_wrap=name == "key", max_width=widest, overflow="fold")
     for one in keys:
         default = "required" if one.required else "–" if one.default is None else _plain(one.default)
         table.add_row(one.key, Text(one.type), Text(default), Text(one.meaning))

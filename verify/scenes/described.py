@@ -7,6 +7,7 @@ choose among (`options`), or of the table itself.
 import ast
 import inspect
 from functools import lru_cache
+from itertools import pairwise
 from textwrap import dedent
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
@@ -87,9 +88,7 @@ def meanings(kind: type[msgspec.Struct]) -> dict[str, str]:
     told: dict[str, str] = {}
     for one in reversed(kind.__mro__):
         told |= _under_fields(one)
-    return {
-        field.encode_name: told.get(field.name) or _of_type(field.type) for field in msgspec.structs.fields(kind)
-    }
+    return {field.encode_name: told.get(field.name) or _of_type(field.type) for field in msgspec.structs.fields(kind)}
 
 
 @lru_cache(maxsize=64)
@@ -105,7 +104,7 @@ def _under_fields(kind: type) -> dict[str, str]:
 def _after_assignments(nodes: list[ast.stmt]) -> dict[str, str]:
     """The string behind each assignment, on one line, by the name that is assigned."""
     found = {}
-    for node, after in zip(nodes, nodes[1:], strict=False):
+    for node, after in pairwise(nodes):
         target = node.target if isinstance(node, ast.AnnAssign) else getattr(node, "targets", [None])[0]
         value = after.value if isinstance(after, ast.Expr) else None
         if isinstance(target, ast.Name) and isinstance(value, ast.Constant) and isinstance(value.value, str):
@@ -169,11 +168,14 @@ def type_words(kind: Any) -> str:
         return " | ".join(map(str, get_args(kind)))
     if get_origin(kind) is tuple:
         return _list_words(get_args(kind))
+    if get_origin(kind) in (Union, UnionType):
+        return " or ".join(type_words(arm) for arm in get_args(kind) if arm is not type(None))
+    return _plain_words(kind)
+
+
+def _plain_words(kind: Any) -> str:
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
         return "table"
-    arms = [arm for arm in get_args(kind) if arm is not type(None)] if get_origin(kind) in (Union, UnionType) else []
-    if arms:
-        return " or ".join(map(type_words, arms))
     plain = {int: "whole number", float: "number", str: "word", bool: "true | false", Any: "anything"}
     return plain.get(kind, "table" if get_origin(kind) is dict else str(kind))
 
@@ -181,6 +183,7 @@ def type_words(kind: Any) -> str:
 def _list_words(parts: tuple[Any, ...]) -> str:
     """'list of number', 'list of tables', or of a list of so many its entries."""
     if parts[-1] is not Ellipsis:
-        return "list of " + ", ".join(type_words(part) for part in parts)
+        words = [type_words(part) for part in parts]
+        return f"list of {len(words)}: " + (words[0] if len(set(words)) == 1 else ", ".join(words))
     entry = type_words(parts[0])
     return "list of " + ("tables" if entry == "table" else entry)

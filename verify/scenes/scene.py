@@ -1,7 +1,7 @@
 """A scene file read, checked, and turned into values: what exists, and what is asked of it."""
 
-from collections.abc import Iterable
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Iterator
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias, cast
 
@@ -9,12 +9,14 @@ import msgspec
 from msgspec import Meta
 
 from verify.beam import Beam, PointForce, check_frequency
-from verify.checks import check_number
-from verify.errors import InputError, near_name, shown
+from verify.checks import Relative, check_number
+from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.options import DriveKind, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
+from verify.scenes.given import as_meant, type_at_key
+from verify.scenes.problems import MOST, problems
 from verify.scenes.sections import ON_WHAT_EXISTS, SECTIONS
 from verify.scenes.toml import override, read_toml
 from verify.slider import Slider
@@ -72,7 +74,7 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     start: Start = "rest"
     soft_start_periods: float = 0.0
     """Over which the forces grow; 0 is a step load, because cos(0) = 1."""
-    modal_damping: float | None = None
+    modal_damping: Relative | None = None
     """Ratio of every mode; half the beam's loss factor unless given."""
     count: Count = 49
     """Segments and elements of the figures."""
@@ -123,13 +125,13 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """As `verify quantities` names it."""
     arguments: dict[str, Any] = {}
     """Of the quantity, by name."""
-    expect: float | Complex | None = None
+    expect: Relative | Complex | None = None
     """The middle of the band, in the quantity's own unit; { re, im } where it is complex."""
-    within: float | None = None
+    within: Relative | None = None
     """Half the width of the band; of a complex expectation its radius."""
-    at_least: float | None = None
+    at_least: Relative | None = None
     """The lowest value that passes."""
-    at_most: float | None = None
+    at_most: Relative | None = None
     """The highest value that passes."""
     why: Annotated[str, Meta(min_length=1)]
     """Where the expectation comes from."""
@@ -169,9 +171,22 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     gate: tuple[Gate, ...] = ()
 
     def __post_init__(self) -> None:
+        raise_all(list(dict.fromkeys(self._wrong())), MOST)
+
+    def _wrong(self) -> Iterator[str]:
+        """A sentence for everything that does not go together, though each part is right by itself."""
+        for check in (self._check_names, self._check_claims, self._check_what_exists, *self._section_checks()):
+            try:
+                check()
+            except InputError as error:
+                yield from error.sentences
+
+    def _check_names(self) -> None:
         _check_ids("gate", [gate.id for gate in self.gate])
         _check_ids("claim", [claim.id for claim in self.claim])
-        self._check_claims()
+
+    def _check_what_exists(self) -> None:
+        """Raise InputError for a drive or a slider that this beam cannot have."""
         if self.drive is not None:
             check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
         forces = self.forces  # built here, so that one off the beam is refused with the scene
@@ -179,9 +194,12 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             self.slider.start_on(self.beam)
         if self.motion is not None and not forces:
             raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
-        for name in set(self.__struct_fields__) - set(Scene.__struct_fields__):
+
+    def _section_checks(self) -> Iterator[Callable[[], None]]:
+        """What each study's section asks of the rest of the scene."""
+        for name in self.__struct_fields__[len(Scene.__struct_fields__) :]:
             if (asked := getattr(self, name)) is not None:
-                SECTIONS[name].check_on(asked, self)
+                yield partial(SECTIONS[name].check_on, asked, self)
 
     def _check_claims(self) -> None:
         """Raise InputError for a claim about a run that the scene has not."""
@@ -252,9 +270,17 @@ def scene_path(name_or_path: str) -> Path:
 
 
 def load_scene(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> Scene:
-    """A packaged scene by name, any other by path, with 'key=value' overrides. Raises InputError."""
+    """A packaged scene by name, any other by path, with 'key=value' overrides.
+
+    Raises InputError, or WrongSceneError with a sentence for each where several things are wrong.
+    """
     data = tables_of(name_or_path, overrides)
-    return checked(data, scene_type(data))
+    kind = scene_type(data)
+    try:
+        return checked(data, kind)
+    except InputError:
+        raise_all(problems(data, kind), MOST)
+        raise
 
 
 def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -262,6 +288,16 @@ def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict
     if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
         raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
     data = read_toml(scene_path(str(name_or_path)))
+    wrong: list[str] = []
     for assignment in overrides:
-        override(data, assignment)
+        try:
+            override(data, assignment, _meant)
+        except InputError as error:
+            wrong += error.sentences
+    raise_all(wrong, MOST)
     return data
+
+
+def _meant(value: Any, key: str) -> Any:
+    """What an override gives, as the type of its key takes it."""
+    return as_meant(value, type_at_key(scene_type([key.split(".", maxsplit=1)[0]]), key), key)

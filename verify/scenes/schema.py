@@ -5,7 +5,7 @@ from typing import Any
 
 import msgspec
 
-from verify.scenes.described import TOP, first_sentence, inner_table, meanings, sections
+from verify.scenes.described import TOP, first_sentence, meanings, sections
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 """What editors of TOML read."""

@@ -1,5 +1,6 @@
 """TOML read and overridden: plain tables, before anything is made of them."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -81,9 +82,13 @@ def given_arguments(assignments: tuple[str, ...]) -> dict[str, Any]:
     return given
 
 
-def override(data: dict[str, Any], assignment: str) -> None:
-    """Set one value of a scene's tables in place: 'beam.length=0.4', 'gate.ID.within=1e-6'."""
-    key, value = split_assignment(assignment)
+def override(data: dict[str, Any], assignment: str, meant: Callable[[Any, str], Any]) -> None:
+    """Set one value of a scene's tables in place: 'beam.length=0.4', 'gate.ID.within=1e-6'.
+
+    `meant` makes of a literal and its key what stands in the table.
+    """
+    key, literally = split_assignment(assignment)
+    value = meant(literally, key)
     *parents, last = key.split(".")
     here: Any = data
     for depth, step in enumerate(parents):

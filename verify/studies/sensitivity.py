@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 from msgspec import Meta
 
-from verify.checks import check_number
+from verify.checks import Relative, check_number
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
@@ -24,9 +24,9 @@ class Sensitivity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Which mode, from 1."""
     published_hz: float | None = None
     """A figure to compare with, hertz."""
-    modulus_spread: float = 0.03
+    modulus_spread: Relative = 0.03
     """How far the modulus may lie off, relative."""
-    density_spread: float = 0.03
+    density_spread: Relative = 0.03
     """How far the density may lie off, relative."""
 
     def __post_init__(self) -> None:

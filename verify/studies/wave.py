@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 
-from verify.checks import check_number
+from verify.checks import Relative, check_number
 from verify.errors import InputError
 from verify.models.catalogue import discrete
 from verify.models.naming import Among, model_meta
@@ -34,9 +34,9 @@ class Wave(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """Start, end and steps of the map."""
     phase_deg: tuple[float, float, int] = (0.0, 180.0, 91)
     """Start, end and steps of the map, degrees between the two forces."""
-    reflection_limit: float = 0.1
+    reflection_limit: Relative = 0.1
     """Largest reflection, relative, that an operating point may have."""
-    operating_loss_factor: float = 1e-3
+    operating_loss_factor: Relative = 1e-3
     """For the operating points where the beam is undamped: without losses the crest speed has no bound."""
 
     def __post_init__(self) -> None:
