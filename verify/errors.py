@@ -38,6 +38,7 @@ class WrongSceneError(InputError):
 
 def raise_all(sentences: "list[str]", most: int) -> None:
     """Raise InputError for one sentence, WrongSceneError for several, the first `most` of them; nothing for none."""
+    sentences = list(dict.fromkeys(sentences))
     if len(sentences) > 1:
         left = [f"and {len(sentences) - most} more"] if len(sentences) > most else []
         raise WrongSceneError([*sentences[:most], *left])

@@ -50,6 +50,12 @@ def bare_percent(value: float) -> str:
     return f"{100 * value:+.4f}" if abs(value) >= 1e-4 else f"{100 * value:+.2e}".replace("e-0", "e-")
 
 
+def in_a_row(what: str, names: list[str], most: int = 2) -> str:
+    """'gate a', 'gates a, b', 'gates a, b and 3 more'."""
+    row = ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+    return f"{what}{'s' * (len(names) > 1)} {row}"
+
+
 _FORMS: dict[str, Callable[[float], str]] = {
     "percent": percent,
     "size": lambda value: percent(value, sign=False),

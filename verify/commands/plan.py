@@ -19,7 +19,7 @@ def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """Print what SCENE will run, what is skipped, and why. Solves nothing."""
     from verify.run.plan import plan_scene
 
-    planned = plan_scene(load(scene, overrides))
+    planned = plan_scene(load(scene, overrides), overrides)
     if as_json:
         import msgspec
 

@@ -28,12 +28,13 @@ GATE_FAILED = 1
 def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as_json: bool) -> None:
     """Run everything SCENE asks for; write its report; exit 1 when a gate fails."""
     from verify.files import writable_folder
+    from verify.run.applies import report_name
     from verify.run.runner import n_steps, run_scene
 
     asked = load(scene, overrides)
-    target = None if no_report else writable_folder(Path(folder), "reports") / f"{asked.name}.html"
+    target = None if no_report else writable_folder(Path(folder), "reports") / f"{report_name(asked, overrides)}.html"
     with progress(n_steps(asked), quiet=as_json) as step:
-        result = run_scene(asked, step)
+        result = run_scene(asked, step, overrides)
     if target is not None:
         from verify.report.html import write_report
 

@@ -46,6 +46,7 @@ class Chained(Arguments, frozen=True, kw_only=True):
 class TipUnderLoad(Chained, frozen=True, kw_only=True):
     """A loaded cantilever."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     load: Load
     component: Component = "deflection"
     wall: Wall = "gregory"
@@ -54,18 +55,21 @@ class TipUnderLoad(Chained, frozen=True, kw_only=True):
 class RolledUp(Chained, frozen=True, kw_only=True):
     """A cantilever rolled up once."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     wall: Wall = "half"
 
 
 class Hanging(Chained, frozen=True, kw_only=True):
     """One mode of a hanging chain."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mode: Mode
 
 
 class Turning(Chained, frozen=True, kw_only=True):
     """One mode of a cantilever whose clamp turns."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mode: Mode
     speed: Annotated[float, Meta(ge=0, le=1e3, description="of the clamp, in sqrt(EI / (rho A L^4))")]
     wall: Wall = "gregory"
@@ -74,12 +78,14 @@ class Turning(Chained, frozen=True, kw_only=True):
 class LargeAmplitude(Chained, frozen=True, kw_only=True):
     """A hinged beam between immovable ends."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     amplitude: Radii
 
 
 class FreeMotion(Chained, frozen=True, kw_only=True):
     """An undamped chain let go."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     amplitude: Annotated[float, Meta(gt=0, le=0.1, description="at mid-span, over L")] = 0.05
     periods: Annotated[float, Meta(gt=0, le=1000, description="of the linear first mode")] = 1.0
     step: Step | None = None
@@ -124,6 +130,7 @@ class FromRest(Chained, frozen=True, kw_only=True):
 class ContactLine(Chained, frozen=True, kw_only=True):
     """One mode of the scene's beam as a slider on its nonlinear chain sees it."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     mode: Mode
     x: Annotated[float, Meta(ge=0, description="m from the left end: on which piece")]
     wall: Wall = "gregory"

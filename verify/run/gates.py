@@ -8,7 +8,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
-from verify.quantities.catalogue import arguments_of, as_plain, evaluate, in_words, quantity
+from verify.quantities.catalogue import QUANTITIES, arguments_of, as_plain, evaluate, in_words, quantity
 from verify.quantities.kind import Figure, Quantity
 from verify.scenes.scene import Complex
 
@@ -39,12 +39,15 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     band: Band
     """The same in numbers."""
     measured: Any
-    """A number or {"lower", "upper"}; None where the gate could not be evaluated."""
-    passed: bool
+    """A number or {"lower", "upper"}; None where the gate could not be evaluated, or was not."""
+    passed: bool | None
+    """None where it does not apply."""
+    applicable: bool
+    """Whether it was stated for what the scene was run with."""
     share: float | None
     """Share of the band used: 0 in its middle, 1 at its edge; None where the band has no width."""
     reason: str
-    """Why it failed; empty where it passed."""
+    """Why it failed or does not apply; empty where it passed."""
     seconds: float
 
 
@@ -73,9 +76,30 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
         band=given_band(gate),
         measured=as_plain(value),
         passed=not reason,
+        applicable=True,
         share=share,
         reason=reason,
         seconds=perf_counter() - start,
+    )
+
+
+def set_aside(gate: "Gate", reason: str) -> GateResult:
+    """The result of a gate that does not apply: neither passed nor failed, and nothing is evaluated for it."""
+    known = gate.quantity in QUANTITIES
+    return GateResult(
+        id=gate.id,
+        quantity=gate.quantity,
+        arguments=gate.arguments,
+        why=gate.why,
+        unit=quantity(gate.quantity).unit if known else "",
+        expected=expectation(gate),
+        band=given_band(gate),
+        measured=None,
+        passed=None,
+        applicable=False,
+        share=None,
+        reason=reason,
+        seconds=0.0,
     )
 
 
