@@ -11,6 +11,7 @@ from verify.judge.bracket import Bracket
 from verify.quantities.catalogue import QUANTITIES, arguments_of, as_plain, evaluate, in_words, quantity
 from verify.quantities.kind import Figure, Quantity
 from verify.scenes.scene import Complex
+from verify.words import rounded
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -113,12 +114,26 @@ def _evaluated(found: Quantity[Any], gate: "Gate", scene: "Scene", bench: "Workb
 
 
 def expectation(gate: "Gate") -> str:
-    """The band in words."""
-    if gate.expect is not None:
-        value = f"{gate.expect.re!r} {gate.expect.im:+}i" if isinstance(gate.expect, Complex) else repr(gate.expect)
-        return f"{value} ± {gate.within:g}" if gate.within is not None else f"contains {value}"
-    sides = [f"at least {gate.at_least!r}"] * (gate.at_least is not None)
-    return ", ".join(sides + [f"at most {gate.at_most!r}"] * (gate.at_most is not None))
+    """The band in words, as it was given."""
+    return _in_words(given_band(gate))
+
+
+def _in_words(band: Band) -> str:
+    if band.expect is not None:
+        value = f"{band.expect.re!r} {band.expect.im:+}i" if isinstance(band.expect, Complex) else repr(band.expect)
+        return f"{value} ± {band.within:g}" if band.within is not None else f"contains {value}"
+    sides = [f"at least {band.at_least!r}"] * (band.at_least is not None)
+    return ", ".join(sides + [f"at most {band.at_most!r}"] * (band.at_most is not None))
+
+
+def shown_expectation(band: Band) -> str:
+    """The same for a person: no more digits than the band tells."""
+    if band.expect is None or band.within is None:
+        return _in_words(band)
+    parts = (band.expect.re, band.expect.im) if isinstance(band.expect, Complex) else (band.expect,)
+    real, *imaginary = (rounded(part, band.within) for part in parts)
+    value = f"{real} {imaginary[0] if imaginary[0].startswith('-') else '+' + imaginary[0]}i" if imaginary else real
+    return f"{value} ± {band.within:g}"
 
 
 def _verdict(gate: "Gate", value: Figure) -> tuple[str, float | None]:
