@@ -63,10 +63,10 @@ def told_once(notes: Iterable[str]) -> list[str]:
     alike: dict[str, list[str]] = {}
     for note in dict.fromkeys(notes):
         alike.setdefault(re.sub(r"\d+", "0", note), []).append(note)
-    few = (
-        [*group] if len(group) < ALIKE else [f"{group[0]} ({len(group) - 1} more like it)"] for group in alike.values()
-    )
-    return [note for group in few for note in group]
+    told: list[str] = []
+    for group in alike.values():
+        told += group if len(group) < ALIKE else [f"{group[0]} ({len(group) - 1} more like it)"]
+    return told
 
 
 ALIKE = 3

@@ -16,7 +16,10 @@ from verify.commands.shared import (
 @overridden
 @json_alone
 def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Print what SCENE will run, what is skipped, and why. Solves nothing."""
+    """Print what SCENE will run, what is skipped, and why. Solves nothing.
+
+    Example: `verify plan paper`
+    """
     from verify.run.plan import plan_scene
 
     planned = plan_scene(load(scene, overrides), overrides)

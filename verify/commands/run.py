@@ -26,7 +26,12 @@ GATE_FAILED = 1
 @click.option("--no-report", is_flag=True, help="Judge only; write nothing.")
 @json_alone
 def run(scene: str, overrides: tuple[str, ...], folder: str, no_report: bool, as_json: bool) -> None:
-    """Run everything SCENE asks for; write its report; exit 1 when a gate fails."""
+    """Run everything SCENE asks for; write its report; exit 1 when a gate fails.
+
+    Where --set changes what exists (beam, drive, slider, motion), the report is named after it, and gates that were
+    stated for something else are not applicable: neither passed nor failed, unless their band is set as well.
+    Example: `verify run paper --set beam.length=0.4`
+    """
     from verify.files import writable_folder
     from verify.run.applies import report_name
     from verify.run.runner import n_steps, run_scene

@@ -15,7 +15,11 @@ if TYPE_CHECKING:
 PERCENT = 100
 
 overridden = click.option(
-    "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a value of the scene: beam.length=0.4."
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Override a value of the scene: beam.length=0.4, gate.ID.within=1%.",
 )
 json_alone = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
 scene_name = click.argument("scene")

@@ -16,8 +16,8 @@ from verify.errors import InputError
 @scene_name
 @click.argument("arguments", nargs=-1, metavar="[KEY=VALUE]...")
 @overridden
-@click.option("--modes", metavar="LIST", help="Modes, for instance 1,5,22. Default: the scene's [convergence].")
-@click.option("--counts", metavar="LIST", help="Segments and elements, for instance 10,20,49,98.")
+@click.option("--modes", metavar="LIST", help="Modes, for instance 1-5,22. Default: the scene's [convergence].")
+@click.option("--counts", metavar="LIST", help="Segments and elements, for instance 10,20,49 or 10-50:10.")
 @click.option("--of", "study", metavar="STUDY", help="Whatever a study of SCENE finds, by the name of its section.")
 @click.option("--wave", is_flag=True, help="The motor's figures over the counts instead of modes.")
 @click.option("--slider", is_flag=True, help="The slider's displacement and its run time over the counts.")
@@ -49,7 +49,10 @@ def table(
     as_json: bool,
     layout: str | None,
 ) -> None:
-    """All discrete models side by side; any study; the motor's figures or the slider's over sizes; or a sweep."""
+    """All discrete models side by side; any study; the motor's figures or the slider's over sizes; or a sweep.
+
+    Example: `verify table paper --modes 1-5 --counts 10-50:10`
+    """
     from verify.run import tables
 
     asked = load(scene, overrides)

@@ -4,12 +4,13 @@ A quantity is data: its name, unit, typed arguments, what it will need solved, a
 imports numpy until a figure that needs it is asked for.
 """
 
+from collections import Counter
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import msgspec
 
-from verify.errors import InputError
+from verify.errors import InputError, shown
 from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Workbench
 from verify.quantities.chain import CHAIN_QUANTITIES
@@ -107,8 +108,40 @@ def in_words(plain: Any) -> str:
     return f"{plain:.12g}" if isfinite(plain) else "no number" if isnan(plain) else "infinity"
 
 
-def described() -> list[dict[str, Any]]:
-    """Every quantity with its arguments, units and defaults, in plain data."""
+def described(*words: str) -> list[dict[str, Any]]:
+    """Every quantity with its arguments, units and defaults, in plain data; of `words` each stands in what is told.
+
+    Raises InputError where no quantity is told with these words.
+    """
+    listed = _all_described()
+    found = [one for one in listed if all(word.casefold() in _told(one) for word in words)]
+    if not found:
+        raise InputError(f"no quantity is told with {shown(' '.join(words))}: leave a word out, or all of them")
+    return found
+
+
+def _told(one: dict[str, Any]) -> str:
+    """Name, summary, unit and arguments of a quantity, for looking words up."""
+    names = (argument["name"] for argument in one["arguments"])
+    return " ".join((one["quantity"], one["summary"], one["unit"], *names)).casefold()
+
+
+def shared_arguments(listed: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """By name, the argument that several of these quantities describe alike; of several such the most frequent."""
+    texts = Counter(_as_text(argument) for one in listed for argument in one["arguments"])
+    described = {_as_text(argument): argument for one in listed for argument in one["arguments"]}
+    found: dict[str, dict[str, Any]] = {}
+    for text, times in texts.most_common():
+        if times > 1:
+            found.setdefault(described[text]["name"], described[text])
+    return found
+
+
+def _as_text(argument: dict[str, Any]) -> str:
+    return repr(sorted(argument.items()))
+
+
+def _all_described() -> list[dict[str, Any]]:
     return [
         {
             "quantity": q.name,

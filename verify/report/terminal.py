@@ -45,8 +45,8 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     """Gates, what the studies found, the verdict, where the report lies."""
     console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
-    if result.gates:
-        console.print(_gate_table(result.gates))
+    if judged := tuple(gate for gate in result.gates if gate.applicable):
+        console.print(_gate_table(judged))
     for reason, names in _by_reason((gate.reason, gate.id) for gate in result.failed).items():
         console.print(Text(f"{in_a_row('gate', names, ALL)}: {reason}", style="red"))
     for reason, names in _by_reason((gate.reason, gate.id) for gate in result.set_aside).items():
@@ -65,7 +65,7 @@ def _verdict(result: "RunResult") -> str:
     if result.failed:
         return f"[bold red]{len(result.failed)} of {n - aside} gates failed[/]{beside}"
     if n == aside:
-        return f"no gate applies, {n} were stated for something else" if n else "the scene has no gates"
+        return f"no gate applies of {n}" if n else "the scene has no gates"
     return f"[bold green]all {n - aside} gates passed[/]{beside}"
 
 
@@ -100,7 +100,7 @@ def _print_found(console: Console, found: "Found", *, every_table: bool) -> None
 
 
 def _print_table(console: Console, table: "StudyTable") -> list[str]:
-    """Title, what it says before, and the rows; wide columns where there is room. Returns the heads of those left out."""
+    """Title, what it says before, and the rows. Returns the heads of wide columns for which there is no room."""
     if table.title:
         console.print(Text(table.title, style="bold"))
     if table.before:
@@ -154,10 +154,6 @@ class Hyphenated:
         yield from (Text(line, overflow="fold") for line in lines)
 
 
-_MARKS = {True: ("pass", "green"), False: ("FAIL", "bold red"), None: ("n/a", "dim")}
-"""What stands before a gate that passed, failed, or does not apply."""
-
-
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
     table.add_column("", no_wrap=True)
@@ -167,7 +163,7 @@ def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
     table.add_column("", no_wrap=True)
     table.add_column("of band", justify="right", no_wrap=True)
     for gate in gates:
-        mark = Text(*_MARKS[gate.passed])
+        mark = Text("pass", style="green") if gate.passed else Text("FAIL", style="bold red")
         share = "–" if gate.share is None else f"{100 * gate.share:.3g} %"
         unit = "" if gate.unit == "1" else gate.unit
         table.add_row(mark, Hyphenated(gate.id), figure(gate.measured), shown_expectation(gate.band), unit, share)

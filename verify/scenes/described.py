@@ -61,11 +61,17 @@ def inner_table(kind: Any) -> type[msgspec.Struct] | None:
     return found if isinstance(found, type) and issubclass(found, msgspec.Struct) else None
 
 
+def table_named(section: str) -> type[msgspec.Struct]:
+    """The table of that dotted name. Raises InputError, with the nearest name, for one that there is not."""
+    known = sections()
+    if section not in known:
+        raise InputError(f"section = {section!r} is not known: {near_name(section, tuple(known))}")
+    return known[section]
+
+
 def keys_of(section: str) -> tuple[Key, ...]:
-    """The keys of a section by its dotted name. Raises InputError, with the nearest name, for one that there is not."""
-    if section not in sections():
-        raise InputError(f"section = {section!r} is not known: {near_name(section, tuple(sections()))}")
-    kind = sections()[section]
+    """The keys of a section by its dotted name. Raises InputError for one that there is not."""
+    kind = table_named(section)
     told = meanings(kind)
     return tuple(
         Key(

@@ -17,10 +17,11 @@ _RANGE = re.compile(r"(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?")
 def as_meant(value: Any, kind: Any, field: str) -> Any:
     """A literal as its type takes it: '1-3,7' where whole numbers are listed, '0.1%' where a number is relative.
 
-    Anything else as it is; the type refuses what does not fit. Raises InputError for a range that is none.
+    One whole number stands for a list of one. Anything else as it is; the type refuses what does not fit. Raises InputError for a range that is none.
     """
     if lists_whole_numbers(kind):
-        return whole_numbers(value, field)
+        numbers = whole_numbers(value, field)
+        return [numbers] if isinstance(numbers, int) and not isinstance(numbers, bool) else numbers
     return fraction(value) if is_relative(kind) else value
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import msgspec
 
-from verify.scenes.described import TOP, first_sentence, meanings, sections
+from verify.scenes.described import TOP, first_sentence, meanings, sections, table_named
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 """What editors of TOML read."""
@@ -30,7 +30,7 @@ def section_schema(section: str, quantities: Iterable[str] = ()) -> dict[str, An
     whole = scene_schema(quantities)
     if section == TOP:
         return whole
-    (reference,), _ = msgspec.json.schema_components([sections()[section]], ref_template=_REFERENCE)
+    (reference,), _ = msgspec.json.schema_components([table_named(section)], ref_template=_REFERENCE)
     name = reference["$ref"].rpartition("/")[2]
     return {"$schema": DRAFT, **whole["$defs"][name], "$defs": whole["$defs"]}
 

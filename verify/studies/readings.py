@@ -35,6 +35,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """
 
     kinematics: tuple[Kinematics, ...] = ()
+    """How the slider keeps to the surface."""
     normal: tuple[NormalChoice, ...] = ()
     """Whether the beam carries the slider's weight and inertia."""
     soft_start_periods: tuple[float, ...] = ()
