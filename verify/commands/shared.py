@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -28,17 +28,16 @@ scene_name = click.argument("scene")
 def load(scene: str, overrides: tuple[str, ...]) -> "Scene":
     """A scene with its overrides. Raises InputError; where the scene is wrong, for its gates' figures as well."""
     from verify.scenes.problems import MOST
-    from verify.scenes.scene import load_scene, tables_of
+    from verify.scenes.scene import load_scene, scene_type, tables_of
 
     try:
         loaded = load_scene(scene, overrides)
     except InputError as error:
         from verify.run.asks import wrong_figures
 
-        found = [*error.sentences]
-        with suppress(InputError):
-            found += wrong_figures(tables_of(scene, overrides))
-        raise_all(found, MOST)
+        data = tables_of(scene, overrides)
+        scene_type(data)  # raises again what is no matter of the scene's own tables
+        raise_all([*error.sentences, *wrong_figures(data)], MOST)
         raise
     if any(text.rstrip().endswith("%") for text in overrides):
         from verify.run.asks import check_per_cents

@@ -17,7 +17,8 @@ _RANGE = re.compile(r"(\d{1,18})-(\d{1,18})(?::(\d{1,18}))?")
 def as_meant(value: Any, kind: Any, field: str) -> Any:
     """A literal as its type takes it: '1-3,7' where whole numbers are listed, '0.1%' where a number is relative.
 
-    One whole number stands for a list of one. Anything else as it is; the type refuses what does not fit. Raises InputError for a range that is none.
+    One whole number stands for a list of one. Anything else stays as it is, and the type refuses what does not fit.
+    Raises InputError for a range that is none.
     """
     if lists_whole_numbers(kind):
         numbers = whole_numbers(value, field)
