@@ -18,18 +18,14 @@ if TYPE_CHECKING:
 
 Links = Annotated[int, Meta(ge=1, description="links of the chain; segments and count mean the same")]
 Load = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]
-Component = Annotated[
-    Literal["deflection", "shortening"], Meta(description="of the tip: w/L, or 1 - x/L along the beam")
-]
+Component = Annotated[Literal["deflection", "shortening"], Meta(description="of the tip: w/L, or 1 - x/L along x")]
 Radii = Annotated[float, Meta(gt=0, description="at mid-span, in radii of gyration h / sqrt(12)")]
 Step = Annotated[float, Meta(gt=0, description="fixed step of the motion, s; adaptive unless given")]
 Method = Annotated[
     Literal["adaptive", "rk4", "modal", "linear"],
     Meta(description="modal: exact linear flow and kicks; linear: that flow alone; default rk4 with a step"),
 ]
-Inertia = Annotated[
-    Literal["full", "transverse"], Meta(description="of the links: transverse takes the inertia along x away")
-]
+Inertia = Annotated[Literal["full", "transverse"], Meta(description="of the links: transverse has none along x")]
 
 
 class Chained(Arguments, frozen=True, kw_only=True):
