@@ -39,12 +39,13 @@ def lines_of(name, width):
     console = Console(width=width)
     with console.capture() as captured:
         console.print(Hyphenated(name))
-    return captured.get().split()
+    return [line.strip() for line in captured.get().splitlines()]
 
 
 def test_a_name_is_broken_behind_its_hyphens_and_inside_a_word_only_where_it_has_to_be():
     assert lines_of("departure-at-a-tenth-of-a-newton", 14) == ["departure-at-", "a-tenth-of-a-", "newton"]
     assert lines_of("fem-49-ratio", 8) == ["fem-49-", "ratio"]
+    assert lines_of("gate fem-order, gate fem-law", 15) == ["gate fem-order,", "gate fem-law"]
     assert lines_of("fem-order", 30) == ["fem-order"]
     assert lines_of("displacement-x", 6) == ["displa", "cement", "-", "x"]
 

@@ -11,7 +11,9 @@ from verify.commands.shared import json_alone, print_json
 @click.argument("section", required=False)
 @json_alone
 def keys(section: str | None, as_json: bool) -> None:
-    """What keys a SECTION of a scene has: type, default, unit and meaning. Without SECTION: the sections.
+    """What a SECTION of a scene may hold.
+
+    Its keys, each with type, default, unit and meaning. Without SECTION: which sections there are.
 
     Example: `verify keys beam.spring`
     """
@@ -36,7 +38,9 @@ def keys(section: str | None, as_json: bool) -> None:
 @click.option("--section", metavar="NAME", help="Of one section alone: beam, drive.force, gate.")
 @click.option("--to", "path", metavar="FILE", help="Write it to FILE instead of printing it.")
 def schema(section: str | None, path: str | None) -> None:
-    """JSON Schema of a scene, so that an editor of TOML completes and checks its keys.
+    """JSON Schema of a scene, for editors.
+
+    With it an editor of TOML (Taplo, Even Better TOML) completes and checks the keys of a scene.
 
     Example: `verify schema --to verify.schema.json`, which the first line of a new scene names.
     """

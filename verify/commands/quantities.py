@@ -13,8 +13,9 @@ INDENT = 4
 @click.argument("words", nargs=-1, metavar="[WORD]...")
 @json_alone
 def list_quantities(words: tuple[str, ...], as_json: bool) -> None:
-    """List the named quantities with their arguments, units and defaults; with WORDs those that all of them tell of.
+    """List what can be measured.
 
+    Each named quantity with its arguments, units and defaults; with WORDs those that are told with all of them.
     Arguments that several of those listed share stand below them, once. Example: `verify quantities mode order`
     """
     from verify.quantities.catalogue import described, shared_arguments

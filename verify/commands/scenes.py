@@ -11,7 +11,7 @@ from verify.errors import InputError
 @click.command()
 @json_alone
 def scenes(as_json: bool) -> None:
-    """List the packaged scenes."""
+    """List the packaged scenes. Example: `verify scenes --json`."""
     from verify.scenes.scene import load_scene, packaged_scenes
 
     found = [load_scene(name) for name in packaged_scenes()]
@@ -55,7 +55,9 @@ def init(path: str, source: str | None, force: bool, as_json: bool) -> None:
 @overridden
 @json_alone
 def show(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Print the TOML of SCENE, as it is written or, with --set, as it is then read.
+    """Print the TOML of SCENE.
+
+    As it is written or, with --set, as it is then read.
 
     Example: `verify show paper --set beam.length=0.4`
     """

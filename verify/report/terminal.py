@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from verify.studies.told import Column, Found
     from verify.studies.told import Table as StudyTable
 
-ALL = 10**6
 NARROW = 88
 """Below this many characters a table leaves out what is wide."""
 
@@ -48,7 +47,7 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     if judged := tuple(gate for gate in result.gates if gate.applicable):
         console.print(_gate_table(judged))
     for reason, names in _by_reason((gate.reason, gate.id) for gate in result.failed).items():
-        console.print(Text(f"{in_a_row('gate', names, ALL)}: {reason}", style="red"))
+        console.print(Text(f"{in_a_row('gate', names, len(names))}: {reason}", style="red"))
     for reason, names in _by_reason((gate.reason, gate.id) for gate in result.set_aside).items():
         console.print(Text(f"not applicable: {in_a_row('gate', names)}, {reason}"))
     for found in result.found.values():
@@ -135,10 +134,10 @@ def _grid(columns: "list[Column]") -> Table:
 
 
 class Hyphenated:
-    """A name that is broken into lines behind its hyphens."""
+    """A name, or a few, broken into lines behind hyphens and spaces."""
 
     def __init__(self, name: str) -> None:
-        self._parts = re.findall(r"[^-]*-|[^-]+", name)
+        self._parts = re.findall(r"[^- ]*[- ]|[^- ]+", name)
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
         """From its longest part to all of it."""
@@ -148,10 +147,10 @@ class Hyphenated:
         """Line by line, each as long as there is room."""
         lines = [""]
         for part in self._parts:
-            if len(lines[-1]) + len(part) > options.max_width and lines[-1]:
+            if len(lines[-1]) + len(part.rstrip()) > options.max_width and lines[-1]:
                 lines.append("")
             lines[-1] += part
-        yield from (Text(line, overflow="fold") for line in lines)
+        yield from (Text(line.rstrip(), overflow="fold") for line in lines)
 
 
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
@@ -203,7 +202,7 @@ def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
     console = Terminal()
     console.print(f"[bold]{plan.scene}[/] will run")
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for name in ("model", "N", "modes", "unknowns"):
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
     table.add_column("vectors by", no_wrap=True)
@@ -211,7 +210,7 @@ def print_plan(plan: "Plan") -> None:
     for solve in plan.solves:
         sizes = (str(n) for n in (solve.count, solve.n_modes, solve.unknowns))
         model = " ".join([solve.model, *(f"{name}={value}" for name, value in solve.settings)])
-        table.add_row(model, *sizes, solve.method, _who(solve.asked_by))
+        table.add_row(model, *sizes, solve.method, Hyphenated(_who(solve.asked_by)))
     if plan.solves:
         console.print(table)
     if plan.closed_forms:
