@@ -26,6 +26,7 @@ ROOMS = (
     "run",
     "report",
     "faces",
+    "commands",
     "doors",
 )
 """From the ground up: a room imports from those before it; the three models from none of each other."""
@@ -179,6 +180,9 @@ HEAVY = {
         (("run", "--help"), set()),
         (("quantities",), {"msgspec"}),
         (("scenes",), {"msgspec", "tomllib"}),
+        (("schema",), {"msgspec", "tomllib"}),
+        (("keys", "beam"), {"msgspec", "tomllib", "rich"}),
+        (("show", "paper"), {"msgspec", "tomllib"}),
         (("measure", "mode.frequency", "model=analytic", "mode=22"), {"msgspec", "tomllib"}),
         (("measure", "drive.rule_frequency"), {"msgspec", "tomllib"}),
         (("measure", "mode.frequency", "model=segment", "mode=3", "count=9"), {"msgspec", "tomllib", "numpy", "scipy"}),

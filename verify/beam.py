@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.attached import PointMass, PointSpring
-from verify.checks import check_number
+from verify.checks import Relative, check_number
 from verify.errors import InputError, near_name
 from verify.options import SUPPORTS, Support
 from verify.section import Piece, Section, Sizes, check_decades, merged, piece_of, shear_coefficient
@@ -36,7 +36,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Left (x = 0) and right (x = L) end: pinned, clamped, free or guided."""
     poissons_ratio: float = 0.33
     """nu; used by Timoshenko's theory alone."""
-    loss_factor: float = 0.0
+    loss_factor: Relative = 0.0
     """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2."""
     section: tuple[Section, ...] = ()
     """Pieces from left to right where the beam is stepped; their lengths add up to `length`."""

@@ -3,10 +3,16 @@
 from math import inf
 from operator import index
 from sys import float_info
+from typing import Annotated, TypeAlias
+
+from msgspec import Meta
 
 from verify.errors import InputError, shown
 
 LARGEST = float_info.max
+RELATIVE = "relative"
+Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
+"""A number without a unit, which a command line takes in per cent as well: 0.001 or 0.1%."""
 
 
 def check_number(

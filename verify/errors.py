@@ -17,6 +17,34 @@ class InputError(ValueError):
     def __init__(self, message: str) -> None:
         super().__init__(one_line(message))
 
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """One for each thing that is wrong."""
+        return (str(self),)
+
+
+class WrongSceneError(InputError):
+    """Several things are wrong with a scene, each a sentence of its own."""
+
+    def __init__(self, sentences: "list[str]") -> None:
+        super().__init__("; ".join(sentences))
+        self._sentences = tuple(one_line(sentence) for sentence in sentences)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """One for each."""
+        return self._sentences
+
+
+def raise_all(sentences: "list[str]", most: int) -> None:
+    """Raise InputError for one sentence, WrongSceneError for several, the first `most` of them; nothing for none."""
+    sentences = list(dict.fromkeys(sentences))
+    if len(sentences) > 1:
+        left = [f"and {len(sentences) - most} more"] if len(sentences) > most else []
+        raise WrongSceneError([*sentences[:most], *left])
+    if sentences:
+        raise InputError(sentences[0])
+
 
 class PairingError(InputError):
     """No computed mode has the shape of the exact mode asked for."""

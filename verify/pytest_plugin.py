@@ -57,7 +57,7 @@ class SceneFile(pytest.File):
         try:
             scene = load_scene(self.path)
         except InputError as error:
-            raise self.CollectError(str(error)) from None
+            raise self.CollectError("\n".join(error.sentences)) from None
         bench = workbench_for(scene, gates_only=True)
         for gate in scene.gate:
             yield GateItem.from_parent(self, name=gate.id, gate=gate, scene=scene, bench=bench)

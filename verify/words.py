@@ -1,6 +1,7 @@
 """Figures in words: durations, per cents, measured values, what a run solved."""
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from math import isfinite, isnan
 from typing import Any
 
@@ -48,6 +49,34 @@ def work_in_words(solves: int, fields: int, motions: int) -> str:
 def bare_percent(value: float) -> str:
     """A relative figure in per cent without the sign for it, at most nine characters."""
     return f"{100 * value:+.4f}" if abs(value) >= 1e-4 else f"{100 * value:+.2e}".replace("e-0", "e-")
+
+
+def rounded(value: float, within: float) -> str:
+    """A value to the last digit of the band around it: 4469.9405 within 0.001 is 4469.941."""
+    mantissa, _, exponent = f"{within:g}".partition("e")
+    places = max(len(mantissa.partition(".")[2]) - int(exponent or 0), 0)
+    return f"{value:.0f}" if places == 0 else repr(round(value, places))
+
+
+def told_once(notes: Iterable[str]) -> list[str]:
+    """Each note once; of three or more that differ in their numbers alone the first, and how many there are."""
+    alike: dict[str, list[str]] = {}
+    for note in dict.fromkeys(notes):
+        alike.setdefault(re.sub(r"\d+", "0", note), []).append(note)
+    told: list[str] = []
+    for group in alike.values():
+        told += group if len(group) < ALIKE else [f"{group[0]} ({len(group) - 1} more like it)"]
+    return told
+
+
+ALIKE = 3
+"""Notes that differ in their numbers alone, from which on they are told as one."""
+
+
+def in_a_row(what: str, names: list[str], most: int = 2) -> str:
+    """'gate a', 'gates a, b', 'gates a, b and 3 more'."""
+    row = ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+    return f"{what}{'s' * (len(names) > 1)} {row}"
 
 
 _FORMS: dict[str, Callable[[float], str]] = {

@@ -47,7 +47,7 @@ def test_every_gate_is_a_row_with_its_figures_and_its_reason(html, result):
     from markupsafe import escape
 
     for gate in result.gates:
-        assert f"<b>{gate.id}</b>" in html
+        assert f"<b>{gate.id}</b>" in html.replace("<wbr>", "")
         assert str(escape(gate.expected)) in html
         assert str(escape(gate.why)) in html
 

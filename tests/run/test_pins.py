@@ -45,7 +45,7 @@ def leaves(data, path=""):
 
 def found(scene):
     plan = msgspec.to_builtins(plan_scene(load_scene(scene)))
-    words = ("why", "band", "expected", "share", "reason", "quantity", "arguments", "notes")
+    words = ("why", "band", "expected", "share", "reason", "quantity", "arguments", "notes", "applicable")
     run = {
         path: value for path, value in leaves(told(scene)) if not set(path.replace("]", "].").split(".")) & set(words)
     }

@@ -110,7 +110,7 @@ def test_a_wrong_override_is_one_sentence_with_field_value_and_remedy(tmp_path, 
         ('name = "s"' + BEAM + GATE + GATE, r"gate\.g stands twice"),
         (
             'name = "s"' + BEAM + GATE.replace("within", "withn"),
-            r"gate\[0\]\.withn is not a known key: did you mean 'within'",
+            r"gate\.g\.withn is not a known key: did you mean 'within'",
         ),
         ('name = "s"' + BEAM + "[drive]\nfrequency_hz = 9\nforce = [{ position = 0.74 }]", "lies off the beam"),
     ],

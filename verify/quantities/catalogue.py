@@ -4,15 +4,15 @@ A quantity is data: its name, unit, typed arguments, what it will need solved, a
 imports numpy until a figure that needs it is asked for.
 """
 
+from collections import Counter
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
 import msgspec
 
-from verify.errors import InputError
+from verify.errors import InputError, shown
 from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Workbench
-from verify.models.naming import Among
 from verify.quantities.chain import CHAIN_QUANTITIES
 from verify.quantities.kind import A, Arguments, Figure, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
@@ -20,6 +20,8 @@ from verify.quantities.motion import MOTION_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
 from verify.registry import Registry
 from verify.scenes.checked import checked
+from verify.scenes.described import among_of, type_words
+from verify.scenes.given import as_meant
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -39,9 +41,9 @@ def quantity(name: str) -> Quantity[Any]:
 def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     """Arguments checked against the quantity's types; one number stands for a list of one. Raises InputError."""
     fields = msgspec.structs.fields(found.arguments)
-    lists = {f.name for f in fields if _is_list(f.type)}
-    data = {k: [v] if k in lists and not isinstance(v, list) else v for k, v in given.items()}
-    data = _one_name(data, {f.name for f in fields})
+    kinds = {f.name: f.type for f in fields}
+    data = {k: as_meant(v, kinds.get(k), k) for k, v in _one_name(given, set(kinds)).items()}
+    data = {k: [v] if _is_list(kinds.get(k)) and not isinstance(v, list) else v for k, v in data.items()}
     for field in fields:
         if (among := among_of(field.type)) and isinstance(name := data.get(field.name), str):
             among.check(name, field.name)
@@ -57,13 +59,6 @@ def models_named(arguments: Arguments) -> tuple[str, ...]:
 def _is_list(kind: Any) -> bool:
     """Whether an argument is a list of values, or nothing."""
     return get_origin(kind) is tuple or any(_is_list(arm) for arm in get_args(kind) if get_origin(kind) is not Literal)
-
-
-def among_of(kind: Any) -> Among | None:
-    """Which models an argument may name; None where it names none."""
-    parts = (kind, *get_args(kind))
-    extras = [meta.extra for part in parts for meta in getattr(part, "__metadata__", ()) if meta.extra]
-    return next((extra["among"] for extra in extras if "among" in extra), None)
 
 
 def _one_name(given: dict[str, Any], known: set[str]) -> dict[str, Any]:
@@ -113,8 +108,40 @@ def in_words(plain: Any) -> str:
     return f"{plain:.12g}" if isfinite(plain) else "no number" if isnan(plain) else "infinity"
 
 
-def described() -> list[dict[str, Any]]:
-    """Every quantity with its arguments, units and defaults, in plain data."""
+def described(*words: str) -> list[dict[str, Any]]:
+    """Every quantity with its arguments, units and defaults, in plain data; of `words` each stands in what is told.
+
+    Raises InputError where no quantity is told with these words.
+    """
+    listed = _all_described()
+    found = [one for one in listed if all(word.casefold() in _told(one) for word in words)]
+    if not found:
+        raise InputError(f"no quantity is told with {shown(' '.join(words))}: leave a word out, or all of them")
+    return found
+
+
+def _told(one: dict[str, Any]) -> str:
+    """Name, summary, unit and arguments of a quantity, for looking words up."""
+    names = (argument["name"] for argument in one["arguments"])
+    return " ".join((one["quantity"], one["summary"], one["unit"], *names)).casefold()
+
+
+def shared_arguments(listed: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """By name, the argument that several of these quantities describe alike; of several such the most frequent."""
+    texts = Counter(_as_text(argument) for one in listed for argument in one["arguments"])
+    described = {_as_text(argument): argument for one in listed for argument in one["arguments"]}
+    found: dict[str, dict[str, Any]] = {}
+    for text, times in texts.most_common():
+        if times > 1:
+            found.setdefault(described[text]["name"], described[text])
+    return found
+
+
+def _as_text(argument: dict[str, Any]) -> str:
+    return repr(sorted(argument.items()))
+
+
+def _all_described() -> list[dict[str, Any]]:
     return [
         {
             "quantity": q.name,
@@ -139,22 +166,8 @@ def _described_argument(field: Any) -> dict[str, Any]:
     default = None if field.required else field.default
     return {
         "name": field.name,
-        "type": _type_words(kind),
+        "type": type_words(kind),
         "required": field.required,
         "default": default if default is not None or field.required else "none",
         "meaning": meaning,
     }
-
-
-def _type_words(kind: Any) -> str:
-    """A type as a user would say it."""
-    if among := among_of(kind):
-        return " | ".join(among.names())
-    if hasattr(kind, "__metadata__"):
-        return _type_words(get_args(kind)[0])
-    if get_origin(kind) is Literal:
-        return " | ".join(map(str, get_args(kind)))
-    if get_origin(kind) is tuple:
-        return "list of " + _type_words(get_args(kind)[0])
-    arms = [arm for arm in get_args(kind) if arm is not type(None)]
-    return _type_words(arms[0]) if arms else {int: "whole number", float: "number", str: "word"}.get(kind, str(kind))

@@ -18,18 +18,14 @@ if TYPE_CHECKING:
 
 Links = Annotated[int, Meta(ge=1, description="links of the chain; segments and count mean the same")]
 Load = Annotated[float, Meta(description="P L^2 / EI of a dead transverse force at the tip")]
-Component = Annotated[
-    Literal["deflection", "shortening"], Meta(description="of the tip: w/L, or 1 - x/L along the beam")
-]
+Component = Annotated[Literal["deflection", "shortening"], Meta(description="of the tip: w/L, or 1 - x/L along x")]
 Radii = Annotated[float, Meta(gt=0, description="at mid-span, in radii of gyration h / sqrt(12)")]
 Step = Annotated[float, Meta(gt=0, description="fixed step of the motion, s; adaptive unless given")]
 Method = Annotated[
     Literal["adaptive", "rk4", "modal", "linear"],
     Meta(description="modal: exact linear flow and kicks; linear: that flow alone; default rk4 with a step"),
 ]
-Inertia = Annotated[
-    Literal["full", "transverse"], Meta(description="of the links: transverse takes the inertia along x away")
-]
+Inertia = Annotated[Literal["full", "transverse"], Meta(description="of the links: transverse has none along x")]
 
 
 class Chained(Arguments, frozen=True, kw_only=True):
@@ -46,6 +42,7 @@ class Chained(Arguments, frozen=True, kw_only=True):
 class TipUnderLoad(Chained, frozen=True, kw_only=True):
     """A loaded cantilever."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     load: Load
     component: Component = "deflection"
     wall: Wall = "gregory"
@@ -54,18 +51,21 @@ class TipUnderLoad(Chained, frozen=True, kw_only=True):
 class RolledUp(Chained, frozen=True, kw_only=True):
     """A cantilever rolled up once."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     wall: Wall = "half"
 
 
 class Hanging(Chained, frozen=True, kw_only=True):
     """One mode of a hanging chain."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mode: Mode
 
 
 class Turning(Chained, frozen=True, kw_only=True):
     """One mode of a cantilever whose clamp turns."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mode: Mode
     speed: Annotated[float, Meta(ge=0, le=1e3, description="of the clamp, in sqrt(EI / (rho A L^4))")]
     wall: Wall = "gregory"
@@ -74,12 +74,14 @@ class Turning(Chained, frozen=True, kw_only=True):
 class LargeAmplitude(Chained, frozen=True, kw_only=True):
     """A hinged beam between immovable ends."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     amplitude: Radii
 
 
 class FreeMotion(Chained, frozen=True, kw_only=True):
     """An undamped chain let go."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     amplitude: Annotated[float, Meta(gt=0, le=0.1, description="at mid-span, over L")] = 0.05
     periods: Annotated[float, Meta(gt=0, le=1000, description="of the linear first mode")] = 1.0
     step: Step | None = None
@@ -124,6 +126,7 @@ class FromRest(Chained, frozen=True, kw_only=True):
 class ContactLine(Chained, frozen=True, kw_only=True):
     """One mode of the scene's beam as a slider on its nonlinear chain sees it."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     mode: Mode
     x: Annotated[float, Meta(ge=0, description="m from the left end: on which piece")]
     wall: Wall = "gregory"

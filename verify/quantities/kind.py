@@ -7,6 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from verify import options
+from verify.checks import Relative
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
 from verify.judge.variants import DEFAULTS
@@ -60,16 +61,23 @@ def check_count(model: str, count: int | None) -> None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {MEAN}")
 
 
+WHAT_EXISTS = ("beam", "drive", "slider", "motion")
+"""Tables that say what there is, not what is asked of it."""
+
+
 class Arguments(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Base of the typed arguments of a quantity."""
 
     slides: ClassVar[bool] = False
     """Whether they are about the scene's slider."""
+    reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
+    """Tables of a scene on which the figure depends; a gate is about another scene where one of these is."""
 
 
 class Divided(Arguments, frozen=True, kw_only=True):
     """Arguments with the settings of the discrete models."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     wall: Wall = "gregory"
     joints: Joints = "series"
     grading: Grading = 1.0
@@ -161,6 +169,7 @@ class BracketAt(Divided, frozen=True, kw_only=True):
 class FirstModes(Arguments, frozen=True, kw_only=True):
     """The first modes of one discrete model at one size."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     model: DiscreteModel
     count: Size
     modes: Annotated[int, Meta(ge=1, description="how many modes, from the first")] = 22
@@ -169,6 +178,7 @@ class FirstModes(Arguments, frozen=True, kw_only=True):
 class Elements(Arguments, frozen=True, kw_only=True):
     """A mesh of Hermite elements."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     count: Size
     grading: Grading = 1.0
 
@@ -176,6 +186,7 @@ class Elements(Arguments, frozen=True, kw_only=True):
 class StockMode(Arguments, frozen=True, kw_only=True):
     """One mode of equal Hermite elements, by stock scikit-fem and by ours."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     mode: Mode
     count: Size
 
@@ -185,7 +196,7 @@ class ToError(Divided, frozen=True, kw_only=True):
 
     model: DiscreteModel
     mode: Mode
-    error: Annotated[float, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
+    error: Annotated[Relative, Meta(gt=0, lt=1, description="largest relative frequency error, for instance 0.01")]
     of: Annotated[
         Literal["enough", "least"],
         Meta(description="from here on enough; or the least that does, where an error changes its sign below that"),
@@ -198,12 +209,14 @@ class ToError(Divided, frozen=True, kw_only=True):
 class NeighbourModes(Arguments, frozen=True, kw_only=True):
     """A mode and the one below it."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
     mode: Annotated[int, Meta(ge=2, description="the upper one of two neighbouring modes")] = 22
 
 
 class AtFrequency(Arguments, frozen=True, kw_only=True):
     """A frequency, the scene's drive unless given."""
 
+    reads: ClassVar[tuple[str, ...]] = ("beam", "drive")
     frequency_hz: Annotated[float, Meta(gt=0, description="default: the scene's drive")] | None = None
 
 

@@ -5,9 +5,11 @@ from typing import Annotated, ClassVar, Literal
 from msgspec import Meta
 
 from verify import options
+from verify.checks import Relative
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities.kind import (
+    WHAT_EXISTS,
     Arguments,
     AtFrequency,
     DriveArguments,
@@ -28,6 +30,7 @@ Gravity = Annotated[float, Meta(gt=0, description="m/s^2")]
 class FreeDecay(Arguments, frozen=True, kw_only=True):
     """A slider left to itself on a surface at rest."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mu: Friction
     slope: Slope
     speed: Annotated[float, Meta(description="at the start, m/s")]
@@ -38,6 +41,7 @@ class FreeDecay(Arguments, frozen=True, kw_only=True):
 class Creep(Arguments, frozen=True, kw_only=True):
     """A slider pulled by a constant force below the friction's limit."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mu: Friction
     slope: Slope
     pull: Annotated[float, Meta(description="pulling force over mass, m/s^2")]
@@ -47,6 +51,7 @@ class Creep(Arguments, frozen=True, kw_only=True):
 class OnBelt(Arguments, frozen=True, kw_only=True):
     """A mass held by a spring on a belt, Coulomb friction."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mass: Annotated[float, Meta(gt=0, description="kg")]
     stiffness: Annotated[float, Meta(gt=0, description="N/m")]
     static: Annotated[float, Meta(gt=0, description="largest friction at rest, newton")]
@@ -57,6 +62,7 @@ class OnBelt(Arguments, frozen=True, kw_only=True):
 class Oscillator(Arguments, frozen=True, kw_only=True):
     """A mass on a spring and a floor with Coulomb friction."""
 
+    reads: ClassVar[tuple[str, ...]] = ()
     mass: Annotated[float, Meta(gt=0, description="kg")]
     stiffness: Annotated[float, Meta(gt=0, description="N/m")]
     force: Annotated[float, Meta(gt=0, description="friction, newton")]
@@ -77,6 +83,7 @@ class OnWave(AtFrequency, frozen=True, kw_only=True):
 class InTime(DriveArguments, frozen=True, kw_only=True):
     """A driven beam in time: what is not given is the scene's."""
 
+    reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
     model: MovingModel = "segment"
     count: Size | None = None
     time: Annotated[float, Meta(gt=0, description="seconds; default: the scene's motion.duration")] | None = None
@@ -84,7 +91,7 @@ class InTime(DriveArguments, frozen=True, kw_only=True):
     soft_start_periods: (
         Annotated[float, Meta(ge=0, description="over which the forces grow; default: the scene's")] | None
     ) = None
-    modal_damping: Annotated[float, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
+    modal_damping: Annotated[Relative, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
     modes: Annotated[int, Meta(ge=1, description="the exact beam keeps from rest; default 400")] | None = None
     force: Annotated[float, Meta(ge=0, description="of every force, newton; default: the scene's")] | None = None
 
@@ -132,6 +139,7 @@ class SliderDeflection(SliderInTime, frozen=True, kw_only=True):
 class Steady(DriveArguments, frozen=True, kw_only=True):
     """The driven beam in its steady state with the slider on it: what is not given is the scene's."""
 
+    reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
     slides: ClassVar[bool] = True
 
     model: FieldModel = "analytic"

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta
 
 from verify import options
+from verify.checks import Relative
 from verify.errors import InputError
 from verify.judge.variants import DEFAULTS
 from verify.models.catalogue import MODELS
@@ -26,7 +27,7 @@ from verify.quantities.kind import (
 Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
 
 
-Loss = Annotated[float, Meta(description="eta of E (1 + i eta); default: the beam's")]
+Loss = Annotated[Relative, Meta(description="eta of E (1 + i eta); default: the beam's")]
 Imposed = Annotated[options.DriveKind, Meta(description="what is imposed; default: the scene's")]
 
 
@@ -36,7 +37,7 @@ class Driven(DriveArguments, frozen=True, kw_only=True):
     model: FieldModel = "analytic"
     count: Size | None = None
     loss_factor: Loss | None = None
-    modal_damping: Annotated[float, Meta(description="ratio of every mode; fem and segment")] = 0.0
+    modal_damping: Annotated[Relative, Meta(description="ratio of every mode; fem and segment")] = 0.0
     joint_dashpot: Annotated[float, Meta(description="N m s at every joint; segment")] = 0.0
     drive: Imposed | None = None
     load: Annotated[options.Load, Meta(description="how a force is shared among joints; segment")] = "reciprocal"
@@ -129,7 +130,9 @@ class WaveOrder(InWindow, frozen=True, kw_only=True):
 class BestFrequency(InWindow, frozen=True, kw_only=True):
     """Where the reflection is least."""
 
-    span: Annotated[float, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = 0.015
+    span: Annotated[Relative, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = (
+        0.015
+    )
 
 
 class Receptance(AtFrequency, frozen=True, kw_only=True):

@@ -16,10 +16,13 @@ import msgspec
 from verify.errors import InputError
 from verify.files import write_whole
 from verify.report.plain import finite
+from verify.run.gates import shown_expectation
 from verify.studies.catalogue import STUDIES
-from verify.words import cell, figure, seconds_in_words, work_in_words
+from verify.words import cell, figure, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
+
     from verify.run.runner import RunResult
     from verify.studies.told import Column, Table
 
@@ -41,12 +44,17 @@ def page(result: "RunResult", command: str) -> str:
     templates = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    templates.filters |= {"figure": figure, "duration": seconds_in_words}
+    templates.filters |= {
+        "figure": figure,
+        "duration": seconds_in_words,
+        "hyphens": _hyphens,
+        "band": shown_expectation,
+    }
     charts = [chart for found in result.found.values() for chart in found.charts()]
     return templates.get_template("page.html.j2").render(
         result=result,
         work=work_in_words(len(result.solves), result.n_fields, result.n_motions),
-        failed=[gate for gate in result.gates if not gate.passed],
+        judged=len(result.gates) - len(result.set_aside),
         charts=charts,
         sections=list(sections_of(result)),
         figures=_safe_json({chart.id: {"data": chart.data, "layout": chart.layout} for chart in charts}),
@@ -72,12 +80,19 @@ def sections_of(result: "RunResult") -> Iterator[Section]:
     for name, found in result.found.items():
         shown = [table for table in found.tables() if table.shown != "terminal"]
         counted = Counter(note for table in shown for note in table.notes)
-        shared = tuple(note for note, times in counted.items() if times > 1)
+        shared = tuple(told_once(note for note, times in counted.items() if times > 1))
         tables = tuple(_on_page(table, shared) for table in shown)
         if facts := found.facts():
             facts = tuple(fact[:1].upper() + fact[1:] for fact in facts)
         if facts or tables:
             yield Section(name, STUDIES[name].title or name, facts, tables, shared)
+
+
+def _hyphens(name: str) -> "Markup":
+    """A name that may be broken behind its hyphens."""
+    from markupsafe import Markup, escape
+
+    return Markup("-<wbr>").join(escape(part) for part in name.split("-"))
 
 
 def _verdict(value: bool | None) -> str:
@@ -112,7 +127,7 @@ def _on_page(table: "Table", shared: tuple[str, ...]) -> dict[str, Any]:
         "before": table.before,
         "heads": heads,
         "rows": rows,
-        "notes": [note for note in table.notes if note not in shared],
+        "notes": told_once(note for note in table.notes if note not in shared),
         "folded": table.folded,
     }
 

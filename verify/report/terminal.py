@@ -1,18 +1,21 @@
 """What a person sees in the terminal: tables and progress, drawn with rich."""
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
+from rich.console import Console, ConsoleOptions
+from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
-from verify.words import cell, figure, percent, seconds_in_words, work_in_words
+from verify.run.gates import shown_expectation
+from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
     from verify.judge.sizing import Choice
@@ -41,11 +44,12 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     """Gates, what the studies found, the verdict, where the report lies."""
     console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
-    if result.gates:
-        console.print(_gate_table(result.gates))
-    for gate in result.gates:
-        if not gate.passed:
-            console.print(Text(f"gate {gate.id}: {gate.reason}", style="red"))
+    if judged := tuple(gate for gate in result.gates if gate.applicable):
+        console.print(_gate_table(judged))
+    for reason, names in _by_reason((gate.reason, gate.id) for gate in result.failed).items():
+        console.print(Text(f"{in_a_row('gate', names, len(names))}: {reason}", style="red"))
+    for reason, names in _by_reason((gate.reason, gate.id) for gate in result.set_aside).items():
+        console.print(Text(f"not applicable: {in_a_row('gate', names)}, {reason}"))
     for found in result.found.values():
         _print_found(console, found, every_table=False)
     work = work_in_words(len(result.solves), result.n_fields, result.n_motions)
@@ -55,10 +59,21 @@ def print_run(result: "RunResult", report: Path | None) -> None:
 
 
 def _verdict(result: "RunResult") -> str:
-    n_failed = sum(not gate.passed for gate in result.gates)
-    if n_failed:
-        return f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]"
-    return f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates"
+    n, aside = len(result.gates), len(result.set_aside)
+    beside = f", {aside} not applicable" if aside else ""
+    if result.failed:
+        return f"[bold red]{len(result.failed)} of {n - aside} gates failed[/]{beside}"
+    if n == aside:
+        return f"no gate applies of {n}" if n else "the scene has no gates"
+    return f"[bold green]all {n - aside} gates passed[/]{beside}"
+
+
+def _by_reason(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+    """Names by the sentence that they share, so that it is printed once."""
+    found: dict[str, list[str]] = {}
+    for reason, name in pairs:
+        found.setdefault(reason, []).append(name)
+    return found
 
 
 def print_found(found: "Found") -> None:
@@ -71,17 +86,20 @@ def print_found(found: "Found") -> None:
 def _print_found(console: Console, found: "Found", *, every_table: bool) -> None:
     for fact in found.facts():
         console.print(Text(fact))
-    seen: dict[str, None] = {}
+    seen: list[str] = []
+    left_out: dict[str, None] = {}
     for table in found.tables():
         if every_table or table.shown != "page":
-            _print_table(console, table)
-            seen |= dict.fromkeys(table.notes)
-    for note in seen:
+            left_out |= dict.fromkeys(_print_table(console, table))
+            seen += table.notes
+    if left_out:
+        seen.append(f"no room for {', '.join(left_out)}: a terminal of {NARROW} characters shows it, --csv too")
+    for note in told_once(seen):
         console.print(Text(f"– {note}", style="dim"))
 
 
-def _print_table(console: Console, table: "StudyTable") -> None:
-    """Title, what it says before, and the rows; wide columns where there is room."""
+def _print_table(console: Console, table: "StudyTable") -> list[str]:
+    """Title, what it says before, and the rows. Returns the heads of wide columns for which there is no room."""
     if table.title:
         console.print(Text(table.title, style="bold"))
     if table.before:
@@ -92,6 +110,7 @@ def _print_table(console: Console, table: "StudyTable") -> None:
     for row in table.rows:
         drawn.add_row(*(Text(_written(row[i], table.columns[i])) for i in shown))
     console.print(drawn)
+    return [column.head for i, column in enumerate(table.columns) if i not in shown]
 
 
 def _written(value: Any, column: "Column") -> str:
@@ -114,6 +133,26 @@ def _grid(columns: "list[Column]") -> Table:
     return table
 
 
+class Hyphenated:
+    """A name, or a few, broken into lines behind hyphens and spaces."""
+
+    def __init__(self, name: str) -> None:
+        self._parts = re.findall(r"[^- ]*[- ]|[^- ]+", name)
+
+    def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
+        """From its longest part to all of it."""
+        return Measurement(max(map(len, self._parts)), sum(map(len, self._parts)))
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Text]:
+        """Line by line, each as long as there is room."""
+        lines = [""]
+        for part in self._parts:
+            if len(lines[-1]) + len(part.rstrip()) > options.max_width and lines[-1]:
+                lines.append("")
+            lines[-1] += part
+        yield from (Text(line.rstrip(), overflow="fold") for line in lines)
+
+
 def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
     table.add_column("", no_wrap=True)
@@ -126,7 +165,7 @@ def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
         mark = Text("pass", style="green") if gate.passed else Text("FAIL", style="bold red")
         share = "–" if gate.share is None else f"{100 * gate.share:.3g} %"
         unit = "" if gate.unit == "1" else gate.unit
-        table.add_row(mark, gate.id, figure(gate.measured), gate.expected, unit, share)
+        table.add_row(mark, Hyphenated(gate.id), figure(gate.measured), shown_expectation(gate.band), unit, share)
     return table
 
 
@@ -163,7 +202,7 @@ def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
     console = Terminal()
     console.print(f"[bold]{plan.scene}[/] will run")
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for name in ("model", "N", "modes", "unknowns"):
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
     table.add_column("vectors by", no_wrap=True)
@@ -171,7 +210,7 @@ def print_plan(plan: "Plan") -> None:
     for solve in plan.solves:
         sizes = (str(n) for n in (solve.count, solve.n_modes, solve.unknowns))
         model = " ".join([solve.model, *(f"{name}={value}" for name, value in solve.settings)])
-        table.add_row(model, *sizes, solve.method, _who(solve.asked_by))
+        table.add_row(model, *sizes, solve.method, Hyphenated(_who(solve.asked_by)))
     if plan.solves:
         console.print(table)
     if plan.closed_forms:
@@ -189,8 +228,8 @@ def print_plan(plan: "Plan") -> None:
     console.print("[bold]skipped[/]")
     for skipped in plan.skipped:
         console.print(f"  {skipped.what}: {skipped.why}", markup=False)
-    for problem in plan.problems:
-        console.print(Text(f"cannot run: {problem.who}: {problem.why}", style="red"))
+    for why, who in _by_reason((problem.why, problem.who) for problem in plan.problems).items():
+        console.print(Text(f"cannot run: {', '.join(who)}: {why}", style="red"))
 
 
 def _who(names: tuple[str, ...]) -> str:

@@ -7,7 +7,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.workbench import Need
-from verify.quantities.catalogue import arguments_of, models_named, needs_of, quantity
+from verify.quantities.catalogue import QUANTITIES, arguments_of, models_named, needs_of, quantity
 from verify.quantities.kind import Work
 from verify.scenes.claims import Claim
 from verify.studies.catalogue import asked_of
@@ -97,6 +97,34 @@ def _study_asks(scene: "Scene") -> Iterable[Ask]:
             slides=study.slides,
             motions=study.n_motions(asked, scene),
         )
+
+
+def wrong_figures(data: dict[str, Any]) -> list[str]:
+    """A sentence for every gate and claim in a scene's plain tables whose quantity or arguments are wrong."""
+    wrong = []
+    for kind in ("gate", "claim"):
+        entries = data.get(kind)
+        for one in entries if isinstance(entries, list) else ():
+            name = one.get("quantity") if isinstance(one, dict) else None
+            given = one.get("arguments", {}) if isinstance(one, dict) else None
+            if isinstance(name, str) and isinstance(given, dict):
+                try:
+                    arguments_of(quantity(name), given)
+                except InputError as error:
+                    wrong.append(f"{kind}.{one.get('id', '?')}: {error}")
+    return wrong
+
+
+def check_per_cents(scene: "Scene", overrides: tuple[str, ...]) -> None:
+    """Raise InputError for a gate's band given in per cent where its figure has a unit."""
+    gates = {gate.id: gate for gate in scene.gate}
+    for key, _, value in (text.partition("=") for text in overrides):
+        table, _, name = key.strip().partition(".")
+        gate = gates.get(name.rpartition(".")[0]) if table == "gate" else None
+        if gate is None or not value.rstrip().endswith("%") or gate.quantity not in QUANTITIES:
+            continue
+        if (unit := quantity(gate.quantity).unit) != "1":
+            raise InputError(f"--set {key}={value}: {gate.quantity} is in {unit}, give the band in {unit} as well")
 
 
 def kinds_of_work(asks: Iterable[Ask]) -> dict[Any, tuple[Ask, ...]]:

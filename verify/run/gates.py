@@ -8,9 +8,10 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
-from verify.quantities.catalogue import arguments_of, as_plain, evaluate, in_words, quantity
+from verify.quantities.catalogue import QUANTITIES, arguments_of, as_plain, evaluate, in_words, quantity
 from verify.quantities.kind import Figure, Quantity
 from verify.scenes.scene import Complex
+from verify.words import rounded
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -39,12 +40,15 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     band: Band
     """The same in numbers."""
     measured: Any
-    """A number or {"lower", "upper"}; None where the gate could not be evaluated."""
-    passed: bool
+    """A number or {"lower", "upper"}; None where the gate could not be evaluated, or was not."""
+    passed: bool | None
+    """None where it does not apply."""
+    applicable: bool
+    """Whether it was stated for what the scene was run with."""
     share: float | None
     """Share of the band used: 0 in its middle, 1 at its edge; None where the band has no width."""
     reason: str
-    """Why it failed; empty where it passed."""
+    """Why it failed or does not apply; empty where it passed."""
     seconds: float
 
 
@@ -73,9 +77,30 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
         band=given_band(gate),
         measured=as_plain(value),
         passed=not reason,
+        applicable=True,
         share=share,
         reason=reason,
         seconds=perf_counter() - start,
+    )
+
+
+def set_aside(gate: "Gate", reason: str) -> GateResult:
+    """The result of a gate that does not apply: neither passed nor failed, and nothing is evaluated for it."""
+    known = gate.quantity in QUANTITIES
+    return GateResult(
+        id=gate.id,
+        quantity=gate.quantity,
+        arguments=gate.arguments,
+        why=gate.why,
+        unit=quantity(gate.quantity).unit if known else "",
+        expected=expectation(gate),
+        band=given_band(gate),
+        measured=None,
+        passed=None,
+        applicable=False,
+        share=None,
+        reason=reason,
+        seconds=0.0,
     )
 
 
@@ -89,12 +114,26 @@ def _evaluated(found: Quantity[Any], gate: "Gate", scene: "Scene", bench: "Workb
 
 
 def expectation(gate: "Gate") -> str:
-    """The band in words."""
-    if gate.expect is not None:
-        value = f"{gate.expect.re!r} {gate.expect.im:+}i" if isinstance(gate.expect, Complex) else repr(gate.expect)
-        return f"{value} ± {gate.within:g}" if gate.within is not None else f"contains {value}"
-    sides = [f"at least {gate.at_least!r}"] * (gate.at_least is not None)
-    return ", ".join(sides + [f"at most {gate.at_most!r}"] * (gate.at_most is not None))
+    """The band in words, as it was given."""
+    return _in_words(given_band(gate))
+
+
+def _in_words(band: Band) -> str:
+    if band.expect is not None:
+        value = f"{band.expect.re!r} {band.expect.im:+}i" if isinstance(band.expect, Complex) else repr(band.expect)
+        return f"{value} ± {band.within:g}" if band.within is not None else f"contains {value}"
+    sides = [f"at least {band.at_least!r}"] * (band.at_least is not None)
+    return ", ".join(sides + [f"at most {band.at_most!r}"] * (band.at_most is not None))
+
+
+def shown_expectation(band: Band) -> str:
+    """The same for a person: no more digits than the band tells."""
+    if band.expect is None or band.within is None:
+        return _in_words(band)
+    parts = (band.expect.re, band.expect.im) if isinstance(band.expect, Complex) else (band.expect,)
+    real, *imaginary = (rounded(part, band.within) for part in parts)
+    value = f"{real} {imaginary[0] if imaginary[0].startswith('-') else '+' + imaginary[0]}i" if imaginary else real
+    return f"{value} ± {band.within:g}"
 
 
 def _verdict(gate: "Gate", value: Figure) -> tuple[str, float | None]:

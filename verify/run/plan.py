@@ -7,8 +7,10 @@ import msgspec
 from verify.errors import InputError
 from verify.judge.workbench import Key, Settings, merged
 from verify.models.catalogue import MODELS
+from verify.run.applies import applicable, not_applicable
 from verify.run.asks import Ask, asks_of, kinds_of_work
 from verify.studies.catalogue import STUDIES, asked_of
+from verify.words import in_a_row
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -62,9 +64,9 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True):
     """Simulations in time that the studies will do."""
 
 
-def plan_scene(scene: "Scene") -> Plan:
-    """What will be solved, evaluated in closed form, or skipped."""
-    asks = asks_of(scene)
+def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
+    """What will be solved, evaluated in closed form, or skipped, of a scene that was loaded with `overrides`."""
+    asks = asks_of(applicable(scene, overrides))
     solves, problems = [], [(ask.who, ask.problem) for ask in asks if ask.problem]
     for key, n_wanted in sorted(merged(need for ask in asks for need in ask.needs).items()):
         who = tuple(a.who for a in asks if any((n.model, n.count, n.settings) == key for n in a.needs))
@@ -82,10 +84,18 @@ def plan_scene(scene: "Scene") -> Plan:
         compiled=by_work.get("equilibrium", ()),
         assembled=by_work.get("matrices", ()),
         chosen=_chosen(scene, asks),
-        skipped=_skipped(scene, asks),
+        skipped=(*_set_aside(scene, overrides), *_skipped(scene, asks)),
         problems=tuple(Problem(*pair) for pair in problems),
         motions=sum(ask.motions for ask in asks),
     )
+
+
+def _set_aside(scene: "Scene", overrides: tuple[str, ...]) -> tuple[Choice, ...]:
+    """Gates that do not apply, together where the reason is one."""
+    by_reason: dict[str, list[str]] = {}
+    for name, why in not_applicable(scene, overrides).items():
+        by_reason.setdefault(why, []).append(name)
+    return tuple(Choice(in_a_row("gate", names), why) for why, names in by_reason.items())
 
 
 def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:

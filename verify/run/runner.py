@@ -8,8 +8,9 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.workbench import Solve, Workbench
+from verify.run.applies import applicable, not_applicable
 from verify.run.asks import asks_of
-from verify.run.gates import GateResult, judge
+from verify.run.gates import GateResult, judge, set_aside
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.kind import Progress, Study
@@ -32,8 +33,18 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def passed(self) -> bool:
-        """Whether every gate passed."""
-        return all(gate.passed for gate in self.gates)
+        """Whether every gate passed that applies."""
+        return not self.failed
+
+    @property
+    def failed(self) -> tuple[GateResult, ...]:
+        """Gates outside their bands, or that could not be evaluated."""
+        return tuple(gate for gate in self.gates if gate.passed is False)
+
+    @property
+    def set_aside(self) -> tuple[GateResult, ...]:
+        """Gates that do not apply to what the scene was run with."""
+        return tuple(gate for gate in self.gates if not gate.applicable)
 
 
 def workbench_for(scene: Scene, *, gates_only: bool = False) -> Workbench:
@@ -41,18 +52,23 @@ def workbench_for(scene: Scene, *, gates_only: bool = False) -> Workbench:
     return Workbench(scene.beam, (need for ask in asks_of(scene, gates_only=gates_only) for need in ask.needs))
 
 
-def run_scene(scene: Scene | str | Path, progress: Progress = lambda step: None) -> RunResult:
+def run_scene(
+    scene: Scene | str | Path, progress: Progress = lambda step: None, overrides: tuple[str, ...] = ()
+) -> RunResult:
     """Run a scene (or a packaged name, or a path). `progress` is told each step before it starts.
 
-    Raises InputError where the scene is wrong; a gate that fails or cannot be evaluated is in the result.
+    Of a scene that was loaded with `overrides` the gates are set aside that were stated for something else. Raises
+    InputError where the scene is wrong; a gate that fails or cannot be evaluated is in the result.
     """
-    asked_scene = scene if isinstance(scene, Scene) else load_scene(scene)
+    asked_scene = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
     start = perf_counter()
-    bench = workbench_for(asked_scene)
+    aside = not_applicable(asked_scene, overrides)
+    bench = workbench_for(applicable(asked_scene, overrides))
     gates = []
     for gate in asked_scene.gate:
         progress(f"gate {gate.id}")
-        gates.append(judge(gate, asked_scene, bench))
+        why = aside.get(gate.id)
+        gates.append(set_aside(gate, why) if why else judge(gate, asked_scene, bench))
     found: dict[str, Found] = {}
     for study, asked in asked_of(asked_scene):
         found[study.name] = _done(study, asked, asked_scene, bench, found, progress)

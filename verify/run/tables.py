@@ -9,6 +9,7 @@ import msgspec
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.scenes.checked import checked
+from verify.scenes.given import whole_numbers
 from verify.scenes.scene import Scene
 from verify.scenes.toml import given_arguments, literal
 from verify.studies.catalogue import STUDIES, asked_of
@@ -62,7 +63,7 @@ def convergence(scene: Scene, modes: str | None, counts: str | None) -> Job:
     """Errors and run time of modes over sizes. Raises InputError."""
     study = ConvergenceStudy()
     asked = msgspec.to_builtins(study.asked(scene) or Convergence())
-    asked |= {name: _listed(text) for name, text in (("modes", modes), ("counts", counts)) if text is not None}
+    asked |= {name: _listed(text, name) for name, text in (("modes", modes), ("counts", counts)) if text is not None}
     request = checked(asked, Convergence)
     return Job(study.n_steps(request, scene), lambda step: study.run(request, scene, Workbench(scene.beam), {}, step))
 
@@ -71,7 +72,7 @@ def motor(scene: Scene, counts: str | None) -> Job:
     """SWR, axis ratio and crest speed over sizes, at the drive's frequency and at each model's best."""
     from verify.studies.wave import Wave, WaveStudy
 
-    given = _listed(counts) if counts is not None else (WaveStudy().asked(scene) or Wave()).counts
+    given = _listed(counts, "counts") if counts is not None else (WaveStudy().asked(scene) or Wave()).counts
     sizes = checked(list(given), Counts, "counts")
     if len(scene.forces) != 2:
         raise InputError("--wave takes a scene with two forces: add them to its [drive]")
@@ -90,7 +91,7 @@ def slider(scene: Scene, counts: str | None) -> Job:
 
     if scene.slider is None or scene.motion is None:
         raise InputError("--slider takes a scene with [slider] and [motion], for instance paper-slider")
-    sizes = checked(list(_listed(counts) if counts is not None else scene.motion.counts), Counts, "counts")
+    sizes = checked(list(_listed(counts, "counts") if counts is not None else scene.motion.counts), Counts, "counts")
 
     def run(step: Progress) -> Found:
         from verify.studies.work_precision import WorkFound, work_of
@@ -110,6 +111,7 @@ def sweep(scene: Scene, sweeps: tuple[str, ...], quantity: str, arguments: tuple
     return Job(n_points, lambda step: design_map(quantity, given, axes, scene, Workbench(scene.beam), step))
 
 
-def _listed(text: str) -> list[Any]:
-    value = literal(text)
+def _listed(text: str, field: str) -> list[Any]:
+    """'1,5,22', '1-5' or '10-50:10' as a list. Raises InputError for a range that is none."""
+    value = whole_numbers(literal(text, field), field)
     return value if isinstance(value, list) else [value]

@@ -43,13 +43,13 @@ def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
     steps = [a or int(b) for a, b in _STEP.findall(path.rstrip("`").replace("[...]", "")) if a or b.isdigit()]
     field = _dotted(where, steps)
     if found := _UNKNOWN.match(what):
-        known = _keys_of(_table(_type_at(kind, steps)))
+        known = _keys_of(table_of(_type_at(kind, steps)))
         return f"{_dotted(where, [*steps, found['key']])} is not a known key: {near_name(found['key'], known)}"
     if found := _MISSING.match(what):
         return f"{_dotted(where, [*steps, found['key']])} is missing: give it a value"
     value = _value_at(data, steps)
     if what.startswith("Invalid enum value"):
-        words = tuple(str(word) for word in get_args(_bare(_type_at(kind, steps))))
+        words = tuple(str(word) for word in get_args(bare(_type_at(kind, steps))))
         return f"{field} = {shown(value)} is not known: {near_name(str(value), words)}"
     return f"{field} = {_as_given(value)}: {_humane(what)}"
 
@@ -64,7 +64,7 @@ def _as_given(value: Any) -> str:
 def _humane(what: str) -> str:
     """Msgspec's 'Expected `int` >= 1' in plain words."""
     text = what.split(", got ", maxsplit=1)[0].replace("Expected", "give").replace(" | null", "")
-    return re.sub(r"`(\w+)`", lambda found: _PLAIN.get(found[1], found[1]), text)
+    return re.sub(r"`(\w[\w |]*)`", lambda found: " or ".join(_PLAIN.get(w, w) for w in found[1].split(" | ")), text)
 
 
 def _dotted(where: str, steps: list[Any]) -> str:
@@ -83,18 +83,18 @@ def _value_at(data: Any, steps: list[Any]) -> Any:
     return data
 
 
-def _bare(kind: Any) -> Any:
+def bare(kind: Any) -> Any:
     """The type without its None and without its annotations."""
     if hasattr(kind, "__metadata__"):
-        return _bare(get_args(kind)[0])
+        return bare(get_args(kind)[0])
     if get_origin(kind) in (Union, UnionType):
-        return _bare(next(arm for arm in get_args(kind) if arm is not type(None)))
+        return bare(next(arm for arm in get_args(kind) if arm is not type(None)))
     return kind
 
 
 def _type_at(kind: Any, steps: list[Any]) -> Any:
     for step in steps:
-        kind = _bare(kind) if isinstance(step, int) else _table(kind)
+        kind = bare(kind) if isinstance(step, int) else table_of(kind)
         if isinstance(step, int):
             arms = get_args(kind)
             kind = arms[min(step, len(arms) - 1)] if arms and arms[-1] is not Ellipsis else arms[0]
@@ -107,16 +107,16 @@ def _keys_of(kind: Any) -> tuple[str, ...]:
     return tuple(f.encode_name for f in msgspec.structs.fields(kind))
 
 
-def _arms(kind: Any) -> tuple[Any, ...]:
+def arms_of(kind: Any) -> tuple[Any, ...]:
     """The kinds that a kind stands for, without annotations."""
     if hasattr(kind, "__metadata__"):
-        return _arms(get_args(kind)[0])
+        return arms_of(get_args(kind)[0])
     if get_origin(kind) in (Union, UnionType):
-        return tuple(arm for one in get_args(kind) for arm in _arms(one))
+        return tuple(arm for one in get_args(kind) for arm in arms_of(one))
     return (kind,)
 
 
-def _table(kind: Any) -> Any:
+def table_of(kind: Any) -> Any:
     """Of the kinds that a kind stands for, the one with keys of its own, if there is one."""
-    arms = _arms(kind)
-    return next((arm for arm in arms if isinstance(arm, type) and issubclass(arm, msgspec.Struct)), _bare(kind))
+    arms = arms_of(kind)
+    return next((arm for arm in arms if isinstance(arm, type) and issubclass(arm, msgspec.Struct)), bare(kind))

@@ -23,16 +23,21 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+    """Letters, digits, _ and -."""
     source: Annotated[str, Meta(min_length=1)]
     """Who says so, and where."""
     quantity: str
     """As `verify quantities` names it."""
     arguments: dict[str, Any] = {}
+    """Of the quantity, by name."""
     value: float | Sign | None = None
+    """What is claimed: a number, or its sign."""
     tolerance: float | None = None
     """Half the last digit that is printed, or how well a figure can be read."""
     at_least: float | None = None
+    """The lowest value that is claimed."""
     at_most: float | None = None
+    """The highest value that is claimed."""
     read: Read
     """How the claim was read from its source."""
 

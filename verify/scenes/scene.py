@@ -1,7 +1,7 @@
 """A scene file read, checked, and turned into values: what exists, and what is asked of it."""
 
-from collections.abc import Iterable
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Iterator
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias, cast
 
@@ -9,13 +9,15 @@ import msgspec
 from msgspec import Meta
 
 from verify.beam import Beam, PointForce, check_frequency
-from verify.checks import check_number
-from verify.errors import InputError, near_name, shown
+from verify.checks import Relative, check_number
+from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.motion.starting import soft_start
 from verify.options import DriveKind, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
+from verify.scenes.given import as_meant, type_at_key
+from verify.scenes.problems import MOST, problems
 from verify.scenes.sections import ON_WHAT_EXISTS, SECTIONS
 from verify.scenes.toml import override, read_toml
 from verify.slider import Slider
@@ -33,8 +35,11 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     position: float
     """Metres from the end that `measured_from` names."""
     measured_from: Literal["left", "right"] = "left"
+    """The end of the beam from which `position` counts."""
     amplitude: float = 1.0
+    """Newton, or metres where the drive imposes displacements."""
     phase_deg: float = 0.0
+    """Degrees, of cos(omega t + phase)."""
 
     def on(self, beam: Beam) -> PointForce:
         """The force in the beam's own coordinate. Raises InputError where it lies off the beam."""
@@ -52,9 +57,11 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """What shakes the beam at one frequency: harmonic point forces, or displacements imposed at points."""
 
     frequency_hz: float
+    """Hertz."""
     kind: DriveKind = "force"
     """What the amplitudes mean: newton, or metres. The paper does not say; its frequency rule fits forces."""
     force: tuple[SceneForce, ...] = ()
+    """Where it acts, how strongly and with which phase."""
 
     def __post_init__(self) -> None:
         check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)
@@ -69,7 +76,7 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     soft_start_periods: float | None = None
     """Over which the forces grow: two from rest unless given. 0 is a step load, because cos(0) = 1, under which a
     slider's path does not converge with the size."""
-    modal_damping: float | None = None
+    modal_damping: Relative | None = None
     """Ratio of every mode; half the beam's loss factor unless given."""
     count: Count = 49
     """Segments and elements of the figures."""
@@ -78,6 +85,7 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     steps_per_period: Count = 128
     """At least; more where the start excites faster modes."""
     samples: Annotated[int, Meta(ge=2, le=100_000)] = 1001
+    """Instants that are kept, both ends among them."""
 
     def __post_init__(self) -> None:
         check_number("motion.duration", self.duration, "seconds", above=0)
@@ -101,7 +109,9 @@ class Complex(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A complex expectation, { re, im }."""
 
     re: float
+    """Real part, in the quantity's own unit."""
     im: float
+    """Imaginary part, likewise."""
 
     def __post_init__(self) -> None:
         check_number("expect.re", self.re, "in the quantity's own unit")
@@ -118,13 +128,21 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """
 
     id: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$")]
+    """Letters, digits, _ and -; by it `--set gate.ID.within=...` and pytest name the gate."""
     quantity: str
+    """As `verify quantities` names it."""
     arguments: dict[str, Any] = {}
-    expect: float | Complex | None = None
-    within: float | None = None
-    at_least: float | None = None
-    at_most: float | None = None
+    """Of the quantity, by name."""
+    expect: Relative | Complex | None = None
+    """The middle of the band, in the quantity's own unit; { re, im } where it is complex."""
+    within: Relative | None = None
+    """Half the width of the band; of a complex expectation its radius."""
+    at_least: Relative | None = None
+    """The lowest value that passes."""
+    at_most: Relative | None = None
+    """The highest value that passes."""
     why: Annotated[str, Meta(min_length=1)]
+    """Where the expectation comes from."""
 
     def __post_init__(self) -> None:
         for name in ("expect", "within", "at_least", "at_most"):
@@ -148,9 +166,11 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
-    """Also of its report's file, hence not longer."""
+    """Of the scene, also of its report's file, hence no longer than a file's name."""
     title: str = ""
+    """Above its report."""
     description: str = ""
+    """A sentence below the title."""
     beam: Beam
     drive: Drive | None = None
     slider: Slider | None = None
@@ -159,9 +179,22 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     gate: tuple[Gate, ...] = ()
 
     def __post_init__(self) -> None:
+        raise_all(list(dict.fromkeys(self._wrong())), MOST)
+
+    def _wrong(self) -> Iterator[str]:
+        """A sentence for everything that does not go together, though each part is right by itself."""
+        for check in (self._check_names, self._check_claims, self._check_what_exists, *self._section_checks()):
+            try:
+                check()
+            except InputError as error:
+                yield from error.sentences
+
+    def _check_names(self) -> None:
         _check_ids("gate", [gate.id for gate in self.gate])
         _check_ids("claim", [claim.id for claim in self.claim])
-        self._check_claims()
+
+    def _check_what_exists(self) -> None:
+        """Raise InputError for a drive or a slider that this beam cannot have."""
         if self.drive is not None:
             check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
         forces = self.forces  # built here, so that one off the beam is refused with the scene
@@ -169,9 +202,12 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             self.slider.start_on(self.beam)
         if self.motion is not None and not forces:
             raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
-        for name in set(self.__struct_fields__) - set(Scene.__struct_fields__):
+
+    def _section_checks(self) -> Iterator[Callable[[], None]]:
+        """What each study's section asks of the rest of the scene."""
+        for name in self.__struct_fields__[len(Scene.__struct_fields__) :]:
             if (asked := getattr(self, name)) is not None:
-                SECTIONS[name].check_on(asked, self)
+                yield partial(SECTIONS[name].check_on, asked, self)
 
     def _check_claims(self) -> None:
         """Raise InputError for a claim about a run that the scene has not."""
@@ -242,10 +278,34 @@ def scene_path(name_or_path: str) -> Path:
 
 
 def load_scene(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> Scene:
-    """A packaged scene by name, any other by path, with 'key=value' overrides. Raises InputError."""
+    """A packaged scene by name, any other by path, with 'key=value' overrides.
+
+    Raises InputError, or WrongSceneError with a sentence for each where several things are wrong.
+    """
+    data = tables_of(name_or_path, overrides)
+    kind = scene_type(data)
+    try:
+        return checked(data, kind)
+    except InputError:
+        raise_all(problems(data, kind), MOST)
+        raise
+
+
+def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict[str, Any]:
+    """The plain tables of a scene with its overrides, not yet checked. Raises InputError."""
     if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
         raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
     data = read_toml(scene_path(str(name_or_path)))
+    wrong: list[str] = []
     for assignment in overrides:
-        override(data, assignment)
-    return checked(data, scene_type(data))
+        try:
+            override(data, assignment, _meant)
+        except InputError as error:
+            wrong += error.sentences
+    raise_all(wrong, MOST)
+    return data
+
+
+def _meant(value: Any, key: str) -> Any:
+    """What an override gives, as the type of its key takes it."""
+    return as_meant(value, type_at_key(scene_type([key.split(".", maxsplit=1)[0]]), key), key)

@@ -1,5 +1,6 @@
 """TOML read and overridden: plain tables, before anything is made of them."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,18 +10,24 @@ from verify.files import exists
 _LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
 
 
-def read_toml(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
-    import tomllib
-
+def read_text(path: Path) -> str:
+    """The text of a scene file. Raises InputError where it cannot be read."""
     exists(path, "scene")
     try:
-        data = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-        return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in data.items()}
+        return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
         raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
+    import tomllib
+
+    text = read_text(path)
+    try:
+        return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in tomllib.loads(text).items()}
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
     except InputError:
@@ -75,9 +82,13 @@ def given_arguments(assignments: tuple[str, ...]) -> dict[str, Any]:
     return given
 
 
-def override(data: dict[str, Any], assignment: str) -> None:
-    """Set one value of a scene's tables in place: 'beam.length=0.4', 'gate.ID.within=1e-6'."""
-    key, value = split_assignment(assignment)
+def override(data: dict[str, Any], assignment: str, meant: Callable[[Any, str], Any]) -> None:
+    """Set one value of a scene's tables in place: 'beam.length=0.4', 'gate.ID.within=1e-6'.
+
+    `meant` makes of a literal and its key what stands in the table.
+    """
+    key, literally = split_assignment(assignment)
+    value = meant(literally, key)
     *parents, last = key.split(".")
     here: Any = data
     for depth, step in enumerate(parents):

@@ -23,7 +23,9 @@ class Convergence(Rules, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Ask for the error of a few modes of the discrete models over several sizes, each rule of them side by side."""
 
     modes: Counts = (1, 5, 22)
+    """Which modes, from 1."""
     counts: Counts = (10, 20, 49, 98)
+    """Segments and elements."""
 
 
 class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):

@@ -81,7 +81,14 @@ class DesignMap(Found, frozen=True, eq=False, kw_only=True):
         return (f"{self.quantity} of {self.of}", *places, self._how())
 
     def _how(self) -> str:
-        return f"{self.values.size} points, {self.method}; --json and --csv give them all"
+        left_out = self.values.size - prod(map(min, self._grid(), COARSE))
+        told = f"; {left_out} of them are left out of the table, --json and --csv give them all" if left_out else ""
+        return f"{self.values.size} points, {self.method}{told}"
+
+    def _grid(self) -> tuple[int, int]:
+        """Rows and columns of all points."""
+        n = len(self.axes[0].values)
+        return n, self.values.size // n
 
     def _extreme(self, word: str, index: int) -> str:
         at = np.unravel_index(index, self.values.shape)

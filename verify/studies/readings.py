@@ -35,6 +35,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """
 
     kinematics: tuple[Kinematics, ...] = ()
+    """How the slider keeps to the surface."""
     normal: tuple[NormalChoice, ...] = ()
     """Whether the beam carries the slider's weight and inertia."""
     soft_start_periods: tuple[float, ...] = ()
@@ -42,6 +43,7 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     forces: tuple[float, ...] = ()
     """Newton: amplitudes that all forces of the drive take in turn."""
     mu: tuple[float, ...] = ()
+    """Coefficients of friction."""
     slope: tuple[float, ...] = ()
     """K, s/m."""
     positions: tuple[float, ...] = ()

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 from msgspec import Meta
 
-from verify.checks import check_number
+from verify.checks import Relative, check_number
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
@@ -21,9 +21,13 @@ class Sensitivity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Ask how one exact frequency moves with modulus and density, beside a figure somebody published."""
 
     mode: Annotated[int, Meta(ge=1)]
+    """Which mode, from 1."""
     published_hz: float | None = None
-    modulus_spread: float = 0.03
-    density_spread: float = 0.03
+    """A figure to compare with, hertz."""
+    modulus_spread: Relative = 0.03
+    """How far the modulus may lie off, relative."""
+    density_spread: Relative = 0.03
+    """How far the density may lie off, relative."""
 
     def __post_init__(self) -> None:
         check_number("sensitivity.modulus_spread", self.modulus_spread, "relative", above=0, below=1)

@@ -21,7 +21,9 @@ class Spectrum(Rules, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Ask for the error of modes 1..modes of the discrete models at one size, each rule of them side by side."""
 
     modes: Annotated[int, Meta(ge=1, le=10_000)] = 22
+    """How many modes, from the first."""
     count: Annotated[int, Meta(ge=1)] = 49
+    """Segments and elements."""
 
 
 class SpectrumStudy(Study[Spectrum, "SpectrumFound"]):

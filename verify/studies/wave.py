@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 
-from verify.checks import check_number
+from verify.checks import Relative, check_number
 from verify.errors import InputError
 from verify.models.catalogue import discrete
 from verify.models.naming import Among, model_meta
@@ -26,13 +26,17 @@ class Wave(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     count: Annotated[int, msgspec.Meta(ge=1)] = 49
     """Segments and elements of the envelopes and, with `model`, of the map."""
     counts: Counts = (49, 98, 196)
+    """Segments and elements of the motor's figures."""
     model: Annotated[str, model_meta("of the map", "solve_harmonic")] = "segment"
     quantity: str = "wave.standing_wave_ratio"
+    """What the map shows."""
     frequency_hz: tuple[float, float, int] | None = None
     """Start, end and steps of the map; a tenth below and above the scene's drive unless given."""
     phase_deg: tuple[float, float, int] = (0.0, 180.0, 91)
-    reflection_limit: float = 0.1
-    operating_loss_factor: float = 1e-3
+    """Start, end and steps of the map, degrees between the two forces."""
+    reflection_limit: Relative = 0.1
+    """Largest reflection, relative, that an operating point may have."""
+    operating_loss_factor: Relative = 1e-3
     """For the operating points where the beam is undamped: without losses the crest speed has no bound."""
 
     def __post_init__(self) -> None:

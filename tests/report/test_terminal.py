@@ -1,0 +1,88 @@
+"""Figures and notices as the terminal tells them: once, to the digits that count, broken where names may be."""
+
+import pytest
+from rich.console import Console
+
+from verify.report.terminal import Hyphenated
+from verify.run.gates import Band, shown_expectation
+from verify.scenes.scene import Complex
+from verify.words import rounded, told_once
+
+
+@pytest.mark.parametrize(
+    ("value", "within", "shown"),
+    [
+        (4469.94052, 0.001, "4469.941"),
+        (3.743511896211, 0.00012, "3.74351"),
+        (-8.2345302521e-08, 1.5e-12, "-8.23453e-08"),
+        (-0.00428024, 5e-9, "-0.00428024"),
+        (4.0, 0.3, "4.0"),
+        (1234.6, 20.0, "1235"),
+        (0.0, 1e-7, "0.0"),
+    ],
+)
+def test_an_expectation_has_the_digits_that_its_band_tells(value, within, shown):
+    assert rounded(value, within) == shown
+
+
+def test_a_complex_expectation_is_rounded_in_both_parts_and_a_bound_is_as_given():
+    def band(**given):
+        return Band(**{"expect": None, "within": None, "at_least": None, "at_most": None} | given)
+
+    complex_one = band(expect=Complex(-6.68447222298735e-07, 1.77076918186928e-06), within=3e-10)
+    assert shown_expectation(complex_one) == "-6.684e-07 +1.7708e-06i ± 3e-10"
+    assert shown_expectation(band(at_least=1.7)) == "at least 1.7"
+    assert shown_expectation(band(expect=230.88535783517)) == "contains 230.88535783517"
+
+
+def lines_of(name, width):
+    console = Console(width=width)
+    with console.capture() as captured:
+        console.print(Hyphenated(name))
+    return [line.strip() for line in captured.get().splitlines()]
+
+
+def test_a_name_is_broken_behind_its_hyphens_and_inside_a_word_only_where_it_has_to_be():
+    assert lines_of("departure-at-a-tenth-of-a-newton", 14) == ["departure-at-", "a-tenth-of-a-", "newton"]
+    assert lines_of("fem-49-ratio", 8) == ["fem-49-", "ratio"]
+    assert lines_of("gate fem-order, gate fem-law", 15) == ["gate fem-order,", "gate fem-law"]
+    assert lines_of("fem-order", 30) == ["fem-order"]
+    assert lines_of("displacement-x", 6) == ["displa", "cement", "-", "x"]
+
+
+def test_a_notice_that_comes_back_with_other_numbers_is_told_once_with_how_many_there_are():
+    few = [f"mode = 22: the fem model at count = {n} has {2 * n} elastic modes, raise count" for n in (6, 8, 10, 6)]
+    assert told_once(["first", *few, "first", "last"]) == ["first", f"{few[0]} (2 more like it)", "last"]
+    assert told_once(few[:2]) == few[:2]
+
+
+def test_seven_sizes_without_a_mode_are_one_notice_and_the_table_says_what_it_leaves_out(capsys, monkeypatch):
+    from verify.cli import status_of
+
+    monkeypatch.setenv("COLUMNS", "80")
+    assert status_of(["table", "paper", "--modes", "22", "--counts", "6-18:2"]) == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert out.count("elastic modes, raise count") == 2
+    assert "segment model at count = 6 has 5 elastic modes, raise count (6 more like it)" in out
+    assert "no room for mean %" in out
+
+
+def test_a_sweep_says_how_many_points_its_table_leaves_out(capsys):
+    from verify.cli import status_of
+
+    asked = ["table", "paper-wave", "--sweep"]
+    assert status_of([*asked, "frequency_hz=4200:4300:60"]) == 0
+    assert "60 points, superposed; 47 of them are left out of the table, --json and --csv give them all" in " ".join(
+        capsys.readouterr().out.split()
+    )
+    assert status_of([*asked, "frequency_hz=4200:4300:9"]) == 0
+    assert "left out" not in capsys.readouterr().out
+
+
+def test_what_cannot_run_for_one_reason_is_told_in_one_line(capsys):
+    from verify.cli import status_of
+
+    asked = ["plan", "paper", "--set", "spectrum.count=10000000000000", "--set", "convergence.counts=10000000000000"]
+    assert status_of(asked) == 0
+    whys = [told.partition(": ")[2] for told in " ".join(capsys.readouterr().out.split()).split("cannot run: ")[1:]]
+    assert len(whys) == len(set(whys)) == 2

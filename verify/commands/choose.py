@@ -1,0 +1,38 @@
+"""From how many parts on an accuracy is kept."""
+
+import click
+
+from verify.commands.shared import (
+    json_alone,
+    load,
+    overridden,
+    print_json,
+)
+
+
+@click.command()
+@click.option("--mode", required=True, metavar="N", help="Mode number from 1.")
+@click.option("--error", required=True, metavar="E", help="Largest frequency error: 1% or 0.01.")
+@click.option("--scene", default="paper", show_default=True, help="Whose beam.")
+@overridden
+@json_alone
+def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """From how many segments or elements on an accuracy is kept, how that is known, and what they cost.
+
+    Example: `verify choose --mode 5 --error 0.1% --scene steel-cantilever`
+    """
+    from verify.judge.workbench import Workbench
+    from verify.report.plain import accuracy, choice_as_plain, mode_number
+
+    wanted, number = accuracy(error), mode_number(mode)
+    beam = load(scene, overrides).beam
+    from verify.judge.sizing import choose_of_all
+
+    bench = Workbench(beam)
+    choices, left_out = choose_of_all(bench, number, wanted)
+    if as_json:
+        print_json(choice_as_plain(bench, number, wanted, choices, left_out))
+    else:
+        from verify.report.terminal import print_choices
+
+        print_choices(bench.exact_hz(number), number, wanted, choices, left_out)

@@ -1,0 +1,33 @@
+"""What a scene will run."""
+
+import click
+
+from verify.commands.shared import (
+    json_alone,
+    load,
+    overridden,
+    print_json,
+    scene_name,
+)
+
+
+@click.command()
+@scene_name
+@overridden
+@json_alone
+def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Print what SCENE will run, what is skipped, and why. Solves nothing.
+
+    Example: `verify plan paper`
+    """
+    from verify.run.plan import plan_scene
+
+    planned = plan_scene(load(scene, overrides), overrides)
+    if as_json:
+        import msgspec
+
+        print_json(msgspec.to_builtins(planned))
+    else:
+        from verify.report.terminal import print_plan
+
+        print_plan(planned)

@@ -1,0 +1,87 @@
+"""What commands share: options of the same name, a scene loaded, JSON printed, a bar of progress."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.errors import InputError, raise_all
+
+if TYPE_CHECKING:
+    from verify.scenes.scene import Scene
+
+PERCENT = 100
+
+overridden = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Override a value of the scene: beam.length=0.4, gate.ID.within=1%.",
+)
+json_alone = click.option("--json", "as_json", is_flag=True, help="Print JSON and nothing else.")
+scene_name = click.argument("scene")
+
+
+def load(scene: str, overrides: tuple[str, ...]) -> "Scene":
+    """A scene with its overrides. Raises InputError; where the scene is wrong, for its gates' figures as well."""
+    from verify.scenes.problems import MOST
+    from verify.scenes.scene import load_scene, scene_type, tables_of
+
+    try:
+        loaded = load_scene(scene, overrides)
+    except InputError as error:
+        from verify.run.asks import wrong_figures
+
+        data = tables_of(scene, overrides)
+        scene_type(data)  # raises again what is no matter of the scene's own tables
+        raise_all([*error.sentences, *wrong_figures(data)], MOST)
+        raise
+    if any(text.rstrip().endswith("%") for text in overrides):
+        from verify.run.asks import check_per_cents
+
+        check_per_cents(loaded, overrides)
+    return loaded
+
+
+def print_json(data: Any) -> None:
+    """Plain data on standard output, None for numbers that JSON cannot hold."""
+    import json
+
+    from verify.report.plain import finite
+
+    click.echo(json.dumps(finite(data), indent=2, allow_nan=False))
+
+
+def command_line(command: str, scene: str, overrides: tuple[str, ...]) -> str:
+    """The line that does the same again."""
+    from shlex import join
+
+    return join(["verify", command, scene, *(word for text in overrides for word in ("--set", text))])
+
+
+def in_percent(step: Callable[[str], None]) -> Callable[[float], None]:
+    """Parts of a whole, told to a bar of a hundred steps."""
+    shown = 0
+
+    def tell(part: float) -> None:
+        nonlocal shown
+        while shown < int(PERCENT * part):
+            shown += 1
+            step("motion in time")
+
+    return tell
+
+
+@contextmanager
+def progress(n_steps: int, *, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """A bar on the error stream where somebody looks at it; silence elsewhere."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda step: None
+        return
+    from verify.report.terminal import progress_bar
+
+    with progress_bar(n_steps) as step:
+        yield step
