@@ -7,6 +7,7 @@ from verify.commands.shared import (
     load,
     overridden,
     print_json,
+    ruled,
 )
 
 
@@ -15,8 +16,9 @@ from verify.commands.shared import (
 @click.option("--error", required=True, metavar="E", help="Largest frequency error: 1% or 0.01.")
 @click.option("--scene", default="paper", show_default=True, help="Whose beam.")
 @overridden
+@ruled
 @json_alone
-def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
+def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool, rules: dict[str, str]) -> None:
     """From how many segments or elements on an accuracy is kept, how that is known, and what they cost.
 
     Example: `verify choose --mode 5 --error 0.1% --scene steel-cantilever`
@@ -27,12 +29,13 @@ def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_jso
     wanted, number = accuracy(error), mode_number(mode)
     beam = load(scene, overrides).beam
     from verify.judge.sizing import choose_of_all
+    from verify.run.tables import rules_of
 
-    bench = Workbench(beam)
-    choices, left_out = choose_of_all(bench, number, wanted)
+    bench, asked = Workbench(beam), rules_of(rules)
+    choices, left_out = choose_of_all(bench, number, wanted, asked)
     if as_json:
         print_json(choice_as_plain(bench, number, wanted, choices, left_out))
     else:
         from verify.report.terminal import print_choices
 
-        print_choices(bench.exact_hz(number), number, wanted, choices, left_out)
+        print_choices(bench, number, wanted, choices, left_out)

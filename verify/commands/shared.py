@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -85,3 +86,28 @@ def progress(n_steps: int, *, quiet: bool) -> Iterator[Callable[[str], None]]:
 
     with progress_bar(n_steps) as step:
         yield step
+
+
+RULES = {
+    "wall": "How segments are held at a clamped end: gregory, half (the literature's 2EI/l), welded, third-order, "
+    "five-joint.",
+    "joints": "The spring between two links: series, printed (the paper's Eq. (1)), tensioned.",
+    "grading": "Length of a section's last part over its first.",
+    "theory": "Of the beam: euler-bernoulli, rayleigh, timoshenko.",
+    "attachment": "How segments feel point masses and springs: reciprocal, lever.",
+}
+"""Options that set models up, each one word or several with commas."""
+
+
+def ruled(command: Callable[..., None]) -> Callable[..., None]:
+    """The options of `RULES`, handed on as one dict `rules` of those that were given."""
+
+    @wraps(command)
+    def called(**options: Any) -> None:
+        given = {name: options.pop(name) for name in RULES}
+        command(**options, rules={name: text for name, text in given.items() if text is not None})
+
+    made: Callable[..., None] = called
+    for name, words in reversed(RULES.items()):
+        made = click.option(f"--{name}", metavar="LIST", help=words)(made)
+    return made

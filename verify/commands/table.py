@@ -7,6 +7,7 @@ from verify.commands.shared import (
     load,
     overridden,
     progress,
+    ruled,
     scene_name,
 )
 from verify.errors import InputError
@@ -32,6 +33,7 @@ from verify.errors import InputError
     "--quantity",
     help="What a sweep maps, with its other arguments as KEY=VALUE. Default: wave.standing_wave_ratio.",
 )
+@ruled
 @json_alone
 @click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
 @click.option("--markdown", "layout", flag_value="markdown", help="Print a Markdown table.")
@@ -48,10 +50,11 @@ def table(
     quantity: str | None,
     as_json: bool,
     layout: str | None,
+    rules: dict[str, str],
 ) -> None:
     """All discrete models side by side; any study; the motor's figures or the slider's over sizes; or a sweep.
 
-    Example: `verify table paper --modes 1-5 --counts 10-50:10`
+    Example: `verify table steel-cantilever --modes 1-5 --counts 10-50:10 --wall gregory,half`
     """
     from verify.run import tables
 
@@ -60,7 +63,8 @@ def table(
         raise InputError(f"{arguments[0]!r}: KEY=VALUE arguments belong to a --sweep")
     tables.check_options(
         {"--of": study is not None, "--sweep": sweeps, "--slider": slider, "--wave": wave},
-        {"--modes": modes is not None, "--counts": counts is not None, "--quantity": quantity is not None},
+        {"--modes": modes is not None, "--counts": counts is not None, "--quantity": quantity is not None}
+        | {f"--{name}": True for name in rules},
     )
     if study is not None:
         job = tables.study_of(asked, study)
@@ -69,7 +73,7 @@ def table(
     elif slider:
         job = tables.slider(asked, counts)
     else:
-        job = tables.motor(asked, counts) if wave else tables.convergence(asked, modes, counts)
+        job = tables.motor(asked, counts) if wave else tables.convergence(asked, modes, counts, rules)
     with progress(job.n_steps, quiet=as_json or bool(layout)) as step:
         found = job.run(step)
     if as_json or layout:

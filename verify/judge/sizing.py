@@ -60,6 +60,11 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     known_by: str
     """How it is known that every larger size does."""
 
+    @property
+    def variant(self) -> Variant:
+        """The model with its settings."""
+        return Variant(self.model, self.settings)
+
 
 def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
     """Where to begin: the error law's answer, on a stepped beam the fewest parts that have the mode."""

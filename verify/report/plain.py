@@ -105,6 +105,6 @@ def choice_as_plain(
         "mode": mode,
         "error": error,
         "exact_hz": bench.exact_hz(mode),
-        "choices": msgspec.to_builtins(choices),
+        "choices": [msgspec.to_builtins(one) | {"settings": dict(one.settings)} for one in choices],
         "left_out": left_out,
     }

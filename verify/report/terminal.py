@@ -13,12 +13,12 @@ from rich.table import Table
 from rich.text import Text
 
 from verify.errors import InputError
-from verify.models.catalogue import MODELS
 from verify.run.gates import shown_expectation
 from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
     from verify.judge.sizing import Choice
+    from verify.judge.workbench import Workbench
     from verify.run.gates import GateResult
     from verify.run.plan import Plan
     from verify.run.runner import RunResult
@@ -169,19 +169,20 @@ def _gate_table(gates: "tuple[GateResult, ...]") -> Table:
     return table
 
 
-def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choice]", left_out: dict[str, str]) -> None:
+def print_choices(
+    bench: "Workbench", mode: int, error: float, choices: "list[Choice]", left_out: dict[str, str]
+) -> None:
     """What `verify choose` found, and which of the models costs less."""
     console = Terminal()
-    console.print(
-        f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact_hz:.4f} Hz: enough from"
-    )
+    theories = dict.fromkeys(one.variant.theory for one in choices)
+    exact = " and ".join(f"{bench.exact_hz(mode, theory):.4f} Hz" for theory in theories)
+    console.print(f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact}: enough from")
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_header=True)
     for name in ("model", "N", "unknowns", "error", "error law", "time"):
         table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
-    names = {one.model: MODELS[one.model].title for one in choices}
     for one in choices:
         table.add_row(
-            names[one.model],
+            one.variant.title,
             str(one.count),
             str(one.unknowns),
             percent(one.error),
@@ -190,7 +191,7 @@ def print_choices(exact_hz: float, mode: int, error: float, choices: "list[Choic
         )
     console.print(table)
     for one in choices:
-        console.print(Text(f"{names[one.model]}: N = {one.count - 1} does not; {one.known_by}"))
+        console.print(Text(f"{one.variant.title}: N = {one.count - 1} does not; {one.known_by}"))
         if one.smaller:
             console.print(Text(f"  N = {one.smaller} happens to do as well, with {percent(one.smaller_error)}"))
     for model, why in left_out.items():

@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.errors import InputError
+from verify.judge.variants import DEFAULTS, Rules
 from verify.judge.workbench import Workbench
 from verify.scenes.checked import checked
 from verify.scenes.given import whole_numbers
@@ -25,7 +26,13 @@ class Job(msgspec.Struct, frozen=True):
     run: Callable[[Progress], Found]
 
 
-BESIDE = {"": ("--modes", "--counts"), "--wave": ("--counts",), "--slider": ("--counts",), "--sweep": ("--quantity",)}
+RULES = tuple(f"--{name}" for name in DEFAULTS)
+BESIDE = {
+    "": ("--modes", "--counts", *RULES),
+    "--wave": ("--counts",),
+    "--slider": ("--counts",),
+    "--sweep": ("--quantity",),
+}
 """Which options go with which table; the first is the table that no option asks for."""
 
 
@@ -59,11 +66,17 @@ def study_of(scene: Scene, name: str) -> Job:
     return Job(sum(one.n_steps(its, scene) for one, its in jobs), run)
 
 
-def convergence(scene: Scene, modes: str | None, counts: str | None) -> Job:
+def rules_of(words: Mapping[str, str]) -> Rules:
+    """How models are set up, as typed: one word or several with commas. Raises InputError."""
+    return checked({name: literal(text, name) for name, text in words.items()}, Rules)
+
+
+def convergence(scene: Scene, modes: str | None, counts: str | None, rules: Mapping[str, str] | None = None) -> Job:
     """Errors and run time of modes over sizes. Raises InputError."""
     study = ConvergenceStudy()
     asked = msgspec.to_builtins(study.asked(scene) or Convergence())
     asked |= {name: _listed(text, name) for name, text in (("modes", modes), ("counts", counts)) if text is not None}
+    asked |= {name: literal(text, name) for name, text in (rules or {}).items()}
     request = checked(asked, Convergence)
     return Job(study.n_steps(request, scene), lambda step: study.run(request, scene, Workbench(scene.beam), {}, step))
 
