@@ -253,7 +253,8 @@ def test_no_wave_table_gives_anything_but_a_scene_or_a_sentence(wave, drive):
             assert str(error)
             assert "\n" not in str(error)
         else:
-            assert scene.wave.frequency_hz[0] < scene.wave.frequency_hz[1]
+            span = scene.wave.frequency_hz
+            assert span is None or span[0] < span[1]
 
 
 SIZES = st.floats(1e-9, 1e3)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from verify.errors import InputError, PairingError
+from verify.errors import InputError
 from verify.exact.error_laws import LAWS, expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
 from verify.judge.variants import Rules, Variant, beside
 from verify.judge.workbench import Settings, Workbench
@@ -92,10 +92,11 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
             return False
         try:
             return abs(bench.frequency_error(model, count, mode, settings)) <= error
-        except PairingError:
+        except InputError:  # of so few parts: what they refuse at any number is refused above
             return False
 
     guess = count_guess(model, bench.beam, mode, error)
+    MODELS.named(model).check(bench.beam, 1, max(guess, _CLOSELY), **dict(settings))
     smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
     uniform = model in LAWS and bench.beam.uniform and not (bench.beam.section or settings)
     if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:

@@ -1,0 +1,129 @@
+"""Models with their settings side by side: which stand there, which make a difference on a beam, what a choice shows."""
+
+import json
+
+import pytest
+from msgspec.structs import replace
+
+from verify.attached import PointMass
+from verify.errors import InputError
+from verify.judge.sizing import choose_of_all
+from verify.judge.variants import Rules, Variant, beside, every_rule
+from verify.judge.workbench import Workbench
+from verify.scenes.scene import load_scene
+from verify.section import Section
+
+CANTILEVER = load_scene("steel-cantilever").beam
+BOTH = ("segment", "fem")
+
+
+def labels(variants):
+    return [one.label for one in variants]
+
+
+def test_a_setting_turns_the_models_that_have_it_and_leaves_the_others():
+    assert labels(Rules().variants(BOTH)) == ["segment", "fem"]
+    assert labels(Rules(wall="half").variants(BOTH)) == ["segment wall=half", "fem"]
+    assert labels(Rules(theory="timoshenko").variants(BOTH)) == ["segment theory=timoshenko", "fem theory=timoshenko"]
+    several = Rules(wall=("gregory", "half"), grading=1.7)
+    assert labels(several.variants(BOTH)) == ["segment grading=1.7", "segment wall=half grading=1.7", "fem grading=1.7"]
+    assert several.chosen == (("grading", 1.7),)
+
+
+def test_a_setting_that_no_model_has_is_refused():
+    with pytest.raises(InputError, match=r"wall = 'half' is a setting of none of fem: leave it out"):
+        Rules(wall="half").variants(["fem"])
+
+
+def test_the_rules_that_make_a_difference_are_those_of_what_the_beam_has():
+    assert every_rule(load_scene("paper").beam) == ()
+    walls = labels(every_rule(CANTILEVER))
+    assert walls == [f"segment wall={wall}" for wall in ("half", "welded", "third-order", "five-joint")]
+    stepped = replace(
+        CANTILEVER, section=(Section(length=0.25), Section(length=CANTILEVER.length - 0.25, youngs_modulus=70e9))
+    )
+    assert "segment joints=printed" in labels(every_rule(stepped))
+    assert "segment wall=welded" not in labels(every_rule(stepped))
+    taut = replace(CANTILEVER, tension=80.0, mass=(PointMass(position=0.1, mass=0.02),))
+    assert labels(every_rule(taut))[-2:] == ["segment joints=tensioned", "segment attachment=lever"]
+    assert labels(every_rule(CANTILEVER, (("theory", "timoshenko"),)))[0] == "segment wall=half theory=timoshenko"
+
+
+def test_beside_the_default_stands_the_literatures_wall_and_the_joint_that_axial_force_mends():
+    assert labels(beside(CANTILEVER)) == ["segment wall=half"]
+    assert labels(beside(load_scene("taut-strip").beam)) == ["segment joints=tensioned"]
+    assert beside(load_scene("free-free-bar").beam) == ()
+
+
+def test_a_choice_shows_69_links_of_the_literature_beside_19():
+    choices, left_out = choose_of_all(Workbench(CANTILEVER), 5, 1e-3)
+    found = {one.variant.label: one.count for one in choices}
+    assert found["segment"] == 19
+    assert found["segment wall=half"] == 69
+    assert not left_out
+
+
+def test_under_tension_a_choice_shows_the_joint_that_needs_a_sixth_of_the_links():
+    found = {
+        one.variant.label: one.count for one in choose_of_all(Workbench(load_scene("taut-strip").beam), 3, 1e-3)[0]
+    }
+    assert (found["segment"], found["segment joints=tensioned"]) == (56, 10)
+
+
+def test_the_theoretical_orders_are_told_for_the_beam_at_hand():
+    orders = {
+        "gregory": Variant("segment").order(CANTILEVER),
+        "half": Variant("segment", (("wall", "half"),)).order(CANTILEVER),
+        "stepped": Variant("segment").order(load_scene("stepped-beam").beam),
+        "printed": Variant("segment", (("joints", "printed"),)).order(load_scene("stepped-beam").beam),
+        "taut": Variant("segment").order(load_scene("taut-strip").beam),
+        "tensioned": Variant("segment", (("joints", "tensioned"),)).order(load_scene("taut-strip").beam),
+        "elements": Variant("fem").order(load_scene("stepped-beam").beam),
+    }
+    assert orders == {
+        "gregory": 4,
+        "half": 2,
+        "stepped": 2,
+        "printed": 1,
+        "taut": 2,
+        "tensioned": 4,
+        "elements": 4,
+    }
+
+
+def test_guides_of_a_stepped_chain_have_its_order(tmp_path):
+    from verify.run.runner import run_scene
+
+    charts = {chart.id: chart for chart in run_scene(load_scene("stepped-beam")).found["convergence"].charts()}
+    guides = {trace["name"] for trace in charts["convergence"].data if trace["name"].startswith("slope")}
+    assert guides == {"slope 2", "slope 4"}
+
+
+def test_a_report_of_a_clamped_beam_overlays_all_walls():
+    from verify.run.runner import run_scene
+
+    found = run_scene(load_scene("steel-cantilever")).found["convergence"]
+    (chart,) = [chart for chart in found.charts() if chart.id == "rules"]
+    names = [trace["name"] for trace in chart.data]
+    assert names == ["segments", *(f"segments, wall {w}" for w in ("half", "welded", "third-order", "five-joint"))]
+    gregory, half = (dict(zip(trace["x"], trace["y"], strict=True)) for trace in chart.data[:2])
+    assert half[80] > 100 * gregory[80]
+
+
+@pytest.mark.parametrize("section", ["convergence", "spectrum"])
+def test_settings_of_a_section_reach_its_figures(section):
+    from verify.run.tables import study_of
+
+    def errors(*overrides):
+        job = study_of(load_scene("steel-cantilever", overrides), section)
+        records = job.run(lambda step: None).records()
+        return json.loads(json.dumps(records))[-1]
+
+    plain, half = errors(), errors(f"{section}.wall=half")
+    assert half["segment wall=half_error"] < 0
+    assert abs(half["segment wall=half_error"]) > 5 * abs(plain["segment_error"])
+    assert half["fem_error"] == plain["fem_error"]
+    graded = errors(f"{section}.grading=1.9")
+    assert graded["fem grading=1.9_error"] > plain["fem_error"]
+    thick = errors(f"{section}.theory=timoshenko")
+    assert abs(thick["fem theory=timoshenko_error"]) == pytest.approx(abs(plain["fem_error"]), rel=0.5)
