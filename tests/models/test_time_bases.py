@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from msgspec.structs import replace
 from motion_reference import FORCES, FREQUENCY, STRIP
+from msgspec.structs import replace
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam

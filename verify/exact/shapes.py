@@ -10,7 +10,7 @@ from verify.beam import Beam
 from verify.exact.lineup import Lineup, line_up
 from verify.exact.roots import wavenumber_length
 from verify.exact.spans import Spans, solver, spans_of
-from verify.models.arrays import Array, Numbers
+from verify.models.arrays import Array, ComplexArray
 
 _POINTS = 12
 """Of Gauss's rule on every span."""
@@ -26,7 +26,7 @@ class _Mode(msgspec.Struct, frozen=True, eq=False):
     """One mode: its spans and the states right of their ends, (n + 1, 4, 1), of modal mass 1 over rho A L."""
 
     spans: Spans
-    states: Array
+    states: ComplexArray
 
 
 def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory: str) -> Array:
@@ -44,7 +44,7 @@ def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, 
     return np.asarray(np.array(rows).reshape(len(rows), len(xi)) * size)
 
 
-@lru_cache(maxsize=1000)
+@lru_cache(maxsize=500)
 def _mode(beam: Beam, mode: int, theory: str) -> _Mode:
     """One mode; of a pair of one frequency the second is orthogonal to the first."""
     line, beta = line_up(beam, theory), wavenumber_length(beam, mode, theory)
@@ -59,21 +59,22 @@ def _mode(beam: Beam, mode: int, theory: str) -> _Mode:
     return _Mode(spans, states * _sign(spans, states, mode))
 
 
-def _free(solve: Callable[[Numbers], Numbers], spans: Spans, mode: int) -> Array:
+def _free(solve: Callable[[ComplexArray], ComplexArray], spans: Spans, mode: int) -> ComplexArray:
     """The motion that needs no force: of the answers to a few, at resonance, the largest (inverse iteration)."""
     phases = np.arange(4.0 * len(spans.ends))[:, None] * (1.0 + 0.37 * mode + 0.11 * np.arange(_TRIES))
-    answers = solve(np.cos(phases).reshape(-1, 4, _TRIES))
+    answers = solve(np.cos(phases).reshape(-1, 4, _TRIES).astype(complex))
     sizes = abs(answers).max(axis=(0, 1))
     best = int(sizes.argmax())
-    return np.real(answers[:, :, best : best + 1] / sizes[best])
+    return np.asarray(answers[:, :, best : best + 1] / sizes[best])
 
 
-def _inner(line: Lineup, spans: Spans, one: Array, other: Array) -> float:
+def _inner(line: Lineup, spans: Spans, one: ComplexArray, other: ComplexArray) -> float:
     """The modal mass that two motions share, over rho A L: deflection and turning, of the beam and what is on it."""
     points, weights = np.polynomial.legendre.leggauss(_POINTS)
     lengths = np.diff(spans.ends)
     x = (spans.ends[:-1, None] + 0.5 * lengths[:, None] * (points + 1.0)).ravel()
-    values = [spans.states(states, x)[1][:, :, 0].reshape(len(lengths), _POINTS, 4) for states in (one, other)]
+    here = [np.real(spans.states(states, x)[1][:, :, 0]) for states in (one, other)]
+    values = [each.reshape(len(lengths), _POINTS, 4) for each in here]
     w, turn = (values[0][:, :, k] * values[1][:, :, k] @ weights * 0.5 * lengths for k in (0, 1))
     mass, turning = (
         np.array([getattr(s, name) for s in line.stretches])[spans.stretch] for name in ("mass", "turning")
@@ -81,15 +82,15 @@ def _inner(line: Lineup, spans: Spans, one: Array, other: Array) -> float:
     total = float(w @ mass + turn @ turning * spans.sizes[1] ** 2)
     for i, joint in enumerate(line.joints):
         at = int(np.searchsorted(spans.stretch, i))
-        total += joint.mass * float(one[at, 0, 0] * other[at, 0, 0])
-        total += joint.inertia * float(one[at, 1, 0] * other[at, 1, 0]) * spans.sizes[1] ** 2
+        total += joint.mass * float(np.real(one[at, 0, 0] * other[at, 0, 0]))
+        total += joint.inertia * float(np.real(one[at, 1, 0] * other[at, 1, 0])) * spans.sizes[1] ** 2
     return total
 
 
-def _sign(spans: Spans, states: Array, mode: int) -> float:
+def _sign(spans: Spans, states: ComplexArray, mode: int) -> float:
     """+1 or -1, so that the shape is positive where it first moves off the left end."""
     near = np.array([1e-3 / mode])
     first = spans.states(states, near)[1][:, 0, 0]
-    deflections = np.concatenate([first, states[:, 0, 0]])
+    deflections = np.real(np.concatenate([first, states[:, 0, 0]]))
     moved = deflections[abs(deflections) > _STILL * abs(deflections).max()]
     return float(np.sign(moved[0])) if len(moved) else 1.0
