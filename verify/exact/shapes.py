@@ -1,12 +1,14 @@
 """Mode shapes of any beam at its exact frequencies, with their derivatives."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import lru_cache
 
 import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.errors import InputError
 from verify.exact.lineup import Lineup, line_up
 from verify.exact.roots import wavenumber_length
 from verify.exact.spans import Spans, solver, spans_of
@@ -18,6 +20,9 @@ _PAIR = 1e-9
 """Relative: frequencies that lie closer share a plane of shapes, of which orthogonal ones are taken."""
 _TRIES = 6
 """Forces, of which one is sure to be far from what does no work on the mode."""
+_NUDGE = 7e-16
+_NUDGES = 12
+"""Relative steps off a resonance, and how many."""
 _STILL = 1e-9
 """Of the largest deflection: what is less does not show where a beam first moves."""
 
@@ -48,15 +53,23 @@ def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, 
 def _mode(beam: Beam, mode: int, theory: str) -> _Mode:
     """One mode; of a pair of one frequency the second is orthogonal to the first."""
     line, beta = line_up(beam, theory), wavenumber_length(beam, mode, theory)
-    omega2 = beta**4
-    spans = spans_of(line, omega2)
-    solve = solver(spans)
-    states = _free(solve, spans, mode)
-    if mode > 1 and beta - wavenumber_length(beam, mode - 1, theory) < _PAIR * beta:
-        other = _free(solve, spans, mode - 1)
-        states = states - other * (_inner(line, spans, states, other) / _inner(line, spans, other, other))
+    paired = mode > 1 and beta - wavenumber_length(beam, mode - 1, theory) < _PAIR * beta
+    spans, found = _beside(line, beta**4, (mode, mode - 1) if paired else (mode,))
+    states = found[0]
+    if paired:
+        states = states - found[1] * (_inner(line, spans, *found) / _inner(line, spans, found[1], found[1]))
     states = states / np.sqrt(_inner(line, spans, states, states))
     return _Mode(spans, states * _sign(spans, states, mode))
+
+
+def _beside(line: Lineup, omega2: float, modes: tuple[int, ...]) -> tuple[Spans, list[ComplexArray]]:
+    """Spans at a resonance and motions that need no force there; a rounding beside it where equations are singular."""
+    for step in range(_NUDGES):
+        with suppress(np.linalg.LinAlgError):
+            spans = spans_of(line, omega2 * (1.0 + step * _NUDGE))
+            solve = solver(spans)
+            return spans, [_free(solve, spans, mode) for mode in modes]
+    raise InputError("mode: no shape is found at this frequency, which rounding does not tell from a neighbour's")
 
 
 def _free(solve: Callable[[ComplexArray], ComplexArray], spans: Spans, mode: int) -> ComplexArray:
