@@ -176,6 +176,8 @@ def test_what_cannot_be_driven_is_refused():
         analytic_modes.solve_harmonic(replace(BAR, tension=1.0), FORCES, 100.0, "rayleigh")
     with pytest.raises(InputError, match=r"force\.position = 0\.7"):
         analytic_modes.solve_harmonic(BAR, [PointForce(position=0.7)], 100.0)
+    with pytest.raises(InputError, match="spans follow them, more than 100000"):
+        analytic_modes.solve_harmonic(replace(BAR, tension=1e18), FORCES, 100.0)
     with pytest.raises(InputError, match="forces is empty"):
         analytic_modes.solve_harmonic(BAR, [], 100.0)
     with pytest.raises(InputError, match="frequency_hz"):

@@ -12,6 +12,7 @@ from math import ceil
 import msgspec
 import numpy as np
 
+from verify.errors import InputError
 from verify.exact.lineup import HELD, Lineup
 from verify.models.arrays import Array, ComplexArray, Indices
 
@@ -19,6 +20,8 @@ _REACH = 1.5
 """Wavenumber times length of a span, at most."""
 _TERMS = 26
 """Of the power series, to rounding."""
+_MOST = 100_000
+"""Spans: more take too much memory, 1 kB each."""
 _BAND = 5
 """Diagonals on either side."""
 
@@ -74,6 +77,7 @@ def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:
         p, q = line.tension - stretch.turning * omega2, stretch.mass * omega2 - line.foundation
         squares = abs(p * bend - shear * q) + abs(q * bend * (1.0 + p * shear)) ** 0.5
         n = max(ceil(squares**0.5 * stretch.length / _REACH), 1)
+        _check_spans(n)
         rate = np.zeros((4, 4), dtype=complex)
         rate[0, 1], rate[0, 3], rate[1, 2], rate[2, 1], rate[2, 3], rate[3, 0] = 1.0, -shear, bend, p, 1.0, q
         rates.append(rate * scale)
@@ -87,6 +91,15 @@ def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:
         supports=line.supports,
         stretch=np.array(belongs),
     )
+
+
+def _check_spans(n: int) -> None:
+    """Raise InputError for more spans than memory takes."""
+    if n > _MOST:
+        raise InputError(
+            f"frequency: this beam bends in so many waves that {n} spans follow them, more than {_MOST}: lower "
+            "frequency_hz or mode, or what makes its waves so short (beam.tension, beam.foundation)"
+        )
 
 
 def _over(line: Lineup, omega2: float, belongs: Indices, scale: Array) -> Array:
