@@ -9,9 +9,9 @@ from scipy.linalg import eigh, null_space
 HELD = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 
 
-def cut(beam):
-    """(piece, length) from left to right, ending wherever anything stands."""
-    places = {x.position for x in (*beam.mass, *beam.spring)}
+def cut(beam, also=()):
+    """(piece, begin, end) from left to right, ending wherever anything stands, and at places besides."""
+    places = {*(x.position for x in (*beam.mass, *beam.spring)), *also}
     parts, start = [], 0.0
     for piece in beam.pieces:
         end = start + piece.length
@@ -21,13 +21,13 @@ def cut(beam):
     return parts
 
 
-def determinant(beam, theory, omega):
-    """End conditions carried by exponentials of the equations of motion for (w, psi, M, S), in extended precision.
+def transfers(beam, theory, omega, also=()):
+    """(place, what takes w, psi, M, V there) from the left end on, jumps included, in extended precision.
 
-    S is the shear force, kappa G A (psi - w') with its sign, so that tension stands in the balance of V = S - T w'.
+    By exponentials of the equations of motion; V balances what is fixed to the beam.
     """
-    mp = mpmath.mpf
-    thick = theory != "euler-bernoulli"
+    mp, thick = mpmath.mpf, theory != "euler-bernoulli"
+    lossy = 1 + mpmath.mpc(0, beam.loss_factor) if beam.loss_factor else mp(1)
     omega2, tension, ground = omega**2, mp(beam.tension), mp(beam.foundation)
 
     def joint(x):
@@ -42,19 +42,50 @@ def determinant(beam, theory, omega):
                 matrix[2, 1] += mp(s.rotational)
         return matrix
 
-    whole = joint(0.0)
-    for piece, a, b in cut(beam):
+    found = [(0.0, joint(0.0))]
+    for piece, a, b in cut(beam, also):
         rate = mpmath.zeros(4)
         rate[0, 1] = 1
-        rate[0, 3] = -1 / mp(piece.shear_stiffness) if theory == "timoshenko" else 0
-        rate[1, 2] = 1 / mp(piece.bending_stiffness)
+        rate[0, 3] = -1 / (lossy * mp(piece.shear_stiffness)) if theory == "timoshenko" else 0
+        rate[1, 2] = 1 / (lossy * mp(piece.bending_stiffness))
         rate[2, 3] = 1
         rate[2, 1] = tension - (mp(piece.rotary_inertia) * omega2 if thick else 0)
         rate[3, 0] = mp(piece.mass_per_length) * omega2 - ground
         length = mp(piece.length) if b - a > 0.999999999 * piece.length else mp(b) - mp(a)
-        whole = joint(b) * mpmath.expm(rate * length, method="taylor") * whole
+        found.append((b, joint(b) * mpmath.expm(rate * length, method="taylor")))
+    return found
+
+
+def determinant(beam, theory, omega):
+    """End conditions carried through the beam: it vanishes at a frequency."""
+    whole = mpmath.eye(4)
+    for _, step in transfers(beam, theory, omega):
+        whole = step * whole
     moves = [k for k in range(4) if k not in HELD[beam.supports[0]]]
     return mpmath.det(mpmath.matrix([[whole[i, j] for j in moves] for i in HELD[beam.supports[1]]]))
+
+
+def driven(beam, theory, forces, omega, places):
+    """Deflections at places under complex forces {place: newton}, in extended precision."""
+    moves = [k for k in range(4) if k not in HELD[beam.supports[0]]]
+    whole, rest, found = mpmath.eye(4), mpmath.zeros(4, 1), {}
+    for at, step in transfers(beam, theory, omega, (*forces, *places)):
+        whole, rest = step * whole, step * rest
+        for place, force in forces.items():
+            if abs(place - at) < 1e-12:
+                rest[3] += mpmath.mpmathify(complex(force))
+        found[at] = (whole.copy(), rest.copy())
+    ends = HELD[beam.supports[1]]
+    matrix = mpmath.matrix([[whole[i, j] for j in moves] for i in ends])
+    free = mpmath.lu_solve(matrix, mpmath.matrix([-rest[i] for i in ends]))
+    start = mpmath.zeros(4, 1)
+    for k, value in zip(moves, free, strict=True):
+        start[k] = value
+    values = []
+    for place in places:
+        whole, rest = found[min(found, key=lambda at, place=place: abs(at - place))]
+        values.append(complex((whole * start + rest)[0]))
+    return np.array(values)
 
 
 def a_root_lies_within(beam, theory, found, rel, digits=40):
@@ -62,15 +93,6 @@ def a_root_lies_within(beam, theory, found, rel, digits=40):
     with mpmath.workdps(digits):
         sides = [determinant(beam, theory, 2 * mpmath.pi * found * (1 + side * mpmath.mpf(rel))) for side in (-1, 1)]
         return sides[0] * sides[1] < 0
-
-
-def near_root_hz(beam, theory, found, digits=50, beside=1e-7):
-    """The root of the determinant next to a frequency, Hz."""
-    with mpmath.workdps(digits):
-        omega = 2 * mpmath.pi * mpmath.mpf(found)
-        near = (omega * (1 - mpmath.mpf(beside)), omega * (1 + mpmath.mpf(beside) / 2))
-        root = mpmath.findroot(lambda w: determinant(beam, theory, w), near, tol=1e-60, verify=False, maxsteps=30)
-        return float(root / (2 * mpmath.pi))
 
 
 def ritz(beam, theory, degree=14, parts=1):

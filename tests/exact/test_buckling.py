@@ -58,9 +58,9 @@ def test_a_strut_on_a_foundation_buckles_into_the_waves_that_cost_least():
 
 
 def test_a_soft_spring_in_the_middle_and_a_stiff_one():
-    """From 16 pi^2 EI / L^3 on the strut buckles in two halves, at 4 times Euler's load; before, by its middle too:
+    """From 16 pi^2 EI / L^3 on the strut buckles in two halves, at 4 times Euler's load; before, by its middle too.
 
-    tan(x / 2) / (x / 2) = 1 - 4 x^2 EI / (k L^3) with x^2 = P L^2 / EI (Timoshenko and Gere, 2.5).
+    Then tan(x / 2) / (x / 2) = 1 - 4 x^2 EI / (k L^3) with x^2 = P L^2 / EI (Timoshenko and Gere, 2.5).
     """
     middle, unit = STRUT.length / 2, STRUT.bending_stiffness / STRUT.length**3
     stiff = replace(STRUT, spring=(PointSpring(position=middle, stiffness=16.1 * np.pi**2 * unit),))

@@ -54,14 +54,14 @@ def test_timoshenkos_beam_solves_huangs_equations(supports, mode):
 @pytest.mark.parametrize("theory", ["rayleigh", "timoshenko"])
 def test_every_pair_of_ends_solves_the_transfer_equation(theory, supports):
     beam = replace(BLOCK, supports=supports)
-    for mode in (1, 3, 19):
-        assert a_root_lies_within(beam, theory, exact_frequency_hz(beam, mode, theory), 1e-13, 70)
+    for mode, digits in ((2, 30), (19, 70)):
+        assert a_root_lies_within(beam, theory, exact_frequency_hz(beam, mode, theory), 1e-13, digits)
 
 
-@pytest.mark.parametrize("supports", PAIRS, ids="-".join)
+@pytest.mark.parametrize("supports", [*PAIRS[::4], ("free", "free"), ("guided", "clamped")], ids="-".join)
 def test_no_mode_is_missed_across_the_cut_off(supports):
     beam = replace(BLOCK, supports=supports)
-    others, _ = ritz(beam, "timoshenko", 20, 2)
+    others, _ = ritz(beam, "timoshenko", 19, 2)
     found = solve_modes(beam, 22, "timoshenko").frequencies_hz
     assert found[-1] > 1.5 * CUT_OFF
     assert others[beam.rigid_motions :][:22] == pytest.approx(found, rel=1e-5)

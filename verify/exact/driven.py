@@ -14,7 +14,7 @@ from verify.exact.buckling import check_stable
 from verify.exact.lineup import Lineup, line_up, place_of
 from verify.exact.roots import general_frequency_hz, trials
 from verify.exact.spans import Spans, solver, spans_of
-from verify.models.arrays import Array, ComplexArray, Numbers
+from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE, check_drive, phasor, refuse_resonance
 
 
@@ -44,7 +44,7 @@ def general_responses(
 
 def _under_unit_forces(
     beam: Beam, positions: tuple[float, ...], frequency_hz: float, theory: str
-) -> tuple[Spans, Numbers]:
+) -> tuple[Spans, ComplexArray]:
     """Spans that end at every force, and the states under each force of 1 N, (n + 1, 4, n_forces)."""
     check_stable(beam)
     line = line_up(beam, theory, positions)
@@ -53,7 +53,7 @@ def _under_unit_forces(
         _refuse_resonance(beam, line_up(beam, theory), beta_length, frequency_hz, theory)
     spans = spans_of(line, beta_length**4, beam.loss_factor)
     places = line.places
-    jumps = np.zeros((len(spans.ends), 4, len(positions)))
+    jumps = np.zeros((len(spans.ends), 4, len(positions)), dtype=complex)
     for i, position in enumerate(positions):
         at = int(np.searchsorted(spans.stretch, place_of(places, position / beam.length)))
         jumps[at, 3, i] = beam.length**3 / beam.bending_stiffness / spans.sizes[3]
@@ -69,7 +69,7 @@ def _refuse_resonance(beam: Beam, line: Lineup, beta_length: float, frequency_hz
         refuse_resonance("analytic", frequency_hz, mode, general_frequency_hz(beam, mode, theory))
 
 
-def _read(beam: Beam, spans: Spans, states: Numbers, x: Array, derivative: int) -> ComplexArray:
+def _read(beam: Beam, spans: Spans, states: ComplexArray, x: Array, derivative: int) -> ComplexArray:
     """Deflections or derivatives, (len(x), n), SI."""
     xi = np.minimum(np.asarray(x, dtype=float) / beam.length, 1.0)
     span, here = spans.states(states, xi)

@@ -1,16 +1,18 @@
 """Mode shapes of any beam at its exact frequencies, with their derivatives."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import lru_cache
 
 import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.errors import InputError
 from verify.exact.lineup import Lineup, line_up
 from verify.exact.roots import wavenumber_length
 from verify.exact.spans import Spans, solver, spans_of
-from verify.models.arrays import Array, Numbers
+from verify.models.arrays import Array, ComplexArray
 
 _POINTS = 12
 """Of Gauss's rule on every span."""
@@ -18,6 +20,9 @@ _PAIR = 1e-9
 """Relative: frequencies that lie closer share a plane of shapes, of which orthogonal ones are taken."""
 _TRIES = 6
 """Forces, of which one is sure to be far from what does no work on the mode."""
+_NUDGE = 7e-16
+_NUDGES = 12
+"""Relative steps off a resonance, and how many."""
 _STILL = 1e-9
 """Of the largest deflection: what is less does not show where a beam first moves."""
 
@@ -26,7 +31,7 @@ class _Mode(msgspec.Struct, frozen=True, eq=False):
     """One mode: its spans and the states right of their ends, (n + 1, 4, 1), of modal mass 1 over rho A L."""
 
     spans: Spans
-    states: Array
+    states: ComplexArray
 
 
 def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory: str) -> Array:
@@ -44,36 +49,45 @@ def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, 
     return np.asarray(np.array(rows).reshape(len(rows), len(xi)) * size)
 
 
-@lru_cache(maxsize=1000)
+@lru_cache(maxsize=500)
 def _mode(beam: Beam, mode: int, theory: str) -> _Mode:
     """One mode; of a pair of one frequency the second is orthogonal to the first."""
     line, beta = line_up(beam, theory), wavenumber_length(beam, mode, theory)
-    omega2 = beta**4
-    spans = spans_of(line, omega2)
-    solve = solver(spans)
-    states = _free(solve, spans, mode)
-    if mode > 1 and beta - wavenumber_length(beam, mode - 1, theory) < _PAIR * beta:
-        other = _free(solve, spans, mode - 1)
-        states = states - other * (_inner(line, spans, states, other) / _inner(line, spans, other, other))
+    paired = mode > 1 and beta - wavenumber_length(beam, mode - 1, theory) < _PAIR * beta
+    spans, found = _beside(line, beta**4, (mode, mode - 1) if paired else (mode,))
+    states = found[0]
+    if paired:
+        states = states - found[1] * (_inner(line, spans, *found) / _inner(line, spans, found[1], found[1]))
     states = states / np.sqrt(_inner(line, spans, states, states))
     return _Mode(spans, states * _sign(spans, states, mode))
 
 
-def _free(solve: Callable[[Numbers], Numbers], spans: Spans, mode: int) -> Array:
+def _beside(line: Lineup, omega2: float, modes: tuple[int, ...]) -> tuple[Spans, list[ComplexArray]]:
+    """Spans at a resonance and motions that need no force there; a rounding beside it where equations are singular."""
+    for step in range(_NUDGES):
+        with suppress(np.linalg.LinAlgError):
+            spans = spans_of(line, omega2 * (1.0 + step * _NUDGE))
+            solve = solver(spans)
+            return spans, [_free(solve, spans, mode) for mode in modes]
+    raise InputError("mode: no shape is found at this frequency, which rounding does not tell from a neighbour's")
+
+
+def _free(solve: Callable[[ComplexArray], ComplexArray], spans: Spans, mode: int) -> ComplexArray:
     """The motion that needs no force: of the answers to a few, at resonance, the largest (inverse iteration)."""
     phases = np.arange(4.0 * len(spans.ends))[:, None] * (1.0 + 0.37 * mode + 0.11 * np.arange(_TRIES))
-    answers = solve(np.cos(phases).reshape(-1, 4, _TRIES))
+    answers = solve(np.cos(phases).reshape(-1, 4, _TRIES).astype(complex))
     sizes = abs(answers).max(axis=(0, 1))
     best = int(sizes.argmax())
-    return np.real(answers[:, :, best : best + 1] / sizes[best])
+    return np.asarray(answers[:, :, best : best + 1] / sizes[best])
 
 
-def _inner(line: Lineup, spans: Spans, one: Array, other: Array) -> float:
+def _inner(line: Lineup, spans: Spans, one: ComplexArray, other: ComplexArray) -> float:
     """The modal mass that two motions share, over rho A L: deflection and turning, of the beam and what is on it."""
     points, weights = np.polynomial.legendre.leggauss(_POINTS)
     lengths = np.diff(spans.ends)
     x = (spans.ends[:-1, None] + 0.5 * lengths[:, None] * (points + 1.0)).ravel()
-    values = [spans.states(states, x)[1][:, :, 0].reshape(len(lengths), _POINTS, 4) for states in (one, other)]
+    here = [np.real(spans.states(states, x)[1][:, :, 0]) for states in (one, other)]
+    values = [each.reshape(len(lengths), _POINTS, 4) for each in here]
     w, turn = (values[0][:, :, k] * values[1][:, :, k] @ weights * 0.5 * lengths for k in (0, 1))
     mass, turning = (
         np.array([getattr(s, name) for s in line.stretches])[spans.stretch] for name in ("mass", "turning")
@@ -81,15 +95,15 @@ def _inner(line: Lineup, spans: Spans, one: Array, other: Array) -> float:
     total = float(w @ mass + turn @ turning * spans.sizes[1] ** 2)
     for i, joint in enumerate(line.joints):
         at = int(np.searchsorted(spans.stretch, i))
-        total += joint.mass * float(one[at, 0, 0] * other[at, 0, 0])
-        total += joint.inertia * float(one[at, 1, 0] * other[at, 1, 0]) * spans.sizes[1] ** 2
+        total += joint.mass * float(np.real(one[at, 0, 0] * other[at, 0, 0]))
+        total += joint.inertia * float(np.real(one[at, 1, 0] * other[at, 1, 0])) * spans.sizes[1] ** 2
     return total
 
 
-def _sign(spans: Spans, states: Array, mode: int) -> float:
+def _sign(spans: Spans, states: ComplexArray, mode: int) -> float:
     """+1 or -1, so that the shape is positive where it first moves off the left end."""
     near = np.array([1e-3 / mode])
     first = spans.states(states, near)[1][:, 0, 0]
-    deflections = np.concatenate([first, states[:, 0, 0]])
+    deflections = np.real(np.concatenate([first, states[:, 0, 0]]))
     moved = deflections[abs(deflections) > _STILL * abs(deflections).max()]
     return float(np.sign(moved[0])) if len(moved) else 1.0

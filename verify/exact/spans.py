@@ -12,13 +12,16 @@ from math import ceil
 import msgspec
 import numpy as np
 
+from verify.errors import InputError
 from verify.exact.lineup import HELD, Lineup
-from verify.models.arrays import Array, Indices, Numbers
+from verify.models.arrays import Array, ComplexArray, Indices
 
 _REACH = 1.5
 """Wavenumber times length of a span, at most."""
 _TERMS = 26
 """Of the power series, to rounding."""
+_MOST = 100_000
+"""Spans: more take too much memory, 1 kB each."""
 _BAND = 5
 """Diagonals on either side."""
 
@@ -28,8 +31,8 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     ends: Array
     """(n + 1,), of the beam's length."""
-    rates: Numbers
-    """(stretches, 4, 4), d/dx of (w, psi, M, V) by themselves, each relative to its own size; real without loss."""
+    rates: ComplexArray
+    """(stretches, 4, 4), d/dx of (w, psi, M, V) by themselves, each relative to its own size."""
     over: Array
     """(n + 1, 4, 4), from left to right of what is fixed at each end of a span."""
     sizes: Array
@@ -38,12 +41,12 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     stretch: Indices
     """(n,), to which stretch of the line each belongs."""
 
-    def states(self, at_ends: Numbers, x: Array) -> tuple[Indices, Numbers]:
+    def states(self, at_ends: ComplexArray, x: Array) -> tuple[Indices, ComplexArray]:
         """(span, states (len(x), 4, k)) at x, of the beam's length, from those right of each end, (n + 1, 4, k)."""
         span = np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.stretch) - 1)
         return span, carried(self.rates[self.stretch[span]], x - self.ends[span], at_ends[span])
 
-    def derivative(self, span: Indices, states: Numbers, order: int) -> Numbers:
+    def derivative(self, span: Indices, states: ComplexArray, order: int) -> ComplexArray:
         """A derivative of the deflection by x / L, (len(x), k), of any order, from states of the same places."""
         rates = self.rates[self.stretch[span]]
         for _ in range(order):
@@ -51,7 +54,7 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.asarray(states[:, 0])
 
 
-def carried(rates: Numbers, distances: Array, states: Numbers) -> Numbers:
+def carried(rates: ComplexArray, distances: Array, states: ComplexArray) -> ComplexArray:
     """e^(rate distance) state, (m, 4, k), by its power series."""
     term = total = np.broadcast_to(states, (len(rates), *states.shape[1:]))
     steps = rates * distances[:, None, None]
@@ -63,19 +66,19 @@ def carried(rates: Numbers, distances: Array, states: Numbers) -> Numbers:
 
 def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:
     """Divide a line at omega^2 over EI / (rho A L^4); the loss factor acts on EI and kappa G A alone."""
-    complex_stiffness = 1.0 + 1j * loss_factor if loss_factor else 1.0
-    kind = complex if loss_factor else float
+    lossy = 1.0 + 1j * loss_factor
     size = max(omega2, 1.0) ** 0.25
     sizes = size ** np.arange(4)
     scale = sizes[None, :] / sizes[:, None]
     places, rates, ends, belongs = line.places, [], [], []
     for i, stretch in enumerate(line.stretches):
-        bend = 1.0 / (stretch.stiffness * complex_stiffness)
-        shear = stretch.shear / complex_stiffness
+        bend = 1.0 / (stretch.stiffness * lossy)
+        shear = stretch.shear / lossy
         p, q = line.tension - stretch.turning * omega2, stretch.mass * omega2 - line.foundation
         squares = abs(p * bend - shear * q) + abs(q * bend * (1.0 + p * shear)) ** 0.5
         n = max(ceil(squares**0.5 * stretch.length / _REACH), 1)
-        rate = np.zeros((4, 4), dtype=kind)
+        _check_spans(n)
+        rate = np.zeros((4, 4), dtype=complex)
         rate[0, 1], rate[0, 3], rate[1, 2], rate[2, 1], rate[2, 3], rate[3, 0] = 1.0, -shear, bend, p, 1.0, q
         rates.append(rate * scale)
         ends.append(places[i] + stretch.length * np.arange(n) / n)
@@ -90,6 +93,15 @@ def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:
     )
 
 
+def _check_spans(n: int) -> None:
+    """Raise InputError for more spans than memory takes."""
+    if n > _MOST:
+        raise InputError(
+            f"frequency: this beam bends in so many waves that {n} spans follow them, more than {_MOST}: lower "
+            "frequency_hz or mode, or what makes its waves so short (beam.tension, beam.foundation)"
+        )
+
+
 def _over(line: Lineup, omega2: float, belongs: Indices, scale: Array) -> Array:
     """The matrices of what is fixed, (n + 1, 4, 4)."""
     over = np.tile(np.eye(4), (len(belongs) + 1, 1, 1))
@@ -100,7 +112,7 @@ def _over(line: Lineup, omega2: float, belongs: Indices, scale: Array) -> Array:
     return over
 
 
-def solver(spans: Spans) -> Callable[[Numbers], Numbers]:
+def solver(spans: Spans) -> Callable[[ComplexArray], ComplexArray]:
     """Jumps of the state at the ends, (n + 1, 4, k), to states right of each end, (n + 1, 4, k).
 
     A banded factorisation of the end conditions and of what carries each state to the next.
@@ -108,11 +120,13 @@ def solver(spans: Spans) -> Callable[[Numbers], Numbers]:
     from scipy.linalg import solve_banded
 
     n = len(spans.stretch)
-    transfer = carried(spans.rates[spans.stretch], np.diff(spans.ends), np.broadcast_to(np.eye(4), (n, 4, 4)))
+    transfer = carried(
+        spans.rates[spans.stretch], np.diff(spans.ends), np.broadcast_to(np.eye(4, dtype=complex), (n, 4, 4))
+    )
     matrix = _banded(spans, transfer)
 
-    def solve(jumps: Numbers) -> Numbers:
-        right = np.zeros((4 * n + 4, jumps.shape[2]), dtype=np.result_type(matrix, jumps))
+    def solve(jumps: ComplexArray) -> ComplexArray:
+        right = np.zeros((4 * n + 4, jumps.shape[2]), dtype=complex)
         right[2 : 4 * n + 2] = (transfer @ jumps[:-1]).reshape(4 * n, -1)
         right[4 * n + 2 :] = -jumps[-1][list(HELD[spans.supports[1]])]
         left = solve_banded((_BAND, _BAND), matrix, right).reshape(n + 1, 4, -1)
@@ -121,10 +135,10 @@ def solver(spans: Spans) -> Callable[[Numbers], Numbers]:
     return solve
 
 
-def _banded(spans: Spans, transfer: Numbers) -> Numbers:
+def _banded(spans: Spans, transfer: ComplexArray) -> ComplexArray:
     """The matrix by its diagonals, (2 band + 1, 4 n + 4), of states left of each end."""
     n = len(transfer)
-    matrix = np.zeros((2 * _BAND + 1, 4 * n + 4), dtype=transfer.dtype)
+    matrix = np.zeros((2 * _BAND + 1, 4 * n + 4), dtype=complex)
     for row, held in enumerate(HELD[spans.supports[0]]):
         matrix[_BAND + row - held, held] = 1.0
     carry = -transfer @ spans.over[:-1]

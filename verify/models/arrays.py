@@ -5,7 +5,5 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-Numbers = NDArray[np.float64 | np.complex128]
-"""Either of the two."""
 Indices = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]

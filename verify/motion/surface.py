@@ -266,8 +266,9 @@ def steady_edges(field: "HarmonicField") -> tuple[Array, int]:
         softest = max(p.mass_per_length / p.bending_stiffness for p in beam.pieces) * beam.wave_constant**2
         cells = int(np.ceil(length * abs(field.wavenumber) * softest**0.25 / 0.3)) + 1
         steps = np.cumsum([piece.length for piece in beam.pieces[:-1]])
-        places = [place.position for place in (*field.forces, *beam.mass, *beam.spring)]
-        return np.union1d(np.linspace(0.0, length, cells + 1), [*steps, *places]), ANALYTIC_DEGREE
+        fixed = [*(m.position for m in beam.mass), *(s.position for s in beam.spring)]
+        places = [*(f.position for f in field.forces), *steps, *fixed]
+        return np.union1d(np.linspace(0.0, length, cells + 1), places), ANALYTIC_DEGREE
     from verify.models.division import divide
 
     parts: Any = divide(field.beam, field.count)

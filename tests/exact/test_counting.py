@@ -1,0 +1,116 @@
+"""Nothing is missed and nothing counted twice, whatever stands on the beam."""
+
+import numpy as np
+from exact_reference import a_root_lies_within, cut, ritz
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec.structs import replace
+
+from verify.attached import PointMass, PointSpring
+from verify.beam import Beam
+from verify.exact.buckling import buckling_load
+from verify.exact.modes import exact_frequency_hz, modes_below, solve_modes
+from verify.options import SUPPORTS, THEORIES
+from verify.section import Section
+
+LENGTH = 0.83
+WHOLE = Beam(length=LENGTH, width=0.02, thickness=0.03, youngs_modulus=70e9, density=2700.0)
+UNIT = WHOLE.bending_stiffness / LENGTH**3
+MASS = WHOLE.mass_per_length * LENGTH
+
+powers = st.floats(-2.0, 3.0)
+within = st.floats(0.05, 0.95)
+free_ends = st.sampled_from([("free", "free"), ("clamped", "free"), ("pinned", "free"), ("guided", "free")])
+
+
+@st.composite
+def beams(draw):
+    """Sections, a mass and a spring within and at a free end, tension, compression or a foundation."""
+    cuts = sorted({round(c, 3) for c in draw(st.lists(within, max_size=2))})
+    ends = [0.0, *cuts, 1.0]
+    parts = np.diff(ends)
+    sections = tuple(
+        Section(
+            length=LENGTH * part,
+            thickness=draw(st.floats(0.012, 0.05)),
+            density=draw(st.floats(1e3, 9e3)),
+        )
+        for part in parts
+    )
+    supports = draw(free_ends | st.tuples(st.sampled_from(SUPPORTS), st.sampled_from(SUPPORTS)))
+    at = LENGTH if supports[1] == "free" and draw(st.booleans()) else LENGTH * draw(within)
+    body = PointMass(
+        position=at, mass=MASS * 10 ** draw(powers), rotary_inertia=MASS * LENGTH**2 * 10 ** (draw(powers) - 3)
+    )
+    spring = PointSpring(
+        position=LENGTH * draw(within),
+        stiffness=UNIT * 10 ** draw(powers),
+        rotational=UNIT * LENGTH**2 * 10 ** draw(powers),
+    )
+    beam = replace(
+        WHOLE,
+        supports=supports,
+        section=sections if len(sections) > 1 else (),
+        mass=(body,) if draw(st.booleans()) else (),
+        spring=(spring,) if draw(st.booleans()) else (),
+        foundation=draw(st.sampled_from([0.0, 1.0, 1e3])) * UNIT / LENGTH,
+    )
+    theory = draw(st.sampled_from(THEORIES))
+    if theory == "euler-bernoulli":
+        beam = replace(beam, tension=draw(st.sampled_from([0.0, 3.0, 300.0])) * UNIT * LENGTH**2)
+        if draw(st.booleans()) and (load := buckling_load(beam)):
+            beam = replace(beam, tension=-draw(st.floats(0.1, 0.95)) * load)
+    return beam, theory
+
+
+@settings(max_examples=20, deadline=None)
+@given(one=beams())
+def test_every_frequency_has_its_own_number(one):
+    """Each rises the count by one, no interval between neighbours has another, and the figure is a root to 2e-13."""
+    beam, theory = one
+    found = solve_modes(beam, 9, theory).frequencies_hz
+    assert (np.diff(found) > 0.0).all() or beam.foundation
+    for mode, hertz in enumerate(found, 1):
+        y = np.sqrt(2 * np.pi * hertz / beam.wave_constant) * beam.length
+        below, above = (modes_below(beam, y * (1 + side * 1e-9), theory) - beam.rigid_motions for side in (-1, 1))
+        assert below < mode <= above
+    if np.diff(found[:7])[4] > 1e-6 * found[5]:
+        assert a_root_lies_within(beam, theory, found[4], 2e-13, 90)
+
+
+@settings(max_examples=15, deadline=None)
+@given(one=beams())
+def test_the_number_of_a_frequency_is_that_of_ritz(one):
+    beam, theory = one
+    others, _ = ritz(beam, theory, 9, 3 if len(cut(beam)) == 1 else 2)
+    found = solve_modes(beam, 5, theory).frequencies_hz
+    strict = others[beam.rigid_motions :][:5]
+    assert (strict[1:] > 0.99 * found[1:]).all()  # rounding of polynomials reaches the lowest
+    assert (strict[1:] < 1.02 * found[1:]).all()
+
+
+@settings(max_examples=25, deadline=None)
+@given(one=beams(), mode=st.integers(1, 25))
+def test_a_beam_seen_from_the_other_side_has_the_same_frequencies(one, mode):
+    beam, theory = one
+    here, there = (exact_frequency_hz(b, mode, theory) for b in (beam, beam.mirrored()))
+    assert abs(here / there - 1) < 5e-13
+
+
+@settings(max_examples=25, deadline=None)
+@given(one=beams(), mode=st.integers(1, 12), more=st.floats(0.1, 10.0))
+def test_a_spring_raises_and_a_mass_lowers_every_frequency(one, mode, more):
+    """But never past the neighbour's, Rayleigh's theorem of one constraint."""
+    beam, theory = one
+    if beam.tension < 0.0:
+        return
+    spring = PointSpring(position=0.37 * LENGTH, stiffness=more * 100 * UNIT)
+    body = PointMass(position=0.37 * LENGTH, mass=more * MASS)
+    rigid = beam.rigid_motions
+    plain = exact_frequency_hz(beam, mode, theory) * (1 + 1e-12)
+    stiffer = replace(beam, spring=(*beam.spring, spring))
+    heavier = replace(beam, mass=(*beam.mass, body))
+    raised = exact_frequency_hz(stiffer, mode + rigid - stiffer.rigid_motions, theory)
+    assert raised >= plain * (1 - 2e-12)
+    assert raised <= exact_frequency_hz(beam, mode + 1, theory) * (1 + 1e-12)
+    assert exact_frequency_hz(heavier, mode, theory) <= plain
