@@ -47,6 +47,11 @@ class Solve(msgspec.Struct, frozen=True):
 Key: TypeAlias = tuple[str, int, Settings]
 
 
+def theory_of(settings: Settings) -> str:
+    """Of the beam, among the settings of a model."""
+    return str(dict(settings).get("theory", EULER))
+
+
 def merged(needs: Iterable[Need]) -> dict[Key, int]:
     """(model, count, settings) -> the most modes anybody wants of it."""
     wanted: dict[Key, int] = {}
@@ -171,9 +176,9 @@ class Workbench:
         self.solves.append(Solve(model, count, settings, n_modes, unknowns, modes.method, seconds))
         return modes
 
-    def exact_hz(self, mode: int, theory: object = None) -> float:
+    def exact_hz(self, mode: int, theory: str = EULER) -> float:
         """The exact frequency by a theory, Hz: in closed form, else by counting. Raises InputError."""
-        key = mode, str(theory or EULER)
+        key = mode, theory
         if key not in self._exact:
             self._exact[key] = self._exact_of(*key)
         return self._exact[key]
@@ -196,7 +201,7 @@ class Workbench:
     def paired_frequency_hz(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """The frequency of the computed mode whose shape is that of exact mode `mode`, Hz.
 
-        On a stepped beam, which has no exact shapes here, by rank. Raises PairingError.
+        By rank where exact shapes are dear: on beams that are not uniform, and by other theories. Raises PairingError.
         """
         if model == MEAN:
             return self.bracket(mode, count, settings).mean
@@ -205,7 +210,7 @@ class Workbench:
 
     def paired_index(self, model: str, count: int, mode: int, settings: Settings = ()) -> int:
         """Where among the computed modes the one stands that looks like exact mode `mode`. Raises PairingError."""
-        if self.beam.stepped:
+        if not self.beam.uniform or theory_of(settings) != EULER:
             return mode - 1
         key = ((model, count, for_model(model, settings)), mode)
         if key not in self._index:
@@ -222,7 +227,7 @@ class Workbench:
         """Signed, relative to the exact frequency by the same theory. Raises InputError."""
         from verify.judge import compare
 
-        exact = self.exact_hz(mode, dict(settings).get("theory"))
+        exact = self.exact_hz(mode, theory_of(settings))
         return compare.relative_error(self.paired_frequency_hz(model, count, mode, settings), exact)
 
     def error_or_why(self, model: str, count: int, mode: int, settings: Settings = ()) -> tuple[float | None, str]:
@@ -263,7 +268,7 @@ class Workbench:
         if reading is not None and reading not in modes.readings:
             raise InputError(f"reading = {reading!r} is none of the {model} model's: {', '.join(modes.readings)}")
         read = modes.readings[reading or next(iter(modes.readings))]
-        exact = analytic_modes.mode_shape(self.beam, mode, modes.nodes)
+        exact = analytic_modes.mode_shape(self.beam, mode, modes.nodes, theory=theory_of(settings))
         shape = read()[self.paired_index(model, count, mode, settings)]
         return compare.shape_error(exact, shape, compare.node_weights(modes.nodes))
 
@@ -273,7 +278,7 @@ class Workbench:
         from verify.judge import compare
 
         modes = self.modes(model, count, mode, settings)
-        exact = analytic_modes.mode_shape(self.beam, mode, modes.curvature_points, 2)
+        exact = analytic_modes.mode_shape(self.beam, mode, modes.curvature_points, 2, theory_of(settings))
         found = modes.curvatures()[self.paired_index(model, count, mode, settings)]
         return compare.shape_error(exact, found, compare.node_weights(modes.curvature_points))
 
@@ -283,7 +288,10 @@ class Workbench:
         from verify.judge import compare
 
         if count is None:
-            return compare.zeros(lambda x: analytic_modes.mode_shape(self.beam, mode, x), self.beam.length, mode)
+            theory = theory_of(settings)
+            return compare.zeros(
+                lambda x: analytic_modes.mode_shape(self.beam, mode, x, theory=theory), self.beam.length, mode
+            )
         modes = self.modes(model, count, mode, settings)
         index = self.paired_index(model, count, mode, settings)
         return compare.zeros(lambda x: modes.deflection(x)[index], self.beam.length, mode)

@@ -8,7 +8,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.variants import Variant, every_rule
-from verify.judge.workbench import Settings, Workbench, comparable
+from verify.judge.workbench import Settings, Workbench, comparable, theory_of
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
 from verify.patience import check_work
@@ -237,7 +237,7 @@ def _row(
     return Row(
         mode=mode,
         count=count,
-        exact_hz=bench.exact_hz(mode, dict(chosen).get("theory")),
+        exact_hz=bench.exact_hz(mode, theory_of(chosen)),
         cells=cells,
         bracket_width=width,
         mean_error=mean_error,
