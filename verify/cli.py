@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from verify import __version__
+from verify.cli_compare import compare
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -278,6 +279,9 @@ def init(path: str, force: bool, as_json: bool) -> None:
         _print_json({"path": path, "next": ["verify", "run", path]})
     else:
         click.echo(f"wrote {path}; next: verify run {path}")
+
+
+cli.add_command(compare)
 
 
 def _load(scene: str, overrides: tuple[str, ...]) -> "Scene":

@@ -20,7 +20,9 @@ from verify.studies.catalogue import STUDIES
 from verify.words import cell, figure, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
+    from verify.identify.told import Compared
     from verify.run.runner import RunResult
+    from verify.scenes.scene import Scene
     from verify.studies.told import Column, Table
 
 SENTENCE = 32
@@ -31,6 +33,17 @@ _PACKAGES = ("fem-segment-verify", "numpy", "scipy", "scikit-fem", "plotly")
 def write_report(result: "RunResult", path: Path, command: str) -> None:
     """Write the report of a run; `command` is the line that reproduces it. Raises InputError."""
     write_whole(path, page(result, command), "reports")
+
+
+def write_comparison(scene: "Scene", found: "Compared", path: Path, command: str) -> None:
+    """Write the report of somebody's model compared, as that of a run whose one finding it is. Raises InputError."""
+    from verify.run.runner import RunResult
+
+    named = msgspec.structs.replace(scene.bare, name=path.stem, title=f"{found.source} on {scene.name}", description="")
+    result = RunResult(
+        scene=named, gates=found.gates, found={"compare": found}, solves=(), n_fields=0, n_motions=0, seconds=0.0
+    )
+    write_report(result, path, command)
 
 
 def page(result: "RunResult", command: str) -> str:
@@ -77,7 +90,8 @@ def sections_of(result: "RunResult") -> Iterator[Section]:
         if facts := found.facts():
             facts = tuple(fact[:1].upper() + fact[1:] for fact in facts)
         if facts or tables:
-            yield Section(name, STUDIES[name].title or name, facts, tables, shared)
+            title = STUDIES[name].title if name in STUDIES else ""
+            yield Section(name, title or name.capitalize(), facts, tables, shared)
 
 
 def _verdict(value: bool | None) -> str:

@@ -15,6 +15,7 @@ from verify.models.catalogue import MODELS
 from verify.words import cell, figure, percent, seconds_in_words, work_in_words
 
 if TYPE_CHECKING:
+    from verify.identify.told import Compared
     from verify.judge.sizing import Choice
     from verify.run.gates import GateResult
     from verify.run.plan import Plan
@@ -59,6 +60,25 @@ def _verdict(result: "RunResult") -> str:
     if n_failed:
         return f"[bold red]{n_failed} of {len(result.gates)} gates failed[/]"
     return f"[bold green]all {len(result.gates)} gates passed[/]" if result.gates else "the scene has no gates"
+
+
+def print_compared(result: "Compared", report: Path | None) -> None:
+    """What somebody's model is; its modes, the candidates, the gates, where the report lies."""
+    console = Terminal()
+    answer, *facts = result.facts()
+    console.print(Text(answer, style="bold"))
+    for fact in facts:
+        console.print(Text(fact))
+    for table in result.tables():
+        _print_table(console, table)
+        for note in table.notes:
+            console.print(Text(f"– {note}", style="dim"))
+    console.print(_gate_table(result.gates))
+    for gate in result.gates:
+        if not gate.passed:
+            console.print(Text(f"gate {gate.id}: {gate.reason}", style="red"))
+    if report is not None:
+        console.print(f"report: {report}", soft_wrap=True, markup=False)
 
 
 def print_found(found: "Found") -> None:
