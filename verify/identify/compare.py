@@ -1,6 +1,8 @@
 """Somebody's model of a scene's beam compared: read, paired, identified, sized, judged."""
 
+from itertools import combinations_with_replacement
 from pathlib import Path
+from typing import get_args
 
 import msgspec
 import numpy as np
@@ -8,7 +10,7 @@ import numpy as np
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.identify.family import CHAIN, ELEMENTS, EXACT, Candidate, Solver, exact_hz, family
-from verify.identify.fitting import UNITS, Data, Identified, Pairs, identify
+from verify.identify.fitting import CREDIBLE, UNITS, Data, Identified, identify
 from verify.identify.outside import asked_of
 from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic_of, missing, swapped
 from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
@@ -16,10 +18,13 @@ from verify.identify.sizing import Enough, enough
 from verify.identify.told import Compared, Row, judged
 from verify.judge.workbench import Workbench
 from verify.models.arrays import Array
+from verify.options import Support
 from verify.scenes.scene import Scene
 
 SPARE = 4
 """Modes beyond the list that candidates are solved for: as many may be missing from it."""
+_OTHER_COUNT = 10.0
+"""By how much, in logarithms of likelihood, another number of parts than was said has to be likelier."""
 KINDS = {"segments": CHAIN, "elements": ELEMENTS}
 """What somebody may say that he built."""
 
@@ -50,12 +55,12 @@ class Asked(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def compare(scene: Scene, asked: Asked) -> Compared:
-    """What a list of frequencies, or a model, of the scene's beam is, how surely, and how far off. Raises InputError."""
+    """What a list of frequencies, or a model, of the scene's beam is, how surely, how far off. Raises InputError."""
     beam = scene.beam
     listed, shapes, count = _given(scene, asked)
     if asked.mode is not None and asked.mode > listed.n:
         raise InputError(f"mode = {asked.mode}: {listed.source} has {listed.n} modes, ask for one of them")
-    n_modes = max(listed.n, max(listed.numbers or (0,))) + SPARE
+    n_modes = max(listed.n, *(listed.numbers or (0,))) + SPARE
     exact = exact_hz(beam, n_modes, asked.theory)
     elastic = elastic_of(listed, beam, exact)
     solver = Solver(beam, n_modes)
@@ -68,7 +73,7 @@ def compare(scene: Scene, asked: Asked) -> Compared:
     )
     data, told, likeness = _by_shapes(scene, data, shapes, elastic, count)
     found, recounted = _identified(data, count)
-    told = (*elastic.told, *told, *_of_list(found, data), *recounted)
+    told = (*elastic.told, *told, *_of_list(found, data), *recounted, *_of_supports(scene, found, data))
     best = found.best
     mode = asked.mode or int(best.pairs.modes.max()) + 1
     size = enough(Workbench(beam), best.candidate, mode, asked.error) if best.candidate.sized else None
@@ -104,7 +109,7 @@ def _wanted(members: tuple[Candidate, ...], kind: str | None) -> tuple[Candidate
 def _by_shapes(
     scene: Scene, data: Data, shapes: Shapes | None, elastic: Elastic, count: int | None
 ) -> tuple[Data, tuple[Found, ...], dict[int, float]]:
-    """(the data paired by shape, what is to be told of it, MAC by entry). Where shapes alone are exchanged, by order."""
+    """(the data paired by shape, what is to be told of it, MAC by entry). By order where shapes alone are exchanged."""
     if shapes is None:
         return data, (), {}
     pairs, likeness, told = by_shape(scene.beam, shapes, elastic.kept)
@@ -127,17 +132,22 @@ def _of_shapes_alone(found: Found) -> Found:
 
 
 def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found, ...]]:
-    """What the list is at the given size, or at another where it is not that. Raises InputError where nothing has it."""
+    """What the list is at the given size, or else at one beside it. Raises InputError where nothing is so large."""
     found = identify(data, count)
     if count is not None and (found is None or not (found.explained and found.best.candidate.sized)):
-        other = identify(data, None)
-        better = other is not None and other.explained and other.best.candidate.sized and other.best.count != count
-        if other is not None and better and (found is None or other.best.score < found.best.score - 10.0):
+        others = [
+            identify(data, other)
+            for other in sorted({2 * count, count // 2, *range(count - 2, count + 3)} - {count})
+            if other > 1
+        ]
+        good = [one for one in others if one is not None and one.explained and one.best.candidate.sized]
+        other = min(good, key=lambda one: one.best.score, default=None)
+        if other is not None and (found is None or other.best.score < found.best.score - _OTHER_COUNT):
             words = f"the list is that of {other.best.count} parts, not of the {count} that --count says"
             return other, (Found(kind="count", words=words),)
     if found is None:
         n = len(data.listed)
-        raise InputError(f"count = {count}: no candidate of so few parts has the {n} modes of the list, raise count")
+        raise InputError(f"count = {count}: no model of so few parts has the {n} modes of the list, raise count")
     return found, ()
 
 
@@ -149,6 +159,26 @@ def _of_list(found: Identified, data: Data) -> tuple[Found, ...]:
     elif found.reading.factor in UNITS:
         told.append(Found(kind="unit", words=f"the frequencies are too large by {UNITS[found.reading.factor]}"))
     return (*told, *(missing(best.pairs, len(data.listed)) if data.paired is None else ()))
+
+
+def _of_supports(scene: Scene, found: Identified, data: Data) -> tuple[Found, ...]:
+    """Other supports whose exact frequencies the lower half of an unexplained list is near to."""
+    if found.best.residual <= CREDIBLE:
+        return ()
+    n = max(min(len(data.listed) // 2, 6), 2)
+    near: dict[tuple[Support, Support], float] = {}
+    for supports in combinations_with_replacement(get_args(Support), 2):
+        try:
+            other = exact_hz(msgspec.structs.replace(scene.beam, supports=supports), n)
+        except InputError:  # something on the beam stands where these supports hold it
+            continue
+        near[supports] = float(abs(np.log(data.listed[:n] / other)).max()) if len(data.listed) >= n else np.inf
+    best = min(near, key=lambda one: near[one], default=None)
+    if best is None or near[best] > CREDIBLE:
+        return ()
+    within = f"within {max(100.0 * near[best], 0.01):.2g} % of those of a {'-'.join(best)} beam"
+    words = f"the first {n} frequencies lie {within}, and the scene's is not held so"
+    return (Found(kind="supports", words=words),)
 
 
 def _scale_words(factor: float) -> str:

@@ -116,7 +116,9 @@ def family(beam: Beam) -> tuple[Candidate, ...]:
 
 def _chains(beam: Beam) -> Iterator[Candidate]:
     clamped = "clamped" in beam.supports
-    walls: tuple[str | None, ...] = ("half", *(w for w in WALLS if w != "half"), "full", "rigid") if clamped else (None,)
+    walls: tuple[str | None, ...] = (
+        ("half", *(w for w in WALLS if w != "half"), "full", "rigid") if clamped else (None,)
+    )
     rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
     for joints, wall, theory in product(rules, walls, THEORIES):
         if theory == "euler-bernoulli" or wall not in ("full", "rigid"):
@@ -232,4 +234,3 @@ def exact_hz(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Array
         raise InputError(f"theory = {theory!r} has no exact frequencies here for this beam")
     asked: dict[str, str | float] = {"theory": theory}
     return np.asarray(MODELS[EXACT].solve_modes(beam, n_modes, None, **asked).frequencies_hz)  # type: ignore[arg-type]
-

@@ -12,7 +12,7 @@ from math import exp, inf, log, pi, sqrt
 import msgspec
 import numpy as np
 
-from verify.identify.family import Candidate, Solver
+from verify.identify.family import EXACT, Candidate, Solver
 from verify.models.arrays import Array, Indices
 
 FLOOR = 1e-9
@@ -21,6 +21,8 @@ SURE = 100.0
 """By how much likelier the best has to be than another for both to be told apart, with noise of unknown size."""
 TOLERANCE = 1e-3
 """Up to here a candidate is said to explain a list."""
+CREDIBLE = 0.02
+"""A list that is farther than this from every candidate is not said to be in another unit, or to lack a mode."""
 UNITS = {
     2.0 * pi: "2 pi: they are in rad/s, not Hz",
     0.5 / pi: "1/(2 pi): they were divided by 2 pi once too often",
@@ -34,6 +36,10 @@ UNITS = {
 """Factors that a wrong unit brings, and which."""
 COUNTS = (2, 400)
 """Sizes that are tried where nobody says the size."""
+_ANYWHERE_NEAR = 0.7
+"""Difference in log frequency that dividing a beam and missing a mode or two may make."""
+_SMALL_FACTOR = 5e-3
+"""A common factor nearer to one is believed only where it leaves nothing to explain."""
 _UNIT_COST, _SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
 """In natural logarithms of likelihood."""
 _SKIP = 0.03
@@ -86,20 +92,26 @@ class Reading(msgspec.Struct, frozen=True, kw_only=True):
 PLAIN = Reading(factor=1.0, aligned=False, cost=0.0)
 
 
-def in_order(n: int) -> tuple[Reading, ...]:
+def in_order(n: int, units: Sequence[float]) -> tuple[Reading, ...]:
     """Readings by which no mode is missing, the plain one first."""
-    units = [Reading(factor=factor, aligned=False, cost=_UNIT_COST) for factor in UNITS]
-    return PLAIN, *units, *([Reading(factor=None, aligned=False, cost=_SCALE_COST)] if n >= 3 else [])
+    scaled = [Reading(factor=factor, aligned=False, cost=_UNIT_COST) for factor in units]
+    return PLAIN, *scaled, *([Reading(factor=None, aligned=False, cost=_SCALE_COST)] if n >= 3 else [])
 
 
-def with_gaps(n: int, *, units: bool) -> tuple[Reading, ...]:
+def with_gaps(units: Sequence[float]) -> tuple[Reading, ...]:
     """Readings by which modes are missing or too many."""
-    factors = {1.0: 0.0} | (dict.fromkeys(UNITS, _UNIT_COST) if units else {})
-    return tuple(Reading(factor=factor, aligned=True, cost=cost) for factor, cost in factors.items() if n >= 3)
+    factors = {1.0: 0.0} | dict.fromkeys(units, _UNIT_COST)
+    return tuple(Reading(factor=factor, aligned=True, cost=cost) for factor, cost in factors.items())
 
 
 def fit(
-    listed: Array, rounding: Array, candidate: Candidate, count: int | None, found: Array, reading: Reading, paired: Pairs | None
+    listed: Array,
+    rounding: Array,
+    candidate: Candidate,
+    count: int | None,
+    found: Array,
+    reading: Reading,
+    paired: Pairs | None,
 ) -> Fit | None:
     """One candidate's frequencies `found` (m,) beside a list (n,), both Hz; None where it has too few.
 
@@ -122,7 +134,14 @@ def fit(
 
 
 def _judged(
-    candidate: Candidate, count: int | None, pairs: Pairs, logs: Array, factor: float, rounding: Array, cost: float, n: int
+    candidate: Candidate,
+    count: int | None,
+    pairs: Pairs,
+    logs: Array,
+    factor: float,
+    rounding: Array,
+    cost: float,
+    n: int,
 ) -> Fit:
     beyond = np.maximum(abs(logs) - rounding, 0.0)
     residual = float(np.sqrt(np.mean(beyond**2)))
@@ -166,7 +185,6 @@ def _aligned(logs: Array, known: Array) -> Pairs:
             modes.append(j - 1)
         i, j = i - (step != 1), j - (step != 2)
     return Pairs(entries=np.array(entries[::-1], dtype=np.intp), modes=np.array(modes[::-1], dtype=np.intp))
-
 
 
 class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -226,13 +244,31 @@ def identify(data: Data, count: int | None) -> Identified | None:
     `count` is the number of its parts; None tries all plausible ones. Gaps are looked for where nothing else explains
     the list and nobody says which mode each entry is.
     """
-    n = len(data.listed)
-    found = _best_of(data, count, in_order(n))
+    n, units = len(data.listed), _units(data)
+    found = _best_of(data, count, in_order(n, units))
     if data.paired is None and n >= 3 and not (found is not None and found.explained):
-        gapped = _best_of(data, count, with_gaps(n, units=count is not None))
+        gapped = _best_of(data, count, with_gaps(units))
         if gapped is not None and (found is None or gapped.best.score < found.best.score):
-            return gapped
+            found = gapped
+    if found is not None and not _credible(found):
+        return _best_of(data, count, (PLAIN,)) or found
     return found
+
+
+def _units(data: Data) -> tuple[float, ...]:
+    """Those factors of a wrong unit that bring the list anywhere near the exact beam."""
+    pairs = data.paired or _in_order(len(data.listed))
+    exact = data.solver.or_nothing(Candidate(model=EXACT), None)
+    off = float(np.median(np.log(data.listed[pairs.entries] / exact[pairs.modes])))
+    return tuple(factor for factor in UNITS if abs(off - log(factor)) < _ANYWHERE_NEAR)
+
+
+def _credible(found: Identified) -> bool:
+    """Whether what a list is said to suffer from is borne out: what is left is small, and smaller than a factor."""
+    if found.reading == PLAIN or found.explained:
+        return True
+    small_factor = found.reading.factor is None and abs(log(found.best.factor)) < _SMALL_FACTOR
+    return found.best.residual <= CREDIBLE and not small_factor
 
 
 def _best_of(data: Data, count: int | None, among: Sequence[Reading]) -> Identified | None:
@@ -253,7 +289,11 @@ def _sized(tried: Callable[[int | None], Fit | None], candidate: Candidate, coun
     """The fit at a size, or at the best of all sizes: a look at some, then downhill from where those around point."""
     if not candidate.sized or count is not None:
         return tried(count if candidate.sized else None)
-    known: dict[int, Fit | None] = {size: tried(size) for size in _grid()}
+    known: dict[int, Fit | None] = {}
+    for size in _grid():
+        known[size] = tried(size)
+        if _rising([one.score for one in known.values() if one is not None]):
+            break
 
     def score(size: int) -> float:
         if size not in known:
@@ -269,6 +309,11 @@ def _sized(tried: Callable[[int | None], Fit | None], candidate: Candidate, coun
     while (there := min(here - 1, here + 1, key=score)) and score(there) < score(here):
         here = there
     return known[here]
+
+
+def _rising(scores: list[float]) -> bool:
+    """Whether the best size lies behind: the last three scores go up from the least."""
+    return len(scores) > 3 and scores[-4] == min(scores) and scores[-4] < scores[-3] < scores[-2] <= scores[-1]
 
 
 def _pointed_to(around: "list[Fit | None]") -> int:
@@ -337,4 +382,3 @@ def smooth(one: Fit, rounding: Array) -> bool:
 def deviates(exact: Array, listed: Array, fitted: Fit) -> float:
     """Largest difference of a list from the exact beam, its factor taken out."""
     return float(abs(listed[fitted.pairs.entries] / fitted.factor / exact[fitted.pairs.modes] - 1.0).max())
-

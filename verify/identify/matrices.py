@@ -176,7 +176,7 @@ def chain(beam: Beam, count: int, n_modes: int, *, wall: str, mass: str, theory:
     line = line_of(beam, count, theory)
     slopes, jumps = _differences(line)
     free, compliances = line.free(), _compliances(line, wall)
-    for end, beside, support in zip((0, -1), (1, -2), line.supports, strict=True):
+    for beside, support in zip((1, -2), line.supports, strict=True):
         if support == "clamped" and wall == "rigid":
             free[beside] = False
     jointed = np.isfinite(compliances) & (compliances > 0.0)

@@ -1,8 +1,8 @@
 """A model class of somebody else, imported, asked for its modes, and held to what they have to be."""
 
 import sys
-from contextlib import contextmanager
 from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -104,7 +104,7 @@ def _available(model: Any, beam: Beam, count: int | None, name: str) -> int:
     """How many modes to ask for: what it has, at most `MODES`."""
     if count is None or not hasattr(model, "n_elastic"):
         return MODES
-    have = _called(name, "n_elastic", lambda: int(model.n_elastic(beam, count)))
+    have: int = _called(name, "n_elastic", lambda: int(model.n_elastic(beam, count)))
     if have < 1:
         raise InputError(f"count = {count}: model {name} has no elastic mode at that size, raise it")
     return min(MODES, have)

@@ -20,7 +20,7 @@ class Found(msgspec.Struct, frozen=True, kw_only=True):
     """Something about a list that is to be told."""
 
     kind: str
-    """unit, scale, missing, extra, twice, rigid, swapped, count, unlike."""
+    """unit, scale, missing, extra, twice, rigid, swapped, count, supports, unlike."""
     words: str
     """A sentence without its full stop."""
     wrong: bool = True
@@ -54,8 +54,8 @@ def elastic_of(listed: Listed, beam: Beam, exact: Array) -> Elastic:
             kept.append(i)
     if twice:
         rows = ", ".join(str(i + 1) for i in twice[:5]) + (" and more" if len(twice) > 5 else "")
-        many = "entries" if len(twice) > 1 else "entry"
-        told.append(Found(kind="twice", words=f"{many} {rows} of the list repeat the one before: a mode is there twice"))
+        said = f"entries {rows} of the list repeat" if len(twice) > 1 else f"entry {rows} of the list repeats"
+        told.append(Found(kind="twice", words=f"{said} the one before: a mode is there twice"))
     return Elastic(kept=np.array(kept, dtype=np.intp), numbers=_numbers(listed, kept, rigid), told=tuple(told))
 
 
@@ -115,8 +115,8 @@ def by_shape(beam: Beam, shapes: Shapes, kept: Indices) -> tuple[Pairs, Array, t
     like = likeness >= LIKENESS
     if not like.any():
         raise InputError(
-            f"modes: no shape is like one of the beam's (best MAC {float(likeness.max()):.2f}): check the unit of x and "
-            "which column is which mode"
+            f"modes: no shape is like one of the beam's (best MAC {float(likeness.max()):.2f}): check the unit of x "
+            "and which column is which mode"
         )
     told = [
         Found(kind="unlike", words=f"the shape of entry {kept[i] + 1} is like no mode's (best MAC {likeness[i]:.2f})")

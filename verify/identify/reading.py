@@ -1,6 +1,7 @@
 """Lists that others have written: natural frequencies and mode shapes, in any of the layouts that tables come in."""
 
 import re
+from itertools import pairwise
 from math import isfinite, pi
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -96,8 +97,8 @@ def check_rising(values: "list[float]", where: str, lines: "tuple[int, ...] | ra
     for i in range(1, len(values)):
         if values[i] < values[i - 1]:
             raise InputError(
-                f"{where} line {lines[i]}: {values[i]!r} lies below {values[i - 1]!r} before it: sort the list, or give "
-                "the shapes with --modes, by which modes are then paired"
+                f"{where} line {lines[i]}: {values[i]!r} lies below {values[i - 1]!r} before it: sort the list, or "
+                "give the shapes with --modes, by which modes are then paired"
             )
 
 
@@ -111,7 +112,8 @@ def read_shapes(path: Path, length: float, n_modes: int) -> Shapes:
     width = len(rows.cells[0])
     if width - 1 != n_modes:
         raise InputError(
-            f"{rows.where} has {width - 1} mode shapes beside x, and the list {n_modes} frequencies: give a column for each"
+            f"{rows.where} has {width - 1} mode shapes beside x, and the list {n_modes} frequencies: give a column for "
+            "each"
         )
     table = np.array([[_value(rows, i, k, "value") for k in range(width)] for i in range(len(rows.cells))])
     shapes = Shapes(x=table[:, 0], values=table[:, 1:].T)
@@ -156,7 +158,9 @@ def _rows(path: Path, field: str) -> _Rows:
         raise InputError(f"{where} has {len(cells)} rows: give at most {MOST}")
     for (line, _), row in zip(kept, cells, strict=True):
         if len(row) != len(cells[0]):
-            raise InputError(f"{where} line {line} has {len(row)} cells and the first row {len(cells[0])}: make them alike")
+            raise InputError(
+                f"{where} line {line} has {len(row)} cells and the first row {len(cells[0])}: make them alike"
+            )
     width = len(cells[0])
     if head and len(head) != width:  # words between spaces: the unit is somewhere among them
         head = ("mode", " ".join(head))[-width:] if width <= 2 else ()
@@ -186,7 +190,7 @@ def _split(lines: list[str]) -> list[tuple[str, ...]]:
 
 def _has_decimal_commas(lines: list[str]) -> bool:
     """Whether commas between spaces or alone on their line are decimal: no point beside them, no count before them."""
-    numbers = [line for line in lines if any(_is_number(cell) for cell in line.split())]
+    numbers = [line for line in lines if line[0] in "+-.,0123456789"]
     parts = [part for line in numbers for part in line.split()]
     if not numbers or "." in "".join(numbers) or any(part.count(",") > 1 or part.endswith(",") for part in parts):
         return False
@@ -223,7 +227,9 @@ def _columns(rows: _Rows) -> tuple[int | None, int]:
     width = len(rows.cells[0])
     if rows.head:
         numbered = next((k for k, name in enumerate(rows.head) if _NUMBERED.match(name)), None)
-        named = [k for k, name in enumerate(rows.head) if k != numbered and any(p.search(name) for p in _UNITS.values())]
+        named = [
+            k for k, name in enumerate(rows.head) if k != numbered and any(p.search(name) for p in _UNITS.values())
+        ]
         hertz = [k for k in named if _unit_of(rows.head[k]) == "hz"]
         others = [k for k in range(width) if k != numbered]
         if found := hertz or named or (others if len(others) == 1 else []):
@@ -240,7 +246,7 @@ def _columns(rows: _Rows) -> tuple[int | None, int]:
 
 
 def _rises(numbers: list[int]) -> bool:
-    return all(b > a for a, b in zip(numbers, numbers[1:], strict=False)) and numbers[0] <= 1
+    return all(b > a for a, b in pairwise(numbers)) and numbers[0] <= 1
 
 
 def _unit_of(name: str) -> str:
@@ -253,10 +259,10 @@ def _mode_numbers(rows: _Rows, column: int | None) -> tuple[int, ...] | None:
         return None
     numbers = [_value(rows, i, column, "mode number") for i in range(len(rows.cells))]
     for i, number in enumerate(numbers):
-        if number != int(number) or number < 0 or (i and number <= numbers[i - 1]):
+        if number != int(number) or not 0 <= number <= MOST or (i and number <= numbers[i - 1]):
             raise InputError(
-                f"{rows.where} line {rows.lines[i]}: mode number {number:g} is no whole number above the one before: "
-                "number the modes upwards"
+                f"{rows.where} line {rows.lines[i]}: mode number {number:g} is no whole number above the one before "
+                f"and up to {MOST}: number the modes upwards"
             )
     return tuple(int(number) + (numbers[0] == 0) for number in numbers)
 

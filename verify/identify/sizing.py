@@ -11,6 +11,8 @@ from verify.judge.workbench import Workbench
 
 _MOST = 1000
 _STEP = 1.15
+_IN_A_ROW = 5
+"""Sizes that have to do, up to twice the first of them."""
 
 
 class Enough(msgspec.Struct, frozen=True, kw_only=True):
@@ -47,20 +49,24 @@ def parts_for(bench: Workbench, candidate: Candidate, mode: int, error: float) -
 
 
 def _searched(beam: Beam, candidate: Candidate, mode: int, error: float) -> int | None:
-    """Sizes 15 % apart up to 1000 and between the last that fails and the next. Raises InputError."""
+    """Sizes 15 % apart until five in a row do, and between the last that fails and the next. Raises InputError."""
     exact = float(exact_hz(beam, mode, candidate.theory)[-1])
 
     def reached(count: int) -> bool:
         found = frequencies_hz(candidate, beam, count, mode)
         return len(found) == mode and bool(np.isfinite(found[-1])) and abs(float(found[-1]) / exact - 1.0) <= error
 
-    sizes = [max(mode, len(beam.pieces), 2)]
-    while sizes[-1] < _MOST:
-        sizes.append(max(sizes[-1] + 1, round(_STEP * sizes[-1])))
-    failed = next((i for i in range(len(sizes) - 1, -1, -1) if not reached(sizes[i])), -1)
-    if failed == len(sizes) - 1:
-        return None
-    low, high = (sizes[failed], sizes[failed + 1]) if failed >= 0 else (sizes[0] - 1, sizes[0])
+    size = max(mode, len(beam.pieces), 2)
+    low, does = size - 1, list[int]()
+    while len(does) < _IN_A_ROW:
+        if reached(size):
+            does.append(size)
+        else:
+            low, does = size, []
+        size = max(size + 1, round(_STEP * size))
+        if size > _MOST and not does:
+            return None
+    high = does[0]
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if reached(middle) else (middle, high)

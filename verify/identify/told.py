@@ -63,17 +63,16 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
     @property
     def answer(self) -> str:
         """What the model is, in a sentence or two."""
-        wrong = [remark.words for remark in self.told]
-        sentences = [*wrong, self._identity(), self._surety()]
+        wrong = [remark.words for remark in self.told if remark.wrong]
+        notes = [remark.words for remark in self.told if not remark.wrong]
+        sentences = [*wrong, self._identity(), self._surety(), *notes]
         return " ".join(f"{one[:1].upper()}{one[1:]}." for one in sentences if one)
 
     def _identity(self) -> str:
         best = self.found.best
         if best.residual > TOLERANCE:
-            return (
-                f"none of the known family fits: the nearest, {best.candidate.words}{_sized(best)}, leaves differences of "
-                f"{in_percent(best.residual, sign=False)}"
-            )
+            left = in_percent(best.residual, sign=False)
+            return f"none of the known family fits: the nearest, {best.candidate.words}{_sized(best)}, leaves {left}"
         if self.found.systematic:
             return (
                 f"nothing of the known family is it quite: the nearest, {best.candidate.words}{_sized(best)}, leaves "
@@ -92,24 +91,35 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         return f"; {said}" + (f" ({size.better_count} with {size.better})" if size.better else "")
 
     def _surety(self) -> str:
-        """How surely."""
-        found, best = self.found, self.found.best
-        if not found.explained:
+        """How surely: what is left over, what else it may be, how far off the next is."""
+        best = self.found.best
+        if not self.found.explained:
             return ""
-        with_count = f"with {best.count} parts it leaves" if best.count else "it leaves"
-        left = f"{with_count} {_left(best)}"
-        if found.alike:
-            others = "; or ".join(f"{one.candidate.words}{_sized(one)}" for one in found.alike[:2])
-            more = f" or {len(found.alike) - 2} more" if len(found.alike) > 2 else ""
-            return f"{left}; these frequencies do not tell it from {others}{more}" + self._otherwise()
-        return left + self._otherwise()
+        left = f"{f'With {best.count} parts' if best.count else 'So read,'} it leaves {_left(best)}"
+        return "; ".join(part for part in (left, self._alike(), self._following()) if part)
 
-    def _otherwise(self) -> str:
+    def _alike(self) -> str:
+        """What it may be as well."""
+        alike = self.found.alike
+        if not alike:
+            return ""
+        if self.found.best.candidate.sized and any(not one.candidate.sized for one in alike):
+            return (
+                "but these frequencies do not tell it from the exact beam: too few, too noisy, or divided too finely "
+                "to see by what rule"
+            )
+        others = " or ".join(f"{one.candidate.words}{_sized(one)}" for one in alike[:2])
+        more = f" or {len(alike) - 2} more" if len(alike) > 2 else ""
+        same = "has the same frequencies" if alike[0].residual <= FLOOR else "fits about as well"
+        return f"{others}{more} {same}, which a list cannot tell apart"
+
+    def _following(self) -> str:
+        """What it is not."""
         following = self.found.next
         if following is None:
             return ""
-        times = f"{self.found.odds:.2g} times as much" if self.found.best.residual > FLOOR else _left(following)
-        return f"; the next, {following.candidate.words}{_sized(following)}, {times}"
+        times = f", {self.found.odds:.2g} times as much" if self.found.best.residual > FLOOR else ""
+        return f"the next, {following.candidate.words}{_sized(following)}, leaves {_left(following)}{times}"
 
     def facts(self) -> tuple[str, ...]:
         """The answer."""
@@ -117,7 +127,8 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
 
     def _largest(self) -> str:
         worst = max(self.rows, key=lambda row: abs(row.error))
-        return f"Against the exact beam ({self.theory}) the largest error is {in_percent(worst.error)}, at mode {worst.mode}."
+        error = f"{in_percent(worst.error)}, at mode {worst.mode}"
+        return f"Against the exact beam ({self.theory}) the largest error is {error}."
 
     def tables(self) -> tuple[Table, ...]:
         """Modes, and candidates."""
@@ -137,7 +148,8 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         )
         rows = []
         for row in self.rows:
-            cells = (row.mode, row.entry, row.frequency_hz, row.exact_hz, row.error, row.best_hz, row.difference)
+            off: float | str = row.difference if abs(row.difference) > FLOOR else "rounding"
+            cells = (row.mode, row.entry, row.frequency_hz, row.exact_hz, row.error, row.best_hz, off)
             rows.append((*cells, row.likeness) if shaped else cells)
         return Table(title="Modes", columns=columns, rows=tuple(rows), shown="both")
 
@@ -151,7 +163,13 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         )
         shown = self.found.fits[:_SHOWN]
         rows = tuple(
-            (one.candidate.words, one.count, one.candidate.order, one.residual, float(abs(one.differences).max()))
+            (
+                one.candidate.words,
+                one.count,
+                one.candidate.order,
+                one.residual if one.residual > FLOOR else "rounding",
+                float(abs(one.differences).max()),
+            )
             for one in shown
         )
         rest = len(self.found.fits) - len(shown)
@@ -234,12 +252,18 @@ def judged(
     """The list as it stands, what it is, and where asked its errors against the exact beam."""
     wrong = [one for one in told if one.wrong]
     reason = "; ".join(one.words for one in wrong)
-    gates = [_gate("list", float(len(wrong)), 0.0, reason, "A list that stands as it is has nothing to be mended.", "1")]
+    gates = [
+        _gate("list", float(len(wrong)), 0.0, reason, "A list that stands as it is has nothing to be mended.", "1")
+    ]
     off = max(rows, key=lambda row: abs(row.difference))
-    why = "A model is a member of the family if every mode is its mode, and what is left over does not go with the mode."
+    why = (
+        "A model is a member of the family if every mode is its mode, and what is left over does not go with the mode."
+    )
     reason = f"mode {off.mode} is {in_percent(off.difference)} off the nearest candidate"
     if found.systematic and abs(off.difference) <= TOLERANCE:
-        reason = f"what is left over, up to {in_percent(off.difference)} at mode {off.mode}, goes smoothly with the mode"
+        reason = (
+            f"what is left over, up to {in_percent(off.difference)} at mode {off.mode}, goes smoothly with the mode"
+        )
     passed = abs(off.difference) <= TOLERANCE and not found.systematic
     gates.append(_gate("identified", abs(off.difference), TOLERANCE, "" if passed else reason, why, "1"))
     if within is not None:
