@@ -1,5 +1,7 @@
 """Models of a uniform beam as others write them down: dense matrices from the textbook, nothing of `verify`'s."""
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.linalg import eigh
 
@@ -67,7 +69,7 @@ def lumped_elements(beam, n, rotary=0.0):
     condensed = k[np.ix_(moves, moves)] - k[np.ix_(moves, turns)] @ np.linalg.solve(
         k[np.ix_(turns, turns)], k[np.ix_(turns, moves)]
     )
-    return np.sqrt(eigh(condensed, np.diag(masses[moves]), eigvals_only=True)) / (2 * np.pi)
+    return np.sqrt(abs(eigh(condensed, np.diag(masses[moves]), eigvals_only=True))) / (2 * np.pi)
 
 
 def printed_chain(pieces, supports, n):
@@ -83,7 +85,7 @@ def printed_chain(pieces, supports, n):
         slopes[i, i : i + 2], middles[i, i : i + 2] = (-1 / length, 1 / length), 0.5
     length, e, i = links[0][:3]
     k = [2 * e * i / length]
-    for (l1, e1, i1, _), (l2, e2, i2, _) in zip(links, links[1:], strict=False):
+    for (l1, e1, i1, _), (l2, e2, i2, _) in pairwise(links):
         k.append(2 * e1 * e2 * i1 * i2 / (e1 * i2 * l2 + e2 * i1 * l1))
     angles = np.diff(slopes, axis=0, prepend=np.zeros((1, size + 1)))
     stiffness = angles.T @ np.diag(k) @ angles

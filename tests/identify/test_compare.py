@@ -115,11 +115,13 @@ def test_links_without_inertia_are_of_order_2_too_and_lie_above(told):
     assert all(row["error"] > 0.0 for row in found["modes"])
 
 
-@pytest.mark.parametrize(("rotary", "mass"), [(0.0, "lumped"), (1 / 24, "lumped-rotary"), (1 / 78, "hrz")])
-def test_elements_with_lumped_mass_are_told_from_each_other_and_from_every_chain(told, rotary, mass):
+@pytest.mark.parametrize(
+    ("rotary", "mass", "order"), [(0.0, "lumped", 4), (1 / 24, "lumped-rotary", 2), (1 / 78, "hrz", 2)]
+)
+def test_elements_with_lumped_mass_are_told_from_each_other_and_from_every_chain(told, rotary, mass, order):
     beam = scene("steel-cantilever", *CLAMPED_PINNED).beam
     found = told(lumped_elements(beam, 25, rotary)[:9], overrides=CLAMPED_PINNED, count=25)
-    assert chosen(found, "model", "mass", "order", "wall") == ("fem", mass, 2, None)
+    assert chosen(found, "model", "mass", "order", "wall") == ("fem", mass, order, None)
     assert found["certainty"]["told_apart"]
     assert found["certainty"]["next_over_best"] > 1e3
 
@@ -184,7 +186,9 @@ def test_missing_modes_are_named(told, gone):
 def test_a_mode_that_is_missing_by_its_number_needs_no_guess(tmp_path):
     path = tmp_path / "list.csv"
     whole = lumped_rod(PAPER, 20)
-    path.write_text("mode;f/Hz\n" + "".join(f"{mode};{whole[mode - 1]:.9f}\n".replace(".", ",") for mode in (1, 2, 5, 9)))
+    path.write_text(
+        "mode;f/Hz\n" + "".join(f"{mode};{whole[mode - 1]:.9f}\n".replace(".", ",") for mode in (1, 2, 5, 9))
+    )
     found = compare(scene("paper"), Asked(frequencies=path, count=20)).plain()
     assert [row["mode"] for row in found["modes"]] == [1, 2, 5, 9]
     assert chosen(found, "mass") == ("joints",)
@@ -431,3 +435,25 @@ def test_parts_are_counted_for_another_error_at_another_mode(verify):
     assert needed["mode"] == 3
     assert needed["error"] == 0.01
     assert 10 < needed["count"] < 25
+
+
+def commands():
+    text = (Path(__file__).parents[2] / "docs" / "compare.md").read_text("utf-8")
+    return [line for line in text.splitlines() if line.startswith("verify compare")]
+
+
+@pytest.mark.parametrize("command", commands())
+def test_the_pages_commands_run(command, monkeypatch, capsys):
+    monkeypatch.chdir(Path(__file__).parents[2])
+    assert status_of(command.split()[1:]) == 0
+    assert " ".join(capsys.readouterr().out.split()).startswith(
+        "Your chain follows the 2EI/l rule at the wall, order 2;"
+    )
+
+
+def test_the_page_quotes_what_its_command_answers(monkeypatch, capsys):
+    monkeypatch.chdir(Path(__file__).parents[2])
+    status_of(commands()[0].split()[1:])
+    text = Path("docs/compare.md").read_text("utf-8")
+    quoted = " ".join(line.removeprefix("> ") for line in text.splitlines() if line.startswith("> "))
+    assert quoted in " ".join(capsys.readouterr().out.split())

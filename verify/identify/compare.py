@@ -16,7 +16,6 @@ from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic
 from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
 from verify.identify.sizing import Enough, enough
 from verify.identify.told import Compared, Row, judged
-from verify.judge.workbench import Workbench
 from verify.models.arrays import Array
 from verify.options import Support
 from verify.scenes.scene import Scene
@@ -76,7 +75,7 @@ def compare(scene: Scene, asked: Asked) -> Compared:
     told = (*elastic.told, *told, *_of_list(found, data), *recounted, *_of_supports(scene, found, data))
     best = found.best
     mode = asked.mode or int(best.pairs.modes.max()) + 1
-    size = enough(Workbench(beam), best.candidate, mode, asked.error) if best.candidate.sized else None
+    size = enough(beam, best.candidate, mode, asked.error) if best.candidate.sized else None
     rows = _rows(data, found, exact, likeness, elastic)
     return _told(scene, asked, listed, found, told, rows, size, solver)
 
@@ -145,7 +144,7 @@ def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found,
         if other is not None and (found is None or other.best.score < found.best.score - _OTHER_COUNT):
             words = f"the list is that of {other.best.count} parts, not of the {count} that --count says"
             return other, (Found(kind="count", words=words),)
-    if found is None:
+    if found is None or (count is not None and not any(fit.candidate.sized for fit in found.fits)):
         n = len(data.listed)
         raise InputError(f"count = {count}: no model of so few parts has the {n} modes of the list, raise count")
     return found, ()
@@ -211,6 +210,7 @@ def _rows(data: Data, found: Identified, exact: Array, likeness: dict[int, float
                 error=yours / float(exact[mode]) - 1.0,
                 best_hz=float(known[mode]),
                 difference=float(off),
+                beyond=max(abs(float(off)) - float(data.rounding[entry]), 0.0),
                 likeness=likeness.get(int(entry)),
             )
         )

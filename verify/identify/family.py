@@ -121,50 +121,53 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
     )
     rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
     for joints, wall, theory in product(rules, walls, THEORIES):
-        if theory == "euler-bernoulli" or wall not in ("full", "rigid"):
-            order = _order(beam, wall, joints)
+        if theory != "timoshenko" or wall not in ("full", "rigid"):
+            order = _order(beam, wall, joints, theory)
             yield Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", theory=theory, order=order)
     plain = [wall for wall in walls if wall in (None, "half", "gregory", "full", "rigid")]
-    for mass, wall, theory in product(("points", "joints"), plain, ("euler-bernoulli", "rayleigh")):
+    for mass, wall in product(("points", "joints"), plain):
         order = min(_order(beam, wall, "series"), 2)
-        yield Candidate(model=CHAIN, wall=wall, joints="series", mass=mass, theory=theory, order=order)
+        yield Candidate(model=CHAIN, wall=wall, joints="series", mass=mass, order=order)
     for wall in plain:
+        if wall == "gregory":
+            continue
         order = min(_order(beam, wall, "series"), 2)
         yield Candidate(
             model=CHAIN, wall=wall, joints="series", mass="joints", theory="timoshenko", order=order, shearing=True
         )
 
 
-def _order(beam: Beam, wall: str | None, joints: str) -> int:
-    """Of links with their own inertia: the wall's, at most 2 over a step or under tension, 1 by Eq. (1) as printed."""
+def _order(beam: Beam, wall: str | None, joints: str, theory: str = "euler-bernoulli") -> int:
+    """Of links with their own inertia: the wall's; at most 2 over a step, under tension, of a thick beam; printed 1."""
     order = _WALL_ORDERS[wall] if wall else 4
     if joints == "printed":
         return 1
-    return min(order, 2) if beam.stepped or (beam.tension and joints != "tensioned") else order
+    thick = theory != "euler-bernoulli"
+    return min(order, 2) if thick or beam.stepped or (beam.tension and joints != "tensioned") else order
 
 
 def _elements(beam: Beam) -> Iterator[Candidate]:
-    # without rotary inertia at the nodes, -mu^4/1440 where no end is clamped against, or free of, a node's mass
-    even = set(beam.supports) <= {"pinned", "guided"} and not beam.stepped
+    # without rotary inertia at the nodes, -mu^4/1440 but where half an element's mass sits at a free end
+    even = "free" not in beam.supports and not beam.stepped
     orders = {"consistent": 4, "lumped": 4 if even else 2, "lumped-rotary": 2, "hrz": 2}
     for (mass, order), theory in product(orders.items(), THEORIES):
-        yield Candidate(model=ELEMENTS, mass=mass, theory=theory, order=min(order, 4))
+        thick = theory != "euler-bernoulli" and mass == "lumped"
+        yield Candidate(model=ELEMENTS, mass=mass, theory=theory, order=2 if thick else order)
     for mass in ("linear", "linear-lumped"):
         yield Candidate(model=ELEMENTS, mass=mass, theory="timoshenko", order=2)
 
 
 class Solver:
-    """The frequencies of candidates on one beam, each solved once, and why some are left out."""
+    """The frequencies of candidates on one beam, and why some are left out."""
 
     def __init__(self, beam: Beam, n_modes: int) -> None:
         """Up to `n_modes` are asked of each."""
         self.beam, self.n_modes = beam, n_modes
         self.left_out: dict[Candidate, str] = {}
-        self._known = lru_cache(maxsize=None)(self._solved)
 
     def __call__(self, candidate: Candidate, count: int | None) -> Array:
         """Its first frequencies, (n_modes or as many as it has,), Hz. Raises InputError where it does not exist."""
-        return self._known(candidate, count if candidate.sized else None)
+        return frequencies_hz(candidate, self.beam, count if candidate.sized else None, self.n_modes)
 
     def or_nothing(self, candidate: Candidate, count: int | None) -> Array:
         """The same; empty, and the reason kept, where it does not exist."""
@@ -174,19 +177,18 @@ class Solver:
             self.left_out[candidate] = str(why)
             return np.empty(0)
 
-    def _solved(self, candidate: Candidate, count: int | None) -> Array:
-        return frequencies_hz(candidate, self.beam, count, self.n_modes)
 
-
+@lru_cache(maxsize=10_000)
 def frequencies_hz(candidate: Candidate, beam: Beam, count: int | None, n_modes: int) -> Array:
-    """The first frequencies of a candidate, (n_modes or as many as it has,), Hz.
+    """The first frequencies of a candidate, (n_modes or as many as it has,), Hz; kept, and not to be written to.
 
     Raises InputError where it does not exist on this beam, at this size, or by this theory.
     """
     if candidate.model == EXACT:
         return exact_hz(beam, n_modes, candidate.theory)
     assert count is not None
-    if candidate.packaged:
+    thick = candidate.theory == "rayleigh" and "theory" not in MODELS[CHAIN].modal_settings
+    if candidate.packaged and not (thick and candidate.model == CHAIN and candidate.joints == "series"):
         return _packaged(candidate, beam, count, n_modes)
     given = {"beam": beam, "count": count, "n_modes": n_modes}
     if candidate.model == ELEMENTS:

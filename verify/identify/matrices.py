@@ -174,6 +174,8 @@ def _link_mass(line: Line, mass: str) -> Any:
 def chain(beam: Beam, count: int, n_modes: int, *, wall: str, mass: str, theory: str) -> Array:
     """Frequencies of rigid links with joint springs, Hz: `mass` as in `_link_mass`. Raises InputError."""
     line = line_of(beam, count, theory)
+    if wall == "welded":
+        raise InputError("wall = 'welded' is no candidate here beside euler-bernoulli")
     slopes, jumps = _differences(line)
     free, compliances = line.free(), _compliances(line, wall)
     for beside, support in zip((1, -2), line.supports, strict=True):

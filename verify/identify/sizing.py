@@ -1,5 +1,7 @@
 """From how many parts on a member of the family keeps an error, and what would do with fewer."""
 
+from functools import lru_cache
+
 import msgspec
 import numpy as np
 
@@ -27,23 +29,24 @@ class Enough(msgspec.Struct, frozen=True, kw_only=True):
     better_count: int | None
 
 
-def enough(bench: Workbench, candidate: Candidate, mode: int, error: float) -> Enough:
+def enough(beam: Beam, candidate: Candidate, mode: int, error: float) -> Enough:
     """From which size on `candidate` keeps `error` at `mode`, and from which the best of its kind does."""
-    count = parts_for(bench, candidate, mode, error)
-    other, words = _better(bench.beam, candidate)
-    fewer = parts_for(bench, other, mode, error) if other is not None else None
+    count = parts_for(beam, candidate, mode, error)
+    other, words = _better(beam, candidate)
+    fewer = parts_for(beam, other, mode, error) if other is not None else None
     worth = fewer is not None and (count is None or fewer < count)
     return Enough(
         mode=mode, error=error, count=count, better=words if worth else "", better_count=fewer if worth else None
     )
 
 
-def parts_for(bench: Workbench, candidate: Candidate, mode: int, error: float) -> int | None:
+@lru_cache(maxsize=256)
+def parts_for(beam: Beam, candidate: Candidate, mode: int, error: float) -> int | None:
     """From which size on the error is kept, by the package's own search where the model is the package's; or None."""
     try:
         if candidate.packaged and candidate.theory == "euler-bernoulli":
-            return enough_from(bench, candidate.model, mode, error, candidate.settings).count
-        return _searched(bench.beam, candidate, mode, error)
+            return enough_from(Workbench(beam), candidate.model, mode, error, candidate.settings).count
+        return _searched(beam, candidate, mode, error)
     except InputError:
         return None
 

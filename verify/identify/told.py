@@ -35,6 +35,8 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     """Of the best candidate."""
     difference: float
     """Of `frequency_hz`, relative to the best candidate."""
+    beyond: float
+    """Its size, less what the rounding of the list explains."""
     likeness: float | None
     """MAC of its shape with the exact one; None without shapes."""
 
@@ -255,17 +257,17 @@ def judged(
     gates = [
         _gate("list", float(len(wrong)), 0.0, reason, "A list that stands as it is has nothing to be mended.", "1")
     ]
-    off = max(rows, key=lambda row: abs(row.difference))
+    off = max(rows, key=lambda row: row.beyond)
     why = (
         "A model is a member of the family if every mode is its mode, and what is left over does not go with the mode."
     )
     reason = f"mode {off.mode} is {in_percent(off.difference)} off the nearest candidate"
-    if found.systematic and abs(off.difference) <= TOLERANCE:
+    if found.systematic and off.beyond <= TOLERANCE:
         reason = (
             f"what is left over, up to {in_percent(off.difference)} at mode {off.mode}, goes smoothly with the mode"
         )
-    passed = abs(off.difference) <= TOLERANCE and not found.systematic
-    gates.append(_gate("identified", abs(off.difference), TOLERANCE, "" if passed else reason, why, "1"))
+    passed = off.beyond <= TOLERANCE and not found.systematic
+    gates.append(_gate("identified", off.beyond, TOLERANCE, "" if passed else reason, why, "1"))
     if within is not None:
         gates.append(_errors(rows, within))
     return tuple(gates)
