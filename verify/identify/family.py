@@ -92,7 +92,8 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         said += [_LINKS[self.mass or ""]] * (self.mass != "links" or not self.wall)
         said += [_RULES[self.joints or ""]] * (self.joints != "series")
         joined = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
-        return " ".join([joined, _THEORIES[self.theory]]).strip()
+        theory = _THEORIES[self.theory]
+        return f"{joined}, {theory}" if theory else joined
 
     @property
     def settings(self) -> tuple[tuple[str, str | float], ...]:

@@ -36,6 +36,8 @@ UNITS = {
 """Factors that a wrong unit brings, and which."""
 COUNTS = (2, 400)
 """Sizes that are tried where nobody says the size."""
+_UNKNOWN_NOISE = 1e-4
+"""Relative; of a list that is too short to show its own."""
 _ANYWHERE_NEAR = 0.7
 """Difference in log frequency that dividing a beam and missing a mode or two may make."""
 _SMALL_FACTOR = 5e-3
@@ -145,7 +147,7 @@ def _judged(
 ) -> Fit:
     beyond = np.maximum(abs(logs) - rounding, 0.0)
     residual = float(np.sqrt(np.mean(beyond**2)))
-    total = cost + pairs.skips(n) * _SKIP_COST if len(pairs.entries) > 1 else inf
+    total = cost + pairs.skips(n) * _SKIP_COST if len(pairs.entries) > min(1, n - 1) else inf
     return Fit(
         candidate=candidate,
         count=count,
@@ -366,8 +368,12 @@ def _preferred(fits: list[Fit], place: dict[Candidate, int]) -> tuple[Fit, ...]:
 
 
 def likelier(best: Fit, other: Fit, n: int) -> float:
-    """How many times likelier the best is, noise of unknown size on n modes; rounding tells nobody apart."""
-    ratio = sqrt(other.residual**2 + FLOOR**2) / sqrt(best.residual**2 + FLOOR**2)
+    """How many times likelier the best is, noise of unknown size on n modes; rounding tells nobody apart.
+
+    One or two modes say nothing of their noise, so that `_UNKNOWN_NOISE` is supposed.
+    """
+    floor = FLOOR if n > 2 else _UNKNOWN_NOISE
+    ratio = sqrt(other.residual**2 + floor**2) / sqrt(best.residual**2 + floor**2)
     return exp(min(n * log(ratio), 700.0)) if ratio > 1.0 else 1.0
 
 

@@ -12,6 +12,8 @@ from verify.models.arrays import Array, Indices
 
 _TINY = 3e-3
 """Of the entry above it: a frequency that is rounding, where the exact beam has no such gap."""
+_FARTHEST = 1e6
+"""Times the beam's own frequencies: beyond it a list is of something else."""
 _TWICE = 1e-3
 """Closer than this two entries are one mode; a beam's own modes lie farther apart."""
 
@@ -43,6 +45,7 @@ def elastic_of(listed: Listed, beam: Beam, exact: Array) -> Elastic:
     rigid, told = _n_rigid(values, exact), []
     if rigid == len(values):
         raise InputError(f"{listed.source} holds zeros alone: give the frequencies of elastic modes")
+    _check_sizes(listed, rigid, exact)
     if rigid:
         told.append(_rigid_words(rigid, beam))
     kept = list(range(rigid, rigid + 1))
@@ -57,6 +60,16 @@ def elastic_of(listed: Listed, beam: Beam, exact: Array) -> Elastic:
         said = f"entries {rows} of the list repeat" if len(twice) > 1 else f"entry {rows} of the list repeats"
         told.append(Found(kind="twice", words=f"{said} the one before: a mode is there twice"))
     return Elastic(kept=np.array(kept, dtype=np.intp), numbers=_numbers(listed, kept, rigid), told=tuple(told))
+
+
+def _check_sizes(listed: Listed, rigid: int, exact: Array) -> None:
+    """Raise InputError for a frequency that no unit and no model brings anywhere near the beam's own."""
+    for value in listed.frequencies_hz[rigid:]:
+        if not float(exact[0]) / _FARTHEST < value < float(exact[-1]) * _FARTHEST:
+            raise InputError(
+                f"{listed.source} has {float(value)!r} Hz, and the beam's modes lie from {float(exact[0]):.6g} Hz on: "
+                "check the scene, or the unit"
+            )
 
 
 def _n_rigid(values: Array, exact: Array) -> int:

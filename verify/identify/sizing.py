@@ -80,7 +80,7 @@ def _better(beam: Beam, candidate: Candidate) -> tuple[Candidate | None, str]:
     """The best rule that is known of the same kind of model, and what it is called."""
     if candidate.model == ELEMENTS and candidate.mass != "consistent":
         theory = candidate.theory
-        return Candidate(model=ELEMENTS, mass="consistent", theory=theory), "Hermite elements with consistent mass"
+        return Candidate(model=ELEMENTS, mass="consistent", theory=theory), "consistent mass"
     if candidate.model != CHAIN:
         return None, ""
     wall = "gregory" if "clamped" in beam.supports else None

@@ -112,8 +112,9 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             )
         others = " or ".join(f"{one.candidate.words}{_sized(one)}" for one in alike[:2])
         more = f" or {len(alike) - 2} more" if len(alike) > 2 else ""
-        same = "has the same frequencies" if alike[0].residual <= FLOOR else "fits about as well"
-        return f"{others}{more} {same}, which a list cannot tell apart"
+        if max(one.residual for one in alike) <= FLOOR:
+            return f"no list can tell it from {others}{more}, of the same frequencies"
+        return f"this list does not tell it from {others}{more}"
 
     def _following(self) -> str:
         """What it is not."""
@@ -121,7 +122,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         if following is None:
             return ""
         times = f", {self.found.odds:.2g} times as much" if self.found.best.residual > FLOOR else ""
-        return f"the next, {following.candidate.words}{_sized(following)}, leaves {_left(following)}{times}"
+        return f"next, with {_left(following)}{times}, comes {following.candidate.words}{_sized(following)}"
 
     def facts(self) -> tuple[str, ...]:
         """The answer."""
