@@ -39,6 +39,15 @@ def lumped_rod(beam, n):
     return hertz(bending(beam, n), np.diag(masses), joints_held(beam.supports, n))
 
 
+def rigid_links(beam, n, wall=2.0):
+    """Links with their own inertia."""
+    mass = np.zeros((n + 1, n + 1))
+    for i in range(n):
+        share = np.array([[1 / 3, 1 / 6], [1 / 6, 1 / 3]])
+        mass[i : i + 2, i : i + 2] += beam.mass_per_length * beam.length / n * share
+    return hertz(bending(beam, n, wall), mass, joints_held(beam.supports, n))
+
+
 def links_without_inertia(beam, n):
     """Links whose mass sits in their middles."""
     mass = np.zeros((n + 1, n + 1))

@@ -12,8 +12,9 @@ from math import exp, inf, log, pi, sqrt
 import msgspec
 import numpy as np
 
+from verify.identify.alignment import BAND, Pairs, aligned_pairs, in_order_of
 from verify.identify.family import EXACT, Candidate, Solver
-from verify.models.arrays import Array, Indices
+from verify.models.arrays import Array
 
 FLOOR = 1e-9
 """Relative difference of frequencies that eigenvalue solvers leave: smaller ones are alike."""
@@ -44,25 +45,8 @@ _SMALL_FACTOR = 5e-3
 """A common factor nearer to one is believed only where it leaves nothing to explain."""
 _UNIT_COST, _SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
 """In natural logarithms of likelihood."""
-_SKIP = 0.03
-"""What leaving a mode out costs while modes are paired, in log frequency."""
-_BAND = 4
-"""By how many places pairs may be shifted."""
 _GRID = 1.5
 """Ratio of neighbouring sizes in a first look."""
-
-
-class Pairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Which entry of a list is which mode."""
-
-    entries: Indices
-    """(k,), from 0."""
-    modes: Indices
-    """(k,), from 0."""
-
-    def skips(self, n: int) -> int:
-        """How many modes are missing, and how many of n entries are none."""
-        return int(self.modes.max()) + 1 - len(self.modes) + n - len(self.entries) if len(self.modes) else n
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -121,11 +105,11 @@ def fit(
     """
     n = len(listed)
     logs, known = np.log(listed), np.log(found) if len(found) else np.empty(0)
-    pairs = paired or _in_order(n)
+    pairs = paired or in_order_of(n)
     if reading.aligned:
-        if len(known) < n - _BAND:
+        if len(known) < n - BAND:
             return None
-        pairs = _aligned(logs - log(reading.factor or 1.0), known)
+        pairs = aligned_pairs(logs - log(reading.factor or 1.0), known)
         if not pairs.skips(n):
             return None  # the same as in order
     if len(pairs.modes) == 0 or pairs.modes.max() >= len(known):
@@ -159,36 +143,6 @@ def _judged(
     )
 
 
-def _in_order(n: int) -> Pairs:
-    return Pairs(entries=np.arange(n), modes=np.arange(n))
-
-
-def _aligned(logs: Array, known: Array) -> Pairs:
-    """The pairs, in order on both sides, of least sum of differences, each mode or entry left out costing `_SKIP`."""
-    n, m = len(logs), len(known)
-    costs = np.full((n + 1, m + 1), inf)
-    came = np.zeros((n + 1, m + 1), dtype=int)
-    costs[0, : min(_BAND, m) + 1] = _SKIP * np.arange(min(_BAND, m) + 1)
-    came[0, 1:] = 1
-    apart = abs(logs[:, None] - known[None, :])
-    for i in range(1, n + 1):
-        for j in range(max(i - _BAND, 0), min(i + _BAND, m) + 1):
-            extra = costs[i - 1, j] + _SKIP
-            pair = costs[i - 1, j - 1] + apart[i - 1, j - 1] if j else inf
-            missing = costs[i, j - 1] + _SKIP if j else inf
-            costs[i, j] = min(pair, extra, missing)
-            came[i, j] = (pair, missing, extra).index(costs[i, j])
-    i, j = n, int(np.argmin(costs[n]))
-    entries, modes = [], []
-    while i or j:
-        step = came[i, j] if i else 1
-        if step == 0:
-            entries.append(i - 1)
-            modes.append(j - 1)
-        i, j = i - (step != 1), j - (step != 2)
-    return Pairs(entries=np.array(entries[::-1], dtype=np.intp), modes=np.array(modes[::-1], dtype=np.intp))
-
-
 class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """What a list is, as far as it can be told."""
 
@@ -209,6 +163,16 @@ class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def next(self) -> Fit | None:
         """The best of those that it can be told apart from."""
         return next((fit for fit in self.fits[1:] if fit not in self.alike), None)
+
+    @property
+    def same(self) -> tuple[Fit, ...]:
+        """Those of `alike` that have the same frequencies, so that no list tells them apart."""
+        return tuple(one for one in self.alike if same(one, self.best))
+
+    @property
+    def doubtful(self) -> tuple[Fit, ...]:
+        """Those of `alike` that a longer, cleaner or coarser list would tell apart."""
+        return tuple(one for one in self.alike if not same(one, self.best))
 
     @property
     def explained(self) -> bool:
@@ -259,7 +223,7 @@ def identify(data: Data, count: int | None) -> Identified | None:
 
 def _units(data: Data) -> tuple[float, ...]:
     """Those factors of a wrong unit that bring the list anywhere near the exact beam."""
-    pairs = data.paired or _in_order(len(data.listed))
+    pairs = data.paired or in_order_of(len(data.listed))
     exact = data.solver.or_nothing(Candidate(model=EXACT), None)
     off = float(np.median(np.log(data.listed[pairs.entries] / exact[pairs.modes])))
     return tuple(factor for factor in UNITS if abs(off - log(factor)) < _ANYWHERE_NEAR)
@@ -362,9 +326,13 @@ def _ranked(data: Data, best: Fit, reading: Reading, count: int | None) -> Ident
 
 def _preferred(fits: list[Fit], place: dict[Candidate, int]) -> tuple[Fit, ...]:
     """Among those that fit the same to rounding, the earliest of the family first."""
-    same = [one for one in fits if abs(one.residual - fits[0].residual) <= max(10.0 * FLOOR, 1e-6 * fits[0].residual)]
-    first = min(same, key=lambda one: place[one.candidate])
+    first = min((one for one in fits if same(one, fits[0])), key=lambda one: place[one.candidate])
     return (first, *(one for one in fits if one is not first))
+
+
+def same(one: Fit, other: Fit) -> bool:
+    """Whether two candidates have the same frequencies, to rounding."""
+    return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
 
 
 def likelier(best: Fit, other: Fit, n: int) -> float:

@@ -5,7 +5,7 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.errors import InputError
-from verify.identify.fitting import Pairs
+from verify.identify.alignment import Pairs
 from verify.identify.reading import Listed, Shapes
 from verify.judge.compare import LIKENESS, mac, node_weights, pair_modes
 from verify.models.arrays import Array, Indices

@@ -80,7 +80,17 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
                 f"nothing of the known family is it quite: the nearest, {best.candidate.words}{_sized(best)}, leaves "
                 f"{in_percent(best.residual, sign=False)}, which goes smoothly with the mode"
             )
-        return f"{best.candidate.answer}{self._parts()}"
+        if self._unseen():
+            return (
+                "these frequencies do not show how the beam was divided: too few, too noisy, or divided too finely; "
+                f"the nearest is {best.candidate.words}{_sized(best)}"
+            )
+        answer = best.candidate.answer
+        return f"{f'Probably y{answer[1:]}' if self.found.doubtful else answer}{self._parts()}"
+
+    def _unseen(self) -> bool:
+        """Whether the exact beam fits about as well as the best model of parts."""
+        return self.found.best.candidate.sized and any(not one.candidate.sized for one in self.found.alike)
 
     def _parts(self) -> str:
         """'; 69 links for 0.1 % at mode 5 (19 with ...)'."""
@@ -101,20 +111,10 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         return "; ".join(part for part in (left, self._alike(), self._following()) if part)
 
     def _alike(self) -> str:
-        """What it may be as well."""
-        alike = self.found.alike
-        if not alike:
-            return ""
-        if self.found.best.candidate.sized and any(not one.candidate.sized for one in alike):
-            return (
-                "but these frequencies do not tell it from the exact beam: too few, too noisy, or divided too finely "
-                "to see by what rule"
-            )
-        others = " or ".join(f"{one.candidate.words}{_sized(one)}" for one in alike[:2])
-        more = f" or {len(alike) - 2} more" if len(alike) > 2 else ""
-        if max(one.residual for one in alike) <= FLOOR:
-            return f"no list can tell it from {others}{more}, of the same frequencies"
-        return f"this list does not tell it from {others}{more}"
+        """What it may be as well: what has the same frequencies, and what this list does not tell from it."""
+        same = f"no list can tell it from {_either(self.found.same)}, of the same frequencies"
+        doubtful = f"this list does not tell it from {_either(self.found.doubtful)}"
+        return "; ".join([same] * bool(self.found.same) + [doubtful] * bool(self.found.doubtful))
 
     def _following(self) -> str:
         """What it is not."""
@@ -223,6 +223,12 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             "gates": msgspec.to_builtins(self.gates),
             "passed": self.passed,
         }
+
+
+def _either(fits: tuple[Fit, ...]) -> str:
+    """The first two, and how many more."""
+    named = " or ".join(f"{one.candidate.words}{_sized(one)}" for one in fits[:2])
+    return named + (f" or {len(fits) - 2} more" if len(fits) > 2 else "")
 
 
 def _sized(one: Fit) -> str:
