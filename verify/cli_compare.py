@@ -63,7 +63,7 @@ def compare(
         kind=kind,
         mode=None if mode is None else mode_number(mode),
         error=accuracy(error),
-        within=None if within is None else accuracy(within),
+        within=None if within is None else accuracy(within, "within"),
         theory=theory,
     )
     result = compared(loaded, asked)

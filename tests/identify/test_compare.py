@@ -430,6 +430,7 @@ def test_a_report_is_written_where_one_is_asked_for(verify, tmp_path):
     assert "report: here/compare-steel-cantilever.html" in out
     assert "follows the 2EI/l rule" in page
     assert 'id="chart-compare"' in page
+    assert "candidates solved in" in page
 
 
 def test_parts_are_counted_for_another_error_at_another_mode(verify):

@@ -105,7 +105,7 @@ def test_a_list_that_is_none_gets_one_sentence_and_status_2(tmp_path, capsys, te
         (("list.csv", "--count", "0"), "count = '0': give a whole number from 1"),
         (("list.csv", "--count", "1"), "no model of so few parts has the 3 modes"),
         (("list.csv", "--theory", "cosserat"), "theory = 'cosserat' is not known"),
-        (("list.csv", "--within", "-1%"), "error = '-1%'"),
+        (("list.csv", "--within", "-1%"), "within = '-1%': give a relative error"),
         (("list.csv", "--modes", "few.csv"), "has 2 mode shapes beside x, and the list 3 frequencies"),
         (("list.csv", "--modes", "off.csv"), "x = 0.7 m lies off the beam"),
         (("list.csv", "--modes", "rest.csv"), "the shape of mode 2 is zero everywhere"),

@@ -2,6 +2,7 @@
 
 from itertools import combinations_with_replacement
 from pathlib import Path
+from time import perf_counter
 from typing import get_args
 
 import msgspec
@@ -55,7 +56,7 @@ class Asked(msgspec.Struct, frozen=True, kw_only=True):
 
 def compare(scene: Scene, asked: Asked) -> Compared:
     """What a list of frequencies, or a model, of the scene's beam is, how surely, how far off. Raises InputError."""
-    beam = scene.beam
+    beam, start = scene.beam, perf_counter()
     listed, shapes, count = _given(scene, asked)
     if asked.mode is not None and asked.mode > listed.n:
         raise InputError(f"mode = {asked.mode}: {listed.source} has {listed.n} modes, ask for one of them")
@@ -77,7 +78,7 @@ def compare(scene: Scene, asked: Asked) -> Compared:
     mode = asked.mode or int(best.pairs.modes.max()) + 1
     size = enough(beam, best.candidate, mode, asked.error) if best.candidate.sized else None
     rows = _rows(data, found, exact, likeness, elastic)
-    return _told(scene, asked, listed, found, told, rows, size, solver)
+    return _told(scene, asked, listed, found, told, rows, size, solver, perf_counter() - start)
 
 
 def _given(scene: Scene, asked: Asked) -> tuple[Listed, Shapes | None, int | None]:
@@ -226,6 +227,7 @@ def _told(
     rows: tuple[Row, ...],
     size: Enough | None,
     solver: Solver,
+    seconds: float,
 ) -> Compared:
     return Compared(
         scene=scene.name,
@@ -237,5 +239,7 @@ def _told(
         rows=rows,
         size=size,
         gates=judged(found, told, rows, asked.within),
+        solved=len(solver.asked),
+        seconds=seconds,
         left_out={one.words: why for one, why in solver.left_out.items()},
     )

@@ -165,10 +165,15 @@ class Solver:
         """Up to `n_modes` are asked of each."""
         self.beam, self.n_modes = beam, n_modes
         self.left_out: dict[Candidate, str] = {}
+        self.asked: set[tuple[Candidate, int | None]] = set()
+        """What was solved for, candidates that exist alone."""
 
     def __call__(self, candidate: Candidate, count: int | None) -> Array:
         """Its first frequencies, (n_modes or as many as it has,), Hz. Raises InputError where it does not exist."""
-        return frequencies_hz(candidate, self.beam, count if candidate.sized else None, self.n_modes)
+        size = count if candidate.sized else None
+        found = frequencies_hz(candidate, self.beam, size, self.n_modes)
+        self.asked.add((candidate, size))
+        return found
 
     def or_nothing(self, candidate: Candidate, count: int | None) -> Array:
         """The same; empty, and the reason kept, where it does not exist."""

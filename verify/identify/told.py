@@ -54,6 +54,9 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
     rows: tuple[Row, ...]
     size: Enough | None
     gates: tuple[GateResult, ...]
+    solved: int
+    """Candidates and sizes that were solved."""
+    seconds: float
     left_out: dict[str, str]
     """Candidates that do not exist here, and why."""
 
@@ -221,6 +224,8 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             "candidates": [_candidate(one) for one in self.found.fits],
             "left_out": self.left_out,
             "gates": msgspec.to_builtins(self.gates),
+            "solved": self.solved,
+            "seconds": self.seconds,
             "passed": self.passed,
         }
 

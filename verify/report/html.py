@@ -41,13 +41,19 @@ def write_comparison(scene: "Scene", found: "Compared", path: Path, command: str
 
     named = msgspec.structs.replace(scene.bare, name=path.stem, title=f"{found.source} on {scene.name}", description="")
     result = RunResult(
-        scene=named, gates=found.gates, found={"compare": found}, solves=(), n_fields=0, n_motions=0, seconds=0.0
+        scene=named,
+        gates=found.gates,
+        found={"compare": found},
+        solves=(),
+        n_fields=0,
+        n_motions=0,
+        seconds=found.seconds,
     )
-    write_report(result, path, command)
+    write_whole(path, page(result, command, f"{found.solved} candidates solved"), "reports")
 
 
-def page(result: "RunResult", command: str) -> str:
-    """The whole HTML page, plotly's script included."""
+def page(result: "RunResult", command: str, work: str = "") -> str:
+    """The whole HTML page, plotly's script included; `work` is what was solved, where the result does not say it."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     loader = PackageLoader("verify", "report")
@@ -58,7 +64,7 @@ def page(result: "RunResult", command: str) -> str:
     charts = [chart for found in result.found.values() for chart in found.charts()]
     return templates.get_template("page.html.j2").render(
         result=result,
-        work=work_in_words(len(result.solves), result.n_fields, result.n_motions),
+        work=work or work_in_words(len(result.solves), result.n_fields, result.n_motions),
         failed=[gate for gate in result.gates if not gate.passed],
         charts=charts,
         sections=list(sections_of(result)),
