@@ -39,7 +39,9 @@ def write_comparison(scene: "Scene", found: "Compared", path: Path, command: str
     """Write the report of somebody's model compared, as that of a run whose one finding it is. Raises InputError."""
     from verify.run.runner import RunResult
 
-    named = msgspec.structs.replace(scene.bare, name=path.stem, title=f"{found.source} on {scene.name}", description="")
+    named = msgspec.structs.replace(
+        scene.bare, name=path.stem, title=f"A model of the beam of {scene.name}", description=found.answer
+    )
     result = RunResult(
         scene=named,
         gates=found.gates,
