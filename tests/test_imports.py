@@ -24,6 +24,7 @@ ROOMS = (
     "quantities",
     "studies",
     "run",
+    "identify",
     "report",
     "faces",
     "commands",
@@ -31,6 +32,7 @@ ROOMS = (
 )
 """From the ground up: a room imports from those before it; the three models from none of each other."""
 COMPILER = "models.kernels"
+LIST = Path(__file__).parent / "identify" / "data" / "exudyn-cantilever.csv"
 DOORS = {"__init__", "__main__", "cli", "pytest_plugin"}
 FACES = {"analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"}
 
@@ -202,6 +204,10 @@ HEAVY = {
         (
             ("measure", "friction.free_decay", "mu=0.2", "slope=100", "speed=0.1", "time=0.1"),
             {"msgspec", "tomllib", "numpy", "numba", "scipy"},  # numba looks for scipy itself
+        ),
+        (
+            ("compare", str(LIST), "--scene", "steel-cantilever", "--count", "30"),
+            {"msgspec", "tomllib", "numpy", "scipy", "skfem", "rich"},
         ),
         (("plan", "paper-slider", "--json"), {"msgspec", "tomllib", "numpy", "scipy", "skfem"}),
         (("plan", "paper", "--json"), {"msgspec", "tomllib", "numpy"}),

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 import click
 
 from verify import __version__
-from verify.commands import choose, keys, measure, plan, quantities, run, scenes, table
+from verify.commands import choose, compare, keys, measure, plan, quantities, run, scenes, table
 from verify.errors import InputError
 
 BAD_INPUT, INTERRUPTED, NO_READER = 2, 130, 141
@@ -46,6 +46,7 @@ for _command in (
     table.table,
     measure.measure,
     choose.choose,
+    compare.compare,
     quantities.list_quantities,
     plan.plan,
     scenes.scenes,

@@ -23,7 +23,9 @@ from verify.words import cell, figure, seconds_in_words, told_once, work_in_word
 if TYPE_CHECKING:
     from markupsafe import Markup
 
+    from verify.identify.told import Compared
     from verify.run.runner import RunResult
+    from verify.scenes.scene import Scene
     from verify.studies.told import Column, Table
 
 SENTENCE = 32
@@ -36,8 +38,27 @@ def write_report(result: "RunResult", path: Path, command: str) -> None:
     write_whole(path, page(result, command), "reports")
 
 
-def page(result: "RunResult", command: str) -> str:
-    """The whole HTML page, plotly's script included."""
+def write_comparison(scene: "Scene", found: "Compared", path: Path, command: str) -> None:
+    """Write the report of somebody's model compared, as that of a run whose one finding it is. Raises InputError."""
+    from verify.run.runner import RunResult
+
+    named = msgspec.structs.replace(
+        scene.bare, name=path.stem, title=f"A model of the beam of {scene.name}", description=found.answer
+    )
+    result = RunResult(
+        scene=named,
+        gates=found.gates,
+        found={"compare": found},
+        solves=(),
+        n_fields=0,
+        n_motions=0,
+        seconds=found.seconds,
+    )
+    write_whole(path, page(result, command, f"{found.solved} candidates solved"), "reports")
+
+
+def page(result: "RunResult", command: str, work: str = "") -> str:
+    """The whole HTML page, plotly's script included; `work` is what was solved, where the result does not say it."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     loader = PackageLoader("verify", "report")
@@ -53,7 +74,7 @@ def page(result: "RunResult", command: str) -> str:
     charts = [chart for found in result.found.values() for chart in found.charts()]
     return templates.get_template("page.html.j2").render(
         result=result,
-        work=work_in_words(len(result.solves), result.n_fields, result.n_motions),
+        work=work or work_in_words(len(result.solves), result.n_fields, result.n_motions),
         judged=len(result.gates) - len(result.set_aside),
         charts=charts,
         sections=list(sections_of(result)),
@@ -85,7 +106,8 @@ def sections_of(result: "RunResult") -> Iterator[Section]:
         if facts := found.facts():
             facts = tuple(fact[:1].upper() + fact[1:] for fact in facts)
         if facts or tables:
-            yield Section(name, STUDIES[name].title or name, facts, tables, shared)
+            title = STUDIES[name].title if name in STUDIES else ""
+            yield Section(name, title or name.capitalize(), facts, tables, shared)
 
 
 def _hyphens(name: str) -> "Markup":

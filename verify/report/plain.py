@@ -87,13 +87,13 @@ def mode_number(text: str) -> int:
     return value
 
 
-def accuracy(text: str) -> float:
+def accuracy(text: str, field: str = "error") -> float:
     """A relative error as typed, '1%' or '0.01'. Raises InputError unless it lies between 1e-12 and 1."""
-    value = literal(text.strip().removesuffix("%"), "error")
+    value = literal(text.strip().removesuffix("%"), field)
     number = isinstance(value, int | float) and not isinstance(value, bool)
     error = float(value) / (100.0 if text.strip().endswith("%") else 1.0) if number else 0.0
     if not 1e-12 <= error < 1.0:
-        raise InputError(f"error = {text!r}: give a relative error from 1e-12 up to 1, for instance 1% or 0.01")
+        raise InputError(f"{field} = {text!r}: give a relative error from 1e-12 up to 1, for instance 1% or 0.01")
     return error
 
 

@@ -17,6 +17,7 @@ from verify.run.gates import shown_expectation
 from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
+    from verify.identify.told import Compared
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
     from verify.run.gates import GateResult
@@ -74,6 +75,25 @@ def _by_reason(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     for reason, name in pairs:
         found.setdefault(reason, []).append(name)
     return found
+
+
+def print_compared(result: "Compared", report: Path | None) -> None:
+    """What somebody's model is; its modes, the candidates, the gates, where the report lies."""
+    console = Terminal()
+    answer, *facts = result.facts()
+    console.print(Text(answer, style="bold"))
+    for fact in facts:
+        console.print(Text(fact))
+    for table in result.tables():
+        _print_table(console, table)
+        for note in table.notes:
+            console.print(Text(f"– {note}", style="dim"))
+    console.print(_gate_table(result.gates))
+    for gate in result.gates:
+        if not gate.passed:
+            console.print(Text(f"gate {gate.id}: {gate.reason}", style="red"))
+    if report is not None:
+        console.print(f"report: {report}", soft_wrap=True, markup=False)
 
 
 def print_found(found: "Found") -> None:

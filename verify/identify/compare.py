@@ -1,0 +1,245 @@
+"""Somebody's model of a scene's beam compared: read, paired, identified, sized, judged."""
+
+from itertools import combinations_with_replacement
+from pathlib import Path
+from time import perf_counter
+from typing import get_args
+
+import msgspec
+import numpy as np
+
+from verify.checks import check_whole
+from verify.errors import InputError
+from verify.identify.family import CHAIN, ELEMENTS, EXACT, Candidate, Solver, exact_hz, family
+from verify.identify.fitting import CREDIBLE, UNITS, Data, Identified, identify
+from verify.identify.outside import asked_of
+from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic_of, missing, swapped
+from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
+from verify.identify.sizing import Enough, enough
+from verify.identify.told import Compared, Row, judged
+from verify.models.arrays import Array
+from verify.options import Support
+from verify.scenes.scene import Scene
+
+SPARE = 4
+"""Modes beyond the list that candidates are solved for: as many may be missing from it."""
+_OTHER_COUNT = 10.0
+"""By how much, in logarithms of likelihood, another number of parts than was said has to be likelier."""
+KINDS = {"segments": CHAIN, "elements": ELEMENTS}
+"""What somebody may say that he built."""
+
+
+class Asked(msgspec.Struct, frozen=True, kw_only=True):
+    """What is compared, and how."""
+
+    frequencies: Path | None = None
+    """A list of natural frequencies."""
+    shapes: Path | None = None
+    """Mode shapes to it."""
+    model: str | None = None
+    """'package.module:Class' in their place."""
+    count: int | None = None
+    """Parts of the model; None where nobody says."""
+    unit: str | None = None
+    """Hz, kHz or rad/s, where the list's head is not to say it."""
+    kind: str | None = None
+    """segments or elements, where somebody says what he built."""
+    mode: int | None = None
+    """At which an error is asked for; the last of the list unless given."""
+    error: float = 1e-3
+    """For which parts are counted."""
+    within: float | None = None
+    """What errors against the exact beam are allowed."""
+    theory: str = "euler-bernoulli"
+    """Of the exact beam that errors are against."""
+
+
+def compare(scene: Scene, asked: Asked) -> Compared:
+    """What a list of frequencies, or a model, of the scene's beam is, how surely, how far off. Raises InputError."""
+    beam, start = scene.beam, perf_counter()
+    listed, shapes, count = _given(scene, asked)
+    if asked.mode is not None and asked.mode > listed.n:
+        raise InputError(f"mode = {asked.mode}: {listed.source} has {listed.n} modes, ask for one of them")
+    n_modes = max(listed.n, *(listed.numbers or (0,))) + SPARE
+    exact = exact_hz(beam, n_modes, asked.theory)
+    elastic = elastic_of(listed, beam, exact)
+    solver = Solver(beam, n_modes)
+    data = Data(
+        listed=listed.frequencies_hz[elastic.kept],
+        rounding=listed.rounding[elastic.kept],
+        family=_wanted(family(beam), asked.kind),
+        solver=solver,
+        paired=by_number(elastic.numbers) if elastic.numbers else None,
+    )
+    data, told, likeness = _by_shapes(scene, data, shapes, elastic, count)
+    found, recounted = _identified(data, count)
+    told = (*elastic.told, *told, *_of_list(found, data), *recounted, *_of_supports(scene, found, data))
+    best = found.best
+    mode = asked.mode or int(best.pairs.modes.max()) + 1
+    size = enough(beam, best.candidate, mode, asked.error) if best.candidate.sized else None
+    rows = _rows(data, found, exact, likeness, elastic)
+    return _told(scene, asked, listed, found, told, rows, size, solver, perf_counter() - start)
+
+
+def _given(scene: Scene, asked: Asked) -> tuple[Listed, Shapes | None, int | None]:
+    """The list, shapes, and the number of parts, from files or from a model. Raises InputError."""
+    if (asked.frequencies is None) == (asked.model is None):
+        raise InputError("give a file of frequencies, or --model package.module:Class: one of them")
+    if asked.count is not None:
+        check_whole("count", asked.count, 1)
+    if asked.mode is not None:
+        check_whole("mode", asked.mode, 1)
+    if asked.model is not None:
+        if asked.shapes is not None or asked.unit is not None:
+            option = "--modes" if asked.shapes is not None else "--unit"
+            raise InputError(f"{option} belongs to a file of frequencies: leave it out beside --model")
+        answered = asked_of(asked.model, scene.beam, asked.count, asked.mode)
+        return answered.listed, answered.shapes, answered.count
+    assert asked.frequencies is not None
+    listed = read_frequencies(asked.frequencies, asked.unit, sorted_list=asked.shapes is None)
+    shapes = read_shapes(asked.shapes, scene.beam.length, listed.n) if asked.shapes is not None else None
+    return listed, shapes, asked.count
+
+
+def _wanted(members: tuple[Candidate, ...], kind: str | None) -> tuple[Candidate, ...]:
+    """The candidates of the kind that somebody says he built; exact ones stay."""
+    return members if kind is None else tuple(one for one in members if one.model in (KINDS[kind], EXACT))
+
+
+def _by_shapes(
+    scene: Scene, data: Data, shapes: Shapes | None, elastic: Elastic, count: int | None
+) -> tuple[Data, tuple[Found, ...], dict[int, float]]:
+    """(the data paired by shape, what is to be told of it, MAC by entry). By order where shapes alone are exchanged."""
+    if shapes is None:
+        return data, (), {}
+    pairs, likeness, told = by_shape(scene.beam, shapes, elastic.kept)
+    told = (*told, *swapped(pairs), *missing(pairs, len(data.listed)))
+    paired = msgspec.structs.replace(data, paired=pairs)
+    rises = bool((np.diff(data.listed) >= 0.0).all())
+    if rises and any(one.kind == "swapped" for one in told):
+        one, other = identify(paired, count), identify(msgspec.structs.replace(data, paired=None), count)
+        if other is not None and (one is None or other.best.score < one.best.score):
+            told = tuple(_of_shapes_alone(found) for found in told)
+            return data, told, {}
+    return paired, told, dict(zip(map(int, pairs.entries), map(float, likeness), strict=True))
+
+
+def _of_shapes_alone(found: Found) -> Found:
+    if found.kind != "swapped":
+        return found
+    words = f"the columns of shapes are exchanged, the frequencies are not: {found.words}"
+    return msgspec.structs.replace(found, words=words)
+
+
+def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found, ...]]:
+    """What the list is at the given size, or else at one beside it. Raises InputError where nothing is so large."""
+    found = identify(data, count)
+    if count is not None and (found is None or not (found.explained and found.best.candidate.sized)):
+        others = [
+            identify(data, other)
+            for other in sorted({2 * count, count // 2, *range(count - 2, count + 3)} - {count})
+            if other > 1
+        ]
+        good = [one for one in others if one is not None and one.explained and one.best.candidate.sized]
+        other = min(good, key=lambda one: one.best.score, default=None)
+        if other is not None and (found is None or other.best.score < found.best.score - _OTHER_COUNT):
+            words = f"the list is that of {other.best.count} parts, not of the {count} that --count says"
+            return other, (Found(kind="count", words=words),)
+    if found is None or (count is not None and not any(fit.candidate.sized for fit in found.fits)):
+        n = len(data.listed)
+        raise InputError(f"count = {count}: no model of so few parts has the {n} modes of the list, raise count")
+    return found, ()
+
+
+def _of_list(found: Identified, data: Data) -> tuple[Found, ...]:
+    """What the best reading of a list says of it: its unit, a common factor, what is missing."""
+    best, told = found.best, []
+    if found.reading.factor is None:
+        told.append(Found(kind="scale", words=_scale_words(best.factor)))
+    elif found.reading.factor in UNITS:
+        told.append(Found(kind="unit", words=f"the frequencies are too large by {UNITS[found.reading.factor]}"))
+    return (*told, *(missing(best.pairs, len(data.listed)) if data.paired is None else ()))
+
+
+def _of_supports(scene: Scene, found: Identified, data: Data) -> tuple[Found, ...]:
+    """Other supports whose exact frequencies the lower half of an unexplained list is near to."""
+    if found.best.residual <= CREDIBLE:
+        return ()
+    n = max(min(len(data.listed) // 2, 6), 2)
+    near: dict[tuple[Support, Support], float] = {}
+    for supports in combinations_with_replacement(get_args(Support), 2):
+        try:
+            other = exact_hz(msgspec.structs.replace(scene.beam, supports=supports), n)
+        except InputError:  # something on the beam stands where these supports hold it
+            continue
+        near[supports] = float(abs(np.log(data.listed[:n] / other)).max()) if len(data.listed) >= n else np.inf
+    best = min(near, key=lambda one: near[one], default=None)
+    if best is None or near[best] > CREDIBLE:
+        return ()
+    within = f"within {max(100.0 * near[best], 0.01):.2g} % of those of a {'-'.join(best)} beam"
+    words = f"the first {n} frequencies lie {within}, and the scene's is not held so"
+    return (Found(kind="supports", words=words),)
+
+
+def _scale_words(factor: float) -> str:
+    """One factor on all frequencies, and what it may be of: sqrt(E / rho), thickness, 1 / L^2."""
+    return (
+        f"all frequencies have the common factor {factor:.6g}: E is {_change(factor**2)} or rho {_change(factor**-2)}, "
+        f"or the thickness {_change(factor)}, or the length {_change(factor**-0.5)}"
+    )
+
+
+def _change(ratio: float) -> str:
+    return f"{100.0 * (ratio - 1.0):+.3g} %" if 0.5 < ratio < 2.0 else f"{ratio:.4g} times the scene's"
+
+
+def _rows(data: Data, found: Identified, exact: Array, likeness: dict[int, float], elastic: Elastic) -> tuple[Row, ...]:
+    """Every paired mode: yours in hertz and freed of a wrong unit or factor, exact, of the best candidate."""
+    best = found.best
+    known = data.solver(best.candidate, best.count)
+    rows = []
+    for entry, mode, off in zip(best.pairs.entries, best.pairs.modes, best.differences, strict=True):
+        given = float(data.listed[entry])
+        yours = given / best.factor
+        rows.append(
+            Row(
+                mode=int(mode) + 1,
+                entry=int(elastic.kept[entry]) + 1,
+                given_hz=given,
+                frequency_hz=yours,
+                exact_hz=float(exact[mode]),
+                error=yours / float(exact[mode]) - 1.0,
+                best_hz=float(known[mode]),
+                difference=float(off),
+                beyond=max(abs(float(off)) - float(data.rounding[entry]), 0.0),
+                likeness=likeness.get(int(entry)),
+            )
+        )
+    return tuple(sorted(rows, key=lambda row: row.mode))
+
+
+def _told(
+    scene: Scene,
+    asked: Asked,
+    listed: Listed,
+    found: Identified,
+    told: tuple[Found, ...],
+    rows: tuple[Row, ...],
+    size: Enough | None,
+    solver: Solver,
+    seconds: float,
+) -> Compared:
+    return Compared(
+        scene=scene.name,
+        source=listed.source,
+        unit=listed.unit,
+        theory=asked.theory,
+        found=found,
+        told=told,
+        rows=rows,
+        size=size,
+        gates=judged(found, told, rows, asked.within),
+        solved=len(solver.asked),
+        seconds=seconds,
+        left_out={one.words: why for one, why in solver.left_out.items()},
+    )

@@ -1,0 +1,358 @@
+"""Which member of the family a list is of, and how surely: differences of log frequencies, and what may be wrong first.
+
+A list may be in another unit, scaled by one factor, lack modes or have some too many: each such reading of it costs
+something in the comparison, so that none is taken up unless it explains what the plain one does not.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from itertools import pairwise, product
+from math import exp, inf, log, pi, sqrt
+
+import msgspec
+import numpy as np
+
+from verify.identify.alignment import BAND, Pairs, aligned_pairs, in_order_of
+from verify.identify.family import EXACT, Candidate, Solver
+from verify.models.arrays import Array
+
+FLOOR = 1e-9
+"""Relative difference of frequencies that eigenvalue solvers leave: smaller ones are alike."""
+SURE = 100.0
+"""By how much likelier the best has to be than another for both to be told apart, with noise of unknown size."""
+TOLERANCE = 1e-3
+"""Up to here a candidate is said to explain a list."""
+CREDIBLE = 0.02
+"""A list that is farther than this from every candidate is not said to be in another unit, or to lack a mode."""
+UNITS = {
+    2.0 * pi: "2 pi: they are in rad/s, not Hz",
+    0.5 / pi: "1/(2 pi): they were divided by 2 pi once too often",
+    1e3: "1000: they are in mHz, or lengths or stiffnesses in another unit",
+    1e-3: "1/1000: they are in kHz",
+    60.0: "60: they are per minute, not per second",
+    1.0 / 60.0: "1/60: they were divided by 60",
+    2e3 * pi: "2000 pi: they are in rad/s, and off by 1000",
+    0.5e-3 / pi: "1/(2000 pi): they are in rad/ms, or divided by 2 pi and 1000",
+}
+"""Factors that a wrong unit brings, and which."""
+COUNTS = (2, 400)
+"""Sizes that are tried where nobody says the size."""
+_UNKNOWN_NOISE = 1e-4
+"""Relative; of a list that is too short to show its own."""
+_ANYWHERE_NEAR = 0.7
+"""Difference in log frequency that dividing a beam and missing a mode or two may make."""
+_SMALL_FACTOR = 5e-3
+"""A common factor nearer to one is believed only where it leaves nothing to explain."""
+_UNIT_COST, _SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
+"""In natural logarithms of likelihood."""
+_GRID = 1.5
+"""Ratio of neighbouring sizes in a first look."""
+
+
+class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """One candidate beside a list."""
+
+    candidate: Candidate
+    count: int | None
+    pairs: Pairs
+    factor: float
+    """What the list is multiplied by, all of it, over the candidate."""
+    differences: Array
+    """(k,), relative, list over candidate without the factor."""
+    residual: float
+    """Root mean square of the differences, less what the rounding of the list explains."""
+    score: float
+    """Minus log likelihood with noise of unknown size, and what its reading costs: the least is best."""
+
+
+class Reading(msgspec.Struct, frozen=True, kw_only=True):
+    """How a list may be read."""
+
+    factor: float | None
+    """None: whatever fits."""
+    aligned: bool
+    """Whether modes may be missing or too many."""
+    cost: float
+
+
+PLAIN = Reading(factor=1.0, aligned=False, cost=0.0)
+
+
+def in_order(n: int, units: Sequence[float]) -> tuple[Reading, ...]:
+    """Readings by which no mode is missing, the plain one first."""
+    scaled = [Reading(factor=factor, aligned=False, cost=_UNIT_COST) for factor in units]
+    return PLAIN, *scaled, *([Reading(factor=None, aligned=False, cost=_SCALE_COST)] if n >= 3 else [])
+
+
+def with_gaps(units: Sequence[float]) -> tuple[Reading, ...]:
+    """Readings by which modes are missing or too many."""
+    factors = {1.0: 0.0} | dict.fromkeys(units, _UNIT_COST)
+    return tuple(Reading(factor=factor, aligned=True, cost=cost) for factor, cost in factors.items())
+
+
+def fit(
+    listed: Array,
+    rounding: Array,
+    candidate: Candidate,
+    count: int | None,
+    found: Array,
+    reading: Reading,
+    paired: Pairs | None,
+) -> Fit | None:
+    """One candidate's frequencies `found` (m,) beside a list (n,), both Hz; None where it has too few.
+
+    `paired` where the pairs are known already.
+    """
+    n = len(listed)
+    logs, known = np.log(listed), np.log(found) if len(found) else np.empty(0)
+    pairs = paired or in_order_of(n)
+    if reading.aligned:
+        if len(known) < n - BAND:
+            return None
+        pairs = aligned_pairs(logs - log(reading.factor or 1.0), known)
+        if not pairs.skips(n):
+            return None  # the same as in order
+    if len(pairs.modes) == 0 or pairs.modes.max() >= len(known):
+        return None
+    raw = logs[pairs.entries] - known[pairs.modes]
+    shift = float(np.median(raw)) if reading.factor is None else log(reading.factor)
+    return _judged(candidate, count, pairs, raw - shift, exp(shift), rounding[pairs.entries], reading.cost, n)
+
+
+def _judged(
+    candidate: Candidate,
+    count: int | None,
+    pairs: Pairs,
+    logs: Array,
+    factor: float,
+    rounding: Array,
+    cost: float,
+    n: int,
+) -> Fit:
+    beyond = np.maximum(abs(logs) - rounding, 0.0)
+    residual = float(np.sqrt(np.mean(beyond**2)))
+    total = cost + pairs.skips(n) * _SKIP_COST if len(pairs.entries) > min(1, n - 1) else inf
+    return Fit(
+        candidate=candidate,
+        count=count,
+        pairs=pairs,
+        factor=factor,
+        differences=np.expm1(logs),
+        residual=residual,
+        score=n * log(sqrt(residual**2 + FLOOR**2)) + total,
+    )
+
+
+class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What a list is, as far as it can be told."""
+
+    fits: tuple[Fit, ...]
+    """Every candidate by the best one's reading of the list, the best first."""
+    reading: Reading
+    alike: tuple[Fit, ...]
+    """The others that the best cannot be told apart from."""
+    systematic: bool
+    """Whether what is left over goes smoothly with the mode, as noise would not."""
+
+    @property
+    def best(self) -> Fit:
+        """The best."""
+        return self.fits[0]
+
+    @property
+    def next(self) -> Fit | None:
+        """The best of those that it can be told apart from."""
+        return next((fit for fit in self.fits[1:] if fit not in self.alike), None)
+
+    @property
+    def same(self) -> tuple[Fit, ...]:
+        """Those of `alike` that have the same frequencies, so that no list tells them apart."""
+        return tuple(one for one in self.alike if same(one, self.best))
+
+    @property
+    def doubtful(self) -> tuple[Fit, ...]:
+        """Those of `alike` that a longer, cleaner or coarser list would tell apart."""
+        return tuple(one for one in self.alike if not same(one, self.best))
+
+    @property
+    def explained(self) -> bool:
+        """Whether the best is it: within the tolerance, and but noise left over."""
+        return self.best.residual <= TOLERANCE and not self.systematic
+
+    @property
+    def odds(self) -> float:
+        """How many times farther off the next one is; infinite where there is none."""
+        following = self.next
+        return following.residual / max(self.best.residual, FLOOR) if following else inf
+
+
+class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What is to be identified, and on what."""
+
+    listed: Array
+    """(n,), Hz, elastic modes alone."""
+    rounding: Array
+    """(n,), relative."""
+    family: tuple[Candidate, ...]
+    solver: Solver
+    paired: Pairs | None = None
+    """Where mode numbers or shapes say which mode each entry is."""
+
+    def fit(self, candidate: Candidate, count: int | None, reading: Reading, paired: Pairs | None) -> Fit | None:
+        """One candidate at one size."""
+        found = self.solver.or_nothing(candidate, count)
+        return fit(self.listed, self.rounding, candidate, count, found, reading, paired)
+
+
+def identify(data: Data, count: int | None) -> Identified | None:
+    """Which candidate a list is of; None where none has so many modes.
+
+    `count` is the number of its parts; None tries all plausible ones. Gaps are looked for where nothing else explains
+    the list and nobody says which mode each entry is.
+    """
+    n, units = len(data.listed), _units(data)
+    found = _best_of(data, count, in_order(n, units))
+    if data.paired is None and n >= 3 and not (found is not None and found.explained):
+        gapped = _best_of(data, count, with_gaps(units))
+        if gapped is not None and (found is None or gapped.best.score < found.best.score):
+            found = gapped
+    if found is not None and not _credible(found):
+        return _best_of(data, count, (PLAIN,)) or found
+    return found
+
+
+def _units(data: Data) -> tuple[float, ...]:
+    """Those factors of a wrong unit that bring the list anywhere near the exact beam."""
+    pairs = data.paired or in_order_of(len(data.listed))
+    exact = data.solver.or_nothing(Candidate(model=EXACT), None)
+    off = float(np.median(np.log(data.listed[pairs.entries] / exact[pairs.modes])))
+    return tuple(factor for factor in UNITS if abs(off - log(factor)) < _ANYWHERE_NEAR)
+
+
+def _credible(found: Identified) -> bool:
+    """Whether what a list is said to suffer from is borne out: what is left is small, and smaller than a factor."""
+    if found.reading == PLAIN or found.explained:
+        return True
+    small_factor = found.reading.factor is None and abs(log(found.best.factor)) < _SMALL_FACTOR
+    return found.best.residual <= CREDIBLE and not small_factor
+
+
+def _best_of(data: Data, count: int | None, among: Sequence[Reading]) -> Identified | None:
+    best: Fit | None = None
+    of_it = PLAIN
+    for candidate, reading in product(data.family, among):
+        one = _sized(partial(_tried, data, candidate, reading, data.paired), candidate, count)
+        if one is not None and (best is None or one.score < best.score - 1e-6 * abs(best.score)):
+            best, of_it = one, reading
+    return None if best is None else _ranked(data, best, of_it, count)
+
+
+def _tried(data: Data, candidate: Candidate, reading: Reading, paired: Pairs | None, count: int | None) -> Fit | None:
+    return data.fit(candidate, count, reading, paired)
+
+
+def _sized(tried: Callable[[int | None], Fit | None], candidate: Candidate, count: int | None) -> Fit | None:
+    """The fit at a size, or at the best of all sizes: a look at some, then downhill from where those around point."""
+    if not candidate.sized or count is not None:
+        return tried(count if candidate.sized else None)
+    known: dict[int, Fit | None] = {}
+    for size in _grid():
+        known[size] = tried(size)
+        if _rising([one.score for one in known.values() if one is not None]):
+            break
+
+    def score(size: int) -> float:
+        if size not in known:
+            known[size] = tried(size) if COUNTS[0] <= size <= COUNTS[1] else None
+        one = known[size]
+        return inf if one is None else one.score
+
+    sizes = sorted(known)
+    at = min(range(len(sizes)), key=lambda i: score(sizes[i]))
+    if score(sizes[at]) == inf:
+        return None
+    here = min({sizes[at], _pointed_to([known[n] for n in sizes[max(at - 1, 0) : at + 2]])}, key=score)
+    while (there := min(here - 1, here + 1, key=score)) and score(there) < score(here):
+        here = there
+    return known[here]
+
+
+def _rising(scores: list[float]) -> bool:
+    """Whether the best size lies behind: the last three scores go up from the least."""
+    return len(scores) > 3 and scores[-4] == min(scores) and scores[-4] < scores[-3] < scores[-2] <= scores[-1]
+
+
+def _pointed_to(around: "list[Fit | None]") -> int:
+    """The size at which differences that go straight with 1/N^p between neighbours would be least."""
+    fits = [one for one in around if one is not None and one.count is not None]
+    best = min(fits, key=lambda one: one.score)
+    assert best.count is not None
+    size, least = float(best.count), inf
+    for one, other in pairwise(fits):
+        if one.count is None or other.count is None or len(one.differences) != len(other.differences):
+            continue
+        step = other.differences - one.differences
+        part = float(-(step @ one.differences) / max(float(step @ step), 1e-300))
+        left = float(np.sum((one.differences + part * step) ** 2))
+        if 0.0 <= part <= 1.0 and left < least:
+            squares = one.count**-2.0 + part * (other.count**-2.0 - one.count**-2.0)
+            size, least = squares**-0.5, left
+    return round(size)
+
+
+def _grid() -> list[int]:
+    sizes, size = [], COUNTS[0]
+    while size < COUNTS[1]:
+        sizes.append(size)
+        size = max(size + 1, round(_GRID * size))
+    return [*sizes, COUNTS[1]]
+
+
+def _ranked(data: Data, best: Fit, reading: Reading, count: int | None) -> Identified:
+    """All candidates by the best one's pairs and factor, those as near as the best named."""
+    known = Reading(factor=reading.factor, aligned=False, cost=reading.cost)
+    sized = (_sized(partial(_tried, data, one, known, best.pairs), one, count) for one in data.family)
+    place = {candidate: i for i, candidate in enumerate(data.family)}
+    found = [one for one in sized if one is not None]
+    fits = _preferred(sorted(found, key=lambda one: (max(one.residual, FLOOR), place[one.candidate])), place)
+    n = len(best.pairs.entries)
+    return Identified(
+        fits=fits,
+        reading=reading,
+        alike=tuple(one for one in fits[1:] if likelier(fits[0], one, n) < SURE),
+        systematic=smooth(fits[0], data.rounding),
+    )
+
+
+def _preferred(fits: list[Fit], place: dict[Candidate, int]) -> tuple[Fit, ...]:
+    """Among those that fit the same to rounding, the earliest of the family first."""
+    first = min((one for one in fits if same(one, fits[0])), key=lambda one: place[one.candidate])
+    return (first, *(one for one in fits if one is not first))
+
+
+def same(one: Fit, other: Fit) -> bool:
+    """Whether two candidates have the same frequencies, to rounding."""
+    return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
+
+
+def likelier(best: Fit, other: Fit, n: int) -> float:
+    """How many times likelier the best is, noise of unknown size on n modes; rounding tells nobody apart.
+
+    One or two modes say nothing of their noise, so that `_UNKNOWN_NOISE` is supposed.
+    """
+    floor = FLOOR if n > 2 else _UNKNOWN_NOISE
+    ratio = sqrt(other.residual**2 + floor**2) / sqrt(best.residual**2 + floor**2)
+    return exp(min(n * log(ratio), 700.0)) if ratio > 1.0 else 1.0
+
+
+def smooth(one: Fit, rounding: Array) -> bool:
+    """Whether differences go with the mode: their steps are small beside them (von Neumann's ratio, 2 of noise)."""
+    values = np.log1p(one.differences)
+    if len(values) < 6 or one.residual <= 1e-7 or one.residual < float(np.median(rounding)):
+        return False
+    return float(np.sum(np.diff(values) ** 2) / np.sum(values**2)) < 0.6
+
+
+def deviates(exact: Array, listed: Array, fitted: Fit) -> float:
+    """Largest difference of a list from the exact beam, its factor taken out."""
+    return float(abs(listed[fitted.pairs.entries] / fitted.factor / exact[fitted.pairs.modes] - 1.0).max())
