@@ -5,12 +5,13 @@ from functools import partial
 from math import pi, sqrt
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
-from verify.elements.pencil import damped_stiffness, element_pencil, own_strains
+from verify.elements.pencil import damped_stiffness, element_pencil, mesh_buckling_load, own_strains
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
@@ -72,6 +73,16 @@ def check(
     check_cuts(beam, n_elements, grading)
     free, elastic = unknowns(beam, n_elements, theory), n_elastic(beam, n_elements, theory)
     check_size(free, n_modes, elastic, FIELD, n_elements)
+
+
+def buckling_load(beam: Beam, n_elements: int, *, grading: float = 1.0) -> float:
+    """The compression at which `n_elements` elements buckle first, newton, whatever the beam's own axial force.
+
+    0 where nothing keeps the beam from tilting. Raises InputError where `solve_modes` would.
+    """
+    compressed = replace(beam, tension=-float(beam.bending_stiffness / beam.length**2))
+    check(compressed, 1, n_elements, grading=grading)
+    return mesh_buckling_load(build_elements(compressed, n_elements, grading))
 
 
 def _modes(elements: Elements, nodal: Array, pairs: Eigenpairs) -> Modes:

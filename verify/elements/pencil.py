@@ -9,6 +9,7 @@ What an axial force, a foundation and springs add is in `added`.
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.elements.added import added_mass, added_matrix, added_strains, stiffest
@@ -79,29 +80,15 @@ def _check_stable(elements: Elements, pencil: FactoredPencil) -> None:
     if -force >= load:
         raise InputError(
             f"beam.tension = {force!r} N compresses the beam beyond its buckling: {len(elements.lengths)} elements "
-            f"buckle at {load:.6g} N, lower it or hold the beam better"
+            f"buckle at {load:.6g} N, compress it less or hold it better"
         )
 
 
-def mesh_buckling_load(elements: Elements, pencil: FactoredPencil) -> float:
-    """The compression at which the elements of a compressed beam buckle first, newton."""
-    from msgspec.structs import replace
-
+def mesh_buckling_load(elements: Elements, pencil: FactoredPencil | None = None) -> float:
+    """The compression at which the elements of a compressed beam buckle first, newton; `pencil` if it is there."""
     if any(turn for _, turn in replace(elements.beam, tension=0.0).rigid_lines):
         return 0.0
-    return -elements.beam.tension / buckling_ratio(pencil)
-
-
-def buckling_load(beam: Beam, n_elements: int, grading: float = 1.0) -> float:
-    """The compression at which `n_elements` elements buckle first, newton, whatever the beam's own axial force.
-
-    Infinite for a beam of which no motion tilts. Raises InputError where it cannot be divided so.
-    """
-    from msgspec.structs import replace
-
-    scale = float(beam.bending_stiffness / beam.length**2)
-    elements = build_elements(replace(beam, tension=-scale), n_elements, grading)
-    return mesh_buckling_load(elements, _pencil(elements))
+    return -elements.beam.tension / buckling_ratio(pencil or _pencil(elements))
 
 
 def damped_stiffness(elements: Elements, pencil: FactoredPencil) -> ComplexArray:
