@@ -30,7 +30,7 @@ def stretches(beam: Beam) -> tuple[Piece, ...]:
     if not (beam.mass or beam.spring):
         return beam.pieces
     near, found, start = SHORTEST_SECTION * beam.length, [], 0.0
-    places = sorted({one.position for one in (*beam.mass, *beam.spring)})
+    places = sorted({mass.position for mass in beam.mass} | {spring.position for spring in beam.spring})
     for piece in beam.pieces:
         left, end = start, start + piece.length
         for place in places:

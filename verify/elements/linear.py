@@ -1,4 +1,4 @@
-"""Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers, in metres, hertz and newtons."""
+"""Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers in metres, hertz, newtons."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -11,7 +11,7 @@ from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
-from verify.elements.pencil import damped_stiffness, element_pencil, mesh_buckling_load, own_strains
+from verify.elements.pencil import damped_stiffness, element_pencil, mesh_buckling_load, own_strains, uneven
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
@@ -170,8 +170,8 @@ def solve_harmonic(
 def _check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:
     if modal_damping and elements.beam.loss_factor and len(pencil.stiffness) > own_strains(elements):
         raise InputError(
-            f"beam.loss_factor = {elements.beam.loss_factor!r} and modal_damping = {modal_damping!r} together: springs, "
-            "tension and foundation have no loss and couple the modes, give one of the two"
+            f"beam.loss_factor = {elements.beam.loss_factor!r} and modal_damping = {modal_damping!r} together: "
+            "springs, tension and foundation have no loss and couple the modes, give one of the two"
         )
 
 
@@ -221,4 +221,4 @@ def _one_by_one(elements: Elements, pencil: FactoredPencil, weights: Array, omeg
 
 def method(beam: Beam, n_modes: int, n_elements: int, theory: Theory = "euler-bernoulli") -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
-    return method_name(unknowns(beam, n_elements, theory), n_modes)
+    return method_name(unknowns(beam, n_elements, theory), n_modes, uneven(beam, theory))

@@ -26,8 +26,8 @@ from verify.elements.mesh import (
     build_elements,
     mass_matrix,
     moving_matrix,
-    shear_matrix,
     rolling_matrix,
+    shear_matrix,
     slope_matrix,
     stiffness_matrix,
     turn_matrix,
@@ -70,9 +70,14 @@ def _pencil(elements: Elements) -> FactoredPencil:
         strain_matrix=lambda: own(lengths)[:, free],
         mass_matrix=lambda: mass,
         masses=None if len(masses) == 1 else lambda v: sum((weighed_squares(v, one) for one in masses), np.zeros(1)),
-        uneven=elements.theory == "timoshenko" or bool(set(elements.beam.added) - {"section"}),
+        uneven=uneven(elements.beam, elements.theory),
     )
     return added_strains(elements, plain)
+
+
+def uneven(beam: Beam, theory: Theory) -> bool:
+    """Whether stiffnesses of many sizes come together: of shear, of springs, of short elements beside what stands."""
+    return theory == "timoshenko" or bool(set(beam.added) - {"section"})
 
 
 def _check_stable(elements: Elements, pencil: FactoredPencil) -> None:
@@ -160,9 +165,7 @@ def rigid_shapes(elements: Elements) -> Array:
     return shapes
 
 
-def factor_difference(
-    beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli"
-) -> float:
+def factor_difference(beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli") -> float:
     """How far B^T diag(d) B is from the assembled K: the largest entry of the difference over sqrt(K_ii K_jj).
 
     Over the free unknowns, with B as the sparse array and as the differences that read the eigenvalues, the worse

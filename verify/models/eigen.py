@@ -108,8 +108,10 @@ def _memory_bytes() -> int:
     return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
-def method_name(n_unknowns: int, n_modes: int) -> str:
+def method_name(n_unknowns: int, n_modes: int, uneven: bool = False) -> str:
     """How `lowest` will find the vectors; every value is then read from the factored quotient."""
+    if uneven and uses_dense(n_unknowns, n_modes):
+        return "dense inverse"
     if n_unknowns <= DENSE_UNKNOWNS:
         return "dense"
     return "dense SVD" if uses_dense(n_unknowns, n_modes) else "sparse"
@@ -127,7 +129,8 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
         vectors = _sparse_vectors(pencil, n_modes)
     values, vectors = factored_quotient(pencil, vectors)
     order = np.argsort(values, kind="stable")
-    return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method_name(pencil.n, n_modes))
+    method = method_name(pencil.n, n_modes, pencil.uneven)
+    return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method)
 
 
 def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Array]:
@@ -140,7 +143,7 @@ def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Ar
 
 def weighed_squares(vectors: Array, matrix: Any) -> Array:
     """V^T M v of every column, (k,)."""
-    return np.einsum("ij,ij->j", vectors, matrix @ vectors)
+    return np.asarray(np.einsum("ij,ij->j", vectors, matrix @ vectors))
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
@@ -194,7 +197,8 @@ def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
 def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
     """([[-1/d, B], [B^T, 0]] as a sparse array, the unknowns in it): K with its strains kept as unknowns.
 
-    Where all eigenvalues lie above some value, K less M times it. Where motions are rigid, as many unknowns are grounded as make the matrix regular.
+    Where all eigenvalues lie above some value, K less M times that. Where motions are rigid, as many unknowns are
+    grounded as make the matrix regular.
     """
     from scipy.sparse import block_array, csc_array, diags_array
 
