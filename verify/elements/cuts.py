@@ -1,7 +1,8 @@
 """Where a beam is cut into elements: at its steps, and at the masses and springs that stand on it.
 
 A mass makes the shear force jump and a rotary inertia the moment, and a cubic bends linearly: where the jump lies
-inside an element, frequencies are of order 3 and 1, where a node lies there they are of order 4. What stands
+inside an element, frequencies are of order 3 and 1 (1 and 1 under Timoshenko's theory, whose slope jumps with the
+shear force), where a node lies there they are of order 4. What stands
 nearer than the shortest section to a step, an end or its neighbour makes no cut and acts inside its element.
 """
 
