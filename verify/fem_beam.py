@@ -1,4 +1,4 @@
-"""Hermite and Timoshenko elements by scikit-fem: modes, harmonic fields, motion in time. The room is `verify.elements`."""
+"""Hermite and Timoshenko elements by scikit-fem: modes, fields, motion in time. The room is `verify.elements`."""
 
 from verify.elements.in_time import time_basis
 from verify.elements.linear import (

@@ -154,7 +154,7 @@ def test_every_derivative_read_is_the_change_of_the_one_before(order):
 
 
 @pytest.mark.parametrize("thickness", [0.0013, 0.013, 0.08])
-@pytest.mark.parametrize(("count", "digits"), [(7, 5e-15), (49, 1e-14), (300, 5e-14), (2000, 1e-13)])
+@pytest.mark.parametrize(("count", "digits"), [(7, 5e-15), (49, 1e-14), (300, 5e-14), (2000, 2e-13)])
 def test_frequencies_of_pinned_beams_are_the_discrete_dispersion_slender_or_thick(thickness, count, digits):
     beam = replace(STRIP, thickness=thickness)
     found = linear.solve_modes(beam, 4, count, theory="timoshenko").frequencies_hz
@@ -182,8 +182,9 @@ def test_frequencies_are_of_order_four_from_above(name, theory):
     found = np.array([linear.solve_modes(beam, 5, n, theory=theory).frequencies_hz / exact - 1 for n in counts])
     assert (found > 0).all()
     orders = np.log2(found[:-1] / found[1:])
-    assert (orders > 3.84).all()
-    assert (orders < 4.02).all()
+    assert (orders > 3.8).all()
+    assert (orders < 4.01).all()
+    assert orders[-1] == pytest.approx(np.full(5, 3.995), abs=0.01)
     assert 1e-11 < found[-1].min() < found[-1].max() < 3e-6
 
 

@@ -77,8 +77,9 @@ def test_frequencies_are_of_order_four_from_above_whatever_stands_on_the_beam(ad
     found = errors(AT_NODES[added])
     assert (found > 0).all()
     orders = np.log2(found[1:-1] / found[2:])
-    assert (orders > 3.84).all()
-    assert (orders < 4.02).all()
+    assert (orders > 3.8).all()
+    assert (orders < 4.01).all()
+    assert orders[-1] == pytest.approx(np.full(5, 3.995), abs=0.01)
     assert 1e-12 < found[-1].min() < found[-1].max() < 3e-6
 
 
@@ -133,10 +134,10 @@ def test_frequencies_under_axial_force_on_a_foundation_are_the_discrete_dispersi
     )
 
 
-@pytest.mark.parametrize("ground", [1e6, 1e10])
-@pytest.mark.parametrize("count", [49, 400])
+@pytest.mark.parametrize("ground", [1e6, 1e12])
+@pytest.mark.parametrize("count", [49, 150, 700])
 def test_modes_on_a_stiff_foundation_lie_close_together_and_are_told_apart(ground, count):
-    """The lowest three at 1e10: parts of 1e-8 between them."""
+    """The lowest three at 1e12: parts of 1e-10 between them, where Lanczos about zero finds none."""
     beam = replace(PINNED, foundation=ground * EI / L**4)
     found = linear.solve_modes(beam, 3, count).frequencies_hz
     assert found == pytest.approx([float(discrete_hz(beam, n, count)) for n in (1, 2, 3)], rel=2e-14)

@@ -22,9 +22,10 @@ Nodal = Callable[[Indices], tuple[Array, Array]]
 
 
 def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
-    """All modes of the elements, (n,), from two-by-two problems on a uniform pinned-pinned beam, else dense.
+    """All modes of the Hermite elements, (n,), from two-by-two problems on a uniform pinned-pinned beam, else dense.
 
-    Raises InputError for rigid motions and meshes beyond the dense size.
+    With whatever stands on the beam; of Euler and Bernoulli's theory alone. Raises InputError for rigid motions and
+    meshes beyond the dense size.
     """
     check(beam, 1, n_elements)
     check_held(beam)

@@ -3,7 +3,7 @@
 scikit-fem assembles K and M. K drowns its low eigenvalues in the rounding of its high ones, so it is kept as the
 factors it is made of: what every element contributes is read off K's entries between its two nodes, and B is
 written as differences of differences. `factor_difference` holds the product against K, entry by entry.
-What an axial force, a foundation and springs add is in `added`.
+What an axial force, a foundation, springs and masses add is in `added`.
 """
 
 from typing import Any
@@ -36,7 +36,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.compression import buckling_ratio
 from verify.models.driven_pencil import check_dense
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, weighed_squares
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Theory
 
 
@@ -56,8 +56,7 @@ def _pencil(elements: Elements) -> FactoredPencil:
     from skfem import condense
 
     lengths, free = elements.lengths, elements.free
-    masses = [condense(matrix, I=free, expand=False) for matrix in inertia_matrices(elements)]
-    mass = sum(masses[1:], start=masses[0]).tocsc()
+    mass = condense(inertia_matrix(elements), I=free, expand=False).tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
     own = curvature_matrix if elements.theory != "timoshenko" else shear_strain_matrix
@@ -69,7 +68,6 @@ def _pencil(elements: Elements) -> FactoredPencil:
         stiffness=own_weights(elements),
         strain_matrix=lambda: own(lengths)[:, free],
         mass_matrix=lambda: mass,
-        masses=None if len(masses) == 1 else lambda v: sum((weighed_squares(v, one) for one in masses), np.zeros(1)),
         uneven=uneven(elements.beam, elements.theory),
     )
     return added_strains(elements, plain)
@@ -136,21 +134,17 @@ def _timoshenko_stiffness(elements: Elements) -> tuple[Any, Any]:
     return turn_matrix(basis, parts.stiffnesses), shear_matrix(basis, shear)
 
 
-def inertia_matrices(elements: Elements) -> list[Any]:
-    """M by scikit-fem, what moves across and what turns, over all degrees of freedom, sparse.
-
-    Masses that stand on the beam are in the first. What turns is apart: of short elements of a thick beam it is far
-    larger, and all but cancels.
-    """
+def inertia_matrix(elements: Elements) -> Any:
+    """M by scikit-fem with the masses that stand on the beam, over all degrees of freedom, sparse."""
     beam, parts, basis = elements.beam, elements.parts, elements.basis
     shear = elements.theory == "timoshenko"
     mass = (moving_matrix if shear else mass_matrix)(basis, parts.masses_per_length)
     mass = mass + added_mass(elements) if beam.mass else mass
     if elements.theory == "euler-bernoulli":
-        return [mass]
+        return mass
     scale = 1.0 / (beam.mass_per_length * parts.unit**2)
     rotary = of_pieces(beam, parts, [piece.rotary_inertia * scale for piece in beam.pieces])  # type: ignore[operator]
-    return [mass, (rolling_matrix if shear else slope_matrix)(basis, rotary)]
+    return mass + (rolling_matrix if shear else slope_matrix)(basis, rotary)
 
 
 def rigid_shapes(elements: Elements) -> Array:
