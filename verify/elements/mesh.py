@@ -1,7 +1,8 @@
 """A beam's line of elements: scikit-fem's mesh, degrees of freedom, assembly, point forces and readings.
 
-Hermite elements, or Timoshenko's under his theory. Lengths are in mean element lengths L/N, stiffnesses and masses in those of the beam; the nodes are real
-coordinates in that unit, so that those of equal elements are whole numbers, exact at any size.
+Hermite elements, or Timoshenko's under his theory. Lengths are in mean element lengths L/N, stiffnesses and masses in
+those of the beam; the nodes are real coordinates in that unit, so that those of equal elements are whole numbers,
+exact at any size.
 """
 
 from collections.abc import Iterable

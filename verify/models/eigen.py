@@ -39,6 +39,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """() -> B as a sparse array (m, n); asked for only where a factorisation needs it."""
     mass_matrix: Callable[[], Any]
     """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
+    masses: Callable[[Array], Array] | None = None
+    """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
     below: float = 0.0
     """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
     uneven: bool = False
@@ -134,9 +136,14 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
 def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Array]:
     """Rayleigh quotients sum d (B v)^2 / v^T M v, (k,), and the vectors scaled to v^T M v = 1, (n, k)."""
     strains = pencil.strain(vectors)
-    masses = np.einsum("ij,ij->j", vectors, pencil.mass_matrix() @ vectors)
+    masses = pencil.masses(vectors) if pencil.masses else weighed_squares(vectors, pencil.mass_matrix())
     values = np.einsum("i,ij,ij->j", pencil.stiffness, strains, strains) / masses
     return values, vectors / np.sqrt(masses)
+
+
+def weighed_squares(vectors: Array, matrix: Any) -> Array:
+    """V^T M v of every column, (k,)."""
+    return np.asarray(np.einsum("ij,ij->j", vectors, matrix @ vectors))
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
