@@ -214,7 +214,7 @@ SHARED = [
     Shared(
         "models.division",
         "each part takes the stiffness of its neighbour",
-        ("elements.mesh.divide",),
+        ("elements.cuts.divide",),
         after(lambda parts: replace(parts, moduli=np.roll(parts.moduli, 1))),
         "patched-strip",
         ("elements-at-24",),

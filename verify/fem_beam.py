@@ -1,6 +1,23 @@
-"""Hermite beam elements by scikit-fem: modes, harmonic fields, motion in time. The room is `verify.elements`."""
+"""Hermite and Timoshenko elements by scikit-fem: modes, fields, motion in time. The room is `verify.elements`."""
 
 from verify.elements.in_time import time_basis
-from verify.elements.linear import check, n_elastic, solve_harmonic, solve_modes, unit_responses, unknowns
+from verify.elements.linear import (
+    buckling_load,
+    check,
+    n_elastic,
+    solve_harmonic,
+    solve_modes,
+    unit_responses,
+    unknowns,
+)
 
-__all__ = ["check", "n_elastic", "solve_harmonic", "solve_modes", "time_basis", "unit_responses", "unknowns"]
+__all__ = [
+    "buckling_load",
+    "check",
+    "n_elastic",
+    "solve_harmonic",
+    "solve_modes",
+    "time_basis",
+    "unit_responses",
+    "unknowns",
+]

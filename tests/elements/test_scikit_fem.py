@@ -5,7 +5,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.elements import linear, mesh, pencil
+from verify.elements import curvatures, linear, mesh, pencil
 from verify.elements.in_time import time_basis
 from verify.elements.stock import stock_frequency_hz
 from verify.errors import InputError
@@ -262,7 +262,7 @@ def test_our_finder_finds_the_cells_that_scikit_fems_does():
 def test_factors_read_off_the_stiffness_of_equal_elements_are_the_textbooks_with_no_rounding():
     """EI/l and 3 EI/l, at any size: Simpson's points are floats, those of Gauss are not."""
     found = mesh.stiffness_matrix(mesh.basis_between(np.arange(1001.0)), np.ones(1000))
-    assert pencil.curvature_weights(np.ones(1000), found).tolist() == [1.0] * 1000 + [3.0] * 1000
+    assert curvatures.curvature_weights(np.ones(1000), found).tolist() == [1.0] * 1000 + [3.0] * 1000
 
 
 @pytest.mark.parametrize("supports", [("pinned", "pinned"), ("clamped", "free"), ("guided", "clamped")])

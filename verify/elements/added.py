@@ -21,7 +21,7 @@ SAME_PLACE = 1e-9
 """Of a mean element: what stands so near to a node stands on it."""
 
 RIGID = 1e14
-"""Times the bending stiffness of an element: what is stiffer moves no frequency by 1e-13, and its strain is rounding."""
+"""Times the bending stiffness of an element: what is stiffer moves no frequency by 1e-13, its strain is rounding."""
 
 
 def stiffest(elements: Elements) -> float:
@@ -49,7 +49,15 @@ def added_strains(elements: Elements, plain: FactoredPencil) -> FactoredPencil:
         return vstack([plain.strain_matrix(), *(matrix()[:, free] for matrix in matrices)], format="csc")
 
     stiffness = np.concatenate([plain.stiffness, *stiffnesses])
-    return replace(plain, strain=strain, strain_matrix=strain_matrix, stiffness=stiffness)
+    return replace(plain, strain=strain, strain_matrix=strain_matrix, stiffness=stiffness, below=_lifted(elements))
+
+
+def _lifted(elements: Elements) -> float:
+    """What a foundation lifts all eigenvalues above, 0 where masses or an axial force may take them down again."""
+    beam, parts = elements.beam, elements.parts
+    if beam.mass or beam.tension < 0.0 or elements.theory != "euler-bernoulli":
+        return 0.0
+    return (1.0 - 1e-6) * ground_stiffness(beam, parts.unit) / float(parts.masses_per_length.max())
 
 
 Strained = tuple[Callable[[Array], Array], Callable[[], Any], Array]

@@ -1,20 +1,19 @@
 """Where a beam is cut into elements: at its steps, and at the masses and springs that stand on it.
 
 A mass makes the shear force jump and a rotary inertia the moment, and a cubic bends linearly: where the jump lies
-inside an element, frequencies are of order 3 and 1, where a node lies there they are of order 4.
+inside an element, frequencies are of order 3 and 1 (1 and 1 under Timoshenko's theory, whose slope jumps with the
+shear force), where a node lies there they are of order 4. What stands
+nearer than the shortest section to a step, an end or its neighbour makes no cut and acts inside its element.
 """
 
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.beam import SHORTEST_SECTION, Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import Parts, check_division, divide
 from verify.section import Piece
-
-NEAREST = 1e-5
-"""Of the beam's length: what stands nearer to a cut than this makes none, and acts inside its element."""
 
 
 def check_cuts(beam: Beam, n_elements: int, grading: float) -> None:
@@ -31,8 +30,8 @@ def stretches(beam: Beam) -> tuple[Piece, ...]:
     """The pieces of a beam, cut where something stands on it."""
     if not (beam.mass or beam.spring):
         return beam.pieces
-    near, found, start = NEAREST * beam.length, [], 0.0
-    places = sorted({one.position for one in (*beam.mass, *beam.spring)})
+    near, found, start = SHORTEST_SECTION * beam.length, [], 0.0
+    places = sorted({mass.position for mass in beam.mass} | {spring.position for spring in beam.spring})
     for piece in beam.pieces:
         left, end = start, start + piece.length
         for place in places:

@@ -7,9 +7,10 @@ from typing import Any, Literal
 import numpy as np
 
 from verify.beam import Beam
+from verify.elements.curvatures import curvature_weights
 from verify.elements.linear import check
 from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, stiffness_matrix, weighed
-from verify.elements.pencil import curvature_weights, element_pencil
+from verify.elements.pencil import element_pencil
 from verify.models.arrays import Array, Indices
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense
@@ -21,9 +22,10 @@ Nodal = Callable[[Indices], tuple[Array, Array]]
 
 
 def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
-    """All modes of the elements, (n,), from two-by-two problems on a uniform pinned-pinned beam, else dense.
+    """All modes of the Hermite elements, (n,), from two-by-two problems on a uniform pinned-pinned beam, else dense.
 
-    Raises InputError for rigid motions and meshes beyond the dense size.
+    With whatever stands on the beam; of Euler and Bernoulli's theory alone. Raises InputError for rigid motions and
+    meshes beyond the dense size.
     """
     check(beam, 1, n_elements)
     check_held(beam)

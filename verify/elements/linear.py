@@ -1,16 +1,17 @@
-"""Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers, in metres, hertz and newtons."""
+"""Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers in metres, hertz, newtons."""
 
 from collections.abc import Sequence
 from functools import partial
 from math import pi, sqrt
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
-from verify.elements.pencil import damped_stiffness, element_pencil, own_strains
+from verify.elements.pencil import damped_stiffness, element_pencil, mesh_buckling_load, own_strains, uneven
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
@@ -72,6 +73,16 @@ def check(
     check_cuts(beam, n_elements, grading)
     free, elastic = unknowns(beam, n_elements, theory), n_elastic(beam, n_elements, theory)
     check_size(free, n_modes, elastic, FIELD, n_elements)
+
+
+def buckling_load(beam: Beam, n_elements: int, *, grading: float = 1.0) -> float:
+    """The compression at which `n_elements` elements buckle first, newton, whatever the beam's own axial force.
+
+    0 where nothing keeps the beam from tilting. Raises InputError where `solve_modes` would.
+    """
+    compressed = replace(beam, tension=-float(beam.bending_stiffness / beam.length**2))
+    check(compressed, 1, n_elements, grading=grading)
+    return mesh_buckling_load(build_elements(compressed, n_elements, grading))
 
 
 def _modes(elements: Elements, nodal: Array, pairs: Eigenpairs) -> Modes:
@@ -160,8 +171,8 @@ def solve_harmonic(
 def _check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:
     if modal_damping and elements.beam.loss_factor and len(pencil.stiffness) > own_strains(elements):
         raise InputError(
-            f"beam.loss_factor = {elements.beam.loss_factor!r} and modal_damping = {modal_damping!r} together: springs, "
-            "tension and foundation have no loss and couple the modes, give one of the two"
+            f"beam.loss_factor = {elements.beam.loss_factor!r} and modal_damping = {modal_damping!r} together: "
+            "springs, tension and foundation have no loss and couple the modes, give one of the two"
         )
 
 
@@ -211,4 +222,4 @@ def _one_by_one(elements: Elements, pencil: FactoredPencil, weights: Array, omeg
 
 def method(beam: Beam, n_modes: int, n_elements: int, theory: Theory = "euler-bernoulli") -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
-    return method_name(unknowns(beam, n_elements, theory), n_modes)
+    return method_name(unknowns(beam, n_elements, theory), n_modes, uneven(beam, theory))

@@ -1,7 +1,8 @@
-"""A beam's line of Hermite or Timoshenko elements: scikit-fem's mesh, degrees of freedom, assembly, point forces and readings.
+"""A beam's line of elements: scikit-fem's mesh, degrees of freedom, assembly, point forces and readings.
 
-Lengths are in mean element lengths L/N, stiffnesses and masses in those of the beam; the nodes are real
-coordinates in that unit, so that those of equal elements are whole numbers, exact at any size.
+Hermite elements, or Timoshenko's under his theory. Lengths are in mean element lengths L/N, stiffnesses and masses in
+those of the beam; the nodes are real coordinates in that unit, so that those of equal elements are whole numbers,
+exact at any size.
 """
 
 from collections.abc import Iterable
@@ -48,9 +49,7 @@ class Elements(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return nodal
 
 
-def build_elements(
-    beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli"
-) -> Elements:
+def build_elements(beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli") -> Elements:
     """The elements of a beam. Raises InputError where it cannot be divided so, or lacks what the theory takes."""
     check_theory(beam, theory)
     parts = cut(beam, n_elements, grading)

@@ -3,12 +3,13 @@
 scikit-fem assembles K and M. K drowns its low eigenvalues in the rounding of its high ones, so it is kept as the
 factors it is made of: what every element contributes is read off K's entries between its two nodes, and B is
 written as differences of differences. `factor_difference` holds the product against K, entry by entry.
-What an axial force, a foundation and springs add is in `added`.
+What an axial force, a foundation, springs and masses add is in `added`.
 """
 
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.elements.added import added_mass, added_matrix, added_strains, stiffest
@@ -35,7 +36,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.compression import buckling_ratio
 from verify.models.driven_pencil import check_dense
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, weighed_squares
+from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Theory
 
 
@@ -55,8 +56,7 @@ def _pencil(elements: Elements) -> FactoredPencil:
     from skfem import condense
 
     lengths, free = elements.lengths, elements.free
-    masses = [condense(matrix, I=free, expand=False) for matrix in inertia_matrices(elements)]
-    mass = sum(masses[1:], start=masses[0]).tocsc()
+    mass = condense(inertia_matrix(elements), I=free, expand=False).tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
     own = curvature_matrix if elements.theory != "timoshenko" else shear_strain_matrix
@@ -68,10 +68,14 @@ def _pencil(elements: Elements) -> FactoredPencil:
         stiffness=own_weights(elements),
         strain_matrix=lambda: own(lengths)[:, free],
         mass_matrix=lambda: mass,
-        masses=None if len(masses) == 1 else lambda v: sum((weighed_squares(v, one) for one in masses), np.zeros(1)),
-        uneven=elements.theory == "timoshenko" or bool(set(elements.beam.added) - {"section"}),
+        uneven=uneven(elements.beam, elements.theory),
     )
     return added_strains(elements, plain)
+
+
+def uneven(beam: Beam, theory: Theory) -> bool:
+    """Whether stiffnesses of many sizes come together: of shear, of springs, of short elements beside what stands."""
+    return theory == "timoshenko" or bool(set(beam.added) - {"section"})
 
 
 def _check_stable(elements: Elements, pencil: FactoredPencil) -> None:
@@ -79,29 +83,15 @@ def _check_stable(elements: Elements, pencil: FactoredPencil) -> None:
     if -force >= load:
         raise InputError(
             f"beam.tension = {force!r} N compresses the beam beyond its buckling: {len(elements.lengths)} elements "
-            f"buckle at {load:.6g} N, lower it or hold the beam better"
+            f"buckle at {load:.6g} N, compress it less or hold it better"
         )
 
 
-def mesh_buckling_load(elements: Elements, pencil: FactoredPencil) -> float:
-    """The compression at which the elements of a compressed beam buckle first, newton."""
-    from msgspec.structs import replace
-
+def mesh_buckling_load(elements: Elements, pencil: FactoredPencil | None = None) -> float:
+    """The compression at which the elements of a compressed beam buckle first, newton; `pencil` if it is there."""
     if any(turn for _, turn in replace(elements.beam, tension=0.0).rigid_lines):
         return 0.0
-    return -elements.beam.tension / buckling_ratio(pencil)
-
-
-def buckling_load(beam: Beam, n_elements: int, grading: float = 1.0) -> float:
-    """The compression at which `n_elements` elements buckle first, newton, whatever the beam's own axial force.
-
-    Infinite for a beam of which no motion tilts. Raises InputError where it cannot be divided so.
-    """
-    from msgspec.structs import replace
-
-    scale = float(beam.bending_stiffness / beam.length**2)
-    elements = build_elements(replace(beam, tension=-scale), n_elements, grading)
-    return mesh_buckling_load(elements, _pencil(elements))
+    return -elements.beam.tension / buckling_ratio(pencil or _pencil(elements))
 
 
 def damped_stiffness(elements: Elements, pencil: FactoredPencil) -> ComplexArray:
@@ -144,21 +134,17 @@ def _timoshenko_stiffness(elements: Elements) -> tuple[Any, Any]:
     return turn_matrix(basis, parts.stiffnesses), shear_matrix(basis, shear)
 
 
-def inertia_matrices(elements: Elements) -> list[Any]:
-    """M by scikit-fem, what moves across and what turns, over all degrees of freedom, sparse.
-
-    Masses that stand on the beam are in the first. What turns is apart: of short elements of a thick beam it is far
-    larger, and all but cancels.
-    """
+def inertia_matrix(elements: Elements) -> Any:
+    """M by scikit-fem with the masses that stand on the beam, over all degrees of freedom, sparse."""
     beam, parts, basis = elements.beam, elements.parts, elements.basis
     shear = elements.theory == "timoshenko"
     mass = (moving_matrix if shear else mass_matrix)(basis, parts.masses_per_length)
     mass = mass + added_mass(elements) if beam.mass else mass
     if elements.theory == "euler-bernoulli":
-        return [mass]
+        return mass
     scale = 1.0 / (beam.mass_per_length * parts.unit**2)
     rotary = of_pieces(beam, parts, [piece.rotary_inertia * scale for piece in beam.pieces])  # type: ignore[operator]
-    return [mass, (rolling_matrix if shear else slope_matrix)(basis, rotary)]
+    return mass + (rolling_matrix if shear else slope_matrix)(basis, rotary)
 
 
 def rigid_shapes(elements: Elements) -> Array:
@@ -173,9 +159,7 @@ def rigid_shapes(elements: Elements) -> Array:
     return shapes
 
 
-def factor_difference(
-    beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli"
-) -> float:
+def factor_difference(beam: Beam, n_elements: int, grading: float = 1.0, theory: Theory = "euler-bernoulli") -> float:
     """How far B^T diag(d) B is from the assembled K: the largest entry of the difference over sqrt(K_ii K_jj).
 
     Over the free unknowns, with B as the sparse array and as the differences that read the eigenvalues, the worse
