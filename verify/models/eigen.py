@@ -34,13 +34,15 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     strain: Callable[[Array], Array]
     """v (n, k) -> B v (m, k), by differences of differences."""
     stiffness: Array
-    """d, (m,), positive, but where `inverse` is true: K is positive then all the same, rigid motions left out."""
+    """d, (m,), positive but for what an axial force takes (`uneven` then)."""
     strain_matrix: Callable[[], Any]
     """() -> B as a sparse array (m, n); asked for only where a factorisation needs it."""
     mass_matrix: Callable[[], Any]
     """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
-    inverse: bool = False
-    """Whether dense vectors too come from the inverse: d may be negative, and M and d span many orders."""
+    masses: Callable[[Array], Array] | None = None
+    """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
+    uneven: bool = False
+    """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
 
     @property
     def rigid_modes(self) -> int:
@@ -113,7 +115,7 @@ def method_name(n_unknowns: int, n_modes: int) -> str:
 
 def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
     """The lowest `n_modes` elastic eigenpairs. The caller has checked the size with `check_size`."""
-    if pencil.inverse and uses_dense(pencil.n, n_modes):
+    if pencil.uneven and uses_dense(pencil.n, n_modes):
         vectors = _inverse_vectors(pencil, n_modes)
     elif pencil.n <= DENSE_UNKNOWNS:
         vectors = _dense_vectors(pencil, n_modes)
@@ -129,9 +131,14 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
 def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Array]:
     """Rayleigh quotients sum d (B v)^2 / v^T M v, (k,), and the vectors scaled to v^T M v = 1, (n, k)."""
     strains = pencil.strain(vectors)
-    masses = np.einsum("ij,ij->j", vectors, pencil.mass_matrix() @ vectors)
+    masses = pencil.masses(vectors) if pencil.masses else weighed_squares(vectors, pencil.mass_matrix())
     values = np.einsum("i,ij,ij->j", pencil.stiffness, strains, strains) / masses
     return values, vectors / np.sqrt(masses)
+
+
+def weighed_squares(vectors: Array, matrix: Any) -> Array:
+    """V^T M v of every column, (k,)."""
+    return np.einsum("ij,ij->j", vectors, matrix @ vectors)
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
@@ -142,25 +149,6 @@ def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
     _, vectors = eigh(stiffness, pencil.mass_matrix(), driver="gvd", check_finite=False)
     return np.asarray(vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes])
-
-
-def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
-    """Vectors from all of L^T K^{-1} L, M = L L^T, K^{-1} through the mixed matrix as `_sparse_vectors` has it."""
-    from scipy.linalg import cholesky, eigh
-
-    mass = pencil.mass_matrix()
-    lower = cholesky(mass.toarray() if hasattr(mass, "toarray") else mass, lower=True)
-    mixed, free = mixed_matrix(pencil)
-    inertia = np.asarray(mass @ pencil.rigid)
-    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
-    loads = np.zeros((mixed.shape[0], pencil.n))
-    loads[-len(free) :] = (lower - inertia @ (motions.T @ lower))[free]
-    answers = np.zeros((pencil.n, pencil.n))
-    answers[free] = factorised(mixed).solve(loads)[-len(free) :]
-    answers -= motions @ (inertia.T @ answers)
-    flexible = lower.T @ answers
-    _, vectors = eigh(0.5 * (flexible + flexible.T))
-    return np.asarray(answers @ vectors[:, ::-1][:, :n_modes])
 
 
 def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
@@ -175,6 +163,30 @@ def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     last = pencil.n - pencil.rigid_modes
     wanted = right[last - n_modes : last][::-1].T
     return np.asarray(solve_triangular(lower, wanted, lower=True, trans="T"))
+
+
+def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+    """Vectors by LAPACK from L^T K^-1 L with M = L L^T and K^-1 through the mixed matrix, which takes any d.
+
+    What is very stiff has next to nothing in it, where K would drown all else in its rounding. Rigid motions are
+    projected out, as for Lanczos.
+    """
+    from scipy.linalg import cholesky, eigh, solve_triangular
+
+    mass = pencil.mass_matrix()
+    mass = np.asarray(mass.toarray() if hasattr(mass, "toarray") else mass)
+    lower = cholesky(mass, lower=True)
+    mixed, free = mixed_matrix(pencil)
+    inertia = mass @ pencil.rigid
+    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
+    loads = np.zeros((mixed.shape[0], pencil.n))
+    loads[-len(free) :] = (lower - inertia @ (motions.T @ lower))[free]
+    answer = np.zeros((pencil.n, pencil.n))
+    answer[free] = factorised(mixed).solve(loads)[-len(free) :]
+    flexibility = lower.T @ (answer - motions @ (inertia.T @ answer))
+    symmetric = 0.5 * (flexibility + flexibility.T)
+    _, vectors = eigh(symmetric, subset_by_index=(pencil.n - n_modes, pencil.n - 1), driver="evr")
+    return np.asarray(solve_triangular(lower, vectors[:, ::-1], lower=True, trans="T"))
 
 
 def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:

@@ -138,7 +138,8 @@ def shear_give(weights: Array) -> float:
     """How much less a chain slips under a force and where it acts than a beam, in l/(kappa G A), by joint weights."""
     there = np.flatnonzero(weights)
     apart, near = abs(np.subtract.outer(there, there)), weights[there]
-    return float(max(near @ (0.5 * apart + 0.25 * np.eye(len(there))) @ near, 0.0))
+    lacking = near @ (0.5 * apart + 0.25 * np.eye(len(there))) @ near
+    return max(float(lacking), 0.0)
 
 
 def _folded(chain: Chain, first: int, weights: Array, slope: bool) -> Array:

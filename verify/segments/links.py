@@ -71,6 +71,10 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(N + 1,), compliances of the joints against slipping, infinite where an end has none; None: nothing slips."""
     softness: Array | None = None
     """(N + 1,), what they would be inside: of the length of beam that each stands for."""
+    joint_inertias: Array | None = None
+    """(N + 1,), taken off the links' thickness inertia where a tensioned joint bends; None: nothing."""
+    slip_masses: Array | None = None
+    """(N + 1,), taken off the links' mass where it slips; None: nothing."""
     eased: Array | None = None
     """(N + 1,), the joints' own stiffness over that of the beam alone; None: one everywhere."""
     lines: tuple[tuple[float, float], ...] = ()
@@ -79,7 +83,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def plain(self) -> bool:
         """Whether there is nothing but links, joints and walls."""
-        return not (self.tension or self.foundation or self.bodies or self.slips is not None)
+        taken = self.slips is not None or self.joint_inertias is not None
+        return not (self.tension or self.foundation or self.bodies or taken)
 
     @property
     def n_segments(self) -> int:
@@ -160,9 +165,11 @@ def build_chain(
     masses = lengths * parts.masses_per_length
     inertias = link_inertia(masses, lengths)
     unit = beam.length / (n_segments + 0.5 * sum(halves))
+    thick = np.zeros(0)
     if theory != "euler-bernoulli":
         thick = _of_links(beam, n_segments, [float(piece.rotary_inertia or 0.0) for piece in beam.pieces])
-        inertias = inertias + lengths * thick / (beam.mass_per_length * unit**2)
+        thick = lengths * thick / (beam.mass_per_length * unit**2)
+        inertias = inertias + thick
     chain = Chain(
         supports=beam.supports,
         rigid_motions=beam.rigid_motions,
@@ -173,10 +180,13 @@ def build_chain(
         masses=masses,
         inertias=inertias,
     )
-    if beam.added in ((), ("section",)) and theory != "timoshenko":
+    mends = joints == "tensioned" and theory != "euler-bernoulli"
+    if beam.added in ((), ("section",)) and theory != "timoshenko" and not mends:
         return chain
     eased = None if compliances is series else _ratio(series, compliances)
     added = _added(beam, chain, tension, attachment, elastic)
+    if mends:
+        added = replace(added, joint_inertias=_joint_inertias(thick, factors, tension_excess(wall)))
     if theory != "timoshenko":
         return replace(added, eased=eased)
     return _slipping(beam, added, wall)
@@ -219,6 +229,15 @@ def _tensioned(
     return found
 
 
+def _joint_inertias(thick: Array, factors: Array, excess: float) -> Array:
+    """Rho I l/12 of joints 0..N, as `_tensioned` has T l/12, zero where an end has none, (N + 1,)."""
+    found = np.concatenate([thick[:1], 0.5 * (thick[1:] + thick[:-1]), thick[-1:]]) / 12.0
+    weights = factors.copy()
+    for end in (0, -1):
+        weights[end] += excess * (factors[end] not in (0.5, np.inf))
+    return np.divide(found * weights, factors**2, out=np.zeros(len(found)), where=np.isfinite(factors))
+
+
 def _of_links(beam: Beam, n_segments: int, of_pieces: list[float]) -> Array:
     """A figure of the beam's pieces as that of the links, (N,), SI."""
     return np.repeat(of_pieces, part_counts([piece.length for piece in beam.pieces], n_segments))
@@ -255,7 +274,11 @@ def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
         elif body.mass and end is None:
             body = replace(body, give=give)
         bodies.append(body)
-    return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips)
+    taken = None
+    if chain.joint_inertias is not None:
+        masses = np.concatenate([chain.masses[:1], 0.5 * (chain.masses[1:] + chain.masses[:-1]), chain.masses[-1:]])
+        taken = np.divide(masses * softness / 12.0, slips, out=np.zeros(n + 1), where=np.isfinite(slips))
+    return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips, slip_masses=taken)
 
 
 def _give(chain: Chain, softness: Array, place: float) -> float:
@@ -264,7 +287,7 @@ def _give(chain: Chain, softness: Array, place: float) -> float:
 
     felt = felt_at(chain, place, chain.attachment)[0]
     nearest = int(abs(chain.nodes - place).argmin())
-    if place in (0.0, chain.nodes[-1]) and nearest in (0, chain.n_segments):
+    if nearest in (0, chain.n_segments) and abs(chain.nodes[nearest] - place) < 1e-9 * chain.unit:
         inward = felt if nearest == 0 else felt[::-1]
         both = np.concatenate([0.5 * inward[:0:-1], inward[:1], 0.5 * inward[1:]])
         return float(2.0 * softness[nearest] * shear_give(both))
@@ -274,11 +297,13 @@ def _give(chain: Chain, softness: Array, place: float) -> float:
 def _one_body(bodies: list[Body]) -> Body:
     """Everything that stands at one place."""
     fields = ("mass", "rotary_inertia", "stiffness", "rotational")
-    return Body(position=bodies[0].position, **{field: sum(getattr(body, field) for body in bodies) for field in fields})
+    return Body(
+        position=bodies[0].position, **{field: sum(getattr(body, field) for body in bodies) for field in fields}
+    )
 
 
 def elastic_ends(beam: Beam, attachment: str) -> tuple[bool, bool]:
-    """Whether a rotational spring or a rotary inertia stands at the left and the right end, felt as its end joint is."""
+    """Whether a rotational spring or a rotary inertia stands at the left and the right end, beyond its end joint."""
     if attachment == "lever":
         return (False, False)
     turned = {s.position for s in beam.spring if s.rotational} | {m.position for m in beam.mass if m.rotary_inertia}
