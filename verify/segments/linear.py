@@ -42,6 +42,8 @@ from verify.segments.reading import (
 )
 
 FIELD = "n_segments"
+_FEWEST_MENDED = 6
+"""Links of which mended joints that slip leave a positive mass, whatever stands at the ends."""
 
 
 def unknowns(
@@ -115,6 +117,11 @@ def check(
     if wall == "welded" and (beam.added or grading != 1.0 or theory != "euler-bernoulli"):
         raise InputError(
             "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
+        )
+    if joints == "tensioned" and theory == "timoshenko" and n_segments < _FEWEST_MENDED:
+        raise InputError(
+            f"{FIELD} = {n_segments}: joints = 'tensioned' with theory = 'timoshenko' take {_FEWEST_MENDED} or more, "
+            "raise it or choose joints = 'series'"
         )
     check_division(beam, n_segments, grading)
     check_theory(beam, theory)  # type: ignore[arg-type]

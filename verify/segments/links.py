@@ -74,7 +74,7 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     joint_inertias: Array | None = None
     """(N + 1,), taken off the links' thickness inertia where a tensioned joint bends; None: nothing."""
     slip_masses: Array | None = None
-    """(N + 1,), taken off the links' mass where it slips; None: nothing."""
+    """(N + 1,), taken off the links' mass where a tensioned joint slips; None: nothing."""
     eased: Array | None = None
     """(N + 1,), the joints' own stiffness over that of the beam alone; None: one everywhere."""
     lines: tuple[tuple[float, float], ...] = ()
@@ -277,7 +277,9 @@ def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
     taken = None
     if chain.joint_inertias is not None:
         masses = np.concatenate([chain.masses[:1], 0.5 * (chain.masses[1:] + chain.masses[:-1]), chain.masses[-1:]])
-        taken = np.divide(masses * softness / 12.0, slips, out=np.zeros(n + 1), where=np.isfinite(slips))
+        halves = np.concatenate([[2.0], np.ones(n - 1), [2.0]])  # more would leave less than no mass at a wall
+        halves[[0, -1]] *= chain.held
+        taken = np.where(np.isfinite(slips), masses * halves / 12.0, 0.0)
     return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips, slip_masses=taken)
 
 
