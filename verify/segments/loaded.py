@@ -47,6 +47,7 @@ def loaded_pencil(chain: Chain) -> FactoredPencil:
         stiffness=np.concatenate([1.0 / strains[0], strains[1], placed[0], _held_turns(chain)[1]]),
         strain_matrix=lambda: _strain_matrix(chain, placed),
         mass_matrix=_mass(chain),
+        masses=_weigher(chain),
         uneven=True,
     )
 
@@ -324,6 +325,27 @@ def _mass(chain: Chain) -> Any:
         return mass.toarray() if n_unknowns(chain) <= DENSE_UNKNOWNS else mass.tocsc()
 
     return made
+
+
+def _weigher(chain: Chain) -> Any:
+    """V (n, k) -> v^T M v by the turns themselves: M over positions drowns a large rotary inertia's (`_mass`)."""
+    felt, turned = rows_at(chain, [body.position for body in chain.bodies], chain.attachment)
+    masses = np.array([body.mass for body in chain.bodies])
+    rotary = np.array([body.rotary_inertia for body in chain.bodies])
+    own = _own_slips(chain, list(chain.bodies))
+
+    def weigh(free: Array) -> Array:
+        tilts = turns(chain, free)
+        total = chain.masses @ middles(chain, free) ** 2 + chain.inertias @ tilts**2
+        total = total + np.array(chain.end_inertias) @ end_turns(chain, free) ** 2
+        if chain.joint_inertias is not None:
+            total = total - chain.joint_inertias @ angles(chain, free) ** 2
+        if chain.slip_masses is not None:
+            total = total - chain.slip_masses @ slips(chain, free) ** 2
+        total = total + masses @ (felt @ positions(chain, free) + own @ free) ** 2 + rotary @ (turned @ tilts) ** 2
+        return np.asarray(total)
+
+    return weigh
 
 
 def _rigid(chain: Chain) -> Array:
