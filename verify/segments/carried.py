@@ -9,7 +9,7 @@ from verify.models.arrays import Array
 from verify.models.division import Parts, part_counts
 from verify.segments.attached import felt_at, shear_give
 from verify.segments.links import Body, Chain, elastic_ends, series_compliances
-from verify.segments.walls import shear_factors, tension_excess
+from verify.segments.walls import reading_factors, shear_factors, tension_excess
 
 
 def carried(
@@ -33,6 +33,8 @@ def carried(
         compliances = _tensioned(beam, parts, tension, factors, tension_excess(wall), elastic)
         chain = replace(chain, compliances=compliances, eased=_ratio(chain.compliances, compliances))
     chain = _added(beam, chain, tension, attachment, elastic)
+    if any(elastic):
+        chain = replace(chain, edges=reading_factors(elastic, chain.n_segments, wall))
     return _slipping(beam, chain, wall) if theory == "timoshenko" else chain
 
 
@@ -154,8 +156,8 @@ def _added(beam: Beam, chain: Chain, tension: float, attachment: str, elastic: t
     ends = [
         [b for b in bodies if there and b.position == at] for there, at in zip(elastic, (0.0, beam.length), strict=True)
     ]
-    inertias = [sum(body.rotary_inertia for body in end) for end in ends]
-    springs = [sum(body.rotational for body in end) for end in ends]
+    inertias = [sum((body.rotary_inertia for body in end), 0.0) for end in ends]
+    springs = [sum((body.rotational for body in end), 0.0) for end in ends]
     beyond = [0.0 if inertia or not spring else 1.0 / spring for inertia, spring in zip(inertias, springs, strict=True)]
     compliances = chain.compliances.copy()
     compliances[[0, -1]] += beyond

@@ -65,6 +65,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Rotational springs beyond those joints that hold such a body."""
     end_compliances: tuple[float, float] = (0.0, 0.0)
     """Of rotational springs beyond those joints that hold none: part of the joint's compliance."""
+    edges: Array | None = None
+    """(N + 1,), on the corrections of the joints' reading where ends are elastic (`walls`); None: one everywhere."""
     slips: Array | None = None
     """(N + 1,), compliances of the joints against slipping, infinite where an end has none; None: nothing slips."""
     softness: Array | None = None
