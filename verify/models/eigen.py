@@ -41,6 +41,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
     masses: Callable[[Array], Array] | None = None
     """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
+    below: float = 0.0
+    """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
     uneven: bool = False
     """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
 
@@ -106,8 +108,10 @@ def _memory_bytes() -> int:
     return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
-def method_name(n_unknowns: int, n_modes: int) -> str:
+def method_name(n_unknowns: int, n_modes: int, uneven: bool = False) -> str:
     """How `lowest` will find the vectors; every value is then read from the factored quotient."""
+    if uneven and uses_dense(n_unknowns, n_modes):
+        return "dense inverse"
     if n_unknowns <= DENSE_UNKNOWNS:
         return "dense"
     return "dense SVD" if uses_dense(n_unknowns, n_modes) else "sparse"
@@ -125,7 +129,8 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
         vectors = _sparse_vectors(pencil, n_modes)
     values, vectors = factored_quotient(pencil, vectors)
     order = np.argsort(values, kind="stable")
-    return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method_name(pencil.n, n_modes))
+    method = method_name(pencil.n, n_modes, pencil.uneven)
+    return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method)
 
 
 def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Array]:
@@ -138,7 +143,7 @@ def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Ar
 
 def weighed_squares(vectors: Array, matrix: Any) -> Array:
     """V^T M v of every column, (k,)."""
-    return np.einsum("ij,ij->j", vectors, matrix @ vectors)
+    return np.asarray(np.einsum("ij,ij->j", vectors, matrix @ vectors))
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
@@ -192,14 +197,16 @@ def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
 def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
     """([[-1/d, B], [B^T, 0]] as a sparse array, the unknowns in it): K with its strains kept as unknowns.
 
-    Where motions are rigid, as many unknowns are grounded as make the matrix regular.
+    Where all eigenvalues lie above some value, K less M times that. Where motions are rigid, as many unknowns are
+    grounded as make the matrix regular.
     """
-    from scipy.sparse import block_array, diags_array
+    from scipy.sparse import block_array, csc_array, diags_array
 
     free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), _grounds(pencil.rigid))
     strain = pencil.strain_matrix()[:, free]
     # None, not stored zeros: they would cost three times the solve
-    return block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, None]], format="csc"), free
+    inertia = -pencil.below * csc_array(pencil.mass_matrix()) if pencil.below else None
+    return block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, inertia]], format="csc"), free
 
 
 def _grounds(rigid: Array) -> list[int]:
@@ -218,7 +225,7 @@ def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     Rigid motions are projected out of load and answer, which makes it the pseudo-inverse. The start vector is
     fixed, so that runs repeat.
     """
-    from scipy.sparse.linalg import LinearOperator, eigsh
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
     mixed, free = mixed_matrix(pencil)
     factor, mass, n_strains = factorised(mixed), pencil.mass_matrix(), len(pencil.stiffness)
@@ -236,7 +243,14 @@ def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     start = np.random.default_rng(20081).standard_normal(pencil.n)
     start -= motions @ (inertia.T @ start)
     basis = min(n_modes + 30, pencil.n)
-    values, vectors = eigsh(operator, k=n_modes, M=mass, sigma=0, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis)
+    try:
+        values, vectors = eigsh(
+            operator, k=n_modes, M=mass, sigma=pencil.below, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis
+        )
+    except ArpackNoConvergence:
+        raise InputError(
+            "n_modes: the lowest modes lie too close together to be told apart on so many parts, lower count"
+        ) from None
     return np.asarray(vectors[:, np.argsort(values)])
 
 
