@@ -25,7 +25,8 @@ part of the wall, order 2. third-order: 5/12, 13/12. five-joint: order 4 and a l
 Joints = Literal["series", "printed", "tensioned"]
 JOINTS: tuple[str, ...] = get_args(Joints)
 """The spring between two links. series: the paper's Eq. (1), two half links in a row. printed: with its indices as they
-stand. tensioned: series less T l/12 under a tension T, order 4 in vibration under axial force."""
+stand. tensioned: series less T l/12 under a tension T, and thickness inertia likewise less where joints bend: order 4
+under axial force, in Rayleigh's and in Timoshenko's theory."""
 
 Attachment = Literal["reciprocal", "lever"]
 ATTACHMENTS: tuple[str, ...] = get_args(Attachment)

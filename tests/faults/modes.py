@@ -93,7 +93,7 @@ def modes_21_and_22_exchanged(patch):
 
 
 def joints_read_raw(patch):
-    patch.setattr(segment_model, "corrected_reading", lambda links, joints: joints)
+    patch.setattr(segment_model, "joint_readings", segment_reading.joint_positions)
 
 
 def shapes_with_unit_amplitude_instead_of_unit_mass(patch):
@@ -314,7 +314,7 @@ def sections_of_the_mean_thickness(patch):
 
 def link_curvature_for_the_joints_moment(patch):
     true = segment_model.joint_curvatures
-    patch.setattr(segment_model, "joint_curvatures", lambda links, joints: true(links, joints) * links.compliances)
+    patch.setattr(segment_model, "joint_curvatures", lambda links, free: true(links, free) * links.compliances)
 
 
 def one_rigid_motion_too_few(patch):

@@ -159,7 +159,7 @@ def near_field_forgotten(patch):
 def lever_rule_and_raw_joints_by_mistake(patch):
     true_load = segment_model.joint_weights
     patch.setattr(segment_model, "joint_weights", lambda chain, position, rule: true_load(chain, position, "lever"))
-    patch.setattr(segment_model, "corrected_reading", lambda chain, joints: joints)
+    patch.setattr(segment_model, "joint_readings", segment_model.joint_positions)
 
 
 def reciprocal_pair_where_the_lever_was_asked_for(patch):

@@ -156,25 +156,6 @@ def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     return np.asarray(vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes])
 
 
-def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
-    """Vectors from all of L^T K^{-1} L, M = L L^T, K^{-1} through the mixed matrix as `_sparse_vectors` has it."""
-    from scipy.linalg import cholesky, eigh
-
-    mass = pencil.mass_matrix()
-    lower = cholesky(mass.toarray() if hasattr(mass, "toarray") else mass, lower=True)
-    mixed, free = mixed_matrix(pencil)
-    inertia = np.asarray(mass @ pencil.rigid)
-    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
-    loads = np.zeros((mixed.shape[0], pencil.n))
-    loads[-len(free) :] = (lower - inertia @ (motions.T @ lower))[free]
-    answers = np.zeros((pencil.n, pencil.n))
-    answers[free] = factorised(mixed).solve(loads)[-len(free) :]
-    answers -= motions @ (inertia.T @ answers)
-    flexible = lower.T @ answers
-    _, vectors = eigh(0.5 * (flexible + flexible.T))
-    return np.asarray(answers @ vectors[:, ::-1][:, :n_modes])
-
-
 def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     """Vectors by the SVD of diag(d)^{1/2} B L^{-T}, M = L L^T: conditioned like n^2 where K is like n^4."""
     from scipy.linalg import cholesky, solve_triangular, svd

@@ -30,6 +30,8 @@ _WIDE = 8
 """Joints that a pair of weights reaches over: shorter chains have the plain ones."""
 _SECOND_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 _NEWTON = 12
+_ABOUT = 0.05
+"""Relative: so unequal neighbours leave order 2, which unequal links have anyway."""
 
 
 def felt_at(chain: Chain, position: float, rule: str) -> tuple[Array, Array]:
@@ -65,9 +67,9 @@ def _place(chain: Chain, position: float) -> tuple[int, float, int, float]:
 
 
 def _even(chain: Chain, link: int) -> bool:
-    """Whether the links around are equally long."""
+    """Whether the links around are about equally long."""
     near = chain.lengths[max(link - 4, 0) : link + 5]
-    return bool(np.ptp(near) < 1e-9 * near[0])
+    return bool(np.ptp(near) < _ABOUT * near[0])
 
 
 def _mended(chain: Chain, link: int, s: float) -> tuple[Array, Array]:
@@ -138,7 +140,8 @@ def shear_give(weights: Array) -> float:
     """How much less a chain slips under a force and where it acts than a beam, in l/(kappa G A), by joint weights."""
     there = np.flatnonzero(weights)
     apart, near = abs(np.subtract.outer(there, there)), weights[there]
-    return float(max(near @ (0.5 * apart + 0.25 * np.eye(len(there))) @ near, 0.0))
+    lacking = near @ (0.5 * apart + 0.25 * np.eye(len(there))) @ near
+    return max(float(lacking), 0.0)
 
 
 def _folded(chain: Chain, first: int, weights: Array, slope: bool) -> Array:

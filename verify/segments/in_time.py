@@ -13,35 +13,43 @@ from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.time_basis import TimeBasis, check_held
-from verify.options import LINES, Line, Load, Wall
+from verify.options import LINES, Attachment, Joints, Line, Load, Wall
 from verify.segments.linear import check
-from verify.segments.links import Chain, build_chain, chain_pencil, with_ends
+from verify.segments.links import Chain, build_chain, chain_pencil
 from verify.segments.loads import joint_weights
-from verify.segments.reading import corrected_reading, spline_at
+from verify.segments.reading import corrected_reading, joint_positions, spline_at
 
 
 def time_basis(
-    beam: Beam, n_segments: int, *, load: Load = "reciprocal", line: Line = "spline", wall: Wall = "gregory"
+    beam: Beam,
+    n_segments: int,
+    *,
+    load: Load = "reciprocal",
+    line: Line = "spline",
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    attachment: Attachment = "reciprocal",
 ) -> TimeBasis:
     """All modes of the chain, (n,), in closed form on a uniform pinned-pinned beam, else from a dense solve.
 
-    `line` "spline" reads order 4 joints through the C2 spline, "raw" the rigid links as they stand. Raises
-    InputError for unknown settings, rigid motions and chains beyond the dense size.
+    Of Euler-Bernoulli's theory, with whatever stands on the beam. `line` "spline" reads order 4 joints through the C2
+    spline, "raw" the rigid links as they stand. Raises InputError for unknown settings, rigid
+    motions and chains beyond the dense size.
     """
-    check(beam, 1, n_segments, wall=wall)
+    check(beam, 1, n_segments, wall=wall, joints=joints, attachment=attachment)
     check_held(beam)
     if line not in LINES:
         raise InputError(f"line = {line!r} is not known: {near_name(line, LINES)}")
-    chain = build_chain(beam, n_segments, wall=wall)
+    chain = build_chain(beam, n_segments, wall=wall, joints=joints, attachment=attachment)
     uniform = beam.supports == ("pinned", "pinned") and beam.uniform and not beam.section
-    omegas, joints, method = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
+    omegas, read, method = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
 
     def loads(position: float) -> Array:
         weights: Any = joint_weights(chain, position, load)
         near = np.flatnonzero(weights)
-        return np.asarray(weights[near] @ joints(near).T)
+        return np.asarray(weights[near] @ read(near).T)
 
-    shapes = _straight(chain, joints) if line == "raw" else _splined(beam, chain, joints, uniform)
+    shapes = _straight(chain, read) if line == "raw" else _splined(beam, chain, read, uniform)
     return TimeBasis(
         model="segment",
         count=n_segments,
@@ -55,11 +63,11 @@ def time_basis(
     )
 
 
-Joints = Callable[[Any], Array]
+Read = Callable[[Any], Array]
 """Joint numbers -> deflection of all modes there, (n, len(numbers))."""
 
 
-def _pinned(beam: Beam, n: int) -> tuple[Array, Joints, str]:
+def _pinned(beam: Beam, n: int) -> tuple[Array, Read, str]:
     """Equal links between pinned ends: y_j = a sin(n pi j / N), omega = 4 s^2 / sqrt(1 - 2 s^2/3) in link units."""
     mu = pi * np.arange(1, n) / n
     square = np.sin(0.5 * mu) ** 2
@@ -80,16 +88,16 @@ def _mass_share(square: Array) -> Array:
     return np.asarray(1.0 - 2.0 * square / 3.0)
 
 
-def _dense(beam: Beam, chain: Chain) -> tuple[Array, Joints, str]:
+def _dense(beam: Beam, chain: Chain) -> tuple[Array, Read, str]:
     pencil = chain_pencil(chain)
     check_dense(pencil, "motion in time")
     values, vectors = modal_basis(pencil)
-    raw = with_ends(chain, vectors).T / np.sqrt(beam.mass_per_length * chain.unit)
+    raw = joint_positions(chain, vectors) / np.sqrt(beam.mass_per_length * chain.unit)
     omegas = np.sqrt(values) * beam.wave_constant / chain.unit**2
     return omegas, lambda numbers: np.asarray(raw[:, numbers]), "dense eigenvalues"
 
 
-def _straight(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
+def _straight(chain: Chain, joints: Read) -> Callable[[Array, int], Array]:
     """The rigid links: straight between the joints, the link to the right at a joint."""
     nodes, lengths = chain.nodes, chain.lengths * chain.unit
 
@@ -104,7 +112,7 @@ def _straight(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
     return shapes
 
 
-def _splined(beam: Beam, chain: Chain, joints: Joints, uniform: bool) -> Callable[[Array, int], Array]:
+def _splined(beam: Beam, chain: Chain, joints: Read, uniform: bool) -> Callable[[Array, int], Array]:
     """The C2 spline through the corrected joints."""
     if not uniform:
         everywhere = corrected_reading(chain, joints(np.arange(chain.n_segments + 1)))
@@ -112,7 +120,7 @@ def _splined(beam: Beam, chain: Chain, joints: Joints, uniform: bool) -> Callabl
     return _sine_spline(chain, joints)
 
 
-def _sine_spline(chain: Chain, joints: Joints) -> Callable[[Array, int], Array]:
+def _sine_spline(chain: Chain, joints: Read) -> Callable[[Array, int], Array]:
     """Corrected reading and spline of sines, which both leave sines: no system to solve.
 
     y + delta^2 y / 12 is (1 - s^2/3) y, the spline's second derivative -4 s^2 / (1 - 2 s^2/3) y per link squared.

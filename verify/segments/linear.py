@@ -16,12 +16,12 @@ from verify.models.driven_pencil import damped_response, modal_receptance, refus
 from verify.models.eigen import Eigenpairs, FactoredPencil, check_size, forced_response, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.models.theory import check_theory
 from verify.options import (
     ATTACHMENTS,
     JOINTS,
     LOADS,
     READINGS,
-    THEORIES,
     WALLS,
     Attachment,
     Joints,
@@ -42,6 +42,8 @@ from verify.segments.reading import (
 )
 
 FIELD = "n_segments"
+_FEWEST_MENDED = 6
+"""Links of which mended joints that slip leave a positive mass, whatever stands at the ends."""
 
 
 def unknowns(
@@ -106,12 +108,7 @@ def check(
     attachment: str = "reciprocal",
 ) -> None:
     """Raise InputError, before anything large is allocated, where `solve_modes` would refuse."""
-    words = (
-        ("wall", wall, WALLS),
-        ("joints", joints, JOINTS),
-        ("theory", theory, THEORIES),
-        ("attachment", attachment, ATTACHMENTS),
-    )
+    words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
     for field, word, known in words:
         if word not in known:
             raise InputError(f"{field} = {word!r} is not known: {near_name(word, known)}")
@@ -121,32 +118,19 @@ def check(
         raise InputError(
             "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
         )
+    if joints == "tensioned" and theory == "timoshenko" and n_segments < _FEWEST_MENDED:
+        raise InputError(
+            f"{FIELD} = {n_segments}: joints = 'tensioned' with theory = 'timoshenko' take {_FEWEST_MENDED} or more, "
+            "raise it or choose joints = 'series'"
+        )
     check_division(beam, n_segments, grading)
-    _check_theory(beam, theory)
+    check_theory(beam, theory)  # type: ignore[arg-type]
     available = n_elastic(beam, n_segments, theory, attachment)  # type: ignore[arg-type]
     check_size(unknowns(beam, n_segments, theory, attachment), n_modes, available, FIELD, n_segments)  # type: ignore[arg-type]
     if beam.tension:
         from verify.segments.buckling import check_loaded
 
         check_loaded(beam, n_segments, wall, joints, grading, attachment)
-
-
-def _check_theory(beam: Beam, theory: str) -> None:
-    """Raise InputError for axial force in a theory of thick beams, and for what such a theory needs to know."""
-    if theory == "euler-bernoulli":
-        return
-    if beam.tension:
-        raise InputError(
-            f"beam.tension with theory = {theory!r}: there is more than one theory of thick beams under axial force, "
-            "choose theory = 'euler-bernoulli'"
-        )
-    needed = ("rotary_inertia", "shear_stiffness") if theory == "timoshenko" else ("rotary_inertia",)
-    for field in needed:
-        if any(getattr(piece, field) is None for piece in beam.pieces):
-            raise InputError(
-                f"beam.{field} is missing: theory = {theory!r} needs it, give it beside bending_stiffness and "
-                "mass_per_length, or give the section's shape and material"
-            )
 
 
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
@@ -207,7 +191,8 @@ def solve_harmonic(
     paper's contact line (Section II.B) through the "corrected" or the "raw" joints, or that of the rigid "links"
     themselves: straight, its slope the link's, the mean of both at a joint. Damping: the beam's loss factor;
     `modal_damping` zeta of every mode (equivalent near a resonance: eta = 2 zeta); `joint_dashpot` c in N m s
-    at every joint (eta = omega c / k). Springs, ground and axial force have no loss. Raises InputError; an undamped resonance of the chain is refused.
+    at every joint (eta = omega c / k); springs, ground and axial force have no loss. Raises InputError; an undamped
+    resonance of the chain is refused.
     """
     settings = _settings(wall, joints, grading, theory, attachment)
     check(beam, 1, n_segments, **settings)
@@ -333,7 +318,8 @@ def unit_responses(
     if beam.loss_factor and not chain.plain:  # what has no loss couples the modes
         stiffness = _damped(beam, chain, pencil, 0.0)
         driven = [forced_response(pencil, weights, float(square), stiffness) for square in omega2]
-        return np.array([_read_at(chain, free.real, x) + 1j * _read_at(chain, free.imag, x) for free in driven]) * scale
+        read = [_read_at(chain, free.real, x) + 1j * _read_at(chain, free.imag, x) for free in driven]
+        return np.asarray(np.array(read, dtype=complex) * scale)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
     return np.asarray(receptance @ _read_at(chain, modes, x)) * scale
 

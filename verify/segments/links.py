@@ -11,15 +11,13 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
 
 from verify.beam import Beam
-from verify.errors import InputError
 from verify.models.arrays import Array
-from verify.models.division import Parts, divide, part_counts
+from verify.models.division import Parts, divide
 from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Attachment, Joints, Theory, Wall
-from verify.segments.walls import shear_factors, tension_excess, wall_factors, welded_halves
+from verify.segments.walls import wall_factors, welded_halves
 
 
 class Body(msgspec.Struct, frozen=True, kw_only=True):
@@ -67,10 +65,16 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Rotational springs beyond those joints that hold such a body."""
     end_compliances: tuple[float, float] = (0.0, 0.0)
     """Of rotational springs beyond those joints that hold none: part of the joint's compliance."""
+    edges: Array | None = None
+    """(N + 1,), on the corrections of the joints' reading where ends are elastic (`walls`); None: one everywhere."""
     slips: Array | None = None
     """(N + 1,), compliances of the joints against slipping, infinite where an end has none; None: nothing slips."""
     softness: Array | None = None
     """(N + 1,), what they would be inside: of the length of beam that each stands for."""
+    joint_inertias: Array | None = None
+    """(N + 1,), taken off the links' thickness inertia where a tensioned joint bends; None: nothing."""
+    slip_masses: Array | None = None
+    """(N + 1,), taken off the links' mass where a tensioned joint slips; None: nothing."""
     eased: Array | None = None
     """(N + 1,), the joints' own stiffness over that of the beam alone; None: one everywhere."""
     lines: tuple[tuple[float, float], ...] = ()
@@ -79,7 +83,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def plain(self) -> bool:
         """Whether there is nothing but links, joints and walls."""
-        return not (self.tension or self.foundation or self.bodies or self.slips is not None)
+        taken = self.slips is not None or self.joint_inertias is not None
+        return not (self.tension or self.foundation or self.bodies or taken)
 
     @property
     def n_segments(self) -> int:
@@ -149,40 +154,27 @@ def build_chain(
     Raises InputError where a tensioned joint would have no stiffness left.
     """
     parts = divide(beam, n_segments, grading)
-    lengths = parts.lengths
-    tension = beam.tension * parts.unit**2 / beam.bending_stiffness if beam.tension else 0.0
-    elastic = elastic_ends(beam, attachment)
-    factors = wall_factors(beam.supports, n_segments, wall, elastic)
-    compliances = series = _compliances(parts, parts.stiffnesses, joints) * factors
-    if joints == "tensioned" and tension:
-        compliances = _tensioned(beam, parts, tension, factors, tension_excess(wall), elastic)
+    masses = parts.lengths * parts.masses_per_length
+    factors = wall_factors(beam.supports, n_segments, wall, elastic_ends(beam, attachment))
     halves = welded_halves(beam.supports) if wall == "welded" else (0, 0)
-    masses = lengths * parts.masses_per_length
-    inertias = link_inertia(masses, lengths)
-    unit = beam.length / (n_segments + 0.5 * sum(halves))
-    if theory != "euler-bernoulli":
-        thick = _of_links(beam, n_segments, [float(piece.rotary_inertia or 0.0) for piece in beam.pieces])
-        inertias = inertias + lengths * thick / (beam.mass_per_length * unit**2)
     chain = Chain(
         supports=beam.supports,
         rigid_motions=beam.rigid_motions,
-        unit=unit,
+        unit=beam.length / (n_segments + 0.5 * sum(halves)),
         start=0.5 * halves[0],
-        lengths=lengths,
-        compliances=compliances,
+        lengths=parts.lengths,
+        compliances=series_compliances(parts, parts.stiffnesses, joints) * factors,
         masses=masses,
-        inertias=inertias,
+        inertias=link_inertia(masses, parts.lengths),
     )
-    if beam.added in ((), ("section",)) and theory != "timoshenko":
+    if theory == "euler-bernoulli" and beam.added in ((), ("section",)):
         return chain
-    eased = None if compliances is series else _ratio(series, compliances)
-    added = _added(beam, chain, tension, attachment, elastic)
-    if theory != "timoshenko":
-        return replace(added, eased=eased)
-    return _slipping(beam, added, wall)
+    from verify.segments.carried import carried
+
+    return carried(beam, chain, parts, factors, wall=wall, joints=joints, theory=theory, attachment=attachment)
 
 
-def _compliances(parts: Parts, stiffness: Array, joints: str) -> Array:
+def series_compliances(parts: Parts, stiffness: Array, joints: str) -> Array:
     """1/k of joints 0..N, (N + 1,), an end joint as if the end link went on beyond it."""
     lengths = parts.lengths
     if joints == "printed":
@@ -193,136 +185,12 @@ def _compliances(parts: Parts, stiffness: Array, joints: str) -> Array:
     return np.concatenate([[lengths[0] / stiffness[0]], inner, [lengths[-1] / stiffness[-1]]])
 
 
-def _ratio(series: Array, compliances: Array) -> Array:
-    """Of two compliances, one where an end has none, (N + 1,)."""
-    return np.divide(series, compliances, out=np.ones(len(series)), where=np.isfinite(series))
-
-
-def _tensioned(
-    beam: Beam, parts: Parts, tension: float, factors: Array, excess: float, elastic: tuple[bool, bool]
-) -> Array:
-    """1/k of joints 0..N with EI - T l^2/12 for every link's EI, which restores order 4 under axial force (`loaded`).
-
-    The first joint of a clamped wall gives up `excess` more. Raises InputError where no stiffness is left.
-    """
-    stiffness = parts.stiffnesses - tension * parts.lengths**2 / 12.0
-    found = _compliances(parts, stiffness, "series") * factors
-    for end, support, turns in zip((0, -1), beam.supports, elastic, strict=True):
-        if support == "clamped" or turns:
-            found[end] = 1.0 / (1.0 / found[end] - tension * parts.lengths[end] * excess / 12.0 / factors[end] ** 2)
-    if (stiffness <= 0.0).any() or (found <= 0.0).any():
-        raise InputError(
-            f"joints = 'tensioned': beam.tension = {beam.tension!r} N leaves no stiffness in a joint of "
-            f"{len(stiffness)} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of it: "
-            "raise n_segments or choose joints = 'series'"
-        )
-    return found
-
-
-def _of_links(beam: Beam, n_segments: int, of_pieces: list[float]) -> Array:
-    """A figure of the beam's pieces as that of the links, (N,), SI."""
-    return np.repeat(of_pieces, part_counts([piece.length for piece in beam.pieces], n_segments))
-
-
-def _softness(beam: Beam, chain: Chain) -> Array:
-    """1/k against slipping of joints 0..N, l/(kappa G A) as bending has l/(EI), two half links in series, (N + 1,)."""
-    shear = [float(piece.shear_stiffness or 0.0) for piece in beam.pieces]
-    links = beam.bending_stiffness / (_of_links(beam, chain.n_segments, shear) * chain.unit**2) * chain.lengths
-    return np.concatenate([links[:1], 0.5 * (links[1:] + links[:-1]), links[-1:]])
-
-
-def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
-    """The chain with joints that slip. A body slips too: at an end beyond a joint of its own, inside by its `give`.
-
-    A spring without a body is in series with that slip, so that no position is without mass.
-    """
-    softness, n = _softness(beam, chain), chain.n_segments
-    free = {at: joint for at, joint in ((0.0, 0), (beam.length, n)) if beam.supports[bool(joint)] == "free"}
-    places = {body.position for body in chain.bodies if body.mass or body.stiffness}
-    loaded = (beam.supports[0] == "free" and 0.0 in places, beam.supports[1] == "free" and beam.length in places)
-    if chain.attachment == "lever":
-        return replace(chain, softness=softness, slips=softness * shear_factors(beam.supports, n, wall))
-    slips = softness * shear_factors(beam.supports, n, wall, loaded)
-    bodies = []
-    for place in sorted({body.position for body in chain.bodies}):
-        body = _one_body([body for body in chain.bodies if body.position == place])
-        end = free.get(place)
-        give = _give(chain, softness, place) if end is None else slips[end]
-        if body.stiffness and not body.mass:
-            body = replace(body, stiffness=1.0 / (1.0 / body.stiffness + give))
-            if end is not None:
-                slips[end] = np.inf
-        elif body.mass and end is None:
-            body = replace(body, give=give)
-        bodies.append(body)
-    return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips)
-
-
-def _give(chain: Chain, softness: Array, place: float) -> float:
-    """Compliance of the slip of what stands at a place inside, or at a guided end, which stands for both its sides."""
-    from verify.segments.attached import felt_at, shear_give
-
-    felt = felt_at(chain, place, chain.attachment)[0]
-    nearest = int(abs(chain.nodes - place).argmin())
-    if place in (0.0, chain.nodes[-1]) and nearest in (0, chain.n_segments):
-        inward = felt if nearest == 0 else felt[::-1]
-        both = np.concatenate([0.5 * inward[:0:-1], inward[:1], 0.5 * inward[1:]])
-        return float(2.0 * softness[nearest] * shear_give(both))
-    return float(softness[nearest] * shear_give(felt))
-
-
-def _one_body(bodies: list[Body]) -> Body:
-    """Everything that stands at one place."""
-    fields = ("mass", "rotary_inertia", "stiffness", "rotational")
-    return Body(position=bodies[0].position, **{field: sum(getattr(body, field) for body in bodies) for field in fields})
-
-
 def elastic_ends(beam: Beam, attachment: str) -> tuple[bool, bool]:
-    """Whether a rotational spring or a rotary inertia stands at the left and the right end, felt as its end joint is."""
+    """Whether a rotational spring or a rotary inertia stands at the left and the right end, beyond its end joint."""
     if attachment == "lever":
         return (False, False)
     turned = {s.position for s in beam.spring if s.rotational} | {m.position for m in beam.mass if m.rotary_inertia}
     return (0.0 in turned, beam.length in turned)
-
-
-def _added(beam: Beam, chain: Chain, tension: float, attachment: str, elastic: tuple[bool, bool]) -> Chain:
-    """The chain with what stands on the beam; what turns with an end is put beyond its joint."""
-    unit, stiffness, mass = chain.unit, beam.bending_stiffness, beam.mass_per_length
-    bodies = [
-        Body(position=m.position, mass=m.mass / (mass * unit), rotary_inertia=m.rotary_inertia / (mass * unit**3))
-        for m in beam.mass
-    ]
-    bodies += [
-        Body(
-            position=s.position,
-            stiffness=s.stiffness * unit**3 / stiffness,
-            rotational=s.rotational * unit / stiffness,
-        )
-        for s in beam.spring
-    ]
-    ends = [
-        [b for b in bodies if there and b.position == at] for there, at in zip(elastic, (0.0, beam.length), strict=True)
-    ]
-    inertias = [sum(body.rotary_inertia for body in end) for end in ends]
-    springs = [sum(body.rotational for body in end) for end in ends]
-    beyond = [0.0 if inertia or not spring else 1.0 / spring for inertia, spring in zip(inertias, springs, strict=True)]
-    compliances = chain.compliances.copy()
-    compliances[[0, -1]] += beyond
-    at_ends = [body for end in ends for body in end]
-    standing = [replace(b, rotary_inertia=0.0, rotational=0.0) if b in at_ends else b for b in bodies]
-    return replace(
-        chain,
-        compliances=compliances,
-        tension=tension,
-        foundation=beam.foundation * unit**4 / stiffness,
-        bodies=tuple(standing),
-        attachment=attachment,
-        elastic=elastic,
-        end_inertias=(inertias[0], inertias[1]),
-        end_springs=(springs[0] * bool(inertias[0]), springs[1] * bool(inertias[1])),
-        end_compliances=(beyond[0], beyond[1]),
-        lines=beam.rigid_lines,
-    )
 
 
 def chain_pencil(chain: Chain) -> FactoredPencil:

@@ -1,25 +1,29 @@
 """A chain with what it carries: axial force, foundation, bodies and springs, elastic ends, joints that slip.
 
 Its unknowns are the free joint positions, the turns of bodies beyond elastic ends, and p = slip / sqrt(c) of every
-joint and then every body that slips with a compliance c, so that stiff shear leaves a small mass and no large stiffness. A joint that slips
-stands at the mean of both links' ends there. All strains are applied as differences of positions and turns.
+joint and then every body that slips with a compliance c, so that stiff shear leaves a small mass and no large
+stiffness. A joint that slips stands at the mean of both links' ends there. Strains are differences of positions and of
+turns.
 
 Energies of a link of length l, turn theta and middle z, halved: foundation k_f l z^2 + k_f l^3/12 theta^2, axial force
-T l theta^2. With y = w - l^2 w''/12 the first has the form of the link's own inertia, so that pinned ends shift omega^2
-by exactly k_f/rho A. The second sums to T (w'^2 + l^2/12 w''^2): omega^2 is off by +mu^2/12 of the part that T gives it,
-order 2. A joint of EI - T l^2/12 in place of EI takes that away, walls and half joints included, because an order of 2
-is enough of a term in l^2. It is no beam's joint in statics, where buckling is off by -mu^2/12 without it: the inertia
-that made y is missing there.
+T l theta^2. With y = w - l^2 w''/12 the first has the form of the link's own inertia: order 4, and pinned ends shift
+omega^2 by exactly k_f/rho A. The second sums to T (w'^2 + l^2/12 w''^2), so that omega^2 is off by +mu^2/12 of what T
+gives it: order 2. Joints of EI - T l^2/12 in place of EI ("tensioned") take that away: order 4, and so of buckling,
+where omega^2 is 0 (joints in series buckle at -mu^2/12). At a clamped wall Gregory's joints also turn the links by
+-kappa l/8, +kappa l/24 off the smooth line, whose squares axial force feels: T l^3 kappa^2 (1/64 + 1/576)/2, order 3,
+unless the wall's joint gives up 5/24 more (`walls.tension_excess`).
 
-A link's thickness inertia rho I l theta^2 is an axial force -omega^2 rho I in this respect: order 2, -(beta r)^2 mu^2/12
-of omega^2 with r^2 = I/A. Joints that slip by s with kappa G A/l have, with S = 2 sin(mu/2)/l,
+A link's thickness inertia rho I l theta^2 is an axial force -omega^2 rho I: order 2, -(beta r)^2 mu^2/12 of omega^2,
+r^2 = I/A, which goes as T l/12 does: by rho I l/12 taken off the inertia where joints bend. Joints that slip by s with
+kappa G A/l have, with S = 2 sin(mu/2)/l,
 
     EI S^4 - rho I omega^2 S^2 - rho A omega^2 (1 - l^2 S^2/6)
-        - rho A omega^2/(kappa G A) (EI S^2 - rho I omega^2 - rho A omega^2 l^2/12) = 0,
+        - rho A omega^2/(kappa G A) (EI S^2 - rho I omega^2 - rho A omega^2 l^2/12) = 0
 
-which is the beam's with S for its wavenumber but for terms in l^2: order 2 again, by the same -(beta r)^2 mu^2/12 and
-terms of second order in the shear. No change of EI or kappa G A by a term in l^2 takes it away, since it is no term
-of a stiffness: the share of EI leaves one in omega^2 alone, that of kappa G A one in omega^4 k^2.
+between pinned ends, the beam's but for terms in l^2: order 2, by the same -(beta r)^2 mu^2/12 and terms of second order
+in the shear. No term in l^2 of EI or kappa G A takes that away: of EI it would leave one in omega^2 alone, of kappa G A
+one in k^2 omega^2 that thickness inertia does not have at all frequencies. With rho I l/12 off where joints bend it is
+(rho A omega^2/(kappa G A))^2 (EI k^2 - rho I omega^2) l^2/12, which rho A l/12 off where they slip takes away: order 4.
 """
 
 from typing import Any
@@ -43,6 +47,7 @@ def loaded_pencil(chain: Chain) -> FactoredPencil:
         stiffness=np.concatenate([1.0 / strains[0], strains[1], placed[0], _held_turns(chain)[1]]),
         strain_matrix=lambda: _strain_matrix(chain, placed),
         mass_matrix=_mass(chain),
+        masses=_weigher(chain),
         uneven=True,
     )
 
@@ -189,7 +194,8 @@ def _shear(chain: Chain, free: Array) -> Array:
     found = slips(chain, free)
     assert chain.slips is not None
     there = _slipping(chain)
-    found[there] *= (chain.softness / chain.slips)[there, None]
+    assert chain.softness is not None
+    found[there] *= (chain.softness[there] / chain.slips[there])[:, None]
     return np.asarray(found / _spans(chain)[:, None])
 
 
@@ -217,31 +223,29 @@ def _own_slips(chain: Chain, bodies: list[Body]) -> Any:
 
 
 def _placed_rows(chain: Chain) -> tuple[Array, Any, Any, Any, Any]:
-    """What resists middles, turns and places: stiffnesses, and rows over joints, middles, turns and unknowns, sparse."""
+    """What resists middles, turns and places: stiffnesses, and sparse rows over joints, middles, turns, unknowns."""
     from scipy.sparse import csr_array, eye_array, vstack
 
     n = chain.n_segments
-    ground, turning = chain.foundation * chain.lengths, chain.tension * chain.lengths
-    turning = turning + ground * chain.lengths**2 / 12.0
+    ground = chain.foundation * chain.lengths
+    of_turns = [chain.tension * chain.lengths, ground * chain.lengths**2 / 12.0]
+    of_turns = [row for row in of_turns if row.any()]
+    grounded = ground[: n * bool(chain.foundation)]
     springs = [body for body in chain.bodies if body.stiffness]
     rotational = [body for body in chain.bodies if body.rotational]
     felt = rows_at(chain, [b.position for b in springs], chain.attachment)[0]
     turned = rows_at(chain, [b.position for b in rotational], chain.attachment)[1]
-    grounded, turns_too = np.flatnonzero(ground), np.flatnonzero(turning)
-    none_of = [csr_array((len(grounded), n)), csr_array((len(turns_too), n)), csr_array((len(springs), n))]
-    over_turns = [none_of[0], eye_array(n).tocsr()[turns_too], none_of[2], csr_array(turned)]
-    over_middles = [eye_array(n).tocsr()[grounded], none_of[1], none_of[2], csr_array((len(rotational), n))]
-    apart = len(grounded) + len(turns_too)
-    over_joints = [csr_array((apart, n + 1)), csr_array(felt), csr_array((len(rotational), n + 1))]
-    stiffness = [
-        ground[grounded],
-        turning[turns_too],
-        [b.stiffness for b in springs],
-        [b.rotational for b in rotational],
-    ]
+    sizes = (len(grounded), n * len(of_turns), len(springs), len(rotational))
+    links = eye_array(n).tocsr()
+    over_middles = [links[: sizes[0]], *(csr_array((size, n)) for size in sizes[1:])]
+    over_turns = [csr_array((sizes[0], n)), *([links] * len(of_turns)), csr_array((sizes[2], n)), csr_array(turned)]
+    apart = sizes[0] + sizes[1]
+    over_joints = [csr_array((apart, n + 1)), csr_array(felt), csr_array((sizes[3], n + 1))]
+    stiffness = [grounded, *of_turns, [b.stiffness for b in springs], [b.rotational for b in rotational]]
     total = n_unknowns(chain)
-    slipping = [csr_array((apart, total)), _own_slips(chain, springs), csr_array((len(rotational), total))]
-    return np.concatenate(stiffness), *map(vstack, (over_joints, over_middles, over_turns, slipping))
+    slipping = [csr_array((apart, total)), _own_slips(chain, springs), csr_array((sizes[3], total))]
+    rows = [vstack(parts).tocsr() for parts in (over_joints, over_middles, over_turns, slipping)]
+    return np.concatenate([np.asarray(part, dtype=float) for part in stiffness]), rows[0], rows[1], rows[2], rows[3]
 
 
 def _strain(chain: Chain, placed: tuple[Array, Any, Any, Any, Any], free: Array) -> Array:
@@ -273,6 +277,15 @@ def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
     return joints, centres, tilts.tocsr(), ends
 
 
+def _over_slips(chain: Chain, masses: Array) -> Array:
+    """Masses of the joints' slips over the unknowns, (n,)."""
+    found, there = np.zeros(n_unknowns(chain)), _slipping(chain)
+    first = _n_free(chain) + len(_turning(chain))
+    if chain.slips is not None:
+        found[first : first + there.sum()] = masses[there] * chain.slips[there]
+    return found
+
+
 def _strain_matrix(chain: Chain, placed: tuple[Array, Any, Any, Any, Any]) -> Any:
     """B of `_strain` as a sparse array (m, n)."""
     from scipy.sparse import eye_array, vstack
@@ -293,11 +306,17 @@ def _mass(chain: Chain) -> Any:
 
     @cache
     def made() -> Any:
-        from scipy.sparse import csr_array, diags_array
+        from scipy.sparse import csr_array, diags_array, vstack
 
         joints, centres, tilts, ends = _maps(chain)
         mass = centres.T @ diags_array(chain.masses) @ centres + tilts.T @ diags_array(chain.inertias) @ tilts
         mass = mass + ends.T @ diags_array(np.array(chain.end_inertias)) @ ends
+        if chain.joint_inertias is not None:
+            around = vstack([ends[[0]], tilts, ends[[1]]]).tocsr()
+            bent = around[1:] - around[:-1]
+            mass = mass - bent.T @ diags_array(chain.joint_inertias) @ bent
+        if chain.slip_masses is not None:
+            mass = mass - diags_array(_over_slips(chain, chain.slip_masses))
         for body in chain.bodies:
             if body.mass or body.rotary_inertia:
                 felt, turned = (csr_array(row) for row in rows_at(chain, [body.position], chain.attachment))
@@ -306,6 +325,27 @@ def _mass(chain: Chain) -> Any:
         return mass.toarray() if n_unknowns(chain) <= DENSE_UNKNOWNS else mass.tocsc()
 
     return made
+
+
+def _weigher(chain: Chain) -> Any:
+    """V (n, k) -> v^T M v by the turns themselves: M over positions drowns a large rotary inertia's (`_mass`)."""
+    felt, turned = rows_at(chain, [body.position for body in chain.bodies], chain.attachment)
+    masses = np.array([body.mass for body in chain.bodies])
+    rotary = np.array([body.rotary_inertia for body in chain.bodies])
+    own = _own_slips(chain, list(chain.bodies))
+
+    def weigh(free: Array) -> Array:
+        tilts = turns(chain, free)
+        total = chain.masses @ middles(chain, free) ** 2 + chain.inertias @ tilts**2
+        total = total + np.array(chain.end_inertias) @ end_turns(chain, free) ** 2
+        if chain.joint_inertias is not None:
+            total = total - chain.joint_inertias @ angles(chain, free) ** 2
+        if chain.slip_masses is not None:
+            total = total - chain.slip_masses @ slips(chain, free) ** 2
+        total = total + masses @ (felt @ positions(chain, free) + own @ free) ** 2 + rotary @ (turned @ tilts) ** 2
+        return np.asarray(total)
+
+    return weigh
 
 
 def _rigid(chain: Chain) -> Array:

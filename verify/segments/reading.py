@@ -79,6 +79,8 @@ def corrected_reading(chain: Chain, joints: Array) -> Array:
     left, right = chain.held
     squares[0] *= not left
     squares[-1] *= not right
+    if chain.edges is not None:
+        squares *= chain.edges
     return np.asarray(joints + squares / 24.0 * node_curvatures(chain, joints))
 
 

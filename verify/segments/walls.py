@@ -59,6 +59,20 @@ def tension_excess(wall: str) -> float:
     return float(12.0 * (turned**2).sum())
 
 
+def reading_factors(elastic: tuple[bool, bool], n_segments: int, wall: str) -> Array:
+    """What to multiply the corrections of the joints' reading with beside elastic ends, (N + 1,).
+
+    Corrections a_k of the joints put joint j off the smooth line by l^2 kappa sum_{k>j} a_k (k - j), and make its
+    angle 1 + a_j of the beam's.
+    """
+    factors, a = np.ones(n_segments + 1), np.array(_CORRECTIONS[wall])
+    for end, turns in zip((0, n_segments), elastic, strict=True):
+        for depth in range(1, min(len(a), n_segments + 1) * turns):
+            off = sum(a[k] * (k - depth) for k in range(depth + 1, len(a)))
+            factors[abs(end - depth)] *= (1.0 - 12.0 * off) / (1.0 + a[depth])
+    return factors
+
+
 def welded_halves(supports: tuple[str, str]) -> tuple[int, int]:
     """Which ends have half a segment welded to the wall."""
     left, right = (int(support == "clamped") for support in supports)
