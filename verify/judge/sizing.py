@@ -88,7 +88,7 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
     """
 
     def reached(count: int) -> bool:
-        if MODELS.named(model).n_elastic(bench.beam, count) < mode:
+        if MODELS.named(model).n_elastic(bench.beam, count, **dict(settings)) < mode:
             return False
         try:
             return abs(bench.frequency_error(model, count, mode, settings)) <= error
@@ -216,7 +216,7 @@ def choose(bench: Workbench, mode: int, error: float, variants: tuple[Variant, .
             model=one.model,
             settings=one.settings,
             count=enough.count,
-            unknowns=MODELS.named(one.model).unknowns(bench.beam, enough.count),
+            unknowns=MODELS.named(one.model).unknowns(bench.beam, enough.count, **dict(one.settings)),
             error=bench.frequency_error(one.model, enough.count, mode, one.settings),
             run_time_s=seconds,
             expected_error=None if one.settings else _expected(one.model, bench.beam, mode, enough.count),

@@ -74,6 +74,8 @@ class Discrete(Model):
 
     home: str
     """The module of modes and fields."""
+    size_settings: tuple[str, ...] = ()
+    """Settings that its number of unknowns depends on."""
 
     @property
     def verbs(self) -> "ModuleType":
@@ -86,17 +88,20 @@ class Discrete(Model):
         """Raise InputError for modes that it cannot solve."""
         self.verbs.check(beam, n_modes, count, **settings)
 
-    def n_elastic(self, beam: "Beam", count: int) -> int:
+    def _of_size(self, settings: dict[str, Any]) -> dict[str, Any]:
+        return {name: value for name, value in settings.items() if name in self.size_settings}
+
+    def n_elastic(self, beam: "Beam", count: int, **settings: Any) -> int:
         """How many elastic modes it has."""
-        return int(self.verbs.n_elastic(beam, count))
+        return int(self.verbs.n_elastic(beam, count, **self._of_size(settings)))
 
-    def unknowns(self, beam: "Beam", count: int) -> int:
+    def unknowns(self, beam: "Beam", count: int, **settings: Any) -> int:
         """How many unknowns are solved for."""
-        return int(self.verbs.unknowns(beam, count))
+        return int(self.verbs.unknowns(beam, count, **self._of_size(settings)))
 
-    def method(self, beam: "Beam", n_modes: int, count: int) -> str:
+    def method(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> str:
         """How its eigenvectors are found."""
-        return str(self.verbs.method(beam, n_modes, count))
+        return str(self.verbs.method(beam, n_modes, count, **self._of_size(settings)))
 
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes."""
@@ -144,6 +149,7 @@ class Segments(Discrete):
     colour = "#2f80ed"
     bounds = "below"
     fewest = 2
+    size_settings = ("theory", "attachment")
     modal_settings = ("wall", "joints", "grading", "theory", "attachment")
     field_settings = ("modal_damping", "joint_dashpot", "load", "reading", "wall", "joints", "theory", "attachment")
     lines = ("spline", "raw")
@@ -174,6 +180,7 @@ class Elements(Discrete):
     modal_settings = ("grading", "theory")
     field_settings = ("modal_damping", "theory")
     unknowns_per_part = 2
+    size_settings = ("theory",)
     library = "scikit-fem"
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:

@@ -163,7 +163,7 @@ class Workbench:
         model, count, settings = key
         module = MODELS.named(model)
         # what others wish for must not fail the one who asks for less, so theirs is cut to what there is
-        available = module.n_elastic(self.beam, count)
+        available = module.n_elastic(self.beam, count, **dict(settings))
         if n_needed > available:
             raise InputError(
                 f"mode = {n_needed}: the {model} model at count = {count} has {available} elastic modes, raise count"
@@ -172,7 +172,7 @@ class Workbench:
         start = perf_counter()
         modes = module.solve_modes(self.beam, n_modes, count, **dict(settings))
         seconds = perf_counter() - start
-        unknowns = module.unknowns(self.beam, count)
+        unknowns = module.unknowns(self.beam, count, **dict(settings))
         self.solves.append(Solve(model, count, settings, n_modes, unknowns, modes.method, seconds))
         return modes
 

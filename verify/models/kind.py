@@ -67,11 +67,11 @@ class Model:
                 "modes, raise count"
             )
 
-    def n_elastic(self, beam: "Beam", count: int) -> int:
+    def n_elastic(self, beam: "Beam", count: int, **settings: Any) -> int:
         """How many elastic modes it has; rigid motions are none."""
-        return self.unknowns(beam, count) - beam.rigid_motions
+        return self.unknowns(beam, count, **settings) - beam.rigid_motions
 
-    def unknowns(self, beam: "Beam", count: int) -> int:
+    def unknowns(self, beam: "Beam", count: int, **settings: Any) -> int:
         """How many unknowns are solved for."""
         return self.unknowns_per_part * count
 
@@ -79,7 +79,7 @@ class Model:
         """The order in the number of parts at which its frequencies converge on a beam; None where nobody says."""
         return None
 
-    def method(self, beam: "Beam", n_modes: int, count: int) -> str:
+    def method(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> str:
         """How its eigenvectors are found, in a word or two."""
         return self.title or self.parts
 

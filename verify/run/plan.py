@@ -101,16 +101,16 @@ def _set_aside(scene: "Scene", overrides: tuple[str, ...]) -> tuple[Choice, ...]
 def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
     name, count, settings = key
     model = MODELS.named(name)
-    n_modes = max(min(n_wanted, model.n_elastic(scene.beam, count)), 1)
+    n_modes = max(min(n_wanted, model.n_elastic(scene.beam, count, **dict(settings))), 1)
     model.check(scene.beam, n_modes, count, **dict(settings))
     return PlannedSolve(
         model=name,
         count=count,
         settings=settings,
         n_modes=n_modes,
-        unknowns=model.unknowns(scene.beam, count),
+        unknowns=model.unknowns(scene.beam, count, **dict(settings)),
         asked_by=who,
-        method=model.method(scene.beam, n_modes, count),
+        method=model.method(scene.beam, n_modes, count, **dict(settings)),
     )
 
 

@@ -199,8 +199,12 @@ def _check_together(beam: "Beam", variants: tuple[Variant, ...], counts: tuple[i
     """Raise InputError where all solves, each done and then timed, would take too long."""
     from verify.models.eigen import solve_seconds
 
-    sizes = [(MODELS[one.model], count) for count in counts for one in variants]
-    seconds = sum(solve_seconds(model.unknowns(beam, n), min(n_modes, model.n_elastic(beam, n))) for model, n in sizes)
+    seconds = 0.0
+    for count in counts:
+        for one in variants:
+            model, how = MODELS[one.model], dict(one.settings)
+            n = min(n_modes, model.n_elastic(beam, count, **how))
+            seconds += solve_seconds(model.unknowns(beam, count, **how), n)
     check_work("counts", list(counts), 2.0 * seconds, "give fewer or smaller ones")
 
 
@@ -209,7 +213,7 @@ def _timed(bench: Workbench, variants: tuple[Variant, ...], count: int, n_modes:
     solves = []
     for one in variants:
         model, settings = MODELS[one.model], dict(one.settings)
-        n = min(n_modes, model.n_elastic(bench.beam, count))
+        n = min(n_modes, model.n_elastic(bench.beam, count, **settings))
         solves.append(lambda model=model, n=n, how=settings: model.solve_modes(bench.beam, n, count, **how))
         bench.modes(one.model, count, n, one.settings)
     return dict(zip(variants, interleaved_medians(solves), strict=True))
