@@ -1,20 +1,20 @@
 """Modes and harmonic fields of Hermite elements: what the model answers, in metres, hertz and newtons."""
 
-from collections.abc import Sequence
 from math import pi, sqrt
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import element_pencil
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, ComplexArray, Numbers
 from verify.models.division import Parts, check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.models.places import Forces, as_forces, as_typed, in_a_row
 
 FIELD = "n_elements"
 
@@ -30,6 +30,7 @@ def n_elastic(beam: Beam, n_elements: int) -> int:
     return unknowns(beam, n_elements) - beam.rigid_motions
 
 
+@as_typed
 def solve_modes(beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0) -> Modes:
     """The first `n_modes` elastic modes with `n_elements` cubic Hermite elements and consistent mass.
 
@@ -93,9 +94,10 @@ def _sign(elements: Elements, nodal: Array) -> Array:
     return np.where(leading < 0, -1.0, 1.0)
 
 
+@as_typed
 def solve_harmonic(
     beam: Beam,
-    forces: Sequence[PointForce],
+    forces: Forces,
     frequency_hz: float,
     n_elements: int,
     *,
@@ -108,6 +110,7 @@ def solve_harmonic(
     factor, or `modal_damping` zeta of every mode (near a resonance eta = 2 zeta). Raises InputError; an
     undamped resonance of the mesh is refused.
     """
+    forces = as_forces(forces)
     check(beam, 1, n_elements, grading=grading)
     check_drive(beam, forces, frequency_hz)
     check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
@@ -132,13 +135,15 @@ def solve_harmonic(
 
 
 def unit_responses(
-    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, n_elements: int
+    beam: Beam, positions: Numbers, frequencies_hz: Numbers, x: Numbers, n_elements: int
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
     All modes of the mesh are solved once and summed exactly for every frequency. NaN at the frequencies of
     undamped resonances. Raises InputError for meshes beyond the dense size.
     """
+    positions, x = in_a_row("positions", positions), in_a_row("x", x)
+    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     check(beam, 1, n_elements)
     elements = build_elements(beam, n_elements)
     pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit

@@ -10,11 +10,13 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import check_uniform
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, ComplexArray, Numbers
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, refuse_resonance, wavenumber
+from verify.models.places import Forces, as_forces, as_typed, in_a_row
 
 
-def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> HarmonicField:
+@as_typed
+def solve_harmonic(beam: Beam, forces: Forces, frequency_hz: float) -> HarmonicField:
     """The exact steady field under harmonic point forces, e^{+i omega t}, with the beam's loss factor.
 
     Pinned-pinned in closed form without truncation; other supports in exponentials that decay from where they
@@ -22,6 +24,7 @@ def solve_harmonic(beam: Beam, forces: Sequence[PointForce], frequency_hz: float
     InputError; an undamped resonance is refused.
     """
     check_uniform(beam)
+    forces = as_forces(forces)
     check_drive(beam, forces, frequency_hz)
     if not beam.loss_factor:
         mode = _nearest_mode(beam, frequency_hz)
@@ -177,14 +180,16 @@ def _exponentials(k: complex, ends: Array, span: int, x: Array, derivative: int)
     return np.array(rows)
 
 
-def unit_responses(beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array) -> ComplexArray:
+def unit_responses(beam: Beam, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
     NaN at the frequencies of undamped resonances.
     """
+    positions, x = in_a_row("positions", positions), in_a_row("x", x)
+    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
     for i, j in np.ndindex(*responses.shape[:2]):
         with suppress(ResonanceError):
-            force = PointForce(position=positions[j])
+            force = PointForce(position=float(positions[j]))
             responses[i, j] = solve_harmonic(beam, [force], float(frequencies_hz[i])).deflection(x)
     return responses

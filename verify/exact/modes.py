@@ -15,8 +15,9 @@ from verify.errors import InputError
 from verify.exact.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.exact.harmonic import solve_harmonic, unit_responses
 from verify.exact.section_minors import end_minor
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Numbers
 from verify.models.modes import Modes
+from verify.models.places import as_typed, real_array
 
 __all__ = [
     "exact_frequency_hz",
@@ -41,6 +42,7 @@ _LEAST = 1e-9
 """Of beta L: below it a count sees rounding alone."""
 
 
+@as_typed
 def solve_modes(beam: Beam, n_modes: int) -> Modes:
     """The first `n_modes` exact elastic modes.
 
@@ -71,29 +73,31 @@ def solve_modes(beam: Beam, n_modes: int) -> Modes:
     )
 
 
-def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0) -> Array:
-    """Mass-normalised shape of one exact mode or its derivative (0 to 3), (len(x),), SI.
+def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0) -> Array:
+    """Mass-normalised shape of one exact mode or its derivative (0 to 3), of the shape of x, SI.
 
     x in metres. Positive where the beam first moves off its left end. Raises InputError.
     """
-    return np.asarray(_shapes(beam, (mode,), x, derivative)[0])
+    return _shapes(beam, (mode,), x, derivative)[0]  # type: ignore[no-any-return]
 
 
-def mode_shapes(beam: Beam, n_modes: int, x: Array, derivative: int = 0) -> Array:
-    """The same of the first `n_modes` modes, (n_modes, len(x))."""
+def mode_shapes(beam: Beam, n_modes: int, x: Numbers, derivative: int = 0) -> Array:
+    """The same of the first `n_modes` modes, (n_modes, *shape of x)."""
     return _shapes(beam, range(1, n_modes + 1), x, derivative)
 
 
-def _shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int) -> Array:
+def _shapes(beam: Beam, modes: Sequence[int], x: Numbers, derivative: int) -> Array:
     check_uniform(beam)
-    xi = np.asarray(x, dtype=float) / beam.length
+    at = real_array("x", x, "metres")
+    xi = at.ravel() / beam.length
     left, right = beam.supports
     if (left, right) in _MIRRORED:
         signs = np.array([_mirror_sign(beam.supports, mode) for mode in modes]) * (-1.0) ** derivative
         values = signs[:, None] * _unit_shapes((right, left), modes, 1.0 - xi, xi, derivative)
     else:
         values = _unit_shapes((left, right), modes, xi, 1.0 - xi, derivative)
-    return np.asarray(values / sqrt(beam.mass_per_length * beam.length) / beam.length**derivative)
+    found = values / sqrt(beam.mass_per_length * beam.length) / beam.length**derivative
+    return found.reshape(len(modes), *at.shape)
 
 
 @lru_cache(maxsize=20_000)

@@ -39,7 +39,7 @@ def measured(a: InWindow, scene: "Scene", bench: Workbench) -> "WaveMeasures":
 
 
 def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
-    return complex(field_of(a, scene, bench).deflection(a.x)[0])
+    return complex(field_of(a, scene, bench).deflection(a.x))
 
 
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
@@ -48,7 +48,7 @@ def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.measures import ellipse, surface_motion
 
     field = field_of(a, scene, bench)
-    return float(ellipse(surface_motion(field.beam, field.slope(a.x)), field.deflection(a.x))[0][0])
+    return float(ellipse(surface_motion(field.beam, field.slope(a.x)), field.deflection(a.x))[0])
 
 
 def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:

@@ -8,12 +8,13 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, near_name
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, ComplexArray, Numbers
 from verify.models.division import check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, FactoredPencil, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.models.places import Forces, as_forces, as_typed, in_a_row
 from verify.options import JOINTS, LOADS, READINGS, WALLS, Joints, Load, Reading, Wall
 from verify.segments.links import (
     Chain,
@@ -39,6 +40,7 @@ def n_elastic(beam: Beam, n_segments: int) -> int:
     return max(unknowns(beam, n_segments) - beam.rigid_motions, 0)
 
 
+@as_typed
 def solve_modes(
     beam: Beam,
     n_modes: int,
@@ -120,9 +122,10 @@ def _sign(chain: Chain, free: Array) -> Array:
     return np.where(free[0] < 0, -1.0, 1.0)
 
 
+@as_typed
 def solve_harmonic(
     beam: Beam,
-    forces: Sequence[PointForce],
+    forces: Forces,
     frequency_hz: float,
     n_segments: int,
     *,
@@ -142,6 +145,7 @@ def solve_harmonic(
     `modal_damping` zeta of every mode (equivalent near a resonance: eta = 2 zeta); `joint_dashpot` c in N m s
     at every joint (eta = omega c / k). Raises InputError; an undamped resonance of the chain is refused.
     """
+    forces = as_forces(forces)
     check(beam, 1, n_segments, wall=wall, joints=joints, grading=grading)
     _check_harmonic(beam, forces, frequency_hz, load, reading, modal_damping, joint_dashpot)
     chain = build_chain(beam, n_segments, wall=wall, joints=joints, grading=grading)
@@ -216,7 +220,7 @@ def _link_reading(chain: Chain, joints: ComplexArray, x: Array, derivative: int)
 
 
 def unit_responses(
-    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, n_segments: int
+    beam: Beam, positions: Numbers, frequencies_hz: Numbers, x: Numbers, n_segments: int
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
@@ -224,6 +228,8 @@ def unit_responses(
     defaults of `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError for chains
     beyond the dense size.
     """
+    positions, x = in_a_row("positions", positions), in_a_row("x", x)
+    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     check(beam, 1, n_segments)
     chain = build_chain(beam, n_segments)
     pencil = chain_pencil(chain)
