@@ -286,6 +286,24 @@ SHARED = [
         lambda: modal_sum(0.2137, DRIVES, 0.01),
     ),
     Shared(
+        "models.places",
+        "places on a shape a hundredth nearer to the left end",
+        ("models.modes.places",),
+        lambda true: lambda field, x, length: 0.99 * true(field, x, length),
+        "free-free-bar",
+        ("node-by-segments",),
+        free_node,
+    ),
+    Shared(
+        "models.places",
+        "places on a field a thousandth nearer to the left end",
+        ("models.fields.places",),
+        lambda true: lambda field, x, length: 0.999 * true(field, x, length),
+        "paper-wave",
+        ("loss-on-elements",),
+        lambda: modal_sum(0.2137, DRIVES, 0.01),
+    ),
+    Shared(
         "models.fields",
         "forces that lag instead of lead",
         ("elements.linear.phasor",),
@@ -529,7 +547,7 @@ def test_what_is_shared_as_names_alone_holds_no_figure_and_does_nothing(name):
 
 
 def test_every_module_that_two_models_stand_on_is_in_the_table():
-    """`errors` carries sentences, `patience` refusals, `NAMES_ALONE` names: no figures, as the tests above hold."""
+    """`errors` carries sentences, `patience` refusals, `field_docs` help, `NAMES_ALONE` names: no figures."""
     faces = (
         ("exact.modes", "exact.in_time"),
         ("elements.linear", "elements.in_time", "elements.stock"),
@@ -545,4 +563,4 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
         "models.driven_pencil",
         "models.time_basis",
     }
-    assert shared - {"errors", "patience", *NAMES_ALONE} <= {row.module for row in SHARED}
+    assert shared - {"errors", "patience", "field_docs", *NAMES_ALONE} <= {row.module for row in SHARED}

@@ -8,13 +8,13 @@ from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import element_pencil
-from verify.models.arrays import Array, ComplexArray, Numbers
+from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts, check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
-from verify.models.places import Forces, as_forces, as_typed, in_a_row
+from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 
 FIELD = "n_elements"
 

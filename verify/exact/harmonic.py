@@ -10,9 +10,9 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import check_uniform
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.arrays import Array, ComplexArray, Numbers
+from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, refuse_resonance, wavenumber
-from verify.models.places import Forces, as_forces, as_typed, in_a_row
+from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 
 
 @as_typed

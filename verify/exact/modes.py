@@ -15,9 +15,9 @@ from verify.errors import InputError
 from verify.exact.closed_forms import check_mode, check_uniform, frequency_hz, root_parts, wavenumber_length
 from verify.exact.harmonic import solve_harmonic, unit_responses
 from verify.exact.section_minors import end_minor
-from verify.models.arrays import Array, Numbers
+from verify.models.arrays import Array
 from verify.models.modes import Modes
-from verify.models.places import as_typed, real_array
+from verify.models.places import Numbers, as_typed, real_array
 
 __all__ = [
     "exact_frequency_hz",

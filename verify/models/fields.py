@@ -7,8 +7,8 @@ import numpy as np
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 from verify.field_docs import Value
-from verify.models.arrays import Array, ComplexArray, Numbers
-from verify.models.places import Forces, as_asked, as_forces, places
+from verify.models.arrays import Array, ComplexArray
+from verify.models.places import Forces, Numbers, as_asked, as_forces, places
 
 LARGEST_SLOPE = 1e100
 """Of a beam under a force, F L^2 / EI."""

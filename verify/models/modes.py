@@ -5,8 +5,8 @@ from collections.abc import Callable
 import msgspec
 
 from verify.field_docs import Value
-from verify.models.arrays import Array, Numbers
-from verify.models.places import as_asked, places
+from verify.models.arrays import Array
+from verify.models.places import Numbers, as_asked, places
 
 
 class Modes(Value, frozen=True, eq=False, kw_only=True):

@@ -9,8 +9,10 @@ import numpy as np
 from verify.beam import PointForce
 from verify.checks import plain, several
 from verify.errors import InputError, shown
-from verify.models.arrays import Array, Numbers
+from verify.models.arrays import Array
 
+Numbers: TypeAlias = float | Sequence[float] | Array
+"""One, a list or an array."""
 Forces: TypeAlias = PointForce | Sequence[PointForce]
 """One force alone stands for a list of it."""
 Values = TypeVar("Values", bound=np.ndarray[Any, Any])

@@ -8,8 +8,8 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.field_docs import Value
-from verify.models.arrays import Array, ComplexArray, Numbers
-from verify.models.places import as_asked, places
+from verify.models.arrays import Array, ComplexArray
+from verify.models.places import Numbers, as_asked, places
 
 
 class TimeBasis(Value, frozen=True, eq=False, kw_only=True):

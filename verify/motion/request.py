@@ -1,6 +1,7 @@
 """A simulation as it was asked for: checked, its envelope cut into pieces."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -8,14 +9,17 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.errors import InputError
-from verify.models.arrays import Array, Numbers
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.fields import check_drive
-from verify.models.places import in_a_row
+from verify.models.places import Numbers, in_a_row
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
 from verify.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.motion.free_vibration import FreeVibration
 
 STEPS_PER_PERIOD = 64
 """At least: more where the start excites faster modes (`step_size`)."""
@@ -95,7 +99,7 @@ class Started(msgspec.Struct, frozen=True, eq=False):
     soft: float
     """Periods of the drive over which the forces grow."""
     envelope: Envelope
-    before: Motion | None
+    before: "Motion | FreeVibration | None"
 
 
 class Watched(msgspec.Struct, frozen=True, eq=False):

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from verify.beam import Beam
-from verify.models.arrays import Array, Numbers
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.models.places import Forces, as_forces, as_typed
+from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.time_basis import TimeBasis
 from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
@@ -19,6 +20,9 @@ from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
 from verify.options import Start
 from verify.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.motion.free_vibration import FreeVibration
 
 CLOSED_FORM_ROWS = 2000
 
@@ -43,7 +47,7 @@ def simulate(
     step: float | None = None,
     steps_per_period: int = STEPS_PER_PERIOD,
     ledger: bool = True,
-    continue_from: Motion | None = None,
+    continue_from: "Motion | FreeVibration | None" = None,
     progress: Callable[[float], None] = lambda part: None,
     patient: bool = True,
 ) -> Motion:
