@@ -122,6 +122,10 @@ def test_a_function_of_one_number_and_a_constant_are_shapes_too():
     assert freed(lambda x: 1e-3 * math.sin(2 * math.pi * x / L), at=0.2).deflection == pytest.approx(
         by_array, abs=1e-15
     )
+    drawn = [0.0, 0.2, L], [0.0, 1e-3, 0.0]
+    assert np.array_equal(freed(np.array(drawn), at=0.2).deflection, freed(list(drawn), at=[0.2]).deflection)
+    third = freed(np.int64(3), amplitude=np.float32(0.5), at=0.2).deflection
+    assert np.array_equal(third, freed(3, amplitude=0.5, at=0.2).deflection)
     struck = freed(None, velocity=lambda x: 0.3)
     assert struck.kinetic[0] == pytest.approx(0.5 * LINE * L * 0.3**2, rel=0.02)  # a pinned end cannot be struck
     assert struck.elastic[0] == 0.0

@@ -162,7 +162,7 @@ def _breaks(name: str, given: Shape, length: float) -> Array:
     """Where straight lines meet in what was given, metres; empty for a function. Raises InputError."""
     if callable(given):
         return np.empty(0)
-    if not isinstance(given, list | tuple) or len(given) != 2:
+    if not isinstance(given, list | tuple | np.ndarray) or len(given) != 2:
         raise InputError(
             f"{name} = {shown(given)}: give a function of x, a pair (x, values), or a mode's number with its amplitude"
         )
