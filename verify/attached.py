@@ -1,12 +1,11 @@
 """What stands on a beam at a place: point masses and springs. Data, no numerics."""
 
-import msgspec
-
-from verify.checks import check_number
+from verify.checks import check_number, settle
 from verify.errors import InputError
+from verify.field_docs import Value
 
 
-class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointMass(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A rigid body fixed to the beam at a point. Raises InputError where a value is none, or all are zero."""
 
     position: float
@@ -17,6 +16,7 @@ class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """About the point where it is fixed, kg m^2; it turns as the beam does there."""
 
     def __post_init__(self) -> None:
+        settle(self)
         check_number("beam.mass.position", self.position, "metres", at_least=0)
         check_number("beam.mass.mass", self.mass, "kilograms", at_least=0)
         check_number("beam.mass.rotary_inertia", self.rotary_inertia, "kg m^2", at_least=0)
@@ -24,7 +24,7 @@ class PointMass(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
             raise InputError(f"beam.mass at position = {self.position!r} weighs nothing: give mass or rotary_inertia")
 
 
-class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointSpring(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A spring from the beam to the ground at a point. Raises InputError where a value is none, or all are zero."""
 
     position: float
@@ -35,6 +35,7 @@ class PointSpring(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     """Against turning, N m/rad."""
 
     def __post_init__(self) -> None:
+        settle(self)
         check_number("beam.spring.position", self.position, "metres", at_least=0)
         check_number("beam.spring.stiffness", self.stiffness, "N/m", at_least=0)
         check_number("beam.spring.rotational", self.rotational, "N m/rad", at_least=0)

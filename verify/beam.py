@@ -9,6 +9,7 @@ import msgspec
 from verify.attached import PointMass, PointSpring
 from verify.checks import Relative, check_number
 from verify.errors import InputError, near_name
+from verify.field_docs import Value
 from verify.options import SUPPORTS, Support
 from verify.section import Piece, Section, Sizes, check_decades, merged, piece_of, shear_coefficient
 
@@ -50,6 +51,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Stiffness of the ground below, N/m^2 (N/m of deflection on every metre)."""
 
     def __post_init__(self) -> None:
+        settle(self, "beam", section=Section, mass=PointMass, spring=PointSpring)
         check_number("beam.length", self.length, "metres", above=0)
         self.check_sizes("beam")
         check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, below=0.5000001)
@@ -62,7 +64,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self._check_attached()
 
     def _check_supports(self) -> None:
-        if len(self.supports) != 2:
+        if not isinstance(self.supports, tuple) or len(self.supports) != 2:
             raise InputError(f"beam.supports = {self.supports!r}: give two, for the left and the right end")
         for support in self.supports:
             if support not in SUPPORTS:
@@ -264,7 +266,7 @@ def check_frequency(field: str, frequency_hz: float, beam: Beam) -> None:
         )
 
 
-class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class PointForce(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A transverse harmonic point force, amplitude cos(omega t + phase).
 
     Raises InputError where a value is not finite or the position is negative; whether the position lies on a
@@ -279,6 +281,7 @@ class PointForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     """Degrees, leading (e^{+i omega t})."""
 
     def __post_init__(self) -> None:
+        settle(self)
         check_number("force.position", self.position, "metres")
         check_number("force.amplitude", self.amplitude, "newton")
         check_number("force.phase_deg", self.phase_deg, "degrees")

@@ -1,5 +1,6 @@
 """What a single number has to be, whichever value it belongs to: one sentence naming field, value and remedy."""
 
+from functools import cache
 from math import inf
 from operator import index
 from sys import float_info
@@ -8,6 +9,9 @@ from typing import Annotated, TypeAlias
 from msgspec import Meta
 
 from verify.errors import InputError, shown
+
+if TYPE_CHECKING:
+    import msgspec
 
 LARGEST = float_info.max
 RELATIVE = "relative"

@@ -5,8 +5,9 @@ from math import log10, pi
 
 import msgspec
 
-from verify.checks import check_number
+from verify.checks import check_number, settle
 from verify.errors import InputError, near_name
+from verify.field_docs import Value
 from verify.options import SHAPES, Shape
 
 SAME = 1e-12
@@ -30,7 +31,7 @@ _UNITS = {
 }
 
 
-class Sizes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Sizes(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What a section is made of: a shape with its sizes and material, or its figures plainly. SI."""
 
     shape: Shape | None = None
@@ -76,11 +77,12 @@ class Section(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Metres."""
 
     def __post_init__(self) -> None:
+        settle(self)
         check_number("beam.section.length", self.length, "metres", above=0)
         self.check_sizes("beam.section")
 
 
-class Piece(msgspec.Struct, frozen=True, kw_only=True):
+class Piece(Value, frozen=True, kw_only=True):
     """A stretch of constant section, everything stated that is known of it. SI."""
 
     length: float

@@ -2,18 +2,17 @@
 
 from typing import get_args
 
-import msgspec
-
 from verify.beam import Beam
-from verify.checks import check_number
+from verify.checks import check_number, settle
 from verify.errors import InputError, near_name
+from verify.field_docs import Value
 from verify.options import CouplingChoice, Kinematics, Law, Line, NormalChoice
 
 GRAVITY = 9.81
 _WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
 
 
-class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A point mass that stays on the surface and is carried along by friction.
 
     Friction is the paper's Eq. (3), F = -mu N tanh(K (v - v_beam)), or Coulomb's law with true sticking. N is
@@ -27,6 +26,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     slope: float = 1e4
     """K of Eq. (3), s/m."""
     law: Law = "tanh"
+    """Friction: tanh is Eq. (3), which never sticks; coulomb sticks."""
     mu_static: float | None = None
     """Of Coulomb's law at rest; as `mu` unless given."""
     position: float | None = None
@@ -50,6 +50,7 @@ class Slider(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     simplification. Friction has N = m g + preload either way."""
 
     def __post_init__(self) -> None:
+        settle(self)
         for name, kind in _WORDS.items():
             word, known = getattr(self, name), get_args(kind)
             if word not in known:

@@ -20,11 +20,13 @@ class ChainStatistics(Statistics, frozen=True, kw_only=True):
     """What a run of rigid links cost beside."""
 
     method: str
+    """Of integration."""
     rejected: int = 0
     """Steps that the error estimate refused."""
     started: str = "consistent"
     """'consistent', or how far the start had to be moved onto the held points."""
     pivot_changes: int = 0
+    """How often other angles were chosen to depend on the held points."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

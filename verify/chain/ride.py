@@ -64,6 +64,7 @@ class ChainRide(Ride, frozen=True, eq=False, kw_only=True):
     """What a slider did on a chain."""
 
     chain: ChainMotion | ElasticMotion
+    """The chain's own motion."""
     ledger: SliderLedger | None
     """None of a run that was over at its start."""
 

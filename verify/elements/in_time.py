@@ -15,12 +15,14 @@ from verify.models.arrays import Array, Indices
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
+from verify.models.places import as_typed
 from verify.models.time_basis import TimeBasis, check_held
 
 Nodal = Callable[[Indices], tuple[Array, Array]]
 """Node numbers -> deflection and slope (per element length) of all modes there, each (len(numbers), n)."""
 
 
+@as_typed
 def time_basis(beam: Beam, n_elements: int) -> TimeBasis:
     """All modes of the Hermite elements, (n,), from two-by-two problems on a uniform pinned-pinned beam, else dense.
 

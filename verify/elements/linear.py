@@ -7,7 +7,7 @@ from math import pi, sqrt
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
@@ -125,9 +125,10 @@ def _sign(elements: Elements, nodal: Array) -> Array:
     return np.where(leading < 0, -1.0, 1.0)
 
 
+@as_typed
 def solve_harmonic(
     beam: Beam,
-    forces: Sequence[PointForce],
+    forces: Forces,
     frequency_hz: float,
     n_elements: int,
     *,

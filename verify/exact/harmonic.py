@@ -11,6 +11,7 @@ from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, refuse_resonance, wavenumber
+from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 
 
 def solve_harmonic(
@@ -191,6 +192,8 @@ def unit_responses(
 
     NaN at the frequencies of undamped resonances.
     """
+    positions, x = in_a_row("positions", positions), in_a_row("x", x)
+    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
     if theory != "euler-bernoulli" or not beam.uniform:
         from verify.exact.driven import general_responses
@@ -201,6 +204,6 @@ def unit_responses(
         return responses
     for i, j in np.ndindex(*responses.shape[:2]):
         with suppress(ResonanceError):
-            force = PointForce(position=positions[j])
+            force = PointForce(position=float(positions[j]))
             responses[i, j] = solve_harmonic(beam, [force], float(frequencies_hz[i])).deflection(x)
     return responses

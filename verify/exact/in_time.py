@@ -12,6 +12,7 @@ from verify.exact.lineup import line_up
 from verify.exact.modes import mode_shapes, solve_harmonic, solve_modes
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import phasor
+from verify.models.places import as_typed
 from verify.models.time_basis import TimeBasis, check_held
 
 DEGREE = 8
@@ -22,6 +23,7 @@ MOST = 5000
 """Modes kept: their shapes are evaluated one by one."""
 
 
+@as_typed
 def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
     """The first n_modes exact modes, of a beam of sections and point masses too.
 

@@ -97,7 +97,8 @@ def _shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory:
         values = signs[:, None] * _unit_shapes((right, left), modes, 1.0 - xi, xi, derivative)
     else:
         values = _unit_shapes((left, right), modes, xi, 1.0 - xi, derivative)
-    return np.asarray(values / sqrt(beam.mass_per_length * beam.length) / beam.length**derivative)
+    found = values / sqrt(beam.mass_per_length * beam.length) / beam.length**derivative
+    return found.reshape(len(modes), *at.shape)
 
 
 def _general(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory: str) -> Array:

@@ -1,14 +1,14 @@
 """What every model's `solve_harmonic` returns, and what it refuses."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
 
-import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
+from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
+from verify.models.places import Forces, Numbers, as_asked, as_forces, places
 
 LARGEST_SLOPE = 1e100
 """Of a beam under a force, F L^2 / EI."""
@@ -16,7 +16,7 @@ RESONANCE = 1e-9
 """An undamped beam is not driven closer than this (relative) to a resonance: the answer would be rounding."""
 
 
-class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
     """Steady motion Re(w(x) e^{+i omega t}) of one model under harmonic point forces."""
 
     model: str
@@ -24,8 +24,11 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     count: int | None
     """Elements or segments; None for the exact beam."""
     beam: Beam
+    """On which it runs."""
     frequency_hz: float
+    """Of the drive, hertz."""
     forces: tuple[PointForce, ...]
+    """What drives it, newton."""
     shapes: Callable[[Array, int], ComplexArray]
     """(x, derivative) -> (len(x),) complex, metres per metre^derivative."""
     theory: str = "euler-bernoulli"
@@ -41,22 +44,19 @@ class HarmonicField(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Of the exact beam by the same theory, 1/m; its imaginary part is never positive."""
         return wavenumber(self.beam, self.frequency_hz, self.theory)
 
-    def deflection(self, x: Any) -> ComplexArray:
-        """Complex deflection at x (metres), (len(x),), metres. Raises InputError off the beam."""
-        return self.shapes(self._on_beam(x), 0)
+    def deflection(self, x: Numbers) -> ComplexArray:
+        """Complex deflection at x (metres), of the shape of x, metres: one number at a number.
 
-    def slope(self, x: Any) -> ComplexArray:
-        """Complex slope at x (metres), (len(x),), radians. Raises InputError off the beam."""
-        return self.shapes(self._on_beam(x), 1)
+        Raises InputError off the beam.
+        """
+        return as_asked(self.shapes(self._on_beam(x), 0), x)
 
-    def _on_beam(self, x: Any) -> Array:
-        positions: Array = np.atleast_1d(np.asarray(x, dtype=float))
-        off = positions[~((positions >= 0.0) & (positions <= self.beam.length * (1.0 + 1e-12)))]
-        if off.size:
-            raise InputError(
-                f"x = {float(off[0])!r} lies off the beam: give positions between 0 and {self.beam.length!r} m"
-            )
-        return positions
+    def slope(self, x: Numbers) -> ComplexArray:
+        """Complex slope at x (metres), of the shape of x, radians. Raises InputError off the beam."""
+        return as_asked(self.shapes(self._on_beam(x), 1), x)
+
+    def _on_beam(self, x: Numbers) -> Array:
+        return places("x", x, self.beam.length).ravel()
 
 
 def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli") -> complex:
@@ -94,12 +94,13 @@ def unit_response(beam: Beam, frequency_hz: float) -> float:
     return float(length**3 / beam.bending_stiffness)
 
 
-def check_drive(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> None:
+def check_drive(beam: Beam, forces: Forces, frequency_hz: float) -> None:
     """Raise InputError for a frequency that is not finite and positive, no force, or a force off the beam or too large.
 
     Unit forces bend the thinnest beams to F L^2 / EI = 1e60; from LARGEST_SLOPE on resonance leaves no square of it.
     """
     check_frequency("frequency_hz", frequency_hz, beam)
+    forces = as_forces(forces)
     if not forces:
         raise InputError("forces is empty: give at least one PointForce")
     for force in forces:

@@ -1,16 +1,15 @@
 """What every model's `solve_modes` returns."""
 
 from collections.abc import Callable
-from typing import Any
 
 import msgspec
-import numpy as np
 
-from verify.errors import InputError
+from verify.field_docs import Value
 from verify.models.arrays import Array
+from verify.models.places import Numbers, as_asked, places
 
 
-class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class Modes(Value, frozen=True, eq=False, kw_only=True):
     """Elastic modes of one model, ascending; mode n stands at index n - 1.
 
     Shapes are normalised to unit modal mass (integral of rho A phi^2 dx = 1 kg m^2 / m^2, for a discrete
@@ -29,7 +28,7 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(x, derivative) -> (n_modes, len(x)); x in metres."""
     nodes: Array
     """(n_nodes,), metres: joints or element ends, both ends of the beam included; empty for the exact beam."""
-    readings: dict[str, Callable[[], Array]] = {}
+    readings: dict[str, Callable[[], Array]] = msgspec.field(default_factory=dict)
     """Ways to read the deflection at `nodes`, by name, the default first: () -> (n_modes, n_nodes)."""
     points: Array
     """(n_points,), metres, evenly spaced: where this model knows its shape with nothing added."""
@@ -76,19 +75,17 @@ class Modes(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """How many modes are here."""
         return len(self.frequencies_hz)
 
-    def deflection(self, x: Any) -> Array:
-        """Mass-normalised deflection at x (metres), (n_modes, len(x)), in 1/sqrt(kg). Raises InputError."""
-        return self.shapes(self._on_beam(x), 0)
+    def deflection(self, x: Numbers) -> Array:
+        """Mass-normalised deflection at x (metres), (n_modes, *shape of x), in 1/sqrt(kg): (n_modes,) at a number.
 
-    def slope(self, x: Any) -> Array:
-        """d/dx of `deflection`, (n_modes, len(x)), in 1/(m sqrt(kg)). Raises InputError."""
-        return self.shapes(self._on_beam(x), 1)
+        Raises InputError.
+        """
+        return as_asked(self.shapes(self._on_beam(x), 0), x)
 
-    def _on_beam(self, x: Any) -> Array:
-        """X as a float array. Raises InputError where a position lies off the beam."""
-        positions: Array = np.atleast_1d(np.asarray(x, dtype=float))
-        slack = 1e-12 * self.length
-        off = positions[~((positions >= -slack) & (positions <= self.length + slack))]
-        if off.size:
-            raise InputError(f"x = {float(off[0])!r} lies off the beam: give positions between 0 and {self.length!r} m")
-        return positions
+    def slope(self, x: Numbers) -> Array:
+        """d/dx of `deflection`, of the same shape, in 1/(m sqrt(kg)). Raises InputError."""
+        return as_asked(self.shapes(self._on_beam(x), 1), x)
+
+    def _on_beam(self, x: Numbers) -> Array:
+        """The positions in a row. Raises InputError where one lies off the beam."""
+        return places("x", x, self.length).ravel()

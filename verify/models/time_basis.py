@@ -3,15 +3,16 @@
 from collections.abc import Callable, Sequence
 from math import comb, factorial
 
-import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError
+from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
+from verify.models.places import Numbers, as_asked, places
 
 
-class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
     """All modes that one model moves in, of unit modal mass (SI)."""
 
     model: str
@@ -19,6 +20,7 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     count: int | None
     """Segments or elements; None for the exact beam, whose modes are cut off."""
     beam: Beam
+    """The beam that moves in them."""
     omegas: Array
     """(n,), rad/s, undamped."""
     shapes: Callable[[Array, int], Array]
@@ -28,6 +30,7 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     edges: Array
     """(pieces + 1,), metres: between them the shapes are polynomials of `degree`."""
     degree: int
+    """Of those polynomials."""
     method: str
     """Where the modes come from."""
     tail: Callable[[Sequence[PointForce], float, float], Callable[[Array, int], ComplexArray]] | None = None
@@ -35,6 +38,10 @@ class TimeBasis(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     None where no mode is cut off.
     """
+
+    def deflection(self, x: Numbers) -> Array:
+        """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg): (n,) at a number. Raises InputError off the beam."""
+        return as_asked(self.shapes(places("x", x, self.beam.length).ravel(), 0), x)
 
 
 def taylor_table(shapes: Callable[[Array, int], Array], edges: Array, first: int, last: int, degree: int) -> Array:

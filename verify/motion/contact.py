@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING
 
-import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.field_docs import Value
 from verify.motion.records import Law
 from verify.options import NormalChoice
 from verify.slider import Slider
@@ -35,10 +35,11 @@ def law_of(slider: Slider, beam: Beam) -> Law:
     )
 
 
-class Coupling(msgspec.Struct, frozen=True, kw_only=True):
+class Coupling(Value, frozen=True, kw_only=True):
     """Whether the beam feels the slider, and by how much."""
 
     two_way: bool
+    """Whether the slider pushes back on the beam."""
     friction_size: float | None
     """Speed that full friction gives to the surface, over the speed the drive gives to it; None where that is 0."""
     normal_size: float
@@ -89,7 +90,7 @@ class Coupling(msgspec.Struct, frozen=True, kw_only=True):
         )
 
 
-class Margins(msgspec.Struct, frozen=True, kw_only=True):
+class Margins(Value, frozen=True, kw_only=True):
     """How far a run can be believed; each is small where its assumption holds."""
 
     lift_off: float

@@ -1,6 +1,7 @@
 """A simulation as it was asked for: checked, its envelope cut into pieces."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -11,10 +12,14 @@ from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.fields import check_drive
+from verify.models.places import Numbers, in_a_row
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
 from verify.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.motion.free_vibration import FreeVibration
 
 STEPS_PER_PERIOD = 64
 """At least: more where the start excites faster modes (`step_size`)."""
@@ -94,13 +99,13 @@ class Started(msgspec.Struct, frozen=True, eq=False):
     soft: float
     """Periods of the drive over which the forces grow."""
     envelope: Envelope
-    before: Motion | None
+    before: "Motion | FreeVibration | None"
 
 
 class Watched(msgspec.Struct, frozen=True, eq=False):
     """What is kept, and in which steps."""
 
-    at: Sequence[float]
+    at: Numbers
     samples: int
     step: float | None
     steps_per_period: int
@@ -150,9 +155,9 @@ def _check_samples(samples: int) -> None:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
 
 
-def _points(beam: Beam, at: Sequence[float]) -> Array:
+def _points(beam: Beam, at: Numbers) -> Array:
     """Positions as an array, metres. Raises InputError off the beam."""
-    points = np.atleast_1d(np.asarray(at, dtype=float)) if len(at) else np.empty(0)
+    points = in_a_row("at", at, "metres")
     if not np.all((points >= 0.0) & (points <= beam.length)):
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     return points

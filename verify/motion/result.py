@@ -1,8 +1,7 @@
 """What a simulation returns: times, what was asked to be kept, what it cost, where the energy went."""
 
-import msgspec
-
 from verify.errors import InputError
+from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.motion.contact import Coupling, Margins
 from verify.slider import Slider
@@ -11,7 +10,7 @@ END, INTERRUPTED = "end", "interrupted"
 """Why a run stopped that went as far as it was asked to."""
 
 
-class Statistics(msgspec.Struct, frozen=True, kw_only=True):
+class Statistics(Value, frozen=True, kw_only=True):
     """What a run cost and why it ended, of a beam or of a chain."""
 
     steps: int
@@ -38,7 +37,7 @@ class Statistics(msgspec.Struct, frozen=True, kw_only=True):
         return self.stopped.partition(" ")[0] == INTERRUPTED
 
 
-class Ledger(msgspec.Struct, frozen=True, kw_only=True):
+class Ledger(Value, frozen=True, kw_only=True):
     """Where the energy went, joules, from the start of the run to its end."""
 
     kinetic: float
@@ -61,10 +60,11 @@ class Ledger(msgspec.Struct, frozen=True, kw_only=True):
     """What the books miss: quadrature of the power over a step (order 4)."""
 
 
-class EndState(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class EndState(Value, frozen=True, eq=False, kw_only=True):
     """From where a run can go on."""
 
     time: float
+    """Seconds from the first start."""
     q: Array
     """(n,), all of every mode's motion, its forced part included; empty for a steady beam."""
     rates: Array
@@ -72,14 +72,16 @@ class EndState(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     position: float | None = None
     """Of the slider, metres; None where there was none."""
     speed: float = 0.0
+    """Of the slider, m/s."""
     stuck: bool = False
+    """Whether the slider sticks to the surface."""
     height: float | None = None
     """Of a slider held on the surface, metres; None where it did not push back."""
     climb: float = 0.0
     """Its speed across the beam, m/s."""
 
 
-class Ride(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class Ride(Value, frozen=True, eq=False, kw_only=True):
     """What a slider did on a surface in motion, of a linear beam or of a nonlinear chain."""
 
     times: Array
@@ -97,7 +99,9 @@ class Ride(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     surface_speed: Array
     """(n,), tangential velocity of the material under the slider, m/s."""
     coupling: Coupling | None
+    """Whether the beam felt the slider, with sizes; None without one."""
     statistics: Statistics
+    """What the run cost and why it ended."""
     notes: tuple[str, ...]
     """What stands for what: modes, damping, soft start, coupling."""
 
@@ -131,7 +135,9 @@ class Motion(Ride, frozen=True, eq=False, kw_only=True):
     """A linear beam, and perhaps a slider on it, in time."""
 
     model: str
+    """Its name."""
     count: int | None
+    """Elements or segments; None for the exact beam."""
     points: Array
     """(p,), metres: where the deflection was asked for."""
     deflection: Array
@@ -142,5 +148,8 @@ class Motion(Ride, frozen=True, eq=False, kw_only=True):
     events: Array
     """(k, 3): time, kind (1 sticks, 2 slips) and distance travelled by the end of that step, for Coulomb friction."""
     margins: Margins
+    """How far the run can be believed: what its assumptions leave out, with sizes."""
     ledger: Ledger | None
+    """Where the energy went, joules; None where it was not booked."""
     end: EndState
+    """From where another run can go on (`continue_from`)."""

@@ -1,13 +1,15 @@
 """Time: a linear beam by exact steps, and a slider on it; what nothing nonlinear touches is not stepped at all."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
+from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.time_basis import TimeBasis
 from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
@@ -19,12 +21,16 @@ from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, st
 from verify.options import Start
 from verify.slider import Slider
 
+if TYPE_CHECKING:
+    from verify.motion.free_vibration import FreeVibration
+
 CLOSED_FORM_ROWS = 2000
 
 
+@as_typed
 def simulate(
     beam: Beam,
-    forces: Sequence[PointForce],
+    forces: Forces,
     frequency_hz: float,
     duration: float,
     *,
@@ -36,12 +42,12 @@ def simulate(
     envelope: Envelope = (),
     modal_damping: float | None = None,
     slider: Slider | None = None,
-    at: Sequence[float] = (),
+    at: Numbers = (),
     samples: int = 201,
     step: float | None = None,
     steps_per_period: int = STEPS_PER_PERIOD,
     ledger: bool = True,
-    continue_from: Motion | None = None,
+    continue_from: "Motion | FreeVibration | None" = None,
     progress: Callable[[float], None] = lambda part: None,
     patient: bool = True,
 ) -> Motion:
@@ -53,13 +59,13 @@ def simulate(
     `steps_per_period`-th of the drive's period and follows what the start excites (`step_size`). The exact beam keeps
     `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half the beam's loss factor
     unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and in the steady
-    state its mass is part of it. `at` are metres where the deflection is kept. Returns what was reached where the run
-    was interrupted or the slider left the beam, and says so. Without `patient` a slider's run longer than is waited
-    for (`patience`) is refused. Raises InputError.
+    state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept, (samples, p).
+    Returns what was reached where the run was interrupted or the slider left the beam, and says so. Without `patient`
+    a slider's run longer than is waited for (`patience`) is refused. Raises InputError.
     """
     began = perf_counter()
     request = requested(
-        Driven(beam, tuple(forces), frequency_hz, duration),
+        Driven(beam, as_forces(forces), frequency_hz, duration),
         Modelled(model, count, modes, modal_damping),
         Started(start, soft_start_periods, envelope, continue_from),
         Watched(at, samples, step, steps_per_period, ledger),

@@ -12,6 +12,7 @@ from verify.errors import InputError, near_name
 from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
+from verify.models.places import as_typed
 from verify.models.time_basis import TimeBasis, check_held
 from verify.options import LINES, Attachment, Joints, Line, Load, Wall
 from verify.segments.linear import check
@@ -20,6 +21,7 @@ from verify.segments.loads import joint_weights
 from verify.segments.reading import corrected_reading, joint_positions, spline_at
 
 
+@as_typed
 def time_basis(
     beam: Beam,
     n_segments: int,

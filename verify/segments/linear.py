@@ -64,6 +64,7 @@ def n_elastic(
     return max(unknowns(beam, n_segments, theory, attachment) - beam.rigid_motions, 0)
 
 
+@as_typed
 def solve_modes(
     beam: Beam,
     n_modes: int,
@@ -169,9 +170,10 @@ def _sign(chain: Chain, free: Array) -> Array:
     return np.where(free[0] < 0, -1.0, 1.0)
 
 
+@as_typed
 def solve_harmonic(
     beam: Beam,
-    forces: Sequence[PointForce],
+    forces: Forces,
     frequency_hz: float,
     n_segments: int,
     *,

@@ -8,7 +8,6 @@ surface points turn counter-clockwise and move backwards at the crest.
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
-import msgspec
 import numpy as np
 
 from verify.beam import Beam
@@ -16,6 +15,7 @@ from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField, phasor, unit_response, wavenumber
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
+from verify.models.places import real_array
 from verify.models.search import least_over
 from verify.waves.medium import Medium
 
@@ -38,7 +38,7 @@ def middle_half(beam: Beam) -> tuple[float, float]:
     return 0.25 * beam.length, 0.75 * beam.length
 
 
-class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class TwoWaves(Value, frozen=True, eq=False, kw_only=True):
     """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
 
     wavenumber: complex
@@ -76,12 +76,13 @@ class TwoWaves(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             )
 
 
-class WaveMeasures(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+class WaveMeasures(Value, frozen=True, eq=False, kw_only=True):
     """What kind of wave a field carries in a window, and what the surface does there."""
 
     window: tuple[float, float]
     """Metres."""
     waves: TwoWaves
+    """The forward and the backward wave fitted in the window."""
     envelope: float
     """(max - min) / (max + min) of |w| over the window: equals Gamma for two waves."""
     travelling_index: float
@@ -212,17 +213,18 @@ def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0) -> Comple
 
 
 def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
-    """(signed axis ratio tan chi, tilt in degrees, signed area S3) of the paths of surface points, (n,) each.
+    """(signed axis ratio tan chi, tilt in degrees, signed area S3) of the paths of surface points, of their shape each.
 
     Stokes parameters: S0 = |u_x|^2 + |u_y|^2, S1 = |u_x|^2 - |u_y|^2, S2 = 2 Re(conj(u_x) u_y), sin 2 chi = S3/S0.
     """
+    across, up = np.asarray(across, dtype=complex), np.asarray(up, dtype=complex)
     total, difference = abs(across) ** 2 + abs(up) ** 2, abs(across) ** 2 - abs(up) ** 2
     product = 2.0 * np.conj(across) * up
     with np.errstate(invalid="ignore"):
         sine = np.where(total > 0, product.imag / np.where(total > 0, total, 1.0), 0.0)
     chi = 0.5 * np.arcsin(np.clip(sine, -1.0, 1.0))
     tilt = 0.5 * np.rad2deg(np.arctan2(product.real, difference))
-    return np.tan(chi), tilt, product.imag
+    return np.tan(chi), tilt[()], product.imag[()]
 
 
 def crest_speed(medium: Medium, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
@@ -264,8 +266,10 @@ def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
 def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | None = None) -> TwoWaves:
     """Forward and backward amplitude by least squares on the phasors, exact on two-wave fields.
 
-    weights (n,): what each point counts, all the same where they are left out; amplitudes are meant in the middle.
+    x (n,), metres; deflection (n,), complex; weights (n,): what each point counts, all the same where they are left
+    out. Amplitudes are meant in the middle.
     """
+    x, deflection = real_array("x", x, "metres"), np.asarray(deflection, dtype=complex)
     root = np.sqrt(np.full(len(x), 1.0) if weights is None else weights)
     basis, values = wave_basis(x, k, 0.5 * (x[0] + x[-1])) * root[:, None], deflection * root
     amplitudes = np.linalg.lstsq(basis, values, rcond=None)[0]
@@ -318,7 +322,11 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
 
     InputError where it is no window of the beam at all, WindowError where it does not suit forces or frequency.
     """
-    start, end = window
+    try:
+        start, end = (float(end) for end in window)
+    except (TypeError, ValueError):
+        raise InputError(f"window = {shown(window)}: give start and end in metres, such as [0.1, 0.3]") from None
+    window = start, end
     if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= beam.length):
         raise InputError(f"window = {list(window)}: give start and end, ascending, between 0 and {beam.length!r} m")
     attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]

@@ -7,6 +7,7 @@ from verify.checks import check_number
 from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import wavenumber
+from verify.models.places import real_array
 from verify.waves.measures import STILL, WaveMeasures, fit_waves, fitted_wavenumber, measures_of
 from verify.waves.medium import Medium
 
@@ -36,7 +37,7 @@ def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
     harmonic and dropped. Raises InputError for less than one period, fewer than eight samples of it, two samples or
     fewer in each period, and for what is empty or not finite.
     """
-    times, values = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
+    times, values = real_array("times", times, "seconds"), real_array("values", values, "metres")
     check_series(times, values, frequency_hz)
     step = (times[-1] - times[0]) / max(len(times) - 1, 1)
     periods = int(np.floor((times[-1] - times[0] + step) * frequency_hz * (1.0 + 1e-9)))
@@ -64,7 +65,7 @@ def measure_series(
     from scipy.interpolate import CubicSpline
 
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
-    start, x = wavenumber(beam, frequency_hz), np.asarray(x, dtype=float)
+    start, x = wavenumber(beam, frequency_hz), real_array("x", x, "metres")
     if not (np.isfinite(x).all() and (np.diff(x) > 0).all() and np.shape(values)[1:] == x.shape):
         raise InputError("x has to be finite, ascending and as long as values are wide")
     if len(x) < 4 or (x[-1] - x[0]) * start.real < np.pi:

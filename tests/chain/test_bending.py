@@ -1,0 +1,130 @@
+"""A cantilever of links under large dead loads: the elastica, circles, small loads, what is refused."""
+
+import numpy as np
+import pytest
+from chain_reference import elastica_tip
+from msgspec.structs import replace
+
+from verify.attached import PointMass
+from verify.beam import Beam
+from verify.chain.bending import bend
+from verify.chain.problems import cantilever_tip
+from verify.errors import InputError
+from verify.section import Section
+
+ROD = Beam(
+    length=0.83, width=0.013, thickness=0.0021, youngs_modulus=113e9, density=4470.0, supports=("clamped", "free")
+)
+L, EI = ROD.length, ROD.bending_stiffness
+UNIT = EI / L**2
+
+
+def test_the_tip_under_a_dead_load_of_four_is_that_of_the_chain_and_near_the_elasticas():
+    """P L^2 / EI = 4: w / L = 0.669964 and 1 - x / L = 0.328944 (Bisshopp and Drucker); 80 links have 0.669954."""
+    found = bend(ROD, 80, 4.0 * UNIT)
+    assert found.deflection / L == pytest.approx(0.669954, abs=5e-7)
+    assert found.shortening / L == pytest.approx(0.328944, abs=5e-7)
+    assert (found.deflection / L, found.shortening / L) == pytest.approx(elastica_tip(4.0), abs=2e-5)
+    assert found.deflection / L - 0.669964 == pytest.approx(-1.0e-5, abs=0.1e-5)
+    unit = cantilever_tip(4.0, 80)
+    assert (found.deflection / L, found.shortening / L) == pytest.approx((unit.deflection, unit.shortening), rel=1e-10)
+
+
+def test_the_tip_tends_to_the_elastica_with_order_two():
+    exact = elastica_tip(2.7)[0]
+    errors = [bend(ROD, n, 2.7 * UNIT).deflection / L - exact for n in (20, 40)]
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+
+
+def test_joints_lie_a_link_apart_and_end_at_the_tip():
+    found = bend(ROD, 23, (0.7 * UNIT, -3.1 * UNIT), moment=0.4 * EI / L)
+    assert found.joints.shape == (24, 2)
+    assert np.array_equal(found.joints[0], [0.0, 0.0])
+    assert np.hypot(*np.diff(found.joints, axis=0).T) == pytest.approx(np.full(23, L / 23), rel=1e-12)
+    assert np.array_equal(found.tip, found.joints[-1])
+    assert found.shortening == L - found.tip[0]
+    assert found.angles == pytest.approx(np.arctan2(*np.diff(found.joints, axis=0).T[::-1]), abs=1e-12)
+
+
+def test_every_joint_carries_the_moment_of_the_load_about_where_it_lies():
+    along, across, moment = 0.7 * UNIT, -3.1 * UNIT, 0.4 * EI / L
+    found = bend(ROD, 23, (along, across), moment=moment)
+    arm = found.tip - found.joints
+    assert found.moments == pytest.approx(
+        arm[:, 0] * across - arm[:, 1] * along + moment, abs=1e-7 * abs(found.moments).max()
+    )
+    assert found.curvature == pytest.approx(found.moments / EI, rel=1e-14)
+
+
+def test_a_moment_bends_an_even_circle_and_2_pi_closes_it():
+    found = bend(ROD, 12, moment=2 * np.pi * EI / L, wall="half")
+    assert np.hypot(*found.tip) < 1e-12 * L
+    assert found.curvature == pytest.approx(np.full(13, 2 * np.pi / L), rel=1e-9)
+    assert found.energy == pytest.approx(
+        0.5 * EI * (2 * np.pi / L) ** 2 * L * 11.5 / 12, rel=1e-9
+    )  # half a link is rigid
+
+
+def test_a_small_load_bends_as_the_linear_cantilever_and_stores_half_its_work():
+    force = 1e-4 * UNIT
+    found = bend(ROD, 200, force)
+    assert found.deflection == pytest.approx(force * L**3 / (3 * EI), rel=1e-4)
+    assert found.energy == pytest.approx(0.5 * force * found.deflection, rel=1e-6)
+    assert found.curvature[0] == pytest.approx(force * L / EI, rel=1e-7)
+
+
+def test_a_pull_along_stiffens_and_a_push_bends_further():
+    plain = bend(ROD, 40, (0.0, 1.3 * UNIT)).deflection
+    assert bend(ROD, 40, 1.3 * UNIT).deflection == plain
+    assert bend(ROD, 40, (2.0 * UNIT, 1.3 * UNIT)).deflection < 0.7 * plain
+    assert bend(ROD, 40, (-1.0 * UNIT, 1.3 * UNIT)).deflection > 1.2 * plain
+
+
+def test_a_stepped_rod_bends_by_the_stiffness_of_its_pieces():
+    """A small tip load: w = integral of F (L - x)^2 / EI."""
+    rod = replace(ROD, section=(Section(length=0.33), Section(length=0.5, thickness=0.0013)))
+    force, soft = 1e-4 * UNIT, EI * (0.0013 / 0.0021) ** 3
+    found = bend(rod, 83, force)
+    expected = force * (((L**3 - 0.5**3) / EI) + 0.5**3 / soft) / 3
+    assert found.deflection == pytest.approx(expected, rel=2e-3)
+    at = int(np.searchsorted(np.linspace(0, L, 84), 0.33 + 1e-9)) - 1
+    assert found.curvature[at] == pytest.approx(found.moments[at] / soft, rel=1e-12)
+    assert found.curvature[at - 1] == pytest.approx(found.moments[at - 1] / EI, rel=1e-12)
+
+
+def test_a_rod_given_by_its_stiffness_alone_bends_alike():
+    plain = Beam(length=L, bending_stiffness=EI, mass_per_length=0.17, supports=("clamped", "free"))
+    assert bend(plain, 31, 2.2 * UNIT).tip == pytest.approx(bend(ROD, 31, 2.2 * UNIT).tip, rel=1e-9)
+
+
+def test_losses_do_not_matter_at_rest_and_numpys_whole_numbers_are_counts():
+    lossy = replace(ROD, loss_factor=0.02)
+    assert np.array_equal(bend(lossy, np.int64(15), [0.0, UNIT]).joints, bend(ROD, 15, UNIT).joints)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"beam": replace(ROD, supports=("pinned", "pinned"))}, "give ('clamped', 'free')"),
+        (
+            {"beam": replace(ROD, mass=(PointMass(position=0.2, mass=0.1),))},
+            "beam.mass: the nonlinear chain takes none",
+        ),
+        ({"load": (1.0, 2.0, 3.0)}, "load = (1.0, 2.0, 3.0): give one number"),
+        ({"load": "heavy"}, "load = 'heavy'"),
+        ({"load": np.nan}, "newton"),
+        ({"moment": np.inf}, "moment = inf"),
+        ({"count": 1}, "count = 1: give a whole number of at least 2"),
+        ({"count": 2.5}, "count = 2.5"),
+        ({"count": 10**6}, "segments = 1000000"),
+        ({"wall": "wall"}, "wall = 'wall'"),
+        ({"wall": "welded"}, "welded"),
+        ({"load": 1e12}, "no equilibrium found"),
+    ],
+    ids=str,
+)
+def test_bad_input_is_refused_in_one_sentence(asked, said):
+    with pytest.raises(InputError) as found:
+        bend(**{"beam": ROD, "count": 9, "load": UNIT, **asked})
+    assert said in str(found.value)
+    assert "\n" not in str(found.value)

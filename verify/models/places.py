@@ -1,0 +1,71 @@
+"""Places along a beam and forces on it as users type them: a number or many, one force or many."""
+
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any, ParamSpec, TypeAlias, TypeVar
+
+import numpy as np
+
+from verify.beam import PointForce
+from verify.checks import plain, several
+from verify.errors import InputError, shown
+from verify.models.arrays import Array
+
+Numbers: TypeAlias = float | Sequence[float] | Array
+"""One, a list or an array."""
+Forces: TypeAlias = PointForce | Sequence[PointForce]
+"""One force alone stands for a list of it."""
+Values = TypeVar("Values", bound=np.ndarray[Any, Any])
+Given = ParamSpec("Given")
+Found = TypeVar("Found")
+SLACK = 1e-12
+"""Of the length: as far off an end a place is one that rounding put there."""
+
+
+def as_typed(verb: Callable[Given, Found]) -> Callable[Given, Found]:
+    """The verb, which then takes numpy's scalars for counts and figures, and a force alone for a list of it."""
+
+    def settled(value: Any) -> Any:
+        return (value,) if isinstance(value, PointForce) else plain(value)
+
+    @wraps(verb)
+    def called(*args: Given.args, **named: Given.kwargs) -> Found:
+        return verb(*map(settled, args), **{name: settled(value) for name, value in named.items()})
+
+    return called
+
+
+def in_a_row(field: str, value: object, unit: str = "SI") -> Array:
+    """Numbers in a row, (n,); one alone is a row of one. Raises InputError for what is no real number."""
+    return np.atleast_1d(real_array(field, value, unit))
+
+
+def real_array(field: str, value: object, unit: str) -> Array:
+    """Numbers in any arrangement as an array of the same shape. Raises InputError for what is no real number."""
+    try:
+        given = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        given = np.empty(0, dtype=object)
+    if given.dtype.kind not in "iuf":
+        raise InputError(f"{field} = {shown(value)}: give a number, a list or an array of numbers ({unit})")
+    return given.astype(float, copy=False)
+
+
+def places(field: str, value: object, length: float) -> Array:
+    """Positions on a beam, an array of the shape that was given. Raises InputError where one lies off it."""
+    found = real_array(field, value, "metres")
+    off = found[~((found >= -SLACK * length) & (found <= length * (1.0 + SLACK)))]
+    if off.size:
+        raise InputError(f"{field} = {float(off[0])!r} lies off the beam: give positions between 0 and {length!r} m")
+    return found
+
+
+def as_asked(found: Values, x: Numbers) -> Values:
+    """What was read at x in a row, (..., n), in the arrangement of x, (..., *shape of x): a number takes no axis."""
+    shape = np.shape(x)
+    return found if len(shape) == 1 else found.reshape(found.shape[:-1] + shape)[()]
+
+
+def as_forces(forces: Forces) -> tuple[PointForce, ...]:
+    """The forces as a tuple, one force alone too. Raises InputError for what is none."""
+    return several("forces", forces, PointForce)

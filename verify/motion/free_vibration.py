@@ -1,0 +1,265 @@
+"""A beam let go from a shape, without forces: exact in the modes of its model, damped by a ratio of every mode."""
+
+from collections.abc import Callable, Sequence
+from math import sqrt
+from typing import TypeAlias
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam
+from verify.checks import check_number, check_whole
+from verify.errors import InputError, shown
+from verify.field_docs import Value
+from verify.models.arrays import Array
+from verify.models.catalogue import MODELS
+from verify.models.intervals import extremes
+from verify.models.places import Numbers, as_typed, in_a_row, real_array
+from verify.models.time_basis import TimeBasis
+from verify.motion.forcing import free_part, modal, state_of
+from verify.motion.result import EndState
+from verify.motion.surface import basis_of
+
+Shape: TypeAlias = int | Callable[..., Numbers] | tuple[Sequence[float] | Array, Sequence[float] | Array]
+"""A mode's number, a function of x (metres), or places and values with straight lines between them."""
+GAUSS = 6
+"""Points in each piece of the shapes' polynomials: squares of cubics are summed exactly."""
+FINE = 3
+"""The exact modes' pieces are so many times finer than Gauss's points need: 0.4 radians of the fastest."""
+POINTS = 30_000_000
+"""Shapes at places, or modes at times, held at once."""
+MOST_SAMPLES = 1_000_000
+NEAR = 1e-3
+"""Of its largest value: what a mode's shape has where it first moves off its left end."""
+
+
+class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
+    """A beam that vibrates freely from an initial shape and velocity."""
+
+    model: str
+    """Its name."""
+    count: int | None
+    """Elements or segments; None for the exact beam."""
+    damping: float
+    """Ratio zeta of every mode."""
+    times: Array
+    """(n,), seconds from the release."""
+    points: Array
+    """(p,), metres: where the deflection was asked for."""
+    deflection: Array
+    """(n, p), metres."""
+    velocity: Array
+    """(n, p), m/s."""
+    kinetic: Array
+    """(n,), joules."""
+    elastic: Array
+    """(n,), joules; what is missing from the sum at the start is damped."""
+    frequencies_hz: Array
+    """(m,), of the model's modes, undamped, ascending."""
+    amplitudes: Array
+    """(m,), sqrt(kg) m: every mode's share q of the initial shape, w = sum q phi."""
+    unread: float
+    """What the modes leave of the initial shape, rms over rms (mass-weighted); 0 without one."""
+    end: EndState
+    """From where `simulate` can go on (`continue_from`)."""
+    notes: tuple[str, ...]
+    """Where the modes come from, and what damps them."""
+
+
+class _Known(msgspec.Struct, frozen=True, eq=False):
+    """A model's shapes at the points of a quadrature over its beam."""
+
+    x: Array
+    weights: Array
+    """(n,), kg: of every point."""
+    shapes: Array
+    """(m, n)."""
+
+
+@as_typed
+def free_vibration(
+    beam: Beam,
+    shape: Shape | None,
+    duration: float,
+    *,
+    amplitude: float | None = None,
+    velocity: Shape | None = None,
+    model: str = "segment",
+    count: int | None = None,
+    modes: int = 400,
+    modal_damping: float | None = None,
+    at: Numbers = (),
+    samples: int = 201,
+) -> FreeVibration:
+    """A beam let go at t = 0 from a shape (metres) with a velocity (m/s), and left alone for `duration` seconds.
+
+    `shape` and `velocity` are each a function of x, a pair (x, values) with straight lines between the places, which
+    lead from 0 to L, or None for nothing. `shape` may be a mode's number with `amplitude`, its largest deflection in
+    metres, positive where it first moves off its left end; a number for `velocity` is refused. What a model cannot
+    take of a shape is left out in the mass-weighted mean square (`unread`); from there on every mode is
+    q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
+    Vibrations, 1967, ch. 5). Damping is a ratio zeta of every mode, half the beam's loss factor unless given. The exact
+    beam keeps `modes` modes, the others all they have. `at` are p places in metres, or one, where `samples` values are
+    kept from 0 to `duration`. No slider rides here: let `simulate` go on with one (`continue_from`). Raises InputError.
+    """
+    zeta = 0.5 * beam.loss_factor if modal_damping is None else modal_damping
+    check_number("duration", duration, "seconds", above=0)
+    check_number("modal_damping", zeta, "ratio of every mode", at_least=0, below=1)
+    check_whole("samples", samples, 2)
+    if samples > MOST_SAMPLES:
+        raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
+    points = in_a_row("at", at, "metres")
+    if not np.all((points >= 0.0) & (points <= beam.length)):
+        raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
+    MODELS.named(model)
+    basis = basis_of(beam, model, count, modes)
+    q, rates, unread = _start(basis, shape, amplitude, velocity)
+    return _told(basis, zeta, points, np.linspace(0.0, duration, samples), q, rates, unread)
+
+
+def _start(
+    basis: TimeBasis, shape: Shape | None, amplitude: float | None, velocity: Shape | None
+) -> tuple[Array, Array, float]:
+    """(q, dq/dt) of every mode at the start, and what they leave of the shape. Raises InputError."""
+    if shape is None and velocity is None:
+        raise InputError("shape is None and so is velocity: give one of them, or both, else nothing moves")
+    if isinstance(velocity, int):
+        raise InputError(f"velocity = {velocity!r}: give a function of x or a pair (x, values) in m/s")
+    numbered = isinstance(shape, int) and not isinstance(shape, bool)
+    if amplitude is not None and not numbered:
+        raise InputError(f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out")
+    drawn = {"shape": None if numbered else shape, "velocity": velocity}
+    breaks = [_breaks(name, given, basis.beam.length) for name, given in drawn.items() if given is not None]
+    still = np.zeros(len(basis.omegas)), 0.0
+    known = _quadrature(basis, np.concatenate(breaks)) if breaks else None
+    found = {name: _shares(known, name, given) if known else still for name, given in drawn.items()}
+    q, unread = (_mode(basis, shape, amplitude), 0.0) if isinstance(shape, int) and numbered else found["shape"]
+    return q, found["velocity"][0], unread
+
+
+def _mode(basis: TimeBasis, mode: int, amplitude: float | None) -> Array:
+    """One mode alone, its largest deflection `amplitude` metres. Raises InputError."""
+    check_whole("shape", mode, 1)
+    if mode > len(basis.omegas):
+        raise InputError(f"shape = {mode}: the {basis.model} model has {len(basis.omegas)} modes, raise count or modes")
+    if amplitude is None:
+        raise InputError(f"amplitude is missing: give mode {mode} its largest deflection in metres")
+    check_number("amplitude", amplitude, "metres")
+
+    def along(x: Array) -> Array:
+        return np.asarray(basis.shapes(x, 0)[mode - 1])
+
+    x = np.linspace(0.0, basis.beam.length, 20 * mode + 41)
+    least, largest = extremes(along, x)
+    size, values = max(largest, -least), along(x)
+    first = values[np.argmax(abs(values) > NEAR * size)]
+    q = np.zeros(len(basis.omegas))
+    q[mode - 1] = amplitude * np.sign(first) / size
+    return q
+
+
+def _breaks(name: str, given: Shape, length: float) -> Array:
+    """Where straight lines meet in what was given, metres; empty for a function. Raises InputError."""
+    if callable(given):
+        return np.empty(0)
+    if not isinstance(given, list | tuple | np.ndarray) or len(given) != 2:
+        raise InputError(
+            f"{name} = {shown(given)}: give a function of x, a pair (x, values), or a mode's number with its amplitude"
+        )
+    x, values = real_array(f"{name}[0]", given[0], "metres"), real_array(f"{name}[1]", given[1], "SI")
+    if x.ndim != 1 or x.shape != values.shape or len(x) < 2 or not np.isfinite(values).all():
+        raise InputError(f"{name} has x of the shape {x.shape} and values of {values.shape}: give as many finite ones")
+    if not (np.diff(x) > 0).all() or abs(x[0]) > 1e-9 * length or abs(x[-1] - length) > 1e-9 * length:
+        raise InputError(
+            f"{name}[0] runs from {float(x[0])!r} to {float(x[-1])!r}: let x ascend from 0 to {length!r} m"
+        )
+    return x
+
+
+def _shares(known: "_Known", name: str, given: Shape | None) -> tuple[Array, float]:
+    """Every mode's share of a shape, (m,), and what is left of it: the least mass-weighted mean square."""
+    if given is None:
+        return np.zeros(len(known.shapes)), 0.0
+    values, weighed = _values(name, given, known.x), known.shapes * known.weights
+    q = np.linalg.solve(weighed @ known.shapes.T, weighed @ values)
+    size = float(known.weights @ values**2)
+    left = float(known.weights @ (values - q @ known.shapes) ** 2)
+    return np.asarray(q, dtype=float), sqrt(left / size) if size > 0.0 else 0.0
+
+
+def _values(name: str, given: Shape, x: Array) -> Array:
+    """What was given, at x, (n,). Raises InputError where a function does not answer with as many finite numbers."""
+    if not callable(given):
+        places, values = given  # type: ignore[misc]
+        return np.asarray(np.interp(x, places, values))
+    answer: object
+    try:
+        answer = given(x)
+    except (TypeError, ValueError):  # it takes one number at a time
+        answer = [given(float(one)) for one in x]
+    values = real_array(f"{name}(x)", answer, "SI")
+    if values.shape not in ((), x.shape) or not np.isfinite(values).all():
+        raise InputError(f"{name}(x) answers {shown(answer)} to {len(x)} places: give as many finite numbers")
+    return np.broadcast_to(values, x.shape)
+
+
+def _quadrature(basis: TimeBasis, breaks: Array) -> _Known:
+    """Gauss's points between the edges of the shapes, the steps of the beam and `breaks`. Raises InputError."""
+    beam = basis.beam
+    steps = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
+    pieces = basis.edges if basis.count is not None else np.append(basis.edges[:-1:FINE], beam.length)
+    edges = np.union1d(np.union1d(pieces, steps), breaks)
+    edges = edges[np.append(True, np.diff(edges) > 1e-12 * beam.length)]
+    if (n := GAUSS * len(edges) * len(basis.omegas)) > POINTS:
+        raise InputError(
+            f"shape: {len(basis.omegas)} modes are read at {GAUSS * len(edges)} places, {n:.1e} figures and more than "
+            f"{POINTS:.0e}: lower count or modes, or give a mode's number"
+        )
+    points, weights = np.polynomial.legendre.leggauss(GAUSS)
+    half = 0.5 * np.diff(edges)[:, None]
+    x = (edges[:-1, None] + half * (1.0 + points)).ravel()
+    masses = np.array([piece.mass_per_length for piece in beam.pieces])
+    line = masses[np.clip(np.searchsorted(steps, x, side="right") - 1, 0, len(masses) - 1)]
+    places = np.array([mass.position for mass in beam.mass])
+    heavy = np.array([mass.mass for mass in beam.mass])
+    x = np.concatenate([x, places])
+    return _Known(x, np.concatenate([(half * weights).ravel() * line, heavy]), basis.shapes(x, 0))
+
+
+def _told(
+    basis: TimeBasis, damping: float, points: Array, times: Array, q: Array, rates: Array, unread: float
+) -> FreeVibration:
+    """The motion from (q, dq/dt) at 0, in blocks of times that fit in memory."""
+    modes = modal(basis, (), damping)
+    z, shapes = free_part(modes, q, rates), basis.shapes(points, 0)
+    blocks = np.array_split(times, max(times.size * q.size // POINTS, 1) + 1)
+    deflection, velocity, kinetic, elastic = [], [], [], []
+    for block in blocks:
+        decay, turn = np.exp(-np.outer(block, modes.sigmas)), np.outer(block, modes.omegas)
+        c, s = decay * np.cos(turn), decay * np.sin(turn)
+        now, speed = state_of(modes, np.array([z[0] * c - z[1] * s, z[0] * s + z[1] * c]))
+        deflection.append(now @ shapes)
+        velocity.append(speed @ shapes)
+        kinetic.append(0.5 * (speed**2).sum(axis=1))
+        elastic.append(0.5 * now**2 @ modes.squares)
+    return FreeVibration(
+        model=basis.model,
+        count=basis.count,
+        damping=damping,
+        times=times,
+        points=points,
+        deflection=np.concatenate(deflection),
+        velocity=np.concatenate(velocity),
+        kinetic=np.concatenate(kinetic),
+        elastic=np.concatenate(elastic),
+        frequencies_hz=basis.omegas / (2.0 * np.pi),
+        amplitudes=q,
+        unread=float(unread),
+        end=EndState(time=float(times[-1]), q=now[-1], rates=speed[-1]),
+        notes=(f"modes: {_kept(basis)}", f"damping: a ratio {damping:g} of every mode"),
+    )
+
+
+def _kept(basis: TimeBasis) -> str:
+    """Which modes move; those that are cut off take no part of the start."""
+    return f"the first {len(basis.omegas)}, the others left out" if basis.tail else basis.method
