@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.attached import PointMass, PointSpring
-from verify.checks import Relative, check_number
+from verify.checks import Relative, check_number, settle
 from verify.errors import InputError, near_name
 from verify.field_docs import Value
 from verify.options import SUPPORTS, Support

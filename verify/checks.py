@@ -4,7 +4,8 @@ from functools import cache
 from math import inf
 from operator import index
 from sys import float_info
-from typing import Annotated, TypeAlias
+from types import MemberDescriptorType
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeVar
 
 from msgspec import Meta
 
@@ -17,6 +18,47 @@ LARGEST = float_info.max
 RELATIVE = "relative"
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
 """A number without a unit, which a command line takes in per cent as well: 0.001 or 0.1%."""
+Kind = TypeVar("Kind")
+_SETTLED = (float, int, str, tuple, type(None))
+
+
+def plain(value: Any) -> Any:
+    """A scalar of numpy's as Python's own number, whose arithmetic neither rounds to 32 bits nor overflows."""
+    return value.item() if hasattr(value, "dtype") and getattr(value, "shape", None) == () else value
+
+
+def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
+    """One of a kind, or many of them, as a tuple. Raises InputError, naming the field, for anything else."""
+    one = isinstance(given, kind) or not hasattr(given, "__iter__")
+    found = (given,) if one else tuple(given)
+    for each in found:
+        if not isinstance(each, kind):
+            raise InputError(f"{field} has {shown(each)}: give a {kind.__name__}, or a list of them")
+    return found
+
+
+def settle(value: "msgspec.Struct", where: str = "", **kinds: type) -> None:
+    """What a user typed made what a frozen value holds: Python's numbers for numpy's, tuples for lists.
+
+    `kinds` are fields of many values, `where` is what a message calls their owner. Raises InputError.
+    """
+    for field, slot in _slots(type(value)):
+        given = kept = slot.__get__(value)
+        if field in kinds:
+            kept = several(f"{where}.{field}", given, kinds[field]) if given != () else given
+        elif type(given) not in _SETTLED:
+            kept = tuple(map(plain, given)) if isinstance(given, list) else plain(given)
+        if kept is not given:
+            slot.__set__(value, kept)
+
+
+@cache
+def _slots(kind: type) -> tuple[tuple[str, Any], ...]:
+    """Where a frozen value keeps its fields: a property of the same name answers with what follows from them."""
+    found: dict[str, Any] = {}
+    for one in kind.__mro__:
+        found |= {name: slot for name, slot in vars(one).items() if isinstance(slot, MemberDescriptorType)}
+    return tuple(found.items())
 
 
 def check_number(

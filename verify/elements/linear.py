@@ -1,6 +1,5 @@
 """Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers in metres, hertz, newtons."""
 
-from collections.abc import Sequence
 from functools import partial
 from math import pi, sqrt
 
@@ -27,6 +26,7 @@ from verify.models.eigen import (
 )
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 from verify.models.theory import check_theory
 from verify.options import Theory
 
@@ -45,6 +45,7 @@ def n_elastic(beam: Beam, n_elements: int, theory: Theory = "euler-bernoulli") -
     return unknowns(beam, n_elements, theory) - beam.rigid_motions
 
 
+@as_typed
 def solve_modes(
     beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0, theory: Theory = "euler-bernoulli"
 ) -> Modes:
@@ -143,6 +144,7 @@ def solve_harmonic(
     undamped resonance of the mesh is refused, and both dampings together where springs, an axial force or a
     foundation have no loss.
     """
+    forces = as_forces(forces)
     check(beam, 1, n_elements, grading=grading, theory=theory)
     check_drive(beam, forces, frequency_hz)
     check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
@@ -165,7 +167,12 @@ def solve_harmonic(
 
     return HarmonicField(
         theory=theory,
-        model="fem", count=n_elements, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces), shapes=shapes
+        model="fem",
+        count=n_elements,
+        beam=beam,
+        frequency_hz=frequency_hz,
+        forces=tuple(forces),
+        shapes=shapes,
     )
 
 
@@ -186,9 +193,9 @@ def _around(beam: Beam, n_modes: int, n_elements: int, *, grading: float, theory
 
 def unit_responses(
     beam: Beam,
-    positions: Sequence[float],
-    frequencies_hz: Array,
-    x: Array,
+    positions: Numbers,
+    frequencies_hz: Numbers,
+    x: Numbers,
     n_elements: int,
     *,
     theory: Theory = "euler-bernoulli",
@@ -199,10 +206,12 @@ def unit_responses(
     beside what has no loss, and under Timoshenko's theory, every frequency is solved. NaN at the frequencies of
     undamped resonances. Raises InputError for meshes beyond the dense size.
     """
+    positions, x = in_a_row("positions", positions), in_a_row("x", x)
+    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     check(beam, 1, n_elements, theory=theory)
     elements = build_elements(beam, n_elements, theory=theory)
     pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit
-    weights = point_loads(basis, np.array(positions) / unit)[:, elements.free].T
+    weights = point_loads(basis, positions / unit)[:, elements.free].T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4
     coupled = beam.loss_factor and len(pencil.stiffness) > own_strains(elements)
     if coupled or theory == "timoshenko":

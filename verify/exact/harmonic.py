@@ -14,9 +14,8 @@ from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, 
 from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 
 
-def solve_harmonic(
-    beam: Beam, forces: Sequence[PointForce], frequency_hz: float, theory: str = "euler-bernoulli"
-) -> HarmonicField:
+@as_typed
+def solve_harmonic(beam: Beam, forces: Forces, frequency_hz: float, theory: str = "euler-bernoulli") -> HarmonicField:
     """The exact steady field under harmonic point forces, e^{+i omega t}, with the beam's loss factor.
 
     Of a uniform Euler-Bernoulli beam: pinned-pinned in closed form without truncation; other supports in exponentials
@@ -24,6 +23,7 @@ def solve_harmonic(
     series. Of any other span by span (`exact.driven`); the loss factor acts on its bending and shear stiffness, not on
     springs, foundation or axial force. Raises InputError; an undamped resonance is refused.
     """
+    forces = as_forces(forces)
     if theory != "euler-bernoulli" or not beam.uniform:
         from verify.exact.driven import general_field
 
@@ -31,8 +31,7 @@ def solve_harmonic(
     else:
         shapes = _closed_form(beam, forces, frequency_hz)
     return HarmonicField(
-        theory=theory,
-        model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=tuple(forces), shapes=shapes
+        theory=theory, model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=forces, shapes=shapes
     )
 
 
@@ -186,7 +185,7 @@ def _exponentials(k: complex, ends: Array, span: int, x: Array, derivative: int)
 
 
 def unit_responses(
-    beam: Beam, positions: Sequence[float], frequencies_hz: Array, x: Array, theory: str = "euler-bernoulli"
+    beam: Beam, positions: Numbers, frequencies_hz: Numbers, x: Numbers, theory: str = "euler-bernoulli"
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
@@ -200,7 +199,7 @@ def unit_responses(
 
         for i, frequency in enumerate(frequencies_hz):
             with suppress(ResonanceError):
-                responses[i] = general_responses(beam, positions, float(frequency), x, theory)
+                responses[i] = general_responses(beam, positions.tolist(), float(frequency), x, theory)
         return responses
     for i, j in np.ndindex(*responses.shape[:2]):
         with suppress(ResonanceError):

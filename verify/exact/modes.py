@@ -15,6 +15,7 @@ from verify.exact.lineup import check_theory
 from verify.exact.roots import general_frequency_hz, modes_below
 from verify.models.arrays import Array
 from verify.models.modes import Modes
+from verify.models.places import Numbers, as_typed, real_array
 from verify.options import THEORIES
 
 __all__ = [
@@ -38,6 +39,7 @@ _MIRRORED = {
 }
 
 
+@as_typed
 def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Modes:
     """The first `n_modes` exact elastic modes by a beam theory.
 
@@ -72,8 +74,8 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
     )
 
 
-def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
-    """Mass-normalised shape of one exact mode or its derivative (0 to 3), (len(x),), SI.
+def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
+    """Mass-normalised shape of one exact mode or its derivative (0 to 3) at x, SI; a number x is a row of one.
 
     x in metres. Positive where the beam first moves off its left end. Of everything that has mass: point masses and
     rotary inertia too. By Timoshenko's theory the deflection, and the slope of its line, not the section's turn.
@@ -82,15 +84,16 @@ def mode_shape(beam: Beam, mode: int, x: Array, derivative: int = 0, theory: str
     return np.asarray(_shapes(beam, (mode,), x, derivative, theory)[0])
 
 
-def mode_shapes(beam: Beam, n_modes: int, x: Array, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
-    """The same of the first `n_modes` modes, (n_modes, len(x))."""
+def mode_shapes(beam: Beam, n_modes: int, x: Numbers, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
+    """The same of the first `n_modes` modes, (n_modes, *shape of x)."""
     return _shapes(beam, range(1, n_modes + 1), x, derivative, theory)
 
 
-def _shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory: str) -> Array:
+def _shapes(beam: Beam, modes: Sequence[int], x: Numbers, derivative: int, theory: str) -> Array:
+    at = np.atleast_1d(real_array("x", x, "metres"))
     if theory != "euler-bernoulli" or not beam.uniform:
-        return _general(beam, modes, x, derivative, theory)
-    xi = np.asarray(x, dtype=float) / beam.length
+        return _general(beam, modes, at.ravel(), derivative, theory).reshape(len(modes), *at.shape)
+    xi = at.ravel() / beam.length
     left, right = beam.supports
     if (left, right) in _MIRRORED:
         signs = np.array([_mirror_sign(beam.supports, mode) for mode in modes]) * (-1.0) ** derivative

@@ -61,9 +61,9 @@ def places(field: str, value: object, length: float) -> Array:
 
 
 def as_asked(found: Values, x: Numbers) -> Values:
-    """What was read at x in a row, (..., n), in the arrangement of x, (..., *shape of x): a number takes no axis."""
+    """What was read at x in a row, (..., n), in the arrangement of x, (..., *shape of x): a number is a row of one."""
     shape = np.shape(x)
-    return found if len(shape) == 1 else found.reshape(found.shape[:-1] + shape)[()]
+    return found if len(shape) < 2 else found.reshape(found.shape[:-1] + shape)
 
 
 def as_forces(forces: Forces) -> tuple[PointForce, ...]:

@@ -39,7 +39,7 @@ def measured(a: InWindow, scene: "Scene", bench: Workbench) -> "WaveMeasures":
 
 
 def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
-    return complex(field_of(a, scene, bench).deflection(a.x))
+    return complex(field_of(a, scene, bench).deflection(a.x)[0])
 
 
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:

@@ -16,6 +16,7 @@ from verify.models.driven_pencil import damped_response, modal_receptance, refus
 from verify.models.eigen import Eigenpairs, FactoredPencil, check_size, forced_response, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 from verify.models.theory import check_theory
 from verify.options import (
     ATTACHMENTS,
@@ -196,6 +197,7 @@ def solve_harmonic(
     at every joint (eta = omega c / k); springs, ground and axial force have no loss. Raises InputError; an undamped
     resonance of the chain is refused.
     """
+    forces = as_forces(forces)
     settings = _settings(wall, joints, grading, theory, attachment)
     check(beam, 1, n_segments, **settings)
     _check_harmonic(beam, forces, frequency_hz, load, reading, modal_damping, joint_dashpot)
@@ -293,9 +295,9 @@ def _link_reading(chain: Chain, free: ComplexArray, x: Array, derivative: int) -
 
 def unit_responses(
     beam: Beam,
-    positions: Sequence[float],
-    frequencies_hz: Array,
-    x: Array,
+    positions: Numbers,
+    frequencies_hz: Numbers,
+    x: Numbers,
     n_segments: int,
     *,
     theory: Theory = "euler-bernoulli",
@@ -308,6 +310,8 @@ def unit_responses(
     defaults of `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError for chains
     beyond the dense size.
     """
+    positions, x = in_a_row("positions", positions), in_a_row("x", x)
+    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     settings = _settings("gregory", joints, 1.0, theory, attachment)
     check(beam, 1, n_segments, **settings)
     chain = build_chain(beam, n_segments, **settings)

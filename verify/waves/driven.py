@@ -148,7 +148,7 @@ def wave_order(
     def figure(one: DrivenCase) -> complex:
         field = driven(one, bench)
         if of == "deflection":
-            return complex(field.deflection(0.5 * sum(places)))
+            return complex(field.deflection(0.5 * sum(places))[0])
         found = measures(field, places)
         return complex(found.standing_wave_ratio if of == "standing_wave_ratio" else found.mean_axis_ratio)
 

@@ -11,7 +11,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from verify.beam import Beam
-from verify.errors import InputError, StandingError, WindowError, ZeroFieldError
+from verify.errors import InputError, StandingError, WindowError, ZeroFieldError, shown
+from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField, phasor, unit_response, wavenumber
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
