@@ -566,7 +566,6 @@ def test_imposed_displacements_have_operating_points():
         ("frequency_hz=1:2:0", "from 1 to 10000 steps"),
         ("frequency_hz=1:2:1000000000000", "from 1 to 10000 steps"),
         ("frequency_hz=0:100:3", "above 0"),
-        ("frequency_hz", "start:end:steps"),
         ("count=-3:9:2", "from 1, for instance count=49:98:50"),
         ("loss_factor=-0.1:0.1:3", "not negative, for instance loss_factor=0:0.01:11"),
         ("position=0:nan:3", "not negative, for instance position=0.005:0.03:26"),

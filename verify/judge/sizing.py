@@ -193,7 +193,7 @@ def choose_of_all(
         except InputError as problem:
             left_out[model.name] = str(problem)
     asked = (rules or Rules()).variants(names)
-    variants, more = list(asked), [] if rules and rules.chosen else beside(bench.beam)
+    variants, more = list(asked), beside(bench.beam, (rules or Rules()).settled)
     for one in more:
         try:
             enough_from(bench, one.model, mode, error, one.settings)

@@ -155,12 +155,22 @@ class Segments(Discrete):
     lines = ("spline", "raw")
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:
-        """4 on equal links between pinned, guided, free and Gregory's ends; 2 where one of them is not so."""
-        if settings.get("joints") == "printed" and beam.stepped:
-            return 1
-        uneven = beam.stepped or beam.section or settings.get("grading", 1.0) != 1.0
-        loose = "clamped" in beam.supports and settings.get("wall") in ("half", "welded")
-        return 2 if uneven or loose else 4
+        """4 on equal links between pinned, guided, free and Gregory's ends; less for each rule that is not of that order.
+
+        As measured and derived in `segments.loaded` and `segments.attached`, and held in their tests.
+        """
+        orders = [4]
+        orders += [1] * (settings.get("joints") == "printed" and beam.stepped)
+        orders += [2] * (bool(beam.section) or settings.get("grading", 1.0) != 1.0)
+        if "clamped" in beam.supports:
+            orders.append({"half": 2, "welded": 2, "third-order": 3}.get(settings.get("wall", ""), 4))
+        thick = settings.get("theory", "euler-bernoulli") != "euler-bernoulli"
+        orders += [2] * (bool(beam.tension or thick) and settings.get("joints") != "tensioned")
+        orders += [2] * (settings.get("theory") == "timoshenko" and bool(beam.mass or beam.spring))
+        if settings.get("attachment") == "lever" and (beam.mass or beam.spring):
+            turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
+            orders.append(1 if turning else 2)
+        return min(orders)
 
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """All its modes."""

@@ -89,6 +89,12 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 raise InputError(f"{name} = {turned[0]!r} is a setting of none of {', '.join(models)}: leave it out")
 
     @property
+    def settled(self) -> Settings:
+        """Those that somebody turned: of several words the first."""
+        first = ((name, self._several(name)) for name in DEFAULTS)
+        return tuple((name, words[0]) for name, words in first if words != (DEFAULTS[name],))
+
+    @property
     def chosen(self) -> Settings:
         """Those that are one word, other than the default."""
         single = ((name, self._several(name)) for name in DEFAULTS)
@@ -100,10 +106,16 @@ def models_with(name: str) -> tuple[str, ...]:
     return tuple(model.name for model in discrete() if name in model.modal_settings)
 
 
-def beside(beam: Beam) -> tuple[Variant, ...]:
-    """The rule that stands beside the default on this beam: the literature's wall, the joint that axial force mends."""
-    other = [("wall", "half")] * ("clamped" in beam.supports) + [("joints", "tensioned")] * bool(beam.tension)
-    return tuple(Variant(model, (one,)) for one in other for model in models_with(one[0]))
+def beside(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
+    """The rules that stand beside the default on this beam: the literature's wall, the joint that mends an order.
+
+    Axial force and thickness take two orders from joints in series; what else is chosen is kept.
+    """
+    loses = bool(beam.tension) or dict(chosen).get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
+    given = {name for name, _ in chosen}
+    other = [("wall", "half")] * ("clamped" in beam.supports and "wall" not in given)
+    other += [("joints", "tensioned")] * (loses and "joints" not in given)
+    return tuple(Variant(model, told(dict(chosen) | dict([one]))) for one in other for model in models_with(one[0]))
 
 
 def every_rule(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
@@ -111,7 +123,8 @@ def every_rule(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
     walls = [w for w in WALLS[1:] if w != "welded" or not beam.section] if "clamped" in beam.supports else []
     rules = [("wall", wall) for wall in walls]
     rules += [("joints", "printed")] * (beam.stepped and all(p.youngs_modulus for p in beam.pieces))
-    rules += [("joints", "tensioned")] * bool(beam.tension)
+    thick = dict(chosen).get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
+    rules += [("joints", "tensioned")] * (bool(beam.tension) or thick)
     rules += [("attachment", "lever")] * bool(beam.mass or beam.spring)
     return tuple(Variant(model, told(dict(chosen) | dict([rule]))) for rule in rules for model in models_with(rule[0]))
 

@@ -210,7 +210,7 @@ def measures_of(
 
 def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0) -> ComplexArray:
     """u_x of the upper surface, metres: -(h/2) times the turn of the section, `turn` of the slope w'."""
-    return -beam.surface_distance * turn * slope
+    return np.asarray(-beam.surface_distance * turn * np.asarray(slope))
 
 
 def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array]:
@@ -225,7 +225,7 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
         sine = np.where(total > 0, product.imag / np.where(total > 0, total, 1.0), 0.0)
     chi = 0.5 * np.arcsin(np.clip(sine, -1.0, 1.0))
     tilt = 0.5 * np.rad2deg(np.arctan2(product.real, difference))
-    return np.tan(chi), tilt[()], product.imag[()]
+    return np.tan(chi), tilt, product.imag
 
 
 def crest_speed(medium: Medium, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
