@@ -155,7 +155,7 @@ class Segments(Discrete):
     lines = ("spline", "raw")
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:
-        """4 on equal links between pinned, guided, free and Gregory's ends; less for each rule that is not of that order.
+        """4 on equal links between pinned, guided, free and Gregory's ends; less by each rule that is of a lower one.
 
         As measured and derived in `segments.loaded` and `segments.attached`, and held in their tests.
         """

@@ -112,9 +112,7 @@ def beside(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
     Axial force and thickness take two orders from joints in series; what else is chosen is kept.
     """
     loses = bool(beam.tension) or dict(chosen).get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
-    given = {name for name, _ in chosen}
-    other = [("wall", "half")] * ("clamped" in beam.supports and "wall" not in given)
-    other += [("joints", "tensioned")] * (loses and "joints" not in given)
+    other = [("wall", "half")] * ("clamped" in beam.supports) + [("joints", "tensioned")] * loses
     return tuple(Variant(model, told(dict(chosen) | dict([one]))) for one in other for model in models_with(one[0]))
 
 

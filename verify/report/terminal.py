@@ -199,7 +199,7 @@ def print_choices(
     console.print(f"[bold]mode {mode}[/] within {percent(error, sign=False)} of the exact {exact}: enough from")
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_header=True)
     for name in ("model", "N", "unknowns", "error", "error law", "time"):
-        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
+        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=name != "model")
     for one in choices:
         table.add_row(
             one.variant.title,
