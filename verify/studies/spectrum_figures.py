@@ -39,15 +39,20 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
         return spectrum_charts(self)
 
     def facts(self) -> tuple[str, ...]:
-        """The last mode's errors."""
+        """The last mode's errors, those of theories against Euler-Bernoulli."""
         found = [
             f"{one.title} {percent(value)}"
             for one in self.variants
             if (value := self.errors[one.label][-1]) is not None
         ]
-        found += [f"{theory_name(theory)} theory {percent(values[-1])}" for theory, values in self.theories.items()]
-        where = f"mode {self.modes[-1]} at N = {self.count} against {self.theory}"
-        return (*((f"{where}: {', '.join(found)}",) if found else ()), *self.left_out)
+        thicker = [f"{theory_name(theory)} theory {percent(values[-1])}" for theory, values in self.theories.items()]
+        told = [(f" at N = {self.count}", self.theory, found), ("", "Euler-Bernoulli", thicker)]
+        if self.theory == "Euler-Bernoulli":
+            told = [(f" at N = {self.count}", self.theory, found + thicker)]
+        sentences = (
+            f"mode {self.modes[-1]}{at} against {by}: {', '.join(errors)}" for at, by, errors in told if errors
+        )
+        return (*sentences, *self.left_out)
 
     def plain(self) -> object:
         """Errors by the variant's label."""
