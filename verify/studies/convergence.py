@@ -52,6 +52,6 @@ class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
         self, asked: Convergence, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
     ) -> "ConvergenceFound":
         """See `convergence_figures.convergence`."""
-        from verify.studies.convergence_figures import found
+        from verify.studies.convergence_figures import convergence
 
-        return found(bench, asked, step)
+        return convergence(bench, asked, step)

@@ -154,7 +154,7 @@ def _figures(row: Row, variants: tuple[Variant, ...]) -> list[float | None]:
     return [value for cell in cells for value in (cell.frequency_hz, cell.error, cell.order, cell.run_time_s)]
 
 
-def found(bench: Workbench, asked: "Convergence", progress: Progress = lambda step: None) -> ConvergenceFound:
+def convergence(bench: Workbench, asked: "Convergence", progress: Progress = lambda step: None) -> ConvergenceFound:
     """Everything a [convergence] asks for. `progress` is told the size about to be solved. Raises InputError."""
     last = max(asked.modes)
     names, left_out = comparable(bench.beam, asked.counts, last)

@@ -145,7 +145,7 @@ def _convergence(found: "ConvergenceFound") -> Chart:
     return Chart(
         id="convergence",
         title="Convergence with the number of segments or elements",
-        caption=(mean_in_words(rows) + " " if means else "")
+        caption=(mean_in_words(found) + " " if means else "")
         + "Grey: the slopes that theory gives these models on this beam. "
         f"At about {100.0 * EIGENVALUE_FLOOR:.0e} % rounding takes over.",
         data=[*_named_once(data), *guides, *keys],
@@ -168,10 +168,10 @@ def _named_once(traces: list[Figure]) -> list[Figure]:
     return once
 
 
-def mean_in_words(rows: "tuple[Row, ...]") -> str:
+def mean_in_words(found: "ConvergenceFound") -> str:
     """What the mean of both models is good for, by what was solved: it is farther off than elements on few parts."""
-    above = next((label for label in rows[0].cells if label.split()[0] == bounding()[1].name), "")
-    errors = [(row, row.mean_error, row.cells[above].error) for row in rows]
+    above = next(one.label for one in found.variants if one.model == bounding()[1].name)
+    errors = [(row, row.mean_error, row.cells[above].error) for row in found.rows]
     farther = [f"mode {row.mode} at N = {row.count}" for row, m, e in errors if m and e and abs(m) >= abs(e)]
     order = "The mean of both is of order 6, because the leading errors cancel"
     if not farther:
