@@ -254,9 +254,40 @@ def test_a_factorisation_without_memory_is_one_sentence(titanium_strip, monkeypa
 
     monkeypatch.setattr(scipy.sparse.linalg, "splu", fails)
     with pytest.raises(InputError, match="do not fit into memory, lower it"):
-        segment_model.solve_harmonic(titanium_strip, [PointForce(position=0.1)], 99.0, 300)
+        segment_model.solve_modes(titanium_strip, 2, 400)
     with pytest.raises(InputError, match="do not fit into memory, lower it"):
         fem_beam.solve_modes(titanium_strip, 2, 300)
+
+
+def test_a_band_without_memory_is_one_sentence(titanium_strip, monkeypatch):
+    from verify.models import banded
+
+    def fails(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(banded.Band, "solve", fails)
+    with pytest.raises(InputError, match="199 unknowns do not fit into memory, lower it"):
+        segment_model.solve_harmonic(titanium_strip, [PointForce(position=0.1)], 99.0, 200)
+
+
+@pytest.mark.parametrize("n", [2, 7, 60, 300])
+def test_a_band_answers_as_sparse_factors_do(titanium_strip, n):
+    """Clamped, a body, a spring, tension: real and complex, few unknowns and many."""
+    from verify.attached import PointMass, PointSpring
+    from verify.models.driven_pencil import forced_response
+    from verify.models.eigen import _by_sparse_factors
+    from verify.segments.links import build_chain, chain_pencil
+
+    bodies = {"mass": (PointMass(position=0.21, mass=0.02),), "spring": (PointSpring(position=0.5, stiffness=400.0),)}
+    loaded = replace(titanium_strip, supports=("clamped", "free"), tension=3.0, **(bodies if n > 5 else {}))
+    for beam in (titanium_strip, loaded):
+        pencil = chain_pencil(build_chain(beam, n))
+        loads = np.random.default_rng(n).standard_normal((pencil.n, 2))
+        for stiffness in (pencil.stiffness.astype(complex), pencil.stiffness * (1 + 0.03j)):
+            wanted = _by_sparse_factors(pencil, loads, 0.017, stiffness)
+            found = forced_response(pencil, loads, 0.017, stiffness)
+            assert abs(found - wanted).max() <= 1e-9 * abs(wanted).max()
+            assert pencil.bands[0] is not None
 
 
 def test_a_singular_system_is_one_sentence(titanium_strip):

@@ -13,6 +13,7 @@ import numpy as np
 
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray, Indices
+from verify.models.banded import band_of
 from verify.patience import check_work
 
 DENSE_UNKNOWNS = 250
@@ -43,6 +44,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
     below: float = 0.0
     """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
+    bands: list[Any] = msgspec.field(default_factory=list)
+    """The band of the driven pencil, None where it is not narrow, once it was asked for."""
     uneven: bool = False
     """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
 
@@ -263,7 +266,11 @@ def factorised(matrix: Any) -> Any:
     except (MemoryError, RuntimeError) as error:
         if "singular" in str(error):
             raise InputError("the system is singular to rounding: choose another frequency_hz or count") from None
-        raise InputError(f"count: {matrix.shape[0]} unknowns do not fit into memory, lower it") from None
+        raise _too_large(matrix.shape[0]) from None
+
+
+def _too_large(n_unknowns: int) -> InputError:
+    return InputError(f"count: {n_unknowns} unknowns do not fit into memory, lower it")
 
 
 def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
@@ -271,6 +278,20 @@ def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness
 
     `loads` is (n, k); `stiffness` (m,) is complex where there is damping.
     """
+    try:
+        if not pencil.bands:
+            small = pencil.n <= DENSE_UNKNOWNS
+            strain = pencil.strain(np.eye(pencil.n)) if small else pencil.strain_matrix()
+            pencil.bands.append(band_of(strain, pencil.mass_matrix()))
+        band = pencil.bands[0]
+        found = None if band is None else band.solve(loads, omega2, stiffness)
+    except MemoryError:
+        raise _too_large(pencil.n) from None
+    return _by_sparse_factors(pencil, loads, omega2, stiffness) if found is None else found
+
+
+def _by_sparse_factors(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
+    """The same where the mixed matrix is no narrow band. Raises InputError where it is singular."""
     from scipy.sparse import block_array, csc_array, diags_array
 
     strain = csc_array(pencil.strain_matrix())

@@ -37,6 +37,7 @@ from verify.segments.reading import (
     joint_curvatures,
     joint_positions,
     joint_readings,
+    line_through,
     link_middles,
     link_slopes,
     spline_at,
@@ -143,8 +144,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     def corrected() -> Array:
         return joint_readings(chain, vectors)
 
-    def shapes(x: Array, derivative: int) -> Array:
-        return spline_at(chain, corrected(), x, derivative)
+    shapes = line_through(chain, corrected)
 
     def curvatures() -> Array:
         return joint_curvatures(chain, vectors)
@@ -264,8 +264,10 @@ def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[A
     parts = np.hstack([free.real, free.imag])
     values = joint_readings(chain, parts) if reading == "corrected" else joint_positions(chain, parts)
 
+    line = line_through(chain, lambda: values)
+
     def shapes(x: Array, derivative: int) -> ComplexArray:
-        real, imaginary = spline_at(chain, values, x, derivative)
+        real, imaginary = line(x, derivative)
         return np.asarray(real + 1j * imaginary)
 
     return shapes

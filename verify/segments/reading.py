@@ -3,6 +3,8 @@
 Linear and nonlinear chains, steady fields, modes and sliders all read with these.
 """
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -101,9 +103,18 @@ def spline(chain: Chain, values: Array) -> Any:
 
 def spline_at(chain: Chain, values: Array, x: Array, derivative: int) -> Array:
     """That spline or a derivative of it at x, (k, len(x))."""
-    nodes = chain.nodes
-    inside = np.clip(x, nodes[0], nodes[-1])  # a welded half segment stands still
-    return np.asarray(spline(chain, values)(inside, derivative))
+    return line_through(chain, lambda: values)(x, derivative)
+
+
+def line_through(chain: Chain, values: Callable[[], Array]) -> Callable[[Array, int], Array]:
+    """(x, derivative) -> that spline or a derivative of it at x, (k, len(x)); made once, when first read."""
+    nodes, made = chain.nodes, cache(lambda: spline(chain, values()))
+
+    def read(x: Array, derivative: int) -> Array:
+        inside = np.clip(x, nodes[0], nodes[-1])  # a welded half segment stands still
+        return np.asarray(made()(inside, derivative))
+
+    return read
 
 
 def contact_line(chain: Chain, joints: Array) -> Any:
