@@ -636,7 +636,15 @@ FAULTS = {
     },
     "instrument-arm": {
         springs_left_out_of_the_counting: {"exact-mode-1", "exact-mode-4", "exact-node", "segment-error", "fem-error"},
-        rotary_inertia_of_bodies_dropped: {"segment-order", "segment-error", "lever-error", "fem-error", "fem-order"},
+        rotary_inertia_of_bodies_dropped: {
+            "segment-order",
+            "segment-error",
+            "lever-error",
+            "levers-at-40",
+            "fem-error",
+            "fem-order",
+            "elements-at-40",
+        },
         elastic_clamp_without_its_springs_compliance: {
             "segment-order",
             "segment-error",
@@ -645,8 +653,8 @@ FAULTS = {
             "third-order-clamp-order",
         },
         bodies_on_levers: {"segment-order", "segment-error", "segment-node", "links-for-a-tenth-of-a-per-cent"},
-        levers_felt_by_four_joints: {"lever-order", "lever-error"},
-        no_node_under_a_body: {"fem-order", "fem-error"},
+        levers_felt_by_four_joints: {"lever-order", "lever-error", "levers-at-40"},
+        no_node_under_a_body: {"fem-order", "fem-error", "elements-at-40"},
         added_strains_left_out: {"fem-stiffness"},
         gregorys_weights_turned_round: {"segment-order", "segment-error"},
         orders_of_the_other_walls_exchanged: {"third-order-clamp-order"},

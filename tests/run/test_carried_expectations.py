@@ -18,7 +18,9 @@ KNOWN = {
         "exact-node": lambda: known.arm_nodes(3)[1],
         "segment-node": lambda: known.arm_nodes(3)[0],
         "lever-error": lambda: over(known.arm_by_levers(1, 40), known.arm_hertz(1)),
+        "levers-at-40": lambda: known.arm_by_levers(1, 40),
         "fem-error": lambda: over(known.arm_by_elements(4, (15, 25)), known.arm_hertz(4)),
+        "elements-at-40": lambda: known.arm_by_elements(4, (15, 25)),
     },
     "taut-strip": {
         "exact-mode-1": lambda: known.strip_hertz(1),
