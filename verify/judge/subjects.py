@@ -159,10 +159,12 @@ class Segments(Discrete):
 
         As measured and derived in `segments.loaded` and `segments.attached`, and held in their tests.
         """
+        from verify.segments.links import elastic_ends
+
         orders = [4]
         orders += [1] * (settings.get("joints") == "printed" and beam.stepped)
         orders += [2] * (bool(beam.section) or settings.get("grading", 1.0) != 1.0)
-        if "clamped" in beam.supports:
+        if "clamped" in beam.supports or any(elastic_ends(beam, settings.get("attachment", "reciprocal"))):
             orders.append({"half": 2, "welded": 2, "third-order": 3}.get(settings.get("wall", ""), 4))
         thick = settings.get("theory", "euler-bernoulli") != "euler-bernoulli"
         orders += [2] * (bool(beam.tension or thick) and settings.get("joints") != "tensioned")

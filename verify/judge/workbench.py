@@ -74,6 +74,8 @@ def check_bracket(beam: Beam, settings: Settings) -> None:
         reason = f"on a beam with beam.{added[0]} neither side is proven"
     elif beam.section:
         reason = "on a stepped beam the chain may lie above the exact frequency"
+    elif theory_of(settings) != EULER:
+        reason = f"with theory = {theory_of(settings)!r} the chain may lie above the exact frequency"
     elif "grading" in dict(settings):
         reason = (
             f"with grading = {dict(settings)['grading']!r} a chain of unequal links may lie above the exact frequency"
