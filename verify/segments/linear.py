@@ -341,7 +341,9 @@ def method(
     n_segments: int,
     theory: Theory = "euler-bernoulli",
     attachment: Attachment = "reciprocal",
+    joints: Joints = "series",
 ) -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
-    uneven = theory == "timoshenko" or bool(set(beam.added) - {"section"})
+    mended = joints == "tensioned" and theory == "rayleigh"
+    uneven = theory == "timoshenko" or mended or bool(set(beam.added) - {"section"})
     return method_name(unknowns(beam, n_segments, theory, attachment), n_modes, uneven)
