@@ -124,3 +124,13 @@ def test_what_a_plan_calls_a_problem_is_what_the_run_cannot_evaluate(beam, gates
         assert "the suite itself fails" not in reason, gate
         if not any(words in reason for words in ONLY_SOLVED):
             assert refused == (gate.id in problems), (gate.quantity, gate.arguments, reason, problems.get(gate.id))
+
+
+def test_elements_refuse_a_mesh_that_buckles_before_it_is_solved():
+    """Pinned ends, EI pi^2/L^2 = 65.75 N: two elements buckle at 66.2 N, the exact beam before them."""
+    pressed = dict.fromkeys(("mass", "spring"), ()) | {"supports": ["pinned", "pinned"], "foundation": 0.0}
+    for tension, sound in ((-66.0, True), (-66.5, False)):
+        beam = {**pressed, "section": BARE, "steps": False, "tension": tension}
+        scene = scene_of(beam, [("mode.stiffness_difference", {"count": 2})])
+        assert scene is not None
+        assert (not plan_scene(scene).problems) == sound
