@@ -211,3 +211,17 @@ def test_what_is_added_is_named():
     assert Beam(**SIZES, section=(Section(length=0.73),)).uniform
     with pytest.raises(InputError, match=r"beam\.mass: the wheel takes none, leave it out"):
         beam.check_added("the wheel", ("section", "tension"))
+
+
+@pytest.mark.parametrize(
+    ("extra", "said"),
+    [
+        ({"width": 0.031}, r"beam.width = 0.031 makes nothing beside bending_stiffness"),
+        ({"density": 4470.0}, r"beam.density = 4470.0 makes nothing"),
+        ({"shape": "round"}, r"beam.shape = 'round' makes nothing"),
+        ({"shear_coefficient": 0.8}, r"beam.shear_coefficient = 0.8 makes nothing"),
+    ],
+)
+def test_what_a_plain_section_would_drop_in_silence_is_refused(extra, said):
+    with pytest.raises(InputError, match=said):
+        Beam(length=0.73, bending_stiffness=3.55, mass_per_length=0.32, **extra)

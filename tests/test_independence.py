@@ -13,7 +13,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import carried_reference
 import faults.everything  # noqa: F401
+import msgspec
 import numpy as np
 import pytest
 from msgspec.structs import replace
@@ -21,9 +23,14 @@ from scipy.optimize import brentq
 from stepped_reference import written_out
 
 import verify
+from verify.beam import Beam
+from verify.elements.linear import buckling_load as load_of_elements
+from verify.exact.buckling import buckling_load
+from verify.field_docs import Value
 from verify.run.gates import judge
 from verify.run.runner import workbench_for
 from verify.scenes.scene import Complex, load_scene
+from verify.segments.buckling import buckling_load as load_of_segments
 
 L, WIDTH, H, E, RHO, HERTZ, D = 0.5, 0.02, 0.001, 70e9, 2700.0, 4276.0, 0.0116
 """The paper's beam, as its scenes state it."""
@@ -201,6 +208,33 @@ SHARED = [
         "patched-strip",
         ("elements-at-24",),
         lambda: strip("fem"),
+    ),
+    Shared(
+        "attached",
+        "rotary inertias a hundredth too large",
+        ("attached.PointMass.rotary_inertia",),
+        lambda true: property(lambda body: 1.01 * true.__get__(body)),
+        "instrument-arm",
+        ("elements-at-40",),
+        lambda: carried_reference.arm_by_elements(4, (15, 25)),
+    ),
+    Shared(
+        "attached",
+        "masses a thousandth too heavy",
+        ("attached.PointMass.mass",),
+        lambda true: property(lambda body: 1.001 * true.__get__(body)),
+        "instrument-arm",
+        ("levers-at-40",),
+        lambda: carried_reference.arm_by_levers(1, 40),
+    ),
+    Shared(
+        "attached",
+        "springs a thousandth too stiff",
+        ("attached.PointSpring.rotational", "attached.PointSpring.stiffness"),
+        lambda true: property(lambda spring: 1.001 * true.__get__(spring)),
+        "instrument-arm",
+        ("elements-at-40",),
+        lambda: carried_reference.arm_by_elements(4, (15, 25)),
     ),
     Shared(
         "exact.closed_forms",
@@ -465,7 +499,7 @@ def plant(monkeypatch, shared):
             reached.append(path)
             return called(*given, **more)
 
-        monkeypatch.setattr(holder, name, property(watched) if isinstance(true, property) else watched)
+        monkeypatch.setattr(holder, name, property(watched) if isinstance(faulty, property) else watched)
     return reached
 
 
@@ -549,8 +583,73 @@ def test_numbers_are_checked_and_nothing_comes_of_it_but_a_refusal():
             assert all(call in alone for call in calls_of(tree, name)), path.stem
 
 
+def test_a_theory_is_checked_and_nothing_comes_of_it_but_a_refusal():
+    """What a theory is, every model has of its own: of the shared module one name is taken, and calls stand alone."""
+    takers = set()
+    for path in Path(verify.__file__).parent.rglob("*.py"):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module == "verify.models.theory":
+                assert [(alias.name, alias.asname) for alias in node.names] == [("check_theory", None)], path.stem
+                takers.add(path.parent.name)
+        alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
+        assert all(call in alone for call in calls_of(tree, "check_theory")), path.stem
+    assert takers == {"elements", "segments", "judge"}
+
+
+def test_what_tells_help_of_fields_is_words_alone():
+    """Neither a field nor a method comes from it: a value is a frozen struct like any other."""
+
+    class Bare(msgspec.Struct, frozen=True):
+        """The same without words."""
+
+    assert imported("field_docs", set()) == {"field_docs"}
+    assert not msgspec.structs.fields(Value)
+    assert set(vars(Value)) == set(vars(Bare))
+
+
+COLUMN = Beam(
+    length=0.83, width=0.023, thickness=0.0031, youngs_modulus=71e9, density=2710.0, supports=["pinned", "pinned"]
+)
+
+
+def column_load(per_square):
+    """Of equal parts of the column, from P l^2/EI of one part with half a wave over all of them."""
+    stiffness = 71e9 * 0.023 * 0.0031**3 / 12
+    return per_square * stiffness * (17 / 0.83) ** 2
+
+
+def hermite_column(turn):
+    """P l^2/EI of Hermite elements whose nodes lie on a sine: two nodal equations of textbook matrices."""
+    bending, pulled, _ = carried_reference.hermite(1.0)
+    carry = np.vstack([np.eye(2), np.eye(2) * np.exp(1j * turn)])
+    stiff, axial = (carry.conj().T @ matrix @ carry for matrix in (bending, pulled))
+    return min(np.linalg.eigvals(np.linalg.solve(axial, stiff)).real)
+
+
+BUCKLING = {
+    "elements": (load_of_elements, lambda: column_load(hermite_column(np.pi / 17))),
+    "segments": (load_of_segments, lambda: column_load(4 * np.sin(np.pi / 34) ** 2)),
+}
+"""By model: its load, and the load of 17 parts by nothing of the suite."""
+
+
+@pytest.mark.parametrize("model", BUCKLING)
+def test_buckling_is_found_where_it_is_known_without_the_suite_and_not_where_a_fault_puts_it(model, monkeypatch):
+    """`models.compression` says how near to buckling a compressed model is, which no gate asks."""
+    found, reference = BUCKLING[model]
+    assert abs(found(COLUMN, 17) / reference() - 1) < 1e-11
+    assert abs(buckling_load(COLUMN) / column_load((np.pi / 17) ** 2) - 1) < 1e-13
+    home = {"elements": "elements.pencil", "segments": "segments.buckling"}[model]
+    true = import_module(f"verify.{home}").buckling_ratio
+    monkeypatch.setattr(f"verify.{home}.buckling_ratio", lambda pencil: 1.001 * true(pencil))
+    assert abs(found(COLUMN, 17) / reference() - 1) > 1e-4
+
+
 NAMES_ALONE = ("models.arrays", "options")
 """Kinds of arrays and words to choose from."""
+REFUSALS = ("patience", "checks", "models.theory")
+"""What is called to refuse, and for nothing else."""
 
 
 @pytest.mark.parametrize("name", NAMES_ALONE)
@@ -565,7 +664,10 @@ def test_what_is_shared_as_names_alone_holds_no_figure_and_does_nothing(name):
 
 
 def test_every_module_that_two_models_stand_on_is_in_the_table():
-    """`errors` carries sentences, `patience` and `checks` refusals, `NAMES_ALONE` names: no figures, as the tests above hold."""
+    """`errors` and `field_docs` carry words, `REFUSALS` refusals, `NAMES_ALONE` names: no figures, as the tests above hold.
+
+    `models.compression` has a test of its own.
+    """
     faces = (
         ("exact.modes", "exact.in_time"),
         ("elements.linear", "elements.in_time", "elements.stock"),
@@ -581,4 +683,5 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
         "models.driven_pencil",
         "models.time_basis",
     }
-    assert shared - {"errors", "patience", "checks", *NAMES_ALONE} <= {row.module for row in SHARED}
+    without = {"errors", "field_docs", *REFUSALS, *NAMES_ALONE, "models.compression"}
+    assert shared - without <= {row.module for row in SHARED}

@@ -11,7 +11,7 @@ from verify.checks import Relative, check_number, settle
 from verify.errors import InputError, near_name
 from verify.field_docs import Value
 from verify.options import SUPPORTS, Support
-from verify.section import Piece, Section, Sizes, check_decades, merged, piece_of, shear_coefficient
+from verify.section import Piece, Section, Sizes, check_decades, check_used, merged, piece_of, shear_coefficient
 
 SHORTEST_SECTION = 1e-6
 """Of the beam's length."""
@@ -61,6 +61,8 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         self._check_supports()
         check_decades(self, self.length, "beam")
         self._check_sections()
+        if not self.section:  # which take from it what they leave out
+            check_used(self, "beam")
         self._check_attached()
 
     def _check_supports(self) -> None:

@@ -293,6 +293,24 @@ def _check_fits(section: Sizes, form: _Form, where: str) -> None:
         check_number(f"{where}.wall_thickness", section.wall_thickness, "metres", above=0, below=0.5 * section.diameter)
 
 
+def check_used(section: Sizes, where: str) -> None:
+    """Raise InputError for what a section given by its figures has of a shape, which would make nothing."""
+    form = _FORMS[section.shape or "rectangle"]
+    shaped = all(_given(section, size) is not None for size in form.sizes)
+    for field in () if shaped else ("shape", *_MADE_OF, "shear_coefficient"):
+        if (value := _given(section, field)) is not None:
+            raise InputError(
+                f"{where}.{field} = {value!r} makes nothing beside bending_stiffness and mass_per_length: leave it "
+                f"out, or give {', '.join(form.sizes)}, youngs_modulus and density instead of them"
+            )
+    kappa = _given(section, "shear_coefficient")
+    if kappa is not None and (section.youngs_modulus is None or _given(section, "shear_stiffness") is not None):
+        raise InputError(
+            f"{where}.shear_coefficient = {kappa!r} makes nothing without youngs_modulus or beside shear_stiffness: "
+            "leave it out"
+        )
+
+
 def check_decades(section: Sizes, piece_length: float, where: str) -> None:
     """Raise InputError where a size, or a figure made of several, leaves what floating point carries."""
     form = _FORMS[section.shape or "rectangle"]

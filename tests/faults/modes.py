@@ -6,6 +6,8 @@ import numpy as np
 from msgspec import structs
 
 from verify.beam import Beam
+from verify.elements import added as element_added
+from verify.elements import cuts as element_cuts
 from verify.elements import in_time as fem_motion
 from verify.elements import linear as fem_beam
 from verify.elements import mesh as element_mesh
@@ -15,8 +17,10 @@ from verify.exact import closed_forms, minors, roots
 from verify.judge import compare, sizing, workbench
 from verify.models import division, eigen
 from verify.quantities.catalogue import QUANTITIES, Quantity
+from verify.segments import carried as chain_carried
 from verify.segments import linear as segment_model
 from verify.segments import links as chain
+from verify.segments import loaded as chain_loaded
 from verify.segments import reading as segment_reading
 from verify.segments import walls as chain_walls
 
@@ -222,7 +226,7 @@ def section_order_reversed(patch):
         return true(structs.replace(beam, section=beam.section[::-1]), *given)
 
     patch.setattr(chain, "divide", reversed_sections)
-    patch.setattr(element_mesh, "divide", reversed_sections)
+    patch.setattr(element_cuts, "divide", reversed_sections)
 
 
 def sections_carried_in_the_wrong_order(patch):
@@ -257,13 +261,13 @@ def series_form_for_the_printed_equation(patch):
 
 
 def elements_that_ignore_the_step(patch):
-    true = element_mesh.divide
+    true = element_cuts.divide
 
     def uniform(beam, *given):
         parts = true(beam, *given)
         return structs.replace(parts, moduli=np.ones_like(parts.moduli))
 
-    patch.setattr(element_mesh, "divide", uniform)
+    patch.setattr(element_cuts, "divide", uniform)
 
 
 def grading_that_stretches_the_last_part_alone(patch):
@@ -298,7 +302,7 @@ def grading_over_one_part_too_many(patch):
 
 def sections_of_the_mean_thickness(patch):
     """Each part keeps its material and gets the thickness of the whole."""
-    for module in (chain, element_mesh):
+    for module in (chain, element_cuts):
         true = module.divide
 
         def even(beam, *given, true=true):
@@ -343,6 +347,139 @@ def joints_corrected_as_if_their_links_were_equal(patch):
         return found
 
     patch.setattr(segment_reading, "corrected_reading", equal)
+
+
+def trial_beam(patch, change):
+    """The counted beam is another one than the scene's: `change` takes what stands in line along it."""
+    true = roots.line_up
+    patch.setattr(roots, "line_up", lambda *given: change(true(*given)))
+
+
+def springs_left_out_of_the_counting(patch):
+    def slack(line):
+        joints = tuple(joint._replace(stiffness=0.0, rotational=0.0) for joint in line.joints)
+        return structs.replace(line, joints=joints)
+
+    trial_beam(patch, slack)
+
+
+def foundation_left_out_of_the_counting(patch):
+    trial_beam(patch, lambda line: structs.replace(line, foundation=0.0))
+
+
+def rotary_inertia_of_the_section_left_out_of_the_counting(patch):
+    def thin(line):
+        return structs.replace(line, stretches=tuple(one._replace(turning=0.0) for one in line.stretches))
+
+    trial_beam(patch, thin)
+
+
+def rotary_inertia_of_bodies_dropped(patch):
+    true = segment_model.build_chain
+
+    def rid(beam):
+        return structs.replace(beam, mass=tuple(structs.replace(one, rotary_inertia=0.0) for one in beam.mass))
+
+    patch.setattr(segment_model, "build_chain", lambda beam, *given, **more: true(rid(beam), *given, **more))
+    weighed = element_pencil.added_mass
+    patch.setattr(
+        element_pencil,
+        "added_mass",
+        lambda elements: weighed(structs.replace(elements, beam=rid(elements.beam))),
+    )
+
+
+def elastic_clamp_without_its_springs_compliance(patch):
+    true = chain_carried._added
+    patch.setattr(
+        chain_carried,
+        "_added",
+        lambda beam, chain, *given: structs.replace(true(beam, chain, *given), compliances=chain.compliances),
+    )
+
+
+def bodies_on_levers(patch):
+    true = segment_model.build_chain
+    patch.setattr(segment_model, "build_chain", lambda *given, **more: true(*given, **{**more, "attachment": "lever"}))
+
+
+def levers_felt_by_four_joints(patch):
+    true = segment_model.build_chain
+    patch.setattr(
+        segment_model, "build_chain", lambda *given, **more: true(*given, **{**more, "attachment": "reciprocal"})
+    )
+
+
+def no_node_under_a_body(patch):
+    patch.setattr(element_cuts, "stretches", lambda beam: beam.pieces)
+
+
+def added_strains_left_out(patch):
+    patch.setattr(element_pencil, "added_strains", lambda elements, plain: plain)
+
+
+def axial_force_on_chords_alone(patch):
+    true = element_added.axial_weights
+    patch.setattr(
+        element_added,
+        "axial_weights",
+        lambda lengths, assembled: true(lengths, assembled) * np.repeat([1.0, 0.0, 0.0], len(lengths)),
+    )
+
+
+def tension_of_the_joints_with_the_wrong_sign(patch):
+    true = chain_carried._tensioned
+    patch.setattr(chain_carried, "_tensioned", lambda beam, parts, tension, *given: true(beam, parts, -tension, *given))
+
+
+def foundation_not_on_the_links_turns(patch):
+    true = chain_loaded._placed_rows
+
+    def across_alone(chain):
+        stiffness, *rows = true(chain)
+        n = chain.n_segments
+        return np.where(np.arange(len(stiffness)) // n == 2, 0.0, stiffness), *rows
+
+    patch.setattr(chain_loaded, "_placed_rows", across_alone)
+
+
+def joints_in_series_for_tensioned_ones(patch):
+    true = segment_model.build_chain
+    patch.setattr(segment_model, "build_chain", lambda *given, **more: true(*given, **{**more, "joints": "series"}))
+
+
+def slips_with_kappa_forgotten(patch):
+    true = chain_carried._softness
+    patch.setattr(chain_carried, "_softness", lambda *given: 5.0 / 6.0 * true(*given))
+
+
+def shear_of_elements_with_kappa_forgotten(patch):
+    true = element_pencil.shear_matrix
+    patch.setattr(element_pencil, "shear_matrix", lambda basis, shear: true(basis, 6.0 / 5.0 * shear))
+
+
+def thickness_of_links_left_out(patch):
+    true = chain_carried._of_links
+    patch.setattr(
+        chain_carried,
+        "_of_links",
+        lambda beam, n, field: true(beam, n, field) * (field != "rotary_inertia"),
+    )
+
+
+def thickness_of_elements_a_hundredth_too_large(patch):
+    for name in ("slope_matrix", "rolling_matrix"):
+        true = getattr(element_pencil, name)
+        patch.setattr(element_pencil, name, lambda basis, weight, true=true: true(basis, 1.01 * weight))
+
+
+def wall_gives_up_no_more_than_other_joints(patch):
+    patch.setattr(chain_carried, "tension_excess", lambda wall: 0.0)
+
+
+def slipping_joints_with_all_of_their_mass(patch):
+    true = chain_carried._slipping
+    patch.setattr(chain_carried, "_slipping", lambda *given: structs.replace(true(*given), slip_masses=None))
 
 
 FAULTS = {
@@ -496,6 +633,75 @@ FAULTS = {
         lengths_of_the_mesh_in_the_wrong_order: {"factored-stiffness"},
         lumped_element_mass: {"fem-order", "fem-error", "graded-elements"},
         clamped_end_on_the_wrong_side: {"series-order", "series-error", "fem-error", "printed-order"},
+    },
+    "instrument-arm": {
+        springs_left_out_of_the_counting: {"exact-mode-1", "exact-mode-4", "exact-node", "segment-error", "fem-error"},
+        rotary_inertia_of_bodies_dropped: {
+            "segment-order",
+            "segment-error",
+            "lever-error",
+            "levers-at-40",
+            "fem-error",
+            "fem-order",
+            "elements-at-40",
+        },
+        elastic_clamp_without_its_springs_compliance: {
+            "segment-order",
+            "segment-error",
+            "segment-node",
+            "half-clamp-order",
+            "third-order-clamp-order",
+        },
+        bodies_on_levers: {"segment-order", "segment-error", "segment-node", "links-for-a-tenth-of-a-per-cent"},
+        levers_felt_by_four_joints: {"lever-order", "lever-error", "levers-at-40"},
+        no_node_under_a_body: {"fem-order", "fem-error", "elements-at-40"},
+        added_strains_left_out: {"fem-stiffness"},
+        gregorys_weights_turned_round: {"segment-order", "segment-error"},
+        orders_of_the_other_walls_exchanged: {"third-order-clamp-order"},
+        joints_read_raw: {"segment-node"},
+        nodes_counted_from_the_other_end_of_the_shape: {"exact-node", "segment-node"},
+    },
+    "taut-strip": {
+        foundation_left_out_of_the_counting: {
+            "exact-mode-1",
+            "exact-mode-10",
+            "series-error",
+            "fem-error",
+            "fem-order",
+        },
+        foundation_not_on_the_links_turns: {"series-error", "tensioned-error", "tensioned-order"},
+        tension_of_the_joints_with_the_wrong_sign: {"tensioned-error", "tensioned-order", "tensioned-count"},
+        joints_in_series_for_tensioned_ones: {"tensioned-error", "tensioned-order", "tensioned-count"},
+        axial_force_on_chords_alone: {"fem-error", "fem-error-10", "fem-order", "fem-stiffness"},
+        link_inertia_left_out: {"series-error", "tensioned-error", "tensioned-order"},
+        lumped_element_mass: {"fem-error", "fem-error-10"},
+        order_from_the_wrong_logarithm: {"series-order", "tensioned-order", "graded-order", "fem-order"},
+        grading_that_stretches_the_last_part_alone: {"graded-order"},
+        count_one_too_high: {"series-count", "tensioned-count"},
+    },
+    "thick-bar": {
+        rotary_inertia_of_the_section_left_out_of_the_counting: {
+            "exact-mode-1",
+            "exact-mode-4",
+            "rayleigh-mode-2",
+            "theory-mode-2",
+            "slipping-error",
+            "fem-error",
+            "fem-rayleigh-order",
+        },
+        slips_with_kappa_forgotten: {
+            "slipping-error",
+            "slipping-order",
+            "mended-error",
+            "mended-order",
+            "series-count",
+        },
+        thickness_of_links_left_out: {"slipping-error", "slipping-order", "rolling-order", "rolling-mended-order"},
+        joints_in_series_for_tensioned_ones: {"mended-error", "mended-error-2", "mended-order", "rolling-mended-order"},
+        wall_gives_up_no_more_than_other_joints: {"mended-error", "mended-error-2", "mended-order"},
+        slipping_joints_with_all_of_their_mass: {"mended-error", "mended-error-2", "mended-order"},
+        shear_of_elements_with_kappa_forgotten: {"fem-error", "fem-order"},
+        thickness_of_elements_a_hundredth_too_large: {"fem-error", "fem-order", "fem-rayleigh-order"},
     },
 }
 """By scene: each fault with gates that it turns red."""

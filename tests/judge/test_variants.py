@@ -5,7 +5,8 @@ import json
 import pytest
 from msgspec.structs import replace
 
-from verify.attached import PointMass
+from verify.attached import PointMass, PointSpring
+from verify.beam import Beam
 from verify.errors import InputError
 from verify.judge.sizing import choose_of_all
 from verify.judge.variants import Rules, Variant, beside, every_rule
@@ -127,3 +128,15 @@ def test_settings_of_a_section_reach_its_figures(section):
     assert graded["fem grading=1.9_error"] > plain["fem_error"]
     thick = errors(f"{section}.theory=timoshenko")
     assert abs(thick["fem theory=timoshenko_error"]) == pytest.approx(abs(plain["fem_error"]), rel=0.5)
+
+
+def test_a_clamp_that_gives_has_the_order_of_its_wall_joint_too():
+    beam = Beam(
+        length=0.73,
+        bending_stiffness=3.55,
+        mass_per_length=0.32,
+        supports=("free", "free"),
+        spring=(PointSpring(position=0.0, stiffness=4e3, rotational=31.0),),
+    )
+    orders = {wall: Variant("segment", (("wall", wall),)).order(beam) for wall in ("half", "third-order", "gregory")}
+    assert orders == {"half": 2, "third-order": 3, "gregory": 4}

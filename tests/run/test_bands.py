@@ -78,8 +78,8 @@ def test_a_figure_that_cannot_be_judged_fails(monkeypatch, value, band):
         ("mode.frequency", {"model": "segment", "mode": 9}, "count is missing"),
         (
             "mode.frequency",
-            {"model": "fem", "mode": 9, "count": 20, "theory": "rayleigh"},
-            "belongs to model = analytic",
+            {"model": "fem", "mode": 9, "count": 20, "attachment": "lever"},
+            "is a setting of model = segment",
         ),
         ("mode.order", {"model": "segment", "mode": 3, "counts": [10, 20]}, "three or more"),
     ],

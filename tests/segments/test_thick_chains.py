@@ -175,3 +175,15 @@ def test_a_thick_beam_under_axial_force_and_a_section_that_lacks_a_figure_are_re
 def test_mended_joints_that_slip_take_six_links():
     with pytest.raises(InputError, match="n_segments = 5"):
         solve_modes(THICK, 2, 5, theory="timoshenko", joints="tensioned")
+
+
+def test_how_bodies_are_felt_is_nothing_to_a_thick_chain_that_carries_none():
+    beam = Beam(
+        length=0.3, width=0.04, thickness=0.025, youngs_modulus=210e9, density=7850.0, supports=("clamped", "free")
+    )
+    for joints in ("series", "tensioned"):
+        felt, lever = (
+            solve_modes(beam, 4, 13, theory="timoshenko", joints=joints, attachment=attachment).frequencies_hz
+            for attachment in ("reciprocal", "lever")
+        )
+        assert (felt == lever).all(), joints

@@ -10,7 +10,14 @@ from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
-from verify.elements.pencil import damped_stiffness, element_pencil, mesh_buckling_load, own_strains, uneven
+from verify.elements.pencil import (
+    check_unbuckled,
+    damped_stiffness,
+    element_pencil,
+    mesh_buckling_load,
+    own_strains,
+    uneven,
+)
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
@@ -56,7 +63,7 @@ def solve_modes(
     Shapes are the elements' own cubics. Raises InputError for a wrong grading, more modes than unknowns, sizes that
     do not fit into memory, what a theory lacks, or a compression at which the elements buckle.
     """
-    check(beam, n_modes, n_elements, grading=grading, theory=theory)
+    _check_asked(beam, n_modes, n_elements, grading, theory)
     elements = build_elements(beam, n_elements, grading, theory)
     pairs = lowest(element_pencil(elements), n_modes)
     nodal = elements.all_values(pairs.vectors)
@@ -67,7 +74,13 @@ def solve_modes(
 def check(
     beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0, theory: Theory = "euler-bernoulli"
 ) -> None:
-    """Raise InputError, before anything is allocated, where `solve_modes` would refuse all but a buckled mesh."""
+    """Raise InputError where `solve_modes` would refuse: before anything is allocated, but for a mesh that buckles."""
+    _check_asked(beam, n_modes, n_elements, grading, theory)
+    if beam.tension < 0.0:
+        check_unbuckled(build_elements(beam, n_elements, grading, theory))
+
+
+def _check_asked(beam: Beam, n_modes: int, n_elements: int, grading: float, theory: Theory) -> None:
     check_whole("n_modes", n_modes, 1)
     check_whole(FIELD, n_elements, 1)
     check_theory(beam, theory)
@@ -82,7 +95,7 @@ def buckling_load(beam: Beam, n_elements: int, *, grading: float = 1.0) -> float
     0 where nothing keeps the beam from tilting. Raises InputError where `solve_modes` would.
     """
     compressed = replace(beam, tension=-float(beam.bending_stiffness / beam.length**2))
-    check(compressed, 1, n_elements, grading=grading)
+    _check_asked(compressed, 1, n_elements, grading, "euler-bernoulli")
     return mesh_buckling_load(build_elements(compressed, n_elements, grading))
 
 
@@ -145,7 +158,7 @@ def solve_harmonic(
     foundation have no loss.
     """
     forces = as_forces(forces)
-    check(beam, 1, n_elements, grading=grading, theory=theory)
+    _check_asked(beam, 1, n_elements, grading, theory)
     check_drive(beam, forces, frequency_hz)
     check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
     elements = build_elements(beam, n_elements, grading, theory)
@@ -208,7 +221,7 @@ def unit_responses(
     """
     positions, x = in_a_row("positions", positions), in_a_row("x", x)
     frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
-    check(beam, 1, n_elements, theory=theory)
+    _check_asked(beam, 1, n_elements, 1.0, theory)
     elements = build_elements(beam, n_elements, theory=theory)
     pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit
     weights = point_loads(basis, positions / unit)[:, elements.free].T

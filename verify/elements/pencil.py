@@ -48,7 +48,7 @@ def element_pencil(elements: Elements) -> FactoredPencil:
     """
     pencil = _pencil(elements)
     if elements.beam.tension < 0.0:
-        _check_stable(elements, pencil)
+        check_unbuckled(elements, pencil)
     return pencil
 
 
@@ -78,7 +78,8 @@ def uneven(beam: Beam, theory: Theory) -> bool:
     return theory == "timoshenko" or bool(set(beam.added) - {"section"})
 
 
-def _check_stable(elements: Elements, pencil: FactoredPencil) -> None:
+def check_unbuckled(elements: Elements, pencil: FactoredPencil | None = None) -> None:
+    """Raise InputError where a compressed beam's elements buckle; `pencil` if it is there."""
     force, load = elements.beam.tension, mesh_buckling_load(elements, pencil)
     if -force >= load:
         raise InputError(

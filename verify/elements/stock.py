@@ -21,6 +21,12 @@ def stock_frequency_hz(beam: Beam, mode: int, n_elements: int) -> float:
     NaN where K has lost so many digits that it is singular or its eigenvalue negative. Raises InputError for stepped
     beams, for rigid motions, which leave K singular, and for modes that the mesh or its solver does not have.
     """
+    check_stock(beam, mode, n_elements)
+    return _solved(beam, mode, n_elements)
+
+
+def check_stock(beam: Beam, mode: int, n_elements: int) -> None:
+    """Raise InputError where `stock_frequency_hz` would."""
     beam.check_added("the comparison with stock scikit-fem", ("section",))
     if beam.section:
         raise InputError("beam.section: stock scikit-fem is compared on uniform beams, leave the sections out")
@@ -29,7 +35,6 @@ def stock_frequency_hz(beam: Beam, mode: int, n_elements: int) -> float:
     check(beam, mode, n_elements)
     if mode == unknowns(beam, n_elements):
         raise InputError(f"mode = {mode}: scikit-fem's solver stops one short of all {mode} modes, raise count")
-    return _solved(beam, mode, n_elements)
 
 
 def _solved(beam: Beam, mode: int, n_elements: int) -> float:

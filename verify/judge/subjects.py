@@ -26,7 +26,7 @@ class Exact(Model):
 
     def check(self, beam: "Beam", n_modes: int, count: int = 0, **settings: Any) -> None:
         """Raise InputError for a theory that the beam has not the figures for, and for one that has buckled."""
-        from verify.exact.lineup import check_theory
+        from verify.models.theory import check_theory
 
         check_theory(beam, settings.get("theory", "euler-bernoulli"))
         if beam.tension < 0.0:
@@ -76,6 +76,8 @@ class Discrete(Model):
     """The module of modes and fields."""
     size_settings: tuple[str, ...] = ()
     """Settings that its number of unknowns depends on."""
+    method_settings: tuple[str, ...] = ()
+    """Settings that the way to its eigenvectors depends on."""
 
     @property
     def verbs(self) -> "ModuleType":
@@ -101,7 +103,8 @@ class Discrete(Model):
 
     def method(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> str:
         """How its eigenvectors are found."""
-        return str(self.verbs.method(beam, n_modes, count, **self._of_size(settings)))
+        known = {name: value for name, value in settings.items() if name in self.method_settings}
+        return str(self.verbs.method(beam, n_modes, count, **known))
 
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes."""
@@ -129,7 +132,7 @@ class Discrete(Model):
         return found
 
     def wavenumber(self, beam: "Beam", count: int, frequency_hz: float) -> complex:
-        """By its discrete dispersion."""
+        """By its discrete dispersion, which is known of Euler-Bernoulli beams that nothing pulls or carries."""
         from verify.exact.error_laws import discrete_wavenumber
 
         return discrete_wavenumber(self.name, beam, count, frequency_hz)
@@ -150,6 +153,7 @@ class Segments(Discrete):
     bounds = "below"
     fewest = 2
     size_settings = ("theory", "attachment")
+    method_settings = ("joints", "theory", "attachment")
     modal_settings = ("wall", "joints", "grading", "theory", "attachment")
     field_settings = ("modal_damping", "joint_dashpot", "load", "reading", "wall", "joints", "theory", "attachment")
     lines = ("spline", "raw")
@@ -159,10 +163,12 @@ class Segments(Discrete):
 
         As measured and derived in `segments.loaded` and `segments.attached`, and held in their tests.
         """
+        from verify.segments.links import elastic_ends
+
         orders = [4]
         orders += [1] * (settings.get("joints") == "printed" and beam.stepped)
         orders += [2] * (bool(beam.section) or settings.get("grading", 1.0) != 1.0)
-        if "clamped" in beam.supports:
+        if "clamped" in beam.supports or any(elastic_ends(beam, settings.get("attachment", "reciprocal"))):
             orders.append({"half": 2, "welded": 2, "third-order": 3}.get(settings.get("wall", ""), 4))
         thick = settings.get("theory", "euler-bernoulli") != "euler-bernoulli"
         orders += [2] * (bool(beam.tension or thick) and settings.get("joints") != "tensioned")
@@ -190,7 +196,7 @@ class Elements(Discrete):
     modal_settings = ("grading", "theory")
     field_settings = ("modal_damping", "theory")
     unknowns_per_part = 2
-    size_settings = ("theory",)
+    size_settings = method_settings = ("theory",)
     library = "scikit-fem"
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:

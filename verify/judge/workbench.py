@@ -61,6 +61,11 @@ def merged(needs: Iterable[Need]) -> dict[Key, int]:
     return wanted
 
 
+def no_such_mode(mode: int, model: str, count: int, available: int) -> str:
+    """Why a model at a size does not have a mode."""
+    return f"mode = {mode}: the {model} model at count = {count} has {available} elastic modes, raise count"
+
+
 def for_model(model: str, settings: Settings) -> Settings:
     """The settings that a model knows: walls and joints are the segments' own."""
     known = MODELS.named(model).modal_settings
@@ -74,6 +79,8 @@ def check_bracket(beam: Beam, settings: Settings) -> None:
         reason = f"on a beam with beam.{added[0]} neither side is proven"
     elif beam.section:
         reason = "on a stepped beam the chain may lie above the exact frequency"
+    elif theory_of(settings) != EULER:
+        reason = f"with theory = {theory_of(settings)!r} the chain may lie above the exact frequency"
     elif "grading" in dict(settings):
         reason = (
             f"with grading = {dict(settings)['grading']!r} a chain of unequal links may lie above the exact frequency"
@@ -165,9 +172,7 @@ class Workbench:
         # what others wish for must not fail the one who asks for less, so theirs is cut to what there is
         available = module.n_elastic(self.beam, count, **dict(settings))
         if n_needed > available:
-            raise InputError(
-                f"mode = {n_needed}: the {model} model at count = {count} has {available} elastic modes, raise count"
-            )
+            raise InputError(no_such_mode(n_needed, model, count, available))
         n_modes = min(n_wanted, available)
         start = perf_counter()
         modes = module.solve_modes(self.beam, n_modes, count, **dict(settings))

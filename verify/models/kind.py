@@ -110,7 +110,11 @@ class Model:
         raise self._has_no("time_basis", "motion in time")
 
     def wavenumber(self, beam: "Beam", count: int, frequency_hz: float) -> complex:
-        """At which waves run in it, 1/m; that of the beam itself unless a model knows its own. Raises InputError."""
+        """At which waves run in it, 1/m; that of the beam itself unless a model knows its own. Raises InputError.
+
+        By Euler-Bernoulli's theory, without axial force and ground: under these and by another theory nobody asks for
+        it, and waves are measured with the beam's wavenumber, whose difference from the model's shows as reflection.
+        """
         from verify.models.fields import wavenumber
 
         return wavenumber(beam, frequency_hz)

@@ -133,6 +133,18 @@ def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:
     return float(positions[a.node - 1])
 
 
+def _beside_stock(a: StockMode, scene: "Scene") -> tuple[Need, ...]:
+    from verify.elements.stock import check_stock
+
+    check_stock(scene.beam, a.mode, a.count)
+    return _solved("fem", a.count, a.mode)
+
+
+def _assembled(a: Elements, scene: "Scene") -> tuple[Need, ...]:
+    MODELS.named("fem").check(scene.beam, 1, a.count, grading=a.grading)
+    return ()
+
+
 def _stock_difference(a: StockMode, scene: "Scene", bench: Workbench) -> float:
     from verify.elements.stock import stock_frequency_hz
 
@@ -142,6 +154,7 @@ def _stock_difference(a: StockMode, scene: "Scene", bench: Workbench) -> float:
 def _stiffness_difference(a: Elements, scene: "Scene", bench: Workbench) -> float:
     from verify.elements.pencil import factor_difference
 
+    _assembled(a, scene)
     return factor_difference(scene.beam, a.count, a.grading)
 
 
@@ -256,7 +269,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         StockMode,
         "modes",
         _stock_difference,
-        needs=lambda a, s: _solved("fem", a.count, a.mode),
+        needs=_beside_stock,
     ),
     Quantity(
         "mode.stiffness_difference",
@@ -265,6 +278,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         Elements,
         "matrices",
         _stiffness_difference,
+        needs=_assembled,
         models=("fem",),
     ),
     Quantity(

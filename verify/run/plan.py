@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.errors import InputError
-from verify.judge.workbench import Key, Settings, merged
+from verify.judge.workbench import Key, Settings, merged, no_such_mode
 from verify.models.catalogue import MODELS
 from verify.run.applies import applicable, not_applicable
 from verify.run.asks import Ask, asks_of, kinds_of_work
@@ -72,6 +72,7 @@ def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
         who = tuple(a.who for a in asks if any((n.model, n.count, n.settings) == key for n in a.needs))
         try:
             solves.append(_planned(scene, key, n_wanted, who))
+            problems += _beyond(scene, asks, key)
         except InputError as error:
             problems += [(one, str(error)) for one in who]
     by_work = {work: tuple(ask.who for ask in found) for work, found in kinds_of_work(asks).items()}
@@ -96,6 +97,18 @@ def _set_aside(scene: "Scene", overrides: tuple[str, ...]) -> tuple[Choice, ...]
     for name, why in not_applicable(scene, overrides).items():
         by_reason.setdefault(why, []).append(name)
     return tuple(Choice(in_a_row("gate", names), why) for why, names in by_reason.items())
+
+
+def _beyond(scene: "Scene", asks: list[Ask], key: Key) -> list[tuple[str, str]]:
+    """Gates and claims about a mode that a model at this size does not have; studies take those that are there."""
+    name, count, settings = key
+    most = MODELS.named(name).n_elastic(scene.beam, count, **dict(settings))
+    return [
+        (ask.who, no_such_mode(need.n_modes, name, count, most))
+        for ask in asks
+        for need in ask.needs
+        if ask.kind != "study" and (need.model, need.count, need.settings) == key and need.n_modes > most
+    ]
 
 
 def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:

@@ -96,7 +96,8 @@ def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
     places = {body.position for body in chain.bodies if body.mass or body.stiffness}
     loaded = (beam.supports[0] == "free" and 0.0 in places, beam.supports[1] == "free" and beam.length in places)
     if chain.attachment == "lever":
-        return replace(chain, softness=softness, slips=softness * shear_factors(beam.supports, n, wall))
+        slips = softness * shear_factors(beam.supports, n, wall)
+        return replace(chain, softness=softness, slips=slips, slip_masses=_slip_masses(chain, slips))
     slips = softness * shear_factors(beam.supports, n, wall, loaded)
     bodies = []
     for place in sorted({body.position for body in chain.bodies}):
@@ -110,13 +111,18 @@ def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
         elif body.mass and end is None:
             body = replace(body, give=give)
         bodies.append(body)
-    taken = None
-    if chain.joint_inertias is not None:
-        masses = np.concatenate([chain.masses[:1], 0.5 * (chain.masses[1:] + chain.masses[:-1]), chain.masses[-1:]])
-        halves = np.concatenate([[2.0], np.ones(n - 1), [2.0]])  # more would leave less than no mass at a wall
-        halves[[0, -1]] *= chain.held
-        taken = np.where(np.isfinite(slips), masses * halves / 12.0, 0.0)
+    taken = _slip_masses(chain, slips)
     return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips, slip_masses=taken)
+
+
+def _slip_masses(chain: Chain, slips: Array) -> Array | None:
+    """Rho A l/12 of mended joints 0..N that slip, (N + 1,); None where none are mended."""
+    if chain.joint_inertias is None:
+        return None
+    masses = np.concatenate([chain.masses[:1], 0.5 * (chain.masses[1:] + chain.masses[:-1]), chain.masses[-1:]])
+    halves = np.concatenate([[2.0], np.ones(len(masses) - 2), [2.0]])  # more would leave less than no mass at a wall
+    halves[[0, -1]] *= chain.held
+    return np.where(np.isfinite(slips), masses * halves / 12.0, 0.0)
 
 
 def _give(chain: Chain, softness: Array, place: float) -> float:
