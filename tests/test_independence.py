@@ -291,6 +291,15 @@ SHARED = [
         lambda: modal_sum(0.2137, DRIVES, 0.01),
     ),
     Shared(
+        "models.banded",
+        "a driven band whose masses are half a thousandth too heavy",
+        ("models.eigen.band_of",),
+        after(lambda band: replace(band, masses=1.0005 * band.masses)),
+        "paper-wave",
+        ("loss-on-elements",),
+        lambda: modal_sum(0.2137, DRIVES, 0.01),
+    ),
+    Shared(
         "models.driven_pencil",
         "damping ratios a tenth too large",
         ("elements.linear.damped_response",),
