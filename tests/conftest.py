@@ -1,10 +1,23 @@
 """Beams that no test value is symmetric in, and a way to plant faults."""
 
+import sys
+
 import pytest
 
 from verify.beam import Beam
 
 pytest_plugins = ["pytester"]
+
+
+KEEPERS = ("verify.elements.linear", "verify.segments.linear")
+"""Modules that keep what they were driven with for the next frequency: a fault planted below would not be seen."""
+
+
+@pytest.fixture(autouse=True)
+def nothing_kept():
+    for name in KEEPERS:
+        if name in sys.modules:
+            sys.modules[name]._kept.cache_clear()
 
 
 @pytest.fixture

@@ -1,6 +1,6 @@
 """Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers in metres, hertz, newtons."""
 
-from functools import partial
+from functools import lru_cache, partial
 from math import pi, sqrt
 
 import numpy as np
@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.checks import check_number, check_whole
 from verify.elements.cuts import check_cuts
-from verify.elements.mesh import Elements, build_elements, interpolate, point_loads
+from verify.elements.mesh import KEPT, Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import (
     check_unbuckled,
     damped_stiffness,
@@ -161,8 +161,8 @@ def solve_harmonic(
     _check_asked(beam, 1, n_elements, grading, theory)
     check_drive(beam, forces, frequency_hz)
     check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
-    elements = build_elements(beam, n_elements, grading, theory)
-    pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit
+    elements, pencil = _driven(beam, n_elements, grading, theory)
+    basis, unit = elements.basis, elements.parts.unit
     _check_dampings(elements, pencil, modal_damping)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * unit**4
     if not (beam.loss_factor or modal_damping):
@@ -187,6 +187,19 @@ def solve_harmonic(
         forces=tuple(forces),
         shapes=shapes,
     )
+
+
+def _driven(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
+    """The elements of a beam and their pencil; small ones are kept for the next frequency."""
+    return _kept(beam, n_elements, grading, theory) if n_elements < KEPT else _made(beam, n_elements, grading, theory)
+
+
+def _made(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
+    elements = build_elements(beam, n_elements, grading, theory)
+    return elements, element_pencil(elements)
+
+
+_kept = lru_cache(maxsize=8)(_made)
 
 
 def _check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:
@@ -222,8 +235,8 @@ def unit_responses(
     positions, x = in_a_row("positions", positions), in_a_row("x", x)
     frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     _check_asked(beam, 1, n_elements, 1.0, theory)
-    elements = build_elements(beam, n_elements, theory=theory)
-    pencil, basis, unit = element_pencil(elements), elements.basis, elements.parts.unit
+    elements, pencil = _driven(beam, n_elements, 1.0, theory)
+    basis, unit = elements.basis, elements.parts.unit
     weights = point_loads(basis, positions / unit)[:, elements.free].T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4
     coupled = beam.loss_factor and len(pencil.stiffness) > own_strains(elements)

@@ -1,7 +1,7 @@
 """Finite segments: rigid links and joint springs, linearised about the straight chain. Modes and harmonic field."""
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import lru_cache, partial
 from math import pi, sqrt
 from typing import Any
 
@@ -201,8 +201,7 @@ def solve_harmonic(
     settings = _settings(wall, joints, grading, theory, attachment)
     check(beam, 1, n_segments, **settings)
     _check_harmonic(beam, forces, frequency_hz, load, reading, modal_damping, joint_dashpot)
-    chain = build_chain(beam, n_segments, **settings)
-    pencil = chain_pencil(chain)
+    chain, pencil = _driven(beam, n_segments, settings)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * chain.unit**4
     if not (beam.loss_factor or modal_damping or joint_dashpot):
         solve = partial(solve_modes, **settings)
@@ -224,6 +223,24 @@ def solve_harmonic(
         forces=tuple(forces),
         shapes=_field_shapes(chain, free, reading),
     )
+
+
+KEPT = 4000
+"""Links up to which a chain is kept for the next frequency."""
+
+
+def _driven(beam: Beam, n_segments: int, settings: dict[str, Any]) -> tuple[Chain, FactoredPencil]:
+    """The chain of a beam and its pencil; small ones are kept."""
+    given = tuple(settings.items())
+    return _kept(beam, n_segments, given) if n_segments < KEPT else _made(beam, n_segments, given)
+
+
+def _made(beam: Beam, n_segments: int, settings: tuple[tuple[str, Any], ...]) -> tuple[Chain, FactoredPencil]:
+    chain = build_chain(beam, n_segments, **dict(settings))
+    return chain, chain_pencil(chain)
+
+
+_kept = lru_cache(maxsize=8)(_made)
 
 
 def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:
@@ -316,8 +333,7 @@ def unit_responses(
     frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
     settings = _settings("gregory", joints, 1.0, theory, attachment)
     check(beam, 1, n_segments, **settings)
-    chain = build_chain(beam, n_segments, **settings)
-    pencil = chain_pencil(chain)
+    chain, pencil = _driven(beam, n_segments, settings)
     weights = np.zeros((pencil.n, len(positions)))
     loads = [joint_weights(chain, p, "reciprocal")[free_joints(chain)] for p in positions]
     weights[: len(loads[0]) if loads else 0] = np.array(loads).T
