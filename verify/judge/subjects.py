@@ -76,6 +76,8 @@ class Discrete(Model):
     """The module of modes and fields."""
     size_settings: tuple[str, ...] = ()
     """Settings that its number of unknowns depends on."""
+    method_settings: tuple[str, ...] = ()
+    """Settings that how its eigenvectors are found depends on."""
 
     @property
     def verbs(self) -> "ModuleType":
@@ -101,7 +103,8 @@ class Discrete(Model):
 
     def method(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> str:
         """How its eigenvectors are found."""
-        return str(self.verbs.method(beam, n_modes, count, **self._of_size(settings)))
+        known = {name: value for name, value in settings.items() if name in self.method_settings}
+        return str(self.verbs.method(beam, n_modes, count, **known))
 
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes."""
@@ -150,6 +153,7 @@ class Segments(Discrete):
     bounds = "below"
     fewest = 2
     size_settings = ("theory", "attachment")
+    method_settings = ("theory", "attachment", "joints")
     modal_settings = ("wall", "joints", "grading", "theory", "attachment")
     field_settings = ("modal_damping", "joint_dashpot", "load", "reading", "wall", "joints", "theory", "attachment")
     lines = ("spline", "raw")
@@ -190,7 +194,7 @@ class Elements(Discrete):
     modal_settings = ("grading", "theory")
     field_settings = ("modal_damping", "theory")
     unknowns_per_part = 2
-    size_settings = ("theory",)
+    size_settings = method_settings = ("theory",)
     library = "scikit-fem"
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:

@@ -341,6 +341,9 @@ def method(
     n_segments: int,
     theory: Theory = "euler-bernoulli",
     attachment: Attachment = "reciprocal",
+    joints: Joints = "series",
 ) -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
-    return method_name(unknowns(beam, n_segments, theory, attachment), n_modes)
+    thick = theory == "timoshenko" or (theory == "rayleigh" and joints == "tensioned")
+    loaded = thick or beam.added not in ((), ("section",))
+    return method_name(unknowns(beam, n_segments, theory, attachment), n_modes, loaded)
