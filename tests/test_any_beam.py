@@ -43,9 +43,7 @@ def beams(draw, theories=THEORIES, stepped=True):
     )
     springs = tuple(
         PointSpring(position=place(0), stiffness=10 * draw(size) * EI / L**3) for _ in range(draw(st.integers(0, 2)))
-    ) + tuple(
-        PointSpring(position=place(1), rotational=draw(size) * EI / L) for _ in range(draw(st.integers(0, 1)))
-    )
+    ) + tuple(PointSpring(position=place(1), rotational=draw(size) * EI / L) for _ in range(draw(st.integers(0, 1))))
     lengths = draw(st.lists(st.floats(0.3, 1.0), min_size=2, max_size=3)) if stepped and draw(st.booleans()) else []
     sections = tuple(
         Section(
@@ -91,7 +89,9 @@ def test_the_three_models_have_the_same_first_modes(made):
 def modal_masses(beam, theory, modes, n):
     """Integral of rho A phi^2 by Gauss's rule between all places where anything changes, bodies and turning added."""
     ends = np.cumsum([0.0, *(piece.length for piece in beam.pieces)])
-    stops = np.unique([*np.linspace(0, L, 121), *ends, *(m.position for m in beam.mass), *(s.position for s in beam.spring)])
+    stops = np.unique(
+        [*np.linspace(0, L, 121), *ends, *(m.position for m in beam.mass), *(s.position for s in beam.spring)]
+    )
     stops = stops[np.append(True, np.diff(stops) > 1e-9 * L)]
     points, weights = np.polynomial.legendre.leggauss(4)
     half = 0.5 * np.diff(stops)

@@ -1,6 +1,7 @@
 """The three models that come with the package, as the registry holds them: verbs, words, and the laws known of them."""
 
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from verify.models.kind import Model
@@ -187,9 +188,7 @@ class Segments(Discrete):
 
 def _turns_at_a_step(beam: "Beam") -> bool:
     """Whether a body or a spring turns where sections meet: a chain bends on one side of it as on the other."""
-    ends, at = [], 0.0
-    for piece in beam.pieces[:-1]:
-        ends.append(at := at + piece.length)
+    ends = list(accumulate(piece.length for piece in beam.pieces[:-1]))
     turning = [m.position for m in beam.mass if m.rotary_inertia] + [s.position for s in beam.spring if s.rotational]
     return any(abs(place - end) < 1e-9 * beam.length for place in turning for end in ends)
 
