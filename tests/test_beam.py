@@ -225,3 +225,29 @@ def test_what_is_added_is_named():
 def test_what_a_plain_section_would_drop_in_silence_is_refused(extra, said):
     with pytest.raises(InputError, match=said):
         Beam(length=0.73, bending_stiffness=3.55, mass_per_length=0.32, **extra)
+
+
+def test_a_tube_of_any_bore_has_cowpers_coefficient():
+    """6 (1 + nu)(1 + m^2)^2 / ((7 + 6 nu)(1 + m^2)^2 + (20 + 12 nu) m^2), his hollow circle, of m = 0.6 by hand."""
+    tube = Beam(
+        length=0.7,
+        shape="tube",
+        diameter=0.05,
+        wall_thickness=0.01,
+        youngs_modulus=70e9,
+        density=2700.0,
+        poissons_ratio=0.3,
+    )
+    assert tube.shear_coefficient == pytest.approx(14.42688 / 24.77248, rel=1e-12)
+
+
+def test_a_piece_has_the_axial_stiffness_of_its_own_material_and_area():
+    tube = Beam(length=0.7, shape="tube", diameter=0.05, wall_thickness=0.01, youngs_modulus=70e9, density=2700.0)
+    assert tube.own.axial_stiffness == pytest.approx(70e9 * math.pi / 4 * (0.05**2 - 0.03**2), rel=1e-12)
+
+
+def test_a_stiffness_over_a_mass_too_far_from_one_is_refused_by_both_signs_of_its_power():
+    for stiffness, mass, length in ((1e60, 1e-30, 1e-10), (1e-60, 1e30, 1e10)):
+        with pytest.raises(InputError, match=r"bending stiffness / \(mass per length"):
+            Beam(length=length, bending_stiffness=stiffness, mass_per_length=mass)
+    assert Beam(length=1e10, bending_stiffness=1e60, mass_per_length=1e-30).bending_stiffness == 1e60

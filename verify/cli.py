@@ -3,13 +3,13 @@
 import os
 import sys
 from contextlib import suppress
+from importlib import import_module
 from io import TextIOWrapper
 from typing import Any, NoReturn
 
 import click
 
 from verify import __version__
-from verify.commands import choose, compare, keys, measure, plan, quantities, run, scenes, table
 from verify.errors import InputError
 
 BAD_INPUT, INTERRUPTED, NO_READER = 2, 130, 141
@@ -19,8 +19,40 @@ class ReaderGoneError(Exception):
     """Whoever read standard output has left."""
 
 
+COMMANDS = {
+    "run": "run",
+    "table": "table",
+    "measure": "measure",
+    "choose": "choose",
+    "compare": "compare",
+    "quantities": "quantities:list_quantities",
+    "plan": "plan",
+    "scenes": "scenes",
+    "init": "scenes:init",
+    "show": "scenes:show",
+    "keys": "keys",
+    "schema": "keys:schema",
+}
+"""Where each command is: a module of `commands`, and its name there where that is another."""
+
+
 class Commands(click.Group):
-    """The commands. A broken pipe is told apart from a failed gate, which click ends with the same status."""
+    """The commands, each imported when it is asked for.
+
+    A broken pipe is told apart from a failed gate, which click ends with the same status.
+    """
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """By the alphabet, as click has them."""
+        return sorted(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """One of them, None where there is none."""
+        if cmd_name not in COMMANDS:
+            return None
+        module, _, name = COMMANDS[cmd_name].partition(":")
+        found: click.Command = getattr(import_module(f"verify.commands.{module}"), name or module)
+        return found
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command that was asked for."""
@@ -39,23 +71,6 @@ def cli() -> None:
     Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on. What would take more
     than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment gives more seconds.
     """
-
-
-for _command in (
-    run.run,
-    table.table,
-    measure.measure,
-    choose.choose,
-    compare.compare,
-    quantities.list_quantities,
-    plan.plan,
-    scenes.scenes,
-    scenes.init,
-    scenes.show,
-    keys.keys,
-    keys.schema,
-):
-    cli.add_command(_command)
 
 
 def status_of(argv: list[str] | None = None) -> int:

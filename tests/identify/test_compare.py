@@ -9,8 +9,11 @@ import pytest
 from other_models import links_without_inertia, lumped_elements, lumped_rod, printed_chain, rigid_links
 
 from verify.cli import status_of
+from verify.elements.linear import solve_modes as fem_modes
+from verify.errors import InputError
 from verify.exact.closed_forms import frequency_hz
-from verify.identify.compare import Asked, compare
+from verify.identify.compare import Asked, check_patience, compare
+from verify.identify.matrices import chain
 from verify.scenes.scene import load_scene
 
 DATA = Path(__file__).parent / "data"
@@ -461,3 +464,43 @@ def test_the_page_quotes_what_its_command_answers(monkeypatch, capsys):
     text = Path("docs/compare.md").read_text("utf-8")
     quoted = " ".join(line.removeprefix("> ") for line in text.splitlines() if line.startswith("> "))
     assert quoted in " ".join(capsys.readouterr().out.split())
+
+
+# --- what would take too long, or leave floating point --------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("asked", "field"), [({}, "modes = 204"), ({"count": 200_000}, "count = 200000")])
+def test_a_list_that_would_take_minutes_is_refused_with_its_estimate(told, asked, field):
+    with pytest.raises(InputError, match=rf"^{field} would take about .* more than the 20 s .*VERIFY_PATIENCE"):
+        told([9.0 * (n - 0.5) ** 2 for n in range(1, 201)], **asked)
+
+
+def test_a_list_of_forty_modes_and_a_known_size_of_two_thousand_are_begun():
+    check_patience(44, None, 40)
+    check_patience(24, 2000, 40)
+
+
+def test_shapes_may_be_in_any_unit_however_large(tmp_path):
+    model = fem_modes(CANTILEVER, 4, 12)
+    x = np.linspace(0.0, CANTILEVER.length, 13)
+    (tmp_path / "f.csv").write_text("\n".join(map(repr, map(float, model.frequencies_hz))))
+    told = []
+    for unit in (1.0, 1e200):
+        table = np.column_stack([x, unit * model.deflection(x).T])
+        np.savetxt(tmp_path / "shapes.csv", table, delimiter=",")
+        asked = Asked(frequencies=tmp_path / "f.csv", shapes=tmp_path / "shapes.csv", count=12)
+        told.append([row.likeness for row in compare(scene("steel-cantilever"), asked).rows])
+    assert told[1] == pytest.approx(told[0], rel=1e-9)
+    assert min(told[0]) > 0.999
+
+
+@pytest.mark.parametrize("supports", ['["guided","free"]', '["guided","guided"]', '["free","free"]'])
+def test_links_of_point_masses_have_frequencies_between_any_ends(supports):
+    """No end held: links that do not feel their turning would leave joints up and down without mass."""
+    beam = scene("steel-cantilever", f"beam.supports={supports}").beam
+    exact = np.array([frequency_hz(beam, n) for n in (1, 2, 3)])
+    coarse, fine = (
+        chain(beam, n, 3, wall="half", mass="points", theory="euler-bernoulli") / exact - 1 for n in (20, 40)
+    )
+    assert (np.log2(coarse / fine) > 1.8).all()
+    assert (np.log2(coarse / fine) < 2.2).all()

@@ -1,5 +1,7 @@
 """What a plan says will be done is what a run does: motions, steps told, studies, and what is skipped with its reason."""
 
+from math import pi
+
 import pytest
 from msgspec.structs import replace
 from packaged import ran
@@ -77,3 +79,20 @@ def test_the_kind_of_work_is_what_a_quantity_says_not_what_it_is_called():
     stepped = plan_scene(scene).stepped
     assert "gate friction-size" not in stepped
     assert "gate slider-order-fem" in stepped
+
+
+def test_a_plan_says_who_asks_for_a_vibration_that_a_buckled_beam_has_not():
+    """1.01 of pi^2 EI / L^2 between pinned ends: all that vibrates is refused, friction on its own is not."""
+    beam = load_scene("taut-strip").beam
+    load = (pi / beam.length) ** 2 * beam.bending_stiffness
+    more = (
+        "beam.foundation=0",
+        "sensitivity={mode=2}",
+        'gate=[{id="a", quantity="mode.frequency", why="w", at_least=1, arguments={model="analytic", mode=2}},'
+        '{id="b", quantity="friction.free_decay", why="w", at_least=0,'
+        "arguments={mu=0.1, slope=10, speed=1, time=0.1}}]",
+    )
+    for factor, known in ((1.01, {"sensitivity", "gate a", "spectrum", "convergence"}), (0.99, set())):
+        problems = plan_scene(load_scene("taut-strip", (f"beam.tension={-factor * load!r}", *more))).problems
+        assert {one.who.split(" (")[0] for one in problems} == known
+        assert all("buckl" in one.why for one in problems)

@@ -10,6 +10,8 @@ from states_reference import frequency_near
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
+from verify.models.catalogue import MODELS
+from verify.section import Section
 from verify.segments import carried
 from verify.segments.attached import felt_at
 from verify.segments.buckling import buckling_load
@@ -302,3 +304,25 @@ def test_short_loaded_chains_have_all_their_elastic_modes_and_no_more(supports, 
         assert (found > 1e-4 * found[-1]).all()
         with pytest.raises(InputError, match="more than the"):
             solve_modes(beam, n + 1, count, attachment=attachment)
+
+
+@pytest.mark.parametrize(("beyond", "known"), [(0.0, 1), (0.21, 2)])
+def test_what_turns_where_sections_meet_takes_a_chain_to_order_one(beyond, known):
+    """Both of a step's curvatures meet in the turn of its place, and links on either side know one each."""
+    sections = (
+        Section(length=0.32, bending_stiffness=6.25, mass_per_length=0.194),
+        Section(length=0.41, bending_stiffness=1.85, mass_per_length=0.556),
+    )
+    beam = Beam(
+        length=0.73,
+        bending_stiffness=3.7,
+        mass_per_length=0.31,
+        supports=("pinned", "guided"),
+        section=sections,
+        mass=(PointMass(position=0.32 + beyond, rotary_inertia=8e-4),),
+    )
+    assert MODELS["segment"].order(beam) == known
+    found = [solve_modes(beam, 3, n).frequencies_hz[-1] for n in (120, 480)]
+    exact = frequency_near(beam, "euler-bernoulli", found[-1])
+    errors = [f / exact - 1 for f in found]
+    assert np.log(errors[0] / errors[1]) / np.log(4) == pytest.approx(known, abs=0.15)

@@ -11,7 +11,10 @@ from states_reference import frequency_near
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
-from verify.segments.linear import n_elastic, solve_modes
+from verify.models.catalogue import MODELS
+from verify.section import Section
+from verify.segments.linear import build_chain, n_elastic, solve_modes
+from verify.segments.loaded import loaded_pencil
 
 L, EI, RHO_A, RHO_I, GA = 0.73, 3.7, 0.31, 3e-5, 2e4
 M = RHO_A * L
@@ -187,3 +190,52 @@ def test_how_bodies_are_felt_is_nothing_to_a_thick_chain_that_carries_none():
             for attachment in ("reciprocal", "lever")
         )
         assert (felt == lever).all(), joints
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("wall", ["gregory", "half"])
+@pytest.mark.parametrize("grading", [1.0, 0.02, 50.0])
+def test_tensioned_joints_leave_chains_of_unlike_links_their_mass(theory, wall, grading):
+    """What joints take off the mass is no more than links have to give, be they long beside short or heavy by light."""
+    sections = (
+        Section(length=0.31, thickness=0.0031, density=1900.0),
+        Section(length=0.42, thickness=0.0013, density=8100.0),
+    )
+    beam = Beam(
+        length=L,
+        width=0.02,
+        thickness=0.003,
+        youngs_modulus=71e9,
+        density=2600.0,
+        section=sections,
+        supports=("clamped", "free"),
+    )
+    for count in (9, 24):
+        chain = build_chain(beam, count, joints="tensioned", wall=wall, theory=theory, grading=grading)
+        values = np.linalg.eigvalsh(loaded_pencil(chain).mass_matrix())
+        assert values.min() > 0
+        settings = {"joints": "tensioned", "wall": wall, "theory": theory, "grading": grading}
+        assert (np.diff(solve_modes(beam, 4, count, **settings).frequencies_hz) > 0).all()
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+def test_a_tensioned_joint_takes_the_harmonic_mean_of_what_its_links_have(theory):
+    beam = replace(THICK, supports=("free", "pinned"))
+    chain = build_chain(beam, 7, joints="tensioned", theory=theory, grading=3.0)
+    l = chain.lengths  # noqa: E741
+    mean = 2 / (1 / l[1:] + 1 / l[:-1])
+    assert chain.joint_inertias[1:-1] == pytest.approx(RHO_I / (RHO_A * chain.unit**2) * mean / 12, rel=1e-12)
+    if theory == "timoshenko":
+        assert chain.slip_masses[1:-1] == pytest.approx(mean / 12, rel=1e-12)
+
+
+@pytest.mark.parametrize("attachment", ["reciprocal", "lever"])
+@pytest.mark.parametrize("joints", ["series", "tensioned"])
+@pytest.mark.parametrize("theory", ["euler-bernoulli", *THEORIES])
+@pytest.mark.parametrize("tip", [(), (PointMass(position=L, mass=0.02, rotary_inertia=1e-5),)])
+@pytest.mark.parametrize("count", [20, 400])
+def test_how_a_chain_is_solved_is_known_beforehand(attachment, joints, theory, tip, count):
+    beam = replace(THICK, mass=tip, supports=("clamped", "free"))
+    settings = {"theory": theory, "attachment": attachment, "joints": joints}
+    found = solve_modes(beam, 3, count, **settings)
+    assert MODELS["segment"].method(beam, 3, count, **settings) == found.method

@@ -85,9 +85,8 @@ def _inner(line: Lineup, spans: Spans, one: ComplexArray, other: ComplexArray) -
     """The modal mass that two motions share, over rho A L: deflection and turning, of the beam and what is on it."""
     points, weights = np.polynomial.legendre.leggauss(_POINTS)
     lengths = np.diff(spans.ends)
-    x = (spans.ends[:-1, None] + 0.5 * lengths[:, None] * (points + 1.0)).ravel()
-    here = [np.real(spans.states(states, x)[1][:, :, 0]) for states in (one, other)]
-    values = [each.reshape(len(lengths), _POINTS, 4) for each in here]
+    within = spans.within(0.5 * (points + 1.0))
+    values = [np.real(within @ states[:-1, None])[..., 0] for states in (one, other)]
     w, turn = (values[0][:, :, k] * values[1][:, :, k] @ weights * 0.5 * lengths for k in (0, 1))
     mass, turning = (
         np.array([getattr(s, name) for s in line.stretches])[spans.stretch] for name in ("mass", "turning")

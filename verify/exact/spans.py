@@ -46,6 +46,15 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         span = np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.stretch) - 1)
         return span, carried(self.rates[self.stretch[span]], x - self.ends[span], at_ends[span])
 
+    def within(self, fractions: Array) -> ComplexArray:
+        """What carries a state to fractions of its span, (n, len(fractions), 4, 4): alike in all spans of a stretch."""
+        counts = np.bincount(self.stretch)
+        lengths = np.diff(self.ends[np.append(0, np.cumsum(counts))]) / counts
+        distances = (lengths[:, None] * fractions).ravel()
+        rates = np.repeat(self.rates, len(fractions), axis=0)
+        found = carried(rates, distances, np.broadcast_to(np.eye(4, dtype=complex), rates.shape))
+        return np.asarray(found.reshape(len(counts), len(fractions), 4, 4)[self.stretch])
+
     def derivative(self, span: Indices, states: ComplexArray, order: int) -> ComplexArray:
         """A derivative of the deflection by x / L, (len(x), k), of any order, from states of the same places."""
         rates = self.rates[self.stretch[span]]
@@ -120,9 +129,7 @@ def solver(spans: Spans) -> Callable[[ComplexArray], ComplexArray]:
     from scipy.linalg import solve_banded
 
     n = len(spans.stretch)
-    transfer = carried(
-        spans.rates[spans.stretch], np.diff(spans.ends), np.broadcast_to(np.eye(4, dtype=complex), (n, 4, 4))
-    )
+    transfer = spans.within(np.ones(1))[:, 0]
     matrix = _banded(spans, transfer)
 
     def solve(jumps: ComplexArray) -> ComplexArray:

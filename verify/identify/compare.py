@@ -19,6 +19,7 @@ from verify.identify.sizing import Enough, enough
 from verify.identify.told import Compared, Row, judged
 from verify.models.arrays import Array
 from verify.options import Support
+from verify.patience import check_work
 from verify.scenes.scene import Scene
 
 SPARE = 4
@@ -61,6 +62,7 @@ def compare(scene: Scene, asked: Asked) -> Compared:
     if asked.mode is not None and asked.mode > listed.n:
         raise InputError(f"mode = {asked.mode}: {listed.source} has {listed.n} modes, ask for one of them")
     n_modes = max(listed.n, *(listed.numbers or (0,))) + SPARE
+    check_patience(n_modes, count, len(family(beam)))
     exact = exact_hz(beam, n_modes, asked.theory)
     elastic = elastic_of(listed, beam, exact)
     solver = Solver(beam, n_modes)
@@ -79,6 +81,20 @@ def compare(scene: Scene, asked: Asked) -> Compared:
     size = enough(beam, best.candidate, mode, asked.error) if best.candidate.sized else None
     rows = _rows(data, found, exact, likeness, elastic)
     return _told(scene, asked, listed, found, told, rows, size, solver, perf_counter() - start)
+
+
+def check_patience(n_modes: int, count: int | None, candidates: int) -> None:
+    """Raise InputError, before anything is solved, for a list or a size that keeps somebody waiting without a word.
+
+    As measured on one slow core: a known size takes the time of its sparse solves; where none is known, about thirty
+    sizes of every candidate are solved, the dense ones by the cube of the modes.
+    """
+    if count is not None:
+        seconds = 1.2e-3 * count * max(n_modes / 10.0, 1.0)
+        check_work("count", count, seconds, "compare a coarser model")
+        return
+    seconds = candidates * (0.15 + 0.33 * (n_modes / 100.0) ** 3)
+    check_work("modes", n_modes, seconds, "give fewer frequencies, or --count, the parts of your model")
 
 
 def _given(scene: Scene, asked: Asked) -> tuple[Listed, Shapes | None, int | None]:

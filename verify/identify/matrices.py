@@ -166,7 +166,7 @@ def _link_mass(line: Line, mass: str) -> Any:
     if mass == "joints":
         own, shared = 0.5 * line.masses + turn, -turn
     else:
-        spin = {"links": 1.0, "points": _LITTLE if len(line.rigid_lines) == 2 else 0.0}[mass] * line.masses / 12.0
+        spin = {"links": 1.0, "points": _LITTLE if line.free().all() else 0.0}[mass] * line.masses / 12.0
         own, shared = 0.25 * line.masses + spin + turn, 0.25 * line.masses - spin - turn
     return diags_array([shared, _beside(own), shared], offsets=[-1, 0, 1]).tocsr()
 

@@ -121,6 +121,7 @@ def reference_shapes(beam: Beam, n_modes: int, x: Array) -> Array:
 def by_shape(beam: Beam, shapes: Shapes, kept: Indices) -> tuple[Pairs, Array, tuple[Found, ...]]:
     """(the pairs that shapes say, their MAC (k,), what is to be told). Raises InputError where no shape is a mode's."""
     values = shapes.values[kept]
+    values = values / abs(values).max(axis=1, keepdims=True)  # in whatever unit: squares of it are numbers
     n = len(values)
     weights = np.sqrt(node_weights(shapes.x))
     reference = reference_shapes(beam, max(n, min(n + 4, len(shapes.x) - 2)), shapes.x)

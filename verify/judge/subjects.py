@@ -1,6 +1,7 @@
 """The three models that come with the package, as the registry holds them: verbs, words, and the laws known of them."""
 
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from verify.models.kind import Model
@@ -173,6 +174,7 @@ class Segments(Discrete):
         thick = settings.get("theory", "euler-bernoulli") != "euler-bernoulli"
         orders += [2] * (bool(beam.tension or thick) and settings.get("joints") != "tensioned")
         orders += [2] * (settings.get("theory") == "timoshenko" and bool(beam.mass or beam.spring))
+        orders += [1] * _turns_at_a_step(beam)
         if settings.get("attachment") == "lever" and (beam.mass or beam.spring):
             turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
             orders.append(1 if turning else 2)
@@ -184,6 +186,13 @@ class Segments(Discrete):
 
         assert count is not None
         return time_basis(beam, count, line=line)  # type: ignore[arg-type]
+
+
+def _turns_at_a_step(beam: "Beam") -> bool:
+    """Whether a body or a spring turns where sections meet: a chain bends on one side of it as on the other."""
+    ends = list(accumulate(piece.length for piece in beam.pieces[:-1]))
+    turning = [m.position for m in beam.mass if m.rotary_inertia] + [s.position for s in beam.spring if s.rotational]
+    return any(abs(place - end) < 1e-9 * beam.length for place in turning for end in ends)
 
 
 class Elements(Discrete):

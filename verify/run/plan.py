@@ -75,6 +75,8 @@ def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
             problems += _beyond(scene, asks, key)
         except InputError as error:
             problems += [(one, str(error)) for one in who]
+    told = {who for who, _ in problems}
+    problems += [(ask.who, why) for ask in asks if ask.who not in told and (why := _unstable(scene, ask))]
     by_work = {work: tuple(ask.who for ask in found) for work, found in kinds_of_work(asks).items()}
     return Plan(
         scene=scene.name,
@@ -89,6 +91,20 @@ def plan_scene(scene: "Scene", overrides: tuple[str, ...] = ()) -> Plan:
         problems=tuple(Problem(*pair) for pair in problems),
         motions=sum(ask.motions for ask in asks),
     )
+
+
+def _unstable(scene: "Scene", ask: Ask) -> str:
+    """Why a beam has no vibration that somebody asks for; empty where it has."""
+    vibrates = ask.work in ("modes", "harmonic") or (ask.work == "in time" and ask.kind == "study")
+    if scene.beam.tension >= 0.0 or not vibrates:
+        return ""
+    from verify.exact.buckling import check_stable
+
+    try:
+        check_stable(scene.beam)
+    except InputError as error:
+        return str(error)
+    return ""
 
 
 def _set_aside(scene: "Scene", overrides: tuple[str, ...]) -> tuple[Choice, ...]:

@@ -66,11 +66,21 @@ def _tensioned(
 
 def _joint_inertias(thick: Array, factors: Array, excess: float) -> Array:
     """Rho I l/12 of joints 0..N, as `_tensioned` has T l/12, zero where an end has none, (N + 1,)."""
-    found = np.concatenate([thick[:1], 0.5 * (thick[1:] + thick[:-1]), thick[-1:]]) / 12.0
+    found = _of_joints(thick) / 12.0
     weights = factors.copy()
     for end in (0, -1):
         weights[end] += excess * (factors[end] not in (0.5, np.inf))
     return np.divide(found * weights, factors**2, out=np.zeros(len(found)), where=np.isfinite(factors))
+
+
+def _of_joints(links: Array) -> Array:
+    """The harmonic mean of what the links on either side have, of joints 0..N, (N + 1,): the end link's at an end.
+
+    Links have m/6 of a square at either end to give; a joint between m and m' that takes m m'/(m + m')/6 leaves just
+    that to the next, however unlike its links are. Any other mean leaves less than no mass somewhere.
+    """
+    inner = 2.0 * links[1:] * links[:-1] / (links[1:] + links[:-1])
+    return np.concatenate([links[:1], inner, links[-1:]])
 
 
 def _of_links(beam: Beam, n_segments: int, field: str) -> Array:
@@ -119,7 +129,7 @@ def _slip_masses(chain: Chain, slips: Array) -> Array | None:
     """Rho A l/12 of mended joints 0..N that slip, (N + 1,); None where none are mended."""
     if chain.joint_inertias is None:
         return None
-    masses = np.concatenate([chain.masses[:1], 0.5 * (chain.masses[1:] + chain.masses[:-1]), chain.masses[-1:]])
+    masses = _of_joints(chain.masses)
     halves = np.concatenate([[2.0], np.ones(len(masses) - 2), [2.0]])  # more would leave less than no mass at a wall
     halves[[0, -1]] *= chain.held
     return np.where(np.isfinite(slips), masses * halves / 12.0, 0.0)

@@ -92,7 +92,13 @@ def solve_modes(
     settings = _settings(wall, joints, grading, theory, attachment)
     check(beam, n_modes, n_segments, **settings)
     chain = build_chain(beam, n_segments, **settings)
-    return _modes(beam, chain, lowest(chain_pencil(chain), n_modes))
+    try:
+        return _modes(beam, chain, lowest(chain_pencil(chain), n_modes))
+    except np.linalg.LinAlgError:
+        raise InputError(
+            f"{FIELD} = {n_segments}: joints = 'tensioned' and wall = {wall!r} take more off the mass of a beam as "
+            "thick as this than its end links have: choose joints = 'series', or another wall or n_segments"
+        ) from None
 
 
 def _settings(wall: Wall, joints: Joints, grading: float, theory: Theory, attachment: Attachment) -> dict[str, Any]:

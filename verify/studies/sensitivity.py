@@ -39,7 +39,7 @@ class Sensitivity(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 class SensitivityStudy(Study[Sensitivity, "SensitivityFound"]):
     """Closed forms alone."""
 
-    name, section = "sensitivity", Sensitivity
+    name, section, work = "sensitivity", Sensitivity, "modes"
     title = "Modulus and density"
 
     def asked(self, scene: "Scene") -> Sensitivity | None:

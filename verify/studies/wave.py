@@ -69,9 +69,10 @@ class WaveStudy(Study[Wave, "WaveFound"]):
     title = "The driven beam"
 
     def check_on(self, asked: Wave, scene: "Scene") -> None:
-        """Raise InputError for a scene without two forces, or a model of the map that has no fields."""
+        """Raise InputError for a scene without two forces, a stepped beam, or a model of the map that has no fields."""
         if len(scene.forces) != 2:
             raise InputError("wave: the studies of a wave take a [drive] with two forces, add them")
+        scene.beam.check_added("[wave]", ("mass", "spring", "tension", "foundation"))
         for verb in ("solve_harmonic", "unit_responses"):
             Among(verb).check(asked.model, "wave.model")
 
