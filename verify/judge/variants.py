@@ -118,10 +118,12 @@ def beside(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
 
 def every_rule(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
     """Every rule of a chain that makes a difference on this beam: walls, joints, attachments; the rest as chosen."""
-    walls = [w for w in WALLS[1:] if w != "welded" or not beam.section] if "clamped" in beam.supports else []
+    told_so = DEFAULTS | dict(chosen)
+    thick = told_so["theory"] != DEFAULTS["theory"]
+    weldable = beam.uniform and not thick and told_so["grading"] == DEFAULTS["grading"]
+    walls = [w for w in WALLS[1:] if w != "welded" or weldable] if "clamped" in beam.supports else []
     rules = [("wall", wall) for wall in walls]
     rules += [("joints", "printed")] * (beam.stepped and all(p.youngs_modulus for p in beam.pieces))
-    thick = dict(chosen).get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
     rules += [("joints", "tensioned")] * (bool(beam.tension) or thick)
     rules += [("attachment", "lever")] * bool(beam.mass or beam.spring)
     return tuple(Variant(model, told(dict(chosen) | dict([rule]))) for rule in rules for model in models_with(rule[0]))

@@ -335,6 +335,12 @@ def _read_at(chain: Chain, free: Array, x: Array) -> Array:
     return spline_at(chain, joint_readings(chain, free), x, 0)
 
 
-def method(beam: Beam, n_modes: int, n_segments: int, theory: Theory = "euler-bernoulli") -> str:
+def method(
+    beam: Beam,
+    n_modes: int,
+    n_segments: int,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
+) -> str:
     """How `solve_modes` will find its eigenvalues, in words."""
-    return method_name(unknowns(beam, n_segments, theory), n_modes)
+    return method_name(unknowns(beam, n_segments, theory, attachment), n_modes)
