@@ -4,6 +4,7 @@ import pytest
 from msgspec.structs import replace
 from packaged import ran
 
+from verify.attached import PointSpring
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.motion import case
@@ -97,3 +98,14 @@ def test_a_plan_of_eighty_columns_cuts_nothing(scene, capsys, monkeypatch):
     assert "…" not in told
     assert "asked by" in told
     assert max(map(len, told.splitlines())) <= 80
+
+
+def test_a_slider_on_a_beam_that_the_exact_model_does_not_move_is_refused_by_its_plan_too():
+    scene = replace(load_scene("paper-slider"), gate=(), claim=(), readings=None)
+    held = replace(scene.beam, spring=(PointSpring(position=0.26, stiffness=321.0),))
+    scene = replace(scene, beam=held)
+    (problem,) = plan_scene(scene).problems
+    assert problem.who == "motion"
+    with pytest.raises(InputError, match=r"beam\.spring: the exact beam in time takes none") as refused:
+        run_scene(scene)
+    assert problem.why == str(refused.value)
