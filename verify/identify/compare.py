@@ -12,7 +12,7 @@ import numpy as np
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.identify.family import CHAIN, ELEMENTS, EXACT, Candidate, Solver, exact_hz, family
-from verify.identify.fitting import CREDIBLE, UNITS, Data, Identified, identify
+from verify.identify.fitting import CREDIBLE, PLAIN, UNITS, Data, Identified, identify
 from verify.identify.outside import asked_of
 from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic_of, missing, swapped
 from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
@@ -26,6 +26,8 @@ SPARE = 4
 """Modes beyond the list that candidates are solved for: as many may be missing from it."""
 _OTHER_COUNT = 10.0
 """By how much, in logarithms of likelihood, another number of parts than was said has to be likelier."""
+_TELLING = 5
+"""Modes from which on a list is held against all numbers of parts: of fewer, one or the other always fits."""
 KINDS = {"segments": CHAIN, "elements": ELEMENTS}
 """What somebody may say that he built."""
 
@@ -138,8 +140,9 @@ def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found,
     if count is not None and (found is None or not (found.explained and found.best.candidate.sized)):
         beside = sorted({2 * count, count // 2, *range(count - 2, count + 3)} - {count})
         other = _explaining(data, [size for size in beside if size > 1])
-        if other is None and (found is None or not found.explained):
-            other = _explaining(data, [None])
+        if other is None and len(data.listed) >= _TELLING and not (found is not None and found.explained):
+            anywhere = _explaining(data, [None])
+            other = anywhere if anywhere is not None and anywhere.reading == PLAIN else None
         if other is not None and (found is None or other.best.score < found.best.score - _OTHER_COUNT):
             words = f"the list is that of {other.best.count} parts, not of the {count} that --count says"
             return other, (Found(kind="count", words=words),)
