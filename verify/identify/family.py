@@ -236,7 +236,7 @@ def _packaged(candidate: Candidate, beam: Beam, count: int, n_modes: int) -> Arr
         raise InputError(f"joints = {candidate.joints!r} is not known to the {candidate.model} model")
     if count < model.fewest:
         return np.empty(0)
-    available = min(n_modes, model.n_elastic(beam, count, **settings))
+    available = min(n_modes, model.n_elastic(beam, count), model.n_elastic(beam, count, **settings))
     if available < 1:
         return np.empty(0)
     return np.asarray(model.solve_modes(beam, available, count, **settings).frequencies_hz)
