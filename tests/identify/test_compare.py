@@ -504,3 +504,48 @@ def test_links_of_point_masses_have_frequencies_between_any_ends(supports):
     )
     assert (np.log2(coarse / fine) > 1.8).all()
     assert (np.log2(coarse / fine) < 2.2).all()
+
+
+# --- what a stranger's chain carries, and what is not so sure -------------------------------------------------------
+
+
+def bodies_on_the_last_link(beam, count, mass, rotary):
+    """A chain with 2EI/l at the wall and a body fixed to its last link, by deflections of the joints alone, Hz."""
+    link = beam.length / count
+    turns = (np.eye(count + 1, k=1) - np.eye(count + 1))[:count] / link
+    middles = 0.5 * (np.eye(count + 1, k=1) + np.eye(count + 1))[:count]
+    bends = np.vstack([turns[:1], np.diff(turns, axis=0)])
+    springs = beam.bending_stiffness / link * np.array([2.0, *[1.0] * (count - 1)])
+    stiff = bends.T @ np.diag(springs) @ bends
+    weight = beam.mass_per_length * link
+    heavy = weight * middles.T @ middles + weight * link**2 / 12.0 * turns.T @ turns
+    heavy[-1, -1] += mass
+    heavy += rotary * np.outer(turns[-1], turns[-1])
+    squares = np.linalg.eigvals(np.linalg.solve(heavy[1:, 1:], stiff[1:, 1:])).real
+    return np.sqrt(np.sort(squares)[:8]) / (2.0 * np.pi)
+
+
+def test_a_body_fixed_to_the_last_link_is_known_as_that_and_of_order_one(told):
+    listed = bodies_on_the_last_link(CANTILEVER, 30, 0.05, 2e-5)
+    on_it = ("beam.mass=[{position=0.3, mass=0.05, rotary_inertia=2e-5}]",)
+    found = told(listed, overrides=on_it, count=30)
+    assert (found["best"]["attachment"], *chosen(found, "wall", "order", "identified")) == ("lever", "half", 1, True)
+    assert found["best"]["residual"] < 1e-7
+    assert "reciprocal weights" in found["parts_needed"]["better"]
+
+
+def test_another_number_of_parts_far_from_the_one_said_is_found(told):
+    listed = scene("steel-cantilever").beam
+    from verify.elements.linear import solve_modes
+
+    found = told(solve_modes(listed, 9, 12).frequencies_hz, count=30)
+    assert kinds(found) == ["count"]
+    assert chosen(found, "model", "mass", "count") == ("fem", "consistent", 12)
+
+
+def test_a_factor_that_does_not_explain_a_list_is_not_stated_as_one(told):
+    stiffer = rigid_links(CANTILEVER, 30)[:10]
+    stiffer = stiffer * (1.0 + 0.011 + 0.0004 * np.linspace(-1.0, 1.0, 10) ** 3)
+    found = told(stiffer, count=30)
+    assert not found["best"]["identified"]
+    assert "have the common factor" not in found["answer"]

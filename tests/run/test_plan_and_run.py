@@ -6,11 +6,14 @@ import pytest
 from msgspec.structs import replace
 from packaged import ran
 
+from verify.attached import PointSpring
+from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.motion import case
+from verify.report.terminal import print_plan
 from verify.run.asks import asks_of
 from verify.run.plan import plan_scene
-from verify.run.runner import n_steps
+from verify.run.runner import n_steps, run_scene
 from verify.scenes.scene import load_scene, packaged_scenes
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.slider import SliderStudy
@@ -96,3 +99,49 @@ def test_a_plan_says_who_asks_for_a_vibration_that_a_buckled_beam_has_not():
         problems = plan_scene(load_scene("taut-strip", (f"beam.tension={-factor * load!r}", *more))).problems
         assert {one.who.split(" (")[0] for one in problems} == known
         assert all("buckl" in one.why for one in problems)
+
+
+@pytest.mark.parametrize("scene", packaged_scenes())
+def test_every_packaged_scene_can_be_planned(scene):
+    assert plan_scene(load_scene(scene)).problems == ()
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ('beam.section=[{"length"=0.2},{"length"=0.3,"thickness"=0.002}]', "beam.section"),
+        ("beam.mass=[{position=0.26, mass=0.01}]", "holds a mass or a spring at \\[0.26\\]"),
+        ("drive.frequency_hz=20", "shorter than half a wavelength"),
+        ("drive.frequency_hz=123456", "lies beyond, give count"),
+        ("beam.tension=-1234", "beyond its buckling load"),
+        ("beam.foundation=1e9", "no wave runs below 21658.2 Hz on beam.foundation"),
+        ("drive.force=[{position=0.2},{position=0.41}]", "leaves the span between two forces"),
+    ],
+)
+def test_what_a_run_of_a_wave_refuses_its_plan_refuses_in_the_same_words(changed, said):
+    scene = replace(load_scene("paper-wave", (changed,)), gate=(), claim=())
+    problems = {problem.who: problem.why for problem in plan_scene(scene).problems}
+    with pytest.raises(InputError, match=said) as refused:
+        run_scene(scene)
+    assert problems["wave"] == str(refused.value)
+
+
+@pytest.mark.parametrize("scene", ["thick-bar", "paper", "steel-cantilever"])
+def test_a_plan_of_eighty_columns_cuts_nothing(scene, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    print_plan(plan_scene(load_scene(scene)))
+    told = capsys.readouterr().out
+    assert "…" not in told
+    assert "asked by" in told
+    assert max(map(len, told.splitlines())) <= 80
+
+
+def test_a_slider_on_a_beam_that_the_exact_model_does_not_move_is_refused_by_its_plan_too():
+    scene = replace(load_scene("paper-slider"), gate=(), claim=(), readings=None)
+    held = replace(scene.beam, spring=(PointSpring(position=0.26, stiffness=321.0),))
+    scene = replace(scene, beam=held)
+    (problem,) = plan_scene(scene).problems
+    assert problem.who == "motion"
+    with pytest.raises(InputError, match=r"beam\.spring: the exact beam in time takes none") as refused:
+        run_scene(scene)
+    assert problem.why == str(refused.value)

@@ -23,6 +23,12 @@ MOST = 5000
 """Modes kept: their shapes are evaluated one by one."""
 
 
+def check_beam(beam: Beam) -> None:
+    """Raise InputError for a beam that `time_basis` does not take."""
+    beam.check_added("the exact beam in time", ("section", "mass"))
+    check_held(beam)
+
+
 @as_typed
 def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
     """The first n_modes exact modes, of a beam of sections and point masses too.
@@ -30,8 +36,7 @@ def time_basis(beam: Beam, n_modes: int) -> TimeBasis:
     A damping ratio is the same in every mode, as the material's loss factor makes it: springs, foundation and axial
     force, which lose nothing, are refused. Raises InputError for them, rigid motions and n_modes not in 1..MOST.
     """
-    beam.check_added("the exact beam in time", ("section", "mass"))
-    check_held(beam)
+    check_beam(beam)
     check_whole("modes", n_modes, 1)
     if n_modes > MOST:
         raise InputError(f"modes = {n_modes!r}: the exact beam keeps at most {MOST}, the rest follow at once")

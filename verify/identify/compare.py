@@ -1,5 +1,6 @@
 """Somebody's model of a scene's beam compared: read, paired, identified, sized, judged."""
 
+from collections.abc import Sequence
 from itertools import combinations_with_replacement
 from pathlib import Path
 from time import perf_counter
@@ -11,7 +12,7 @@ import numpy as np
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.identify.family import CHAIN, ELEMENTS, EXACT, Candidate, Solver, exact_hz, family
-from verify.identify.fitting import CREDIBLE, UNITS, Data, Identified, identify
+from verify.identify.fitting import CREDIBLE, PLAIN, UNITS, Data, Identified, identify
 from verify.identify.outside import asked_of
 from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic_of, missing, swapped
 from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
@@ -26,6 +27,8 @@ SPARE = 4
 """Modes beyond the list that candidates are solved for: as many may be missing from it."""
 _OTHER_COUNT = 10.0
 """By how much, in logarithms of likelihood, another number of parts than was said has to be likelier."""
+_TELLING = 5
+"""Modes from which on a list is held against all numbers of parts: of fewer, one or the other always fits."""
 KINDS = {"segments": CHAIN, "elements": ELEMENTS}
 """What somebody may say that he built."""
 
@@ -148,16 +151,14 @@ def _of_shapes_alone(found: Found) -> Found:
 
 
 def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found, ...]]:
-    """What the list is at the given size, or else at one beside it. Raises InputError where nothing is so large."""
+    """What the list is at the given size, or else beside it or at any. Raises InputError where nothing is so large."""
     found = identify(data, count)
     if count is not None and (found is None or not (found.explained and found.best.candidate.sized)):
-        others = [
-            identify(data, other)
-            for other in sorted({2 * count, count // 2, *range(count - 2, count + 3)} - {count})
-            if other > 1
-        ]
-        good = [one for one in others if one is not None and one.explained and one.best.candidate.sized]
-        other = min(good, key=lambda one: one.best.score, default=None)
+        beside = sorted({2 * count, count // 2, *range(count - 2, count + 3)} - {count})
+        other = _explaining(data, [size for size in beside if size > 1])
+        if other is None and len(data.listed) >= _TELLING and not (found is not None and found.explained):
+            anywhere = _explaining(data, [None])
+            other = anywhere if anywhere is not None and anywhere.reading == PLAIN else None
         if other is not None and (found is None or other.best.score < found.best.score - _OTHER_COUNT):
             words = f"the list is that of {other.best.count} parts, not of the {count} that --count says"
             return other, (Found(kind="count", words=words),)
@@ -167,11 +168,18 @@ def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found,
     return found, ()
 
 
+def _explaining(data: Data, counts: Sequence[int | None]) -> Identified | None:
+    """The best of what explains the list at one of these sizes, None being any; None where nothing does."""
+    found = [identify(data, count) for count in counts]
+    good = [one for one in found if one is not None and one.explained and one.best.candidate.sized]
+    return min(good, key=lambda one: one.best.score, default=None)
+
+
 def _of_list(found: Identified, data: Data) -> tuple[Found, ...]:
     """What the best reading of a list says of it: its unit, a common factor, what is missing."""
     best, told = found.best, []
     if found.reading.factor is None:
-        told.append(Found(kind="scale", words=_scale_words(best.factor)))
+        told.append(Found(kind="scale", words=_scale_words(best.factor, found.explained)))
     elif found.reading.factor in UNITS:
         told.append(Found(kind="unit", words=f"the frequencies are too large by {UNITS[found.reading.factor]}"))
     return (*told, *(missing(best.pairs, len(data.listed)) if data.paired is None else ()))
@@ -197,10 +205,11 @@ def _of_supports(scene: Scene, found: Identified, data: Data) -> tuple[Found, ..
     return (Found(kind="supports", words=words),)
 
 
-def _scale_words(factor: float) -> str:
+def _scale_words(factor: float, explains: bool) -> str:
     """One factor on all frequencies, and what it may be of: sqrt(E / rho), thickness, 1 / L^2."""
+    had = "all frequencies have the common factor" if explains else "nearest comes a common factor of all frequencies,"
     return (
-        f"all frequencies have the common factor {factor:.6g}: E is {_change(factor**2)} or rho {_change(factor**-2)}, "
+        f"{had} {factor:.6g}: E is {_change(factor**2)} or rho {_change(factor**-2)}, "
         f"or the thickness {_change(factor)}, or the length {_change(factor**-0.5)}"
     )
 

@@ -31,6 +31,7 @@ _LINKS = {
     "joints": "has its mass lumped at the joints",
 }
 _RULES = {"series": "", "printed": "takes Eq. (1) as printed", "tensioned": "has joints that know the tension"}
+_HELD = "carries what is fixed to it on its links as they are"
 _NODES = {
     "consistent": "cubic Hermite elements with consistent mass",
     "lumped": "cubic Hermite elements with mass lumped at the nodes",
@@ -60,6 +61,8 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     theory: str = "euler-bernoulli"
     order: int | None = None
     """With which its frequencies converge on this beam; None of the exact beam."""
+    attachment: str | None = None
+    """lever of a chain whose links carry point masses and springs as rigid bodies do; None of others."""
     shearing: bool = False
     """Whether it is a rod whose nodes and turns move apart (Cosserat)."""
 
@@ -91,6 +94,7 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         said = [_WALLS[self.wall]] if self.wall else []
         said += [_LINKS[self.mass or ""]] * (self.mass != "links" or not self.wall)
         said += [_RULES[self.joints or ""]] * (self.joints != "series")
+        said += [_HELD] * (self.attachment is not None)
         joined = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
         theory = _THEORIES[self.theory]
         return f"{joined}, {theory}" if theory else joined
@@ -99,6 +103,7 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     def settings(self) -> tuple[tuple[str, str | float], ...]:
         """What the package's own model is told, where it is one."""
         given = {"wall": self.wall, "joints": self.joints if self.joints != "series" else None}
+        given["attachment"] = self.attachment
         if self.theory != "euler-bernoulli":
             given["theory"] = self.theory
         return tuple((name, value) for name, value in given.items() if value is not None)
@@ -122,9 +127,15 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
     )
     rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
     for joints, wall, theory in product(rules, walls, THEORIES):
-        if theory != "timoshenko" or wall not in ("full", "rigid"):
+        euler_alone = wall == "welded" and theory != "euler-bernoulli"
+        if not euler_alone and (theory != "timoshenko" or wall not in ("full", "rigid")):
             order = _order(beam, wall, joints, theory)
             yield Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", theory=theory, order=order)
+    if _told_by_lever(beam):
+        turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
+        for joints, wall in product(rules, [wall for wall in walls if wall in (None, "half", "gregory")]):
+            order = min(_order(beam, wall, joints), 1 if turning else 2)
+            yield Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", attachment="lever", order=order)
     plain = [wall for wall in walls if wall in (None, "half", "gregory", "full", "rigid")]
     for mass, wall in product(("points", "joints"), plain):
         order = min(_order(beam, wall, "series"), 2)
@@ -136,6 +147,13 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
         yield Candidate(
             model=CHAIN, wall=wall, joints="series", mass="joints", theory="timoshenko", order=order, shearing=True
         )
+
+
+def _told_by_lever(beam: Beam) -> bool:
+    """Whether links that carry bodies and springs as they are differ from others: not at an end, where none turns."""
+    turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
+    places = [m.position for m in beam.mass] + [s.position for s in beam.spring]
+    return turning or any(0.0 < place < beam.length for place in places)
 
 
 def _order(beam: Beam, wall: str | None, joints: str, theory: str = "euler-bernoulli") -> int:
@@ -218,7 +236,7 @@ def _packaged(candidate: Candidate, beam: Beam, count: int, n_modes: int) -> Arr
         raise InputError(f"joints = {candidate.joints!r} is not known to the {candidate.model} model")
     if count < model.fewest:
         return np.empty(0)
-    available = min(n_modes, model.n_elastic(beam, count))
+    available = min(n_modes, model.n_elastic(beam, count), model.n_elastic(beam, count, **settings))
     if available < 1:
         return np.empty(0)
     return np.asarray(model.solve_modes(beam, available, count, **settings).frequencies_hz)

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -43,7 +43,11 @@ def asked_of(name: str, beam: Beam, count: int | None, n_modes: int | None) -> A
         check_whole("count", count, int(getattr(model, "fewest", 1)))
     wanted = n_modes or _available(model, beam, count, name)
     found = _called(name, "solve_modes", lambda: model.solve_modes(beam, wanted, count))
-    frequencies = _array(name, "frequencies_hz", getattr(found, "frequencies_hz", None), (wanted,))
+    if not hasattr(found, "frequencies_hz"):
+        raise InputError(
+            f"model = {name!r}: solve_modes returns {shown(found)}, without frequencies_hz: return what has it"
+        )
+    frequencies = _array(name, "frequencies_hz", found.frequencies_hz, (wanted,))
     for i, value in enumerate(frequencies):
         if not value > 0.0:
             raise InputError(f"model = {name!r}: frequencies_hz[{i}] = {float(value)!r}: elastic modes are above zero")
@@ -72,11 +76,11 @@ def _imported(name: str) -> Any:
     if not (colon and module and attribute):
         raise InputError(f"model = {name!r}: write it as package.module:Class")
     try:
-        with _here():
+        with _here(), redirect_stdout(sys.stderr):
             found = import_module(module)
     except ImportError as error:
         raise InputError(f"model = {name!r} cannot be imported ({error}): check the name, or where you stand") from None
-    except Exception as error:  # whatever a module of somebody else's does when it is imported
+    except (Exception, SystemExit) as error:  # whatever a module of somebody else's does when it is imported
         raise InputError(f"model = {name!r} breaks when it is imported: {type(error).__name__}: {error}") from None
     if not hasattr(found, attribute):
         raise InputError(f"model = {name!r}: {module} has no {attribute}")
@@ -111,17 +115,20 @@ def _available(model: Any, beam: Beam, count: int | None, name: str) -> int:
 
 
 def _called(name: str, verb: str, call: Any) -> Any:
-    """What a verb returns. Raises InputError for whatever it raises."""
+    """What a verb returns; what it prints goes to the error stream. Raises InputError for whatever it raises."""
     try:
-        return call()
+        with redirect_stdout(sys.stderr):
+            return call()
     except InputError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"model = {name!r}: {verb} raises {type(error).__name__}: {error}") from None
 
 
 def _array(name: str, what: str, value: Any, shape: tuple[int, ...]) -> Any:
     """Finite numbers of a shape. Raises InputError where they are not."""
+    if np.iscomplexobj(value):
+        raise InputError(f"model = {name!r}: {what} is complex: give real numbers")
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError):

@@ -86,9 +86,10 @@ def _better(beam: Beam, candidate: Candidate) -> tuple[Candidate | None, str]:
     wall = "gregory" if "clamped" in beam.supports else None
     joints = "tensioned" if beam.tension else "series"
     best = Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", theory=candidate.theory)
-    if (best.wall, best.joints, best.mass) == (candidate.wall, candidate.joints, candidate.mass):
+    if best == msgspec.structs.replace(candidate, order=None, shearing=False):
         return None, ""
     changes = ["Gregory's weights 3/8, 7/6, 23/24 at the wall"] * (candidate.wall != wall)
     changes += ["the links' own inertia m l^2/12"] * (candidate.mass != "links")
     changes += [{"series": "Eq. (1) in series", "tensioned": "tensioned joints"}[joints]] * (candidate.joints != joints)
+    changes += ["reciprocal weights for what is fixed to it"] * (candidate.attachment is not None)
     return best, " and ".join(changes)

@@ -77,7 +77,8 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         best = self.found.best
         if best.residual > TOLERANCE:
             left = in_percent(best.residual, sign=False)
-            return f"none of the known family fits: the nearest, {best.candidate.words}{_sized(best)}, leaves {left}"
+            known = "what is known of the family on this beam" if self.left_out else "the known family"
+            return f"none of {known} fits: the nearest, {best.candidate.words}{_sized(best)}, leaves {left}"
         if self.found.systematic:
             return (
                 f"nothing of the known family is it quite: the nearest, {best.candidate.words}{_sized(best)}, leaves "
@@ -102,6 +103,8 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             return ""
         parts = "links" if self.found.best.candidate.model == CHAIN else "elements"
         wanted = f"for {100.0 * size.error:g} % at mode {size.mode}"
+        theory = self.found.best.candidate.theory
+        wanted += f" by the theory {theory}" * (theory != self.theory)
         said = f"{size.count} {parts} {wanted}" if size.count is not None else f"no number of {parts} found {wanted}"
         return f"; {said}" + (f" ({size.better_count} with {size.better})" if size.better else "")
 
@@ -179,7 +182,9 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             for one in shown
         )
         rest = len(self.found.fits) - len(shown)
-        notes = (f"{rest} more candidates fit worse, --json has them all.",) if rest else ()
+        notes: tuple[str, ...] = (f"{rest} more candidates fit worse, --json has them all.",) if rest else ()
+        if self.left_out:
+            notes += (f"{len(self.left_out)} candidates are left out here, --json has the reason of each.",)
         return Table(title="Candidates, the nearest first", columns=columns, rows=rows, notes=notes, shown="both")
 
     def charts(self) -> tuple[Chart, ...]:
@@ -252,6 +257,7 @@ def _candidate(one: Fit) -> dict[str, Any]:
         "wall": candidate.wall,
         "joints": candidate.joints,
         "mass": candidate.mass,
+        "attachment": candidate.attachment,
         "theory": candidate.theory,
         "order": candidate.order,
         "count": one.count,

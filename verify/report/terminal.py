@@ -219,15 +219,19 @@ def print_choices(
     console.print("[dim]errors solved at N; time of a warm solve, set-up included[/]")
 
 
+_ASKED = 13
+"""Characters left to who asks for a solve, where the settings of a model are long."""
+
+
 def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
     console = Terminal()
     console.print(f"[bold]{plan.scene}[/] will run")
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for name in ("model", "N", "modes", "unknowns"):
-        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=True)
+        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=name != "model")
     table.add_column("vectors by", no_wrap=True)
-    table.add_column("asked by", overflow="fold")
+    table.add_column("asked by", overflow="fold", min_width=_ASKED)
     for solve in plan.solves:
         sizes = (str(n) for n in (solve.count, solve.n_modes, solve.unknowns))
         model = " ".join([solve.model, *(f"{name}={value}" for name, value in solve.settings)])
@@ -250,7 +254,7 @@ def print_plan(plan: "Plan") -> None:
     for skipped in plan.skipped:
         console.print(f"  {skipped.what}: {skipped.why}", markup=False)
     for why, who in _by_reason((problem.why, problem.who) for problem in plan.problems).items():
-        console.print(Text(f"cannot run: {', '.join(who)}: {why}", style="red"))
+        console.print(Text(f"cannot run: {', '.join(dict.fromkeys(who))}: {why}", style="red"))
 
 
 def _who(names: tuple[str, ...]) -> str:

@@ -87,6 +87,11 @@ def _study_asks(scene: "Scene") -> Iterable[Ask]:
     for study, asked in asked_of(scene):
         if not study.listed:
             continue
+        try:
+            study.check_run(asked, scene)
+        except InputError as error:
+            yield Ask(kind="study", name=study.name, work=study.work, problem=str(error))
+            continue
         yield Ask(
             kind="study",
             name=study.name,

@@ -130,6 +130,8 @@ def _beyond(scene: "Scene", asks: list[Ask], key: Key) -> list[tuple[str, str]]:
 def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> PlannedSolve:
     name, count, settings = key
     model = MODELS.named(name)
+    if scene.beam.tension < 0.0:
+        MODELS["analytic"].check(scene.beam, 1, 0)  # one sentence of what has buckled, not one for each size
     n_modes = max(min(n_wanted, model.n_elastic(scene.beam, count, **dict(settings))), 1)
     model.check(scene.beam, n_modes, count, **dict(settings))
     return PlannedSolve(

@@ -11,6 +11,7 @@ from verify.judge.variants import Variant, every_rule
 from verify.judge.workbench import Settings, Workbench, comparable, theory_of
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
+from verify.options import THEORIES
 from verify.patience import check_work
 from verify.studies.kind import Progress
 from verify.studies.told import Chart, Column, Found, Table
@@ -56,6 +57,8 @@ class RuleErrors(msgspec.Struct, frozen=True, kw_only=True):
     mode: int
     counts: tuple[int, ...]
     errors: tuple[float | None, ...]
+    why: str = ""
+    """Why there is none at any size; empty where there is one."""
 
 
 class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
@@ -80,13 +83,16 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
         if not self.rules:
             return ()
         first = self.rules[0]
-        columns = [Column("N"), *(Column(_rule(one.variant), "bare percent") for one in self.rules)]
+        mixed = len({one.variant.theory for one in self.rules}) > 1
+        columns = [Column("N"), *(Column(_rule(one.variant, mixed), "bare percent") for one in self.rules)]
+        refused = (f"{_rule(one.variant, mixed)}: {one.why}" for one in self.rules if one.why)
         rows = zip(first.counts, *(one.errors for one in self.rules), strict=True)
         return (
             Table(
                 title=f"mode {first.mode} by every rule of the chain, error in %",
                 columns=tuple(columns),
                 rows=tuple(rows),
+                notes=tuple(refused),
             ),
         )
 
@@ -123,15 +129,28 @@ ABREAST = 2
 """Variants in one table: more do not fit into a terminal."""
 
 
-def _rule(variant: Variant) -> str:
-    """A rule of the chain above a column."""
-    return ", ".join(f"{n} {value}" for n, value in variant.settings if n != "theory") or "default"
+def _rule(variant: Variant, mixed: bool) -> str:
+    """A rule of the chain above a column, with a theory of its own where there are several."""
+    rule = ", ".join(f"{n} {value}" for n, value in variant.settings if n != "theory") or "default"
+    return f"{rule}, {variant.theory}" if mixed and variant.theory != THEORIES[0] else rule
 
 
 def _head(variant: Variant) -> str:
     """What stands above a variant's frequencies."""
     words = MODELS[variant.model].title.split()[0] or variant.model
     return " ".join([words, *(str(value) for _, value in variant.settings)])
+
+
+def _exact(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> str:
+    """The exact frequency that errors are against; of each theory where the variants have several."""
+    found: dict[str, float] = {}
+    for one in variants:
+        for cell in (row.cells[one.label] for row in rows):
+            if cell.frequency_hz is not None and cell.error is not None:
+                found.setdefault(one.theory, cell.frequency_hz / (1.0 + cell.error))
+    if len(found) < 2:
+        return f"{next(iter(found.values()), rows[0].exact_hz):.4f} Hz"
+    return ", ".join(f"{hertz:.4f} Hz ({theory_name(theory)})" for theory, hertz in found.items())
 
 
 def _mode_table(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> Table:
@@ -142,7 +161,7 @@ def _mode_table(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> Table:
     columns += [Column("bracket", "bare size"), Column("mean %", "bare percent", wide=True)]
     notes = tuple(dict.fromkeys(note for row in rows for note in row.notes))
     return Table(
-        title=f"mode {rows[0].mode}, exact {rows[0].exact_hz:.4f} Hz",
+        title=f"mode {rows[0].mode}, exact {_exact(rows, variants)}",
         columns=tuple(columns),
         rows=tuple((row.count, *_figures(row, variants), row.bracket_width, row.mean_error) for row in rows),
         notes=(*notes, READ_SO.format(" and ".join(dict.fromkeys(theory_name(one.theory) for one in variants)))),
@@ -184,15 +203,12 @@ def _rules(bench: Workbench, variants: tuple[Variant, ...], asked: "Convergence"
     every, counts = every_rule(bench.beam, asked.chosen), asked.counts
     models = dict.fromkeys(one.model for one in every)
     shown = dict.fromkeys((*(one for one in variants if one.model in models), *every))
-    return tuple(
-        RuleErrors(
-            variant=one,
-            mode=mode,
-            counts=counts,
-            errors=tuple(bench.error_or_why(one.model, n, mode, one.settings)[0] for n in counts),
-        )
-        for one in (shown if every else ())
-    )
+    found = []
+    for one in shown if every else ():
+        errors, whys = zip(*(bench.error_or_why(one.model, n, mode, one.settings) for n in counts), strict=True)
+        why = whys[-1] if all(error is None for error in errors) else ""
+        found.append(RuleErrors(variant=one, mode=mode, counts=counts, errors=errors, why=why))
+    return tuple(found)
 
 
 def _check_together(beam: "Beam", variants: tuple[Variant, ...], counts: tuple[int, ...], n_modes: int) -> None:

@@ -53,6 +53,9 @@ class Study(Generic[Asked, Out]):
     def check_on(self, asked: Asked, scene: "Scene") -> None:
         """Raise InputError where the scene has not what it takes."""
 
+    def check_run(self, asked: Asked, scene: "Scene") -> None:
+        """Raise InputError, before anything is solved, for what `run` would refuse."""
+
     def needs(self, asked: Asked, scene: "Scene") -> "tuple[Need, ...]":
         """Solves that it will ask for."""
         return ()

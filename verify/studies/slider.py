@@ -38,6 +38,12 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
             return "the scene has no [motion]"
         return "the scene has no [slider]; its [motion] says how gates and claims in time are run"
 
+    def check_run(self, asked: MotionAsk, scene: "Scene") -> None:
+        """Raise InputError for a beam that the exact model, against which errors are, does not move in time."""
+        from verify.exact.in_time import check_beam
+
+        check_beam(scene.beam)
+
     def models(self, asked: MotionAsk, scene: "Scene") -> tuple[str, ...]:
         """All that can."""
         return tuple(model.name for model in discrete("time_basis"))

@@ -45,14 +45,13 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
             for one in self.variants
             if (value := self.errors[one.label][-1]) is not None
         ]
-        thicker = [f"{theory_name(theory)} theory {percent(values[-1])}" for theory, values in self.theories.items()]
-        told = [(f" at N = {self.count}", self.theory, found), ("", "Euler-Bernoulli", thicker)]
-        if self.theory == "Euler-Bernoulli":
-            told = [(f" at N = {self.count}", self.theory, found + thicker)]
-        sentences = (
-            f"mode {self.modes[-1]}{at} against {by}: {', '.join(errors)}" for at, by, errors in told if errors
-        )
-        return (*sentences, *self.left_out)
+        theories = [f"{theory_name(theory)} theory {percent(values[-1])}" for theory, values in self.theories.items()]
+        euler = theory_name(THEORIES[0])
+        if found and theories and self.theory != euler:
+            theories[0] = f"and against {euler} {theories[0]}"
+        where = f"mode {self.modes[-1]} at N = {self.count} against {self.theory if found else euler}"
+        said = [*found, *theories]
+        return (*((f"{where}: {', '.join(said)}",) if said else ()), *self.left_out)
 
     def plain(self) -> object:
         """Errors by the variant's label."""

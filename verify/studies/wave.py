@@ -6,7 +6,7 @@ import msgspec
 
 from verify.checks import Relative, check_number
 from verify.errors import InputError
-from verify.models.catalogue import discrete
+from verify.models.catalogue import MODELS, discrete
 from verify.models.naming import Among, model_meta
 from verify.studies.convergence import Counts
 from verify.studies.kind import Progress, Study
@@ -75,6 +75,20 @@ class WaveStudy(Study[Wave, "WaveFound"]):
         scene.beam.check_added("[wave]", ("mass", "spring", "tension", "foundation"))
         for verb in ("solve_harmonic", "unit_responses"):
             Among(verb).check(asked.model, "wave.model")
+
+    def check_run(self, asked: Wave, scene: "Scene") -> None:
+        """Raise InputError for a beam without waves, forces inside the window, a wave too long or short for it."""
+        from verify.waves.measures import check_beam, check_window, middle_half
+
+        assert scene.drive is not None
+        check_beam(scene.beam)
+        MODELS["analytic"].check(scene.beam, 1, 0)
+        places = [force.position for force in scene.forces]
+        check_window(scene.beam, places, scene.drive.frequency_hz, middle_half(scene.beam))
+        bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
+        for model in discrete("solve_harmonic", scene.beam) if bare.uniform else ():
+            for count in asked.counts:
+                model.check_carried(bare, count, scene.drive.frequency_hz)
 
     def models(self, asked: Wave, scene: "Scene") -> tuple[str, ...]:
         """All that can."""

@@ -158,7 +158,7 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
 
 def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> TwoWaves:
     """The two waves alone, fitted in the mean square over the whole window. Raises as `measure` does."""
-    field.beam.check_added("a wave's measure", ("mass", "spring", "tension", "foundation"))
+    check_beam(field.beam)
     check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
     start = field.wavenumber
     rule = window_rule(window, start.real)
@@ -318,6 +318,11 @@ def window_rule(window: tuple[float, float], k: float) -> Rule:
     return rule_over(window, max(int(np.ceil(2.0 * (window[1] - window[0]) * k / np.pi)), 1))
 
 
+def check_beam(beam: Beam) -> None:
+    """Raise InputError for a beam along which no two waves of one length run."""
+    beam.check_added("a wave's measure", ("mass", "spring", "tension", "foundation"))
+
+
 def check_window(beam: Beam, places: list[float], frequency_hz: float, window: tuple[float, float]) -> None:
     """Raise for a window off the span between two neighbouring forces (at `places`) or too short to measure.
 
@@ -343,7 +348,14 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
             f"window = {list(window)} leaves the span between two forces (they act at {places} m): "
             "two waves alone live there, choose a window inside it"
         )
-    half = float(np.pi / wavenumber(beam, frequency_hz).real)
+    k = wavenumber(beam, frequency_hz)
+    if beam.foundation and beam.mass_per_length * (2.0 * np.pi * frequency_hz) ** 2 <= beam.foundation:
+        least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
+        raise WindowError(
+            f"frequency_hz = {frequency_hz:g}: no wave runs below {least:.6g} Hz on beam.foundation = "
+            f"{beam.foundation:g} N/m^2, raise it or soften the ground"
+        )
+    half = float(np.pi / k.real)
     if end - start < half:
         raise WindowError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
     if end - start > MOST_HALVES * half:
