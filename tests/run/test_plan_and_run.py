@@ -109,7 +109,6 @@ def test_every_packaged_scene_can_be_planned(scene):
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ('beam.section=[{"length"=0.2},{"length"=0.3,"thickness"=0.002}]', "beam.section"),
         ("beam.mass=[{position=0.26, mass=0.01}]", "holds a mass or a spring at \\[0.26\\]"),
         ("drive.frequency_hz=20", "shorter than half a wavelength"),
         ("drive.frequency_hz=123456", "lies beyond, give count"),

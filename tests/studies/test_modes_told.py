@@ -5,7 +5,7 @@ import pytest
 from verify.judge.workbench import Workbench
 from verify.scenes.scene import load_scene
 from verify.studies.convergence import Convergence
-from verify.studies.convergence_figures import found
+from verify.studies.convergence_figures import convergence
 from verify.studies.spectrum import Spectrum
 from verify.studies.spectrum_figures import spectrum
 
@@ -13,7 +13,7 @@ THICK = Workbench(load_scene("thick-bar").beam)
 
 
 def test_a_table_of_two_theories_names_the_exact_frequency_of_each():
-    told = found(THICK, Convergence(modes=(2,), counts=(7, 12), theory=("euler-bernoulli", "timoshenko")))
+    told = convergence(THICK, Convergence(modes=(2,), counts=(7, 12), theory=("euler-bernoulli", "timoshenko")))
     first, *_, rules = told.tables()
     assert first.title == "mode 2, exact 1454.4703 Hz (Euler-Bernoulli), 1401.4956 Hz (Timoshenko)"
     heads = [column.head for column in rules.columns]
@@ -22,7 +22,7 @@ def test_a_table_of_two_theories_names_the_exact_frequency_of_each():
 
 
 def test_a_table_of_one_theory_names_its_exact_frequency():
-    told = found(THICK, Convergence(modes=(3,), counts=(7, 12), theory="timoshenko"))
+    told = convergence(THICK, Convergence(modes=(3,), counts=(7, 12), theory="timoshenko"))
     assert told.tables()[0].title == "mode 3, exact 3747.5412 Hz"  # by a transfer matrix written apart
 
 
@@ -42,6 +42,6 @@ def test_a_mesh_is_called_too_fine_for_a_theory_that_leaves_something_out_alone(
 
 def test_a_rule_that_is_refused_at_every_size_says_why_and_one_that_cannot_exist_has_no_column():
     taut = load_scene("paper", ("beam.tension=1e5", 'beam.supports=["clamped","pinned"]')).beam
-    rules = found(Workbench(taut), Convergence(modes=(1,), counts=(15, 22))).tables()[-1]
+    rules = convergence(Workbench(taut), Convergence(modes=(1,), counts=(15, 22))).tables()[-1]
     assert any(note.startswith("joints tensioned: ") and "leaves no stiffness" in note for note in rules.notes)
     assert "wall welded" not in [column.head for column in rules.columns]

@@ -91,7 +91,7 @@ def progress(n_steps: int, *, quiet: bool) -> Iterator[Callable[[str], None]]:
 RULES = {
     "wall": "How segments are held at a clamped end: gregory, half (the literature's 2EI/l), welded, third-order, "
     "five-joint.",
-    "joints": "The spring between two links: series, printed (the paper's Eq. (1)), tensioned.",
+    "joints": "The spring between two links: series, printed (Eq. (1) as published), tensioned.",
     "grading": "Length of a section's last part over its first.",
     "theory": "Of the beam: euler-bernoulli, rayleigh, timoshenko.",
     "attachment": "How segments feel point masses and springs: reciprocal, lever.",

@@ -78,6 +78,11 @@ def _expected(model: str, beam: "Beam", mode: int, count: int) -> float | None:
     return None if not beam.uniform or model not in LAWS else expected_error(model, beam, mode, count)
 
 
+def check_reachable(beam: "Beam", model: str, settings: Settings) -> None:
+    """Raise InputError for what a model refuses at any number of parts."""
+    MODELS.named(model).check(beam, 1, _CLOSELY, **dict(settings))
+
+
 def enough_from(bench: Workbench, model: str, mode: int, error: float, settings: Settings = ()) -> Enough:
     """From which size on the solved frequency error is within `error`; one part less is outside it.
 
@@ -96,7 +101,7 @@ def enough_from(bench: Workbench, model: str, mode: int, error: float, settings:
             return False
 
     guess = count_guess(model, bench.beam, mode, error)
-    MODELS.named(model).check(bench.beam, 1, max(guess, _CLOSELY), **dict(settings))
+    check_reachable(bench.beam, model, settings)
     smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
     uniform = model in LAWS and bench.beam.uniform and not (bench.beam.section or settings)
     if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:

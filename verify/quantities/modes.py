@@ -121,9 +121,15 @@ def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
 
 
 def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
-    from verify.judge.sizing import count_guess
+    from verify.judge.sizing import check_reachable, count_guess
 
-    return _solved(a.model, count_guess(a.model, scene.beam, a.mode, a.error), a.mode, a.settings)
+    check_reachable(scene.beam, a.model, a.settings)
+    guess = count_guess(a.model, scene.beam, a.mode, a.error)
+    try:
+        MODELS.named(a.model).check(scene.beam, 1, guess, **dict(a.settings))
+    except InputError:
+        return ()  # of so few parts it is refused: where the search begins is not known beforehand
+    return _solved(a.model, guess, a.mode, a.settings)
 
 
 def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:

@@ -95,6 +95,8 @@ def solve_modes(
     try:
         return _modes(beam, chain, lowest(chain_pencil(chain), n_modes))
     except np.linalg.LinAlgError:
+        if joints != "tensioned":
+            raise
         raise InputError(
             f"{FIELD} = {n_segments}: joints = 'tensioned' and wall = {wall!r} take more off the mass of a beam as "
             "thick as this than its end links have: choose joints = 'series', or another wall or n_segments"
