@@ -125,11 +125,17 @@ def _count_guess(a: ToError, scene: "Scene") -> tuple[Need, ...]:
 
     check_reachable(scene.beam, a.model, a.settings)
     guess = count_guess(a.model, scene.beam, a.mode, a.error)
-    try:
-        MODELS.named(a.model).check(scene.beam, 1, guess, **dict(a.settings))
-    except InputError:
-        return ()  # of so few parts it is refused: where the search begins is not known beforehand
+    while not _taken(a, scene, guess):  # what so few parts refuse
+        guess *= 2
     return _solved(a.model, guess, a.mode, a.settings)
+
+
+def _taken(a: ToError, scene: "Scene", count: int) -> bool:
+    try:
+        MODELS.named(a.model).check(scene.beam, a.mode, count, **dict(a.settings))
+    except InputError:
+        return False
+    return True
 
 
 def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:

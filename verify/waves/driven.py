@@ -63,10 +63,12 @@ def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMe
 def own_wavenumber(field: HarmonicField) -> complex:
     """The wavenumber at which waves run in the field's model, 1/m: exact, or by its discrete dispersion.
 
-    That of the beam where no dispersion of the model is known: by another theory, under axial force, on the ground.
+    That of the beam where no dispersion of the model is known: by another theory, under axial force, on the ground,
+    with sections.
     """
     beam = field.beam
-    if field.count is None or field.theory != "euler-bernoulli" or beam.tension or beam.foundation:
+    known = field.theory == "euler-bernoulli" and not (beam.tension or beam.foundation or beam.section)
+    if field.count is None or not known:
         return field.wavenumber
     free = replace(beam, mass=(), spring=())
     return MODELS.named(field.model).wavenumber(free, field.count, field.frequency_hz)
@@ -77,6 +79,7 @@ def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
 
     Raises StandingError where the wave stands.
     """
+    field.beam.check_added("a power balance", ("mass", "spring", "tension", "foundation"))
     wave.waves.check_travelling()
     middle = 0.5 * sum(wave.window)
     left = [force for force in field.forces if force.position <= wave.window[0]]

@@ -158,7 +158,6 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
 
 def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> TwoWaves:
     """The two waves alone, fitted in the mean square over the whole window. Raises as `measure` does."""
-    check_beam(field.beam)
     check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
     start = field.wavenumber
     rule = window_rule(window, start.real)
@@ -318,9 +317,16 @@ def window_rule(window: tuple[float, float], k: float) -> Rule:
     return rule_over(window, max(int(np.ceil(2.0 * (window[1] - window[0]) * k / np.pi)), 1))
 
 
-def check_beam(beam: Beam) -> None:
-    """Raise InputError for a beam along which no two waves of one length run."""
-    beam.check_added("a wave's measure", ("mass", "spring", "tension", "foundation"))
+def _own_section(beam: Beam, start: float, end: float) -> bool:
+    """Whether a stretch of a beam, from and to metres, has the beam's own section alone."""
+    own, slack, left = beam.own, 1e-9 * beam.length, 0.0
+    for piece in beam.pieces:
+        right = left + piece.length
+        alike = (piece.bending_stiffness, piece.mass_per_length) == (own.bending_stiffness, own.mass_per_length)
+        if not alike and left < end - slack and right > start + slack:
+            return False
+        left = right
+    return True
 
 
 def check_window(beam: Beam, places: list[float], frequency_hz: float, window: tuple[float, float]) -> None:
@@ -340,6 +346,11 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
         raise WindowError(
             f"window = {list(window)} holds a mass or a spring at {standing} m: two waves alone live beside it, "
             "choose a window without one"
+        )
+    if not _own_section(beam, start, end):
+        raise WindowError(
+            f"window = {list(window)} holds a beam.section other than the beam's own: waves of one length run along "
+            "one section, choose a window on the beam's own"
         )
     places = sorted(places)
     inside = [p for p in places if start < p < end]

@@ -106,7 +106,8 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         check_window(self.beam, list(self.places), frequency, self.window)
         if not np.isfinite(field).all():
             raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
-        if self.count is None or self.theory != EULER or self.beam.tension or self.beam.foundation:
+        known = self.theory == EULER and not (self.beam.tension or self.beam.foundation or self.beam.section)
+        if self.count is None or not known:
             return wavenumber(self.beam, frequency, self.theory)
         free = replace(self.beam, mass=(), spring=())
         return MODELS.named(self.model).wavenumber(free, self.count, frequency)
