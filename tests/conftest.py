@@ -9,15 +9,16 @@ from verify.beam import Beam
 pytest_plugins = ["pytester"]
 
 
-KEEPERS = ("verify.elements.linear", "verify.segments.linear")
-"""Modules that keep what they were driven with for the next frequency: a fault planted below would not be seen."""
+KEEPERS = ("verify.elements.linear", "verify.segments.linear", "verify.exact.")
+"""Modules that keep what they solved for the next who asks: a fault planted below would not be seen."""
 
 
 @pytest.fixture(autouse=True)
 def nothing_kept():
-    for name in KEEPERS:
-        if name in sys.modules:
-            sys.modules[name]._kept.cache_clear()
+    for module in [module for name, module in sys.modules.items() if name.startswith(KEEPERS)]:
+        for value in list(vars(module).values()):
+            if hasattr(value, "cache_clear"):
+                value.cache_clear()
 
 
 @pytest.fixture

@@ -125,11 +125,11 @@ def test_modes_have_modal_mass_one_with_all_that_has_mass(made):
 @settings(max_examples=20, deadline=None)
 @given(beams())
 def test_a_beam_seen_from_the_other_side_has_the_same_frequencies(made):
-    """Parts go to pieces alike from either side where a piece more or less decides nothing: here none has steps."""
+    """Links to rounding, without steps. Elements end under bodies, so that one more may go to either side of them."""
     beam, theory = made
     beam = replace(beam, section=())
     here, there = (solvers(b, theory) for b in (beam, beam.mirrored()))
-    for name, within in (("exact", 1e-11), ("elements", 1e-10), ("segments", 1e-9)):
+    for name, within in (("exact", 1e-11), ("elements", 1e-5), ("segments", 1e-9)):
         assert there[name](3).frequencies_hz == pytest.approx(here[name](3).frequencies_hz, rel=within), name
 
 

@@ -614,7 +614,7 @@ def test_what_tells_help_of_fields_is_words_alone():
 
     assert imported("field_docs", set()) == {"field_docs"}
     assert not msgspec.structs.fields(Value)
-    assert set(vars(Value)) == set(vars(Bare))
+    assert set(vars(Value)) ^ set(vars(Bare)) <= {"__annotations__", "__doc__"}  # made by Python when asked for
 
 
 COLUMN = Beam(

@@ -234,11 +234,11 @@ def test_a_real_browser_draws_every_chart(request, tmp_path, name, charts, trace
 def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(titanium_strip):
     from verify.judge.workbench import Workbench
     from verify.studies.convergence import Convergence
-    from verify.studies.convergence_figures import found as convergence
+    from verify.studies.convergence_figures import convergence
     from verify.studies.mode_charts import mean_in_words
 
     bench = Workbench(titanium_strip)
     low = convergence(bench, Convergence(modes=(3, 7), counts=(12, 24)))
-    assert mean_in_words(low.rows).endswith("always nearer than elements alone.")
+    assert mean_in_words(low).endswith("always nearer than elements alone.")
     high = convergence(bench, Convergence(modes=(3, 9), counts=(12, 13, 24)))
-    assert mean_in_words(high.rows).endswith("beyond about n = 0.7 N: mode 9 at N = 12.")
+    assert mean_in_words(high).endswith("beyond about n = 0.7 N: mode 9 at N = 12.")
