@@ -140,3 +140,12 @@ def test_a_clamp_that_gives_has_the_order_of_its_wall_joint_too():
     )
     orders = {wall: Variant("segment", (("wall", wall),)).order(beam) for wall in ("half", "third-order", "gregory")}
     assert orders == {"half": 2, "third-order": 3, "gregory": 4}
+
+
+def test_a_wall_that_makes_no_difference_is_said_to_make_none():
+    _, left_out = choose_of_all(Workbench(load_scene("paper").beam), 3, 1e-2, Rules(wall="half", attachment="lever"))
+    assert left_out == {
+        "wall": "it makes no difference here, no end is clamped",
+        "attachment": "it makes no difference here, nothing stands on the beam",
+    }
+    assert not choose_of_all(Workbench(CANTILEVER), 3, 1e-2, Rules(wall="half"))[1]

@@ -214,7 +214,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             "source": self.source,
             "unit": self.unit,
             "answer": self.answer,
-            "best": _candidate(self.found.best) | {"identified": self.found.explained},
+            "best": _candidate(self.found.best) | {"identified": self.found.explained and not self._unseen()},
             "certainty": {
                 "told_apart": not self.found.alike,
                 "alike": [_candidate(one) for one in self.found.alike],

@@ -8,7 +8,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.exact.error_laws import LAWS, expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
-from verify.judge.variants import Rules, Variant, beside
+from verify.judge.variants import Rules, Variant, beside, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.timing import interleaved_medians
@@ -198,6 +198,7 @@ def choose_of_all(
         except InputError as problem:
             left_out[model.name] = str(problem)
     asked = (rules or Rules()).variants(names)
+    left_out |= without_effect(bench.beam, rules or Rules())
     variants, more = list(asked), beside(bench.beam, (rules or Rules()).settled)
     for one in more:
         try:

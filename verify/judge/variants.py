@@ -128,6 +128,16 @@ def every_rule(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
     return tuple(Variant(model, told(dict(chosen) | dict([rule]))) for rule in rules for model in models_with(rule[0]))
 
 
+def without_effect(beam: Beam, rules: Rules) -> dict[str, str]:
+    """Settings that somebody turned and that change nothing on this beam, each with the reason."""
+    reasons = {
+        "wall": "" if "clamped" in beam.supports or beam.spring else "no end is clamped",
+        "attachment": "" if beam.mass or beam.spring else "nothing stands on the beam",
+    }
+    turned = {name for name, _ in rules.settled}
+    return {name: f"it makes no difference here, {why}" for name, why in reasons.items() if why and name in turned}
+
+
 def told(settings: Mapping[str, str | float]) -> Settings:
     """Settings other than their defaults, in the order in which they are told."""
     return tuple((name, settings[name]) for name in DEFAULTS if settings.get(name, DEFAULTS[name]) != DEFAULTS[name])
