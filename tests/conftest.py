@@ -1,5 +1,6 @@
 """Beams that no test value is symmetric in, and a way to plant faults."""
 
+import os
 import sys
 
 import pytest
@@ -7,6 +8,13 @@ import pytest
 from verify.beam import Beam
 
 pytest_plugins = ["pytester"]
+
+for library in (
+    "OPENBLAS",
+    "MKL",
+    "OMP",
+):  # as the command line has it: matrices are small, and workers share the cores
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 
 
 KEEPERS = ("verify.elements.linear", "verify.segments.linear", "verify.exact.")

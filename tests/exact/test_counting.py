@@ -42,8 +42,9 @@ def beams(draw):
     body = PointMass(
         position=at, mass=MASS * 10 ** draw(powers), rotary_inertia=MASS * LENGTH**2 * 10 ** (draw(powers) - 3)
     )
+    held = LENGTH * draw(within)
     spring = PointSpring(
-        position=LENGTH * draw(within),
+        position=at if abs(held - at) < 1e-6 * LENGTH else held,  # nearer than that is the same place to a beam
         stiffness=UNIT * 10 ** draw(powers),
         rotational=UNIT * LENGTH**2 * 10 ** draw(powers),
     )
