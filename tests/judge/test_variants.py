@@ -149,3 +149,11 @@ def test_a_wall_that_makes_no_difference_is_said_to_make_none():
         "attachment": "it makes no difference here, nothing stands on the beam",
     }
     assert not choose_of_all(Workbench(CANTILEVER), 3, 1e-2, Rules(wall="half"))[1]
+
+
+def test_an_elastic_clamp_is_a_wall_and_a_spring_on_the_way_is_none():
+    arm = load_scene("instrument-arm").beam
+    assert labels(beside(arm)) == ["segment wall=half"]
+    assert labels(every_rule(arm))[0] == "segment wall=half"
+    on_the_way = replace(arm, supports=("pinned", "free"), spring=(replace(arm.spring[0], position=0.3),))
+    assert beside(on_the_way) == ()

@@ -106,13 +106,19 @@ def models_with(name: str) -> tuple[str, ...]:
     return tuple(model.name for model in discrete() if name in model.modal_settings)
 
 
+def has_wall(beam: Beam) -> bool:
+    """Whether an end turns against something, so that a chain has a joint at a wall there."""
+    turned = [spring.position for spring in beam.spring if spring.rotational]
+    return "clamped" in beam.supports or 0.0 in turned or beam.length in turned
+
+
 def beside(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
     """The rules that stand beside the default on this beam: the literature's wall, the joint that mends an order.
 
     Axial force and thickness take two orders from joints in series; what else is chosen is kept.
     """
     loses = bool(beam.tension) or dict(chosen).get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
-    other = [("wall", "half")] * ("clamped" in beam.supports) + [("joints", "tensioned")] * loses
+    other = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
     return tuple(Variant(model, told(dict(chosen) | dict([one]))) for one in other for model in models_with(one[0]))
 
 
@@ -120,7 +126,7 @@ def every_rule(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
     """Every rule of a chain that makes a difference on this beam: walls, joints, attachments; the rest as chosen."""
     thick = dict(chosen).get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
     uneven = bool(beam.section) or not beam.uniform or thick or dict(chosen).get("grading", 1.0) != 1.0
-    walls = [w for w in WALLS[1:] if w != "welded" or not uneven] if "clamped" in beam.supports else []
+    walls = [w for w in WALLS[1:] if w != "welded" or not uneven] if has_wall(beam) else []
     rules = [("wall", wall) for wall in walls]
     rules += [("joints", "printed")] * (beam.stepped and all(p.youngs_modulus for p in beam.pieces))
     rules += [("joints", "tensioned")] * (bool(beam.tension) or thick)
@@ -131,7 +137,7 @@ def every_rule(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
 def without_effect(beam: Beam, rules: Rules) -> dict[str, str]:
     """Settings that somebody turned and that change nothing on this beam, each with the reason."""
     reasons = {
-        "wall": "" if "clamped" in beam.supports or beam.spring else "no end is clamped",
+        "wall": "" if has_wall(beam) else "no end is clamped",
         "attachment": "" if beam.mass or beam.spring else "nothing stands on the beam",
     }
     turned = {name for name, _ in rules.settled}

@@ -214,13 +214,9 @@ def solve_harmonic(
     if not (beam.loss_factor or modal_damping or joint_dashpot):
         solve = partial(solve_modes, **settings)
         refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments)
+    _check_dampings(beam, chain, modal_damping)
     loads = _loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
     stiffness = _damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
-    if modal_damping and beam.loss_factor and not chain.plain:
-        raise InputError(
-            "beam.loss_factor and modal_damping together: springs, ground and axial force have no loss, which couples "
-            "the modes, give one of the two"
-        )
     free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
     return HarmonicField(
         theory=theory,
@@ -231,6 +227,15 @@ def solve_harmonic(
         forces=tuple(forces),
         shapes=_field_shapes(chain, free, reading),
     )
+
+
+def _check_dampings(beam: Beam, chain: Chain, modal_damping: float) -> None:
+    """Raise InputError for a loss factor beside a modal ratio where something on the beam has no loss."""
+    if modal_damping and beam.loss_factor and not chain.plain:
+        raise InputError(
+            f"beam.loss_factor = {beam.loss_factor!r} and modal_damping = {modal_damping!r} together: springs, ground "
+            "and axial force have no loss, which couples the modes, give one of the two"
+        )
 
 
 KEPT = 4000
