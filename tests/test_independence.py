@@ -603,7 +603,7 @@ def test_a_theory_is_checked_and_nothing_comes_of_it_but_a_refusal():
                 takers.add(path.parent.name)
         alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
         assert all(call in alone for call in calls_of(tree, "check_theory")), path.stem
-    assert takers == {"elements", "segments", "judge"}
+    assert takers == {"exact", "elements", "segments", "judge"}
 
 
 def test_what_tells_help_of_fields_is_words_alone():

@@ -1,13 +1,14 @@
 """Nothing is missed and nothing counted twice, whatever stands on the beam."""
 
 import numpy as np
-from exact_reference import a_root_lies_within, cut, ritz
+from exact_reference import a_root_lies_within
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
+from verify.elements import linear as elements
 from verify.exact.buckling import buckling_load
 from verify.exact.modes import exact_frequency_hz, modes_below, solve_modes
 from verify.options import SUPPORTS, THEORIES
@@ -81,13 +82,13 @@ def test_every_frequency_has_its_own_number(one):
 
 @settings(max_examples=15, deadline=None)
 @given(one=beams())
-def test_the_number_of_a_frequency_is_that_of_ritz(one):
+def test_the_number_of_a_frequency_is_that_of_the_elements(one):
+    """Cubic elements lie above, by their own error: 5e-5 at most in 150 beams. Polynomials by Ritz lose low modes."""
     beam, theory = one
-    others, _ = ritz(beam, theory, 9, 3 if len(cut(beam)) == 1 else 2)
-    found = solve_modes(beam, 5, theory).frequencies_hz
-    strict = others[beam.rigid_motions :][:5]
-    assert (strict[1:] > 0.99 * found[1:]).all()  # rounding of polynomials reaches the lowest
-    assert (strict[1:] < 1.02 * found[1:]).all()
+    others = elements.solve_modes(beam, 5, 48, theory=theory).frequencies_hz
+    above = others / solve_modes(beam, 5, theory).frequencies_hz - 1
+    assert above.min() > -1e-8
+    assert above.max() < 3e-4
 
 
 @settings(max_examples=25, deadline=None)

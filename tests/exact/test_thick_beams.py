@@ -134,5 +134,5 @@ def test_what_a_theory_lacks_or_has_too_many_of_is_refused():
     with pytest.raises(InputError, match="did you mean 'timoshenko'"):
         exact_frequency_hz(plain, 1, "timoshenk")
     for theory in ("rayleigh", "timoshenko"):
-        with pytest.raises(InputError, match=f"beam.tension with theory = '{theory}': there is more than one"):
+        with pytest.raises(InputError, match=f"beam.tension = .* N with theory = '{theory}': there is more than one"):
             exact_frequency_hz(replace(BLOCK, tension=3.0), 1, theory)

@@ -17,8 +17,7 @@ from typing import NamedTuple
 import msgspec
 
 from verify.beam import Beam
-from verify.errors import InputError, near_name
-from verify.options import THEORIES
+from verify.models.theory import check_theory
 from verify.section import Piece
 
 SAME_PLACE = 1e-12
@@ -72,17 +71,6 @@ class Lineup(msgspec.Struct, frozen=True, kw_only=True):
         return tuple(places)
 
 
-def check_theory(beam: Beam, theory: str) -> None:
-    """Raise InputError for an unknown theory, and for an axial force with one of which there is more than one."""
-    if theory not in THEORIES:
-        raise InputError(f"theory = {theory!r} is not known: {near_name(theory, THEORIES)}")
-    if theory != "euler-bernoulli" and beam.tension:
-        raise InputError(
-            f"beam.tension with theory = {theory!r}: there is more than one such theory, leave the axial force out or "
-            "use euler-bernoulli"
-        )
-
-
 @lru_cache(maxsize=256)
 def line_up(beam: Beam, theory: str = "euler-bernoulli", also: tuple[float, ...] = ()) -> Lineup:
     """What stands along a beam; `also` are places in metres where stretches end besides. Raises InputError."""
@@ -126,17 +114,11 @@ def _parts_of(beam: Beam, number: int, theory: str, cuts: Sequence[float]) -> li
 
 
 def _thickness(piece: Piece, theory: str) -> tuple[float, float]:
-    """(1 / (kappa G A), rho I) as far as they count in a theory."""
-    if theory == "euler-bernoulli":
+    """(1 / (kappa G A), rho I) as far as they count in a theory that the piece has the figures for."""
+    if theory == "euler-bernoulli" or piece.rotary_inertia is None:
         return 0.0, 0.0
-    if piece.rotary_inertia is None:
-        raise InputError(f"beam.rotary_inertia is missing: theory = {theory!r} takes rho I of a section given plainly")
-    if theory == "rayleigh":
+    if theory == "rayleigh" or piece.shear_stiffness is None:
         return 0.0, piece.rotary_inertia
-    if piece.shear_stiffness is None:
-        raise InputError(
-            f"beam.shear_stiffness is missing: theory = {theory!r} takes kappa G A of a section given plainly"
-        )
     return 1.0 / piece.shear_stiffness, piece.rotary_inertia
 
 

@@ -11,11 +11,11 @@ from verify.checks import check_whole
 from verify.exact.buckling import check_stable
 from verify.exact.closed_forms import check_mode, frequency_hz, root_parts
 from verify.exact.harmonic import solve_harmonic, unit_responses
-from verify.exact.lineup import check_theory
 from verify.exact.roots import general_frequency_hz, modes_below
 from verify.models.arrays import Array
 from verify.models.modes import Modes
 from verify.models.places import Numbers, as_typed, real_array
+from verify.models.theory import check_theory
 from verify.options import THEORIES
 
 __all__ = [

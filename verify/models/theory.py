@@ -2,16 +2,16 @@
 
 from verify.beam import Beam
 from verify.errors import InputError, near_name
-from verify.options import THEORIES, Theory
+from verify.options import THEORIES
 
 _TAKES = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "shear_stiffness")}
 """Figures of a section that a theory takes beside its bending stiffness and its mass."""
 
 
-def check_theory(beam: Beam, theory: Theory) -> None:
+def check_theory(beam: Beam, theory: str) -> None:
     """Raise InputError for a theory that is unknown, that a section lacks a figure for, or beside an axial force."""
     if theory not in THEORIES:
-        raise InputError(f"theory = {theory!r} is not known: {near_name(str(theory), THEORIES)}")
+        raise InputError(f"theory = {theory!r} is not known: {near_name(theory, THEORIES)}")
     if theory == "euler-bernoulli":
         return
     if beam.tension:

@@ -135,7 +135,7 @@ def check(
             "raise it or choose joints = 'series'"
         )
     check_division(beam, n_segments, grading)
-    check_theory(beam, theory)  # type: ignore[arg-type]
+    check_theory(beam, theory)
     available = n_elastic(beam, n_segments, theory, attachment)  # type: ignore[arg-type]
     check_size(unknowns(beam, n_segments, theory, attachment), n_modes, available, FIELD, n_segments)  # type: ignore[arg-type]
     if beam.tension:
