@@ -1,0 +1,178 @@
+"""MuJoCo: hinges in a tree, the far end held by a fixed tendon, which is linear in the angles; its own RK4.
+
+Bending happens in its x-z plane, about -y. The tendon is a soft equality as hard as the engine makes one. A slider is a
+body on a slide joint, pushed in the control callback, which Runge-Kutta calls at every stage.
+
+What it does when it breaks: it puts the model back to its start, goes on from there and raises nothing; the time that
+has gone backwards and a counter of warnings tell. A run here stops there and says so.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.peers import tree
+from verify.peers.case import Case, PeerRun, Sled, count, near, surface_speed
+
+
+def model_text(case: Case, step: float, sled: Sled | None = None) -> str:
+    """The chain, and a slider beside it, in the engine's XML."""
+    link, spin = case.link, case.inertia
+    bodies = "".join(
+        f'<body name="link{i}" pos="{0.0 if i == 0 else link!r} 0 0">'
+        f'<joint name="hinge{i}" type="hinge" axis="0 -1 0" stiffness="{0.0 if i == 0 else case.spring!r}"/>'
+        f'<inertial pos="{link / 2!r} 0 0" mass="{case.mass!r}" diaginertia="{spin / 50!r} {spin!r} {spin!r}"/>'
+        for i in range(case.n)
+    )
+    slider = (
+        f'<body name="slider" pos="{sled.start!r} 0 0.01"><joint name="slide" type="slide" axis="1 0 0"/>'
+        f'<inertial pos="0 0 0" mass="{sled.mass!r}" diaginertia="1e-9 1e-9 1e-9"/></body>'
+        if sled
+        else ""
+    )
+    levers = "".join(f'<joint joint="hinge{i}" coef="{link * (case.n - i)!r}"/>' for i in range(case.n))
+    return (
+        '<mujoco><compiler angle="radian" inertiafromgeom="false" boundmass="0" boundinertia="0"/>'
+        f'<option timestep="{step!r}" integrator="RK4" gravity="0 0 0" iterations="20" tolerance="1e-14">'
+        '<flag contact="disable"/></option>'
+        f"<size memory='200M'/><worldbody>{bodies}{'</body>' * case.n}{slider}</worldbody>"
+        f'<tendon><fixed name="closure">{levers}</fixed></tendon><equality><tendon tendon1="closure" '
+        f'solref="{2 * step!r} 1" solimp="0.9999 0.9999 0.001 0.5 2"/></equality></mujoco>'
+    )
+
+
+def matrices(case: Case) -> tuple[Array, Array, Array]:
+    """The engine's own mass (n, n), closure (n,) and stiffness (n,) over the joint angles."""
+    import mujoco
+
+    text = model_text(case, 1e-6).replace("<option ", '<option jacobian="dense" ')
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    try:
+        mujoco.mj_fullM(model, data, mass)
+    except TypeError:  # before version 4
+        mujoco.mj_fullM(model, mass, data.qM)
+    stiffness = np.asarray(model.jnt_stiffness).reshape(model.nv, -1)[:, 0]
+    return mass, np.array(data.efc_J).reshape(-1, model.nv)[0], np.array(stiffness)
+
+
+class Mujoco:
+    """The engine behind the room's interface."""
+
+    def frequencies(self, case: Case) -> Array:
+        """From its mass matrix, its closure and its joint stiffnesses."""
+        return tree.frequencies(*matrices(case))
+
+    def prepare(self, case: Case, sled: Sled | None = None) -> Callable[[float, float], PeerRun]:
+        """Models are compiled once for each step."""
+        return _prepared(case, sled, pushed=True)
+
+    def bare(self, case: Case, sled: Sled | None = None) -> Callable[[float, float], PeerRun]:
+        """The same steps with nothing called back, so without forces: what the engine alone costs."""
+        return _prepared(case, sled, pushed=False)
+
+
+def _pusher(case: Case, sled: Sled | None) -> Callable[[Any, Any], None]:
+    """The callback: forces on links, and friction on the slider."""
+    loads: dict[int, list[tuple[int, float]]] = {}
+    for k, force in enumerate(case.forces):
+        link, where = case.place(force.position)
+        loads.setdefault(link + 1, []).append((k, where - case.link / 2))
+    n = case.n
+
+    def push(model: Any, data: Any) -> None:
+        forces = case.now(data.time)
+        for body, own in loads.items():
+            data.xfrc_applied[body, 2] = sum(forces[k] for k, _ in own)
+            data.xfrc_applied[body, 4] = -sum(lever * forces[k] for k, lever in own)
+        if sled:
+            x = sled.start + data.qpos[n]
+            first = near(case, x) - 2
+            spins = np.cumsum(data.qvel[: first + 5])[first:].tolist()
+            data.qfrc_applied[n] = sled.force(data.qvel[n] - surface_speed(case, sled, spins, x, first))
+
+    return push
+
+
+def _prepared(case: Case, sled: Sled | None, *, pushed: bool) -> Callable[[float, float], PeerRun]:
+    import mujoco
+
+    models: dict[float, tuple[Any, Any]] = {}
+    push = _pusher(case, sled) if pushed else None
+
+    def run(step: float, end: float) -> PeerRun:
+        steps, step = count(step, end)
+        began = perf_counter()
+        if step not in models:
+            model = mujoco.MjModel.from_xml_string(model_text(case, step, sled))
+            models[step] = model, mujoco.MjData(model)
+        model, data = models[step]
+        mujoco.mj_resetData(model, data)
+        if sled:
+            data.qvel[case.n] = sled.speed
+        track = tree.Track(case, sled, steps, step)
+        with _called_back(push) as said:
+            ready = perf_counter()
+            taken = _march(model, data, track) if pushed else _at_once(model, data, track)
+            seconds = perf_counter() - ready
+        broke = "" if taken == steps else _broke(data, (taken + 1) * step, said)
+        return track.run(seconds, ready - began, taken, broke)
+
+    return run
+
+
+def _march(model: Any, data: Any, track: tree.Track) -> int:
+    """Steps until the end or until the engine's clock has gone backwards; how many were good."""
+    import mujoco
+
+    n, step, slides = track.case.n, track.step, track.sled is not None
+    for k in range(1, track.steps + 1):
+        mujoco.mj_step(model, data)
+        if data.time < (k - 0.5) * step:
+            return k - 1
+        if k % track.look == 0:
+            track.keep(k, data.qpos, *((data.qpos[n], data.qvel[n]) if slides else ()))
+    return track.steps
+
+
+def _at_once(model: Any, data: Any, track: tree.Track) -> int:
+    """The same without coming back to Python between; the end alone is kept."""
+    import mujoco
+
+    mujoco.mj_step(model, data, nstep=track.steps)
+    n = track.case.n
+    track.look = track.steps
+    track.keep(track.steps, data.qpos, *((data.qpos[n], data.qvel[n]) if track.sled else ()))
+    return track.steps
+
+
+def _broke(data: Any, t: float, said: list[str]) -> str:
+    """That it went back to its start, when, and what its counters and its warning say."""
+    counted = sum(int(warning.number) for warning in data.warning)
+    told = f": {said[-1].strip().rstrip('.')}" if said else ""
+    return (
+        f"at t = {t:.4g} s it put itself back to its start and went on from t = 0 without an exception; its counters "
+        f"hold {counted} warning{'s' * (counted != 1)}{told}"
+    )
+
+
+@contextmanager
+def _called_back(push: Callable[[Any, Any], None] | None) -> Iterator[list[str]]:
+    """The callback set for a while; what the engine warns of is kept, and not written to a file beside the caller."""
+    import mujoco
+
+    said: list[str] = []
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(said.append)
+    mujoco.set_mjcb_control(push)
+    try:
+        yield said
+    finally:
+        mujoco.set_mjcb_control(None)
+        mujoco.set_mju_user_warning(before)
