@@ -20,11 +20,12 @@ import numpy as np
 from numba import njit
 from scipy.interpolate import CubicSpline
 
-from benchmarks.chain_races import END, MODES, SAMPLES, case_of, converged, error, fixed_steps, system_of, timed
-from benchmarks.peers.case import Array, Case, Run
+from benchmarks.chains import END, MODES, SAMPLES, Run, case_of, converged, error, fixed_steps, system_of, timed
 from verify.chain.dynamics import at_rest
 from verify.chain.splitting import ModalBasis, modal_basis, simulate_modal
 from verify.chain.stepping import simulate, step_limit
+from verify.models.arrays import Array
+from verify.peers.case import Case
 
 FORCE = 10.0
 BAND, WIDTH = 5, 16
@@ -181,9 +182,10 @@ def march(s: Links, h: float, shares: Array, between: int, kept: Array, at: floa
 def links_of(case: Case) -> Links:
     """The case for the implicit kernels."""
     loads = []
-    for x, amplitude, phase_deg in case.forces:
-        i, at = case.place(x)
-        loads.append((i, at - 0.5 * case.link, amplitude, 2 * np.pi * case.frequency_hz, np.deg2rad(phase_deg)))
+    for force in case.forces:
+        i, at = case.place(force.position)
+        omega = 2 * np.pi * case.frequency
+        loads.append((i, at - 0.5 * case.link, force.amplitude, omega, np.deg2rad(force.phase_deg)))
     return Links(case.link, case.mass, case.inertia, case.spring, np.array(loads))
 
 

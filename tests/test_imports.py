@@ -23,6 +23,7 @@ ROOMS = (
     "scenes",
     "quantities",
     "studies",
+    "peers",
     "run",
     "identify",
     "report",

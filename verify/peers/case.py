@@ -1,7 +1,8 @@
 """What every engine is given: a uniform pinned chain with a roller end, its forces, and a slider that rides on it."""
 
 from collections.abc import Sequence
-from math import cos, pi, radians, tanh
+from math import cos, nan, pi, radians, tanh
+from time import perf_counter, process_time
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.checks import check_number, check_whole
@@ -144,6 +145,9 @@ class PeerRun(Value, frozen=True, eq=False, kw_only=True):
     """(m,), of the slider, m/s; empty without one."""
     seconds: float
     """Wall time of the steps."""
+    cpu_s: float = nan
+    """Processor time of the steps, which other work on the machine does not lengthen as it does wall time; nan where it
+    was not taken."""
     set_up_s: float
     """Wall time of what a run needs anew before its first step."""
     steps: int
@@ -163,3 +167,14 @@ def count(step: float, end: float) -> tuple[int, float]:
 def every(steps: int) -> int:
     """After how many steps to look, for at least SAMPLES looks where there are so many steps."""
     return max(steps // SAMPLES, 1)
+
+
+def clocks() -> tuple[float, float]:
+    """Wall time and processor time, seconds from anywhere."""
+    return perf_counter(), process_time()
+
+
+def since(then: tuple[float, float]) -> tuple[float, float]:
+    """(wall, processor) seconds from a reading of the clocks."""
+    now = clocks()
+    return now[0] - then[0], now[1] - then[1]

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.peers.case import SAMPLES, Case, PeerRun, Sled, count, near, surface_speed
+from verify.peers.case import SAMPLES, Case, PeerRun, Sled, clocks, count, near, since, surface_speed
 
 
 class Exudyn:
@@ -26,7 +26,8 @@ class Exudyn:
         """By its own eigenvalue solver, which eliminates the constraints."""
         system, _, _ = assemble(case)
         system.Assemble()
-        found, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
+        with redirect_stdout(StringIO()):
+            found, _ = system.ComputeODE2Eigenvalues(convert2Frequencies=True, useAbsoluteValues=True)
         return np.sort(np.asarray(found, dtype=float))[-(case.n - 1) :]
 
     def prepare(self, case: Case, sled: Sled | None = None) -> Callable[[float, float], PeerRun]:
@@ -39,11 +40,13 @@ class Exudyn:
             sensors = [_mid_span(case, system, bodies)] + (_add_slider(case, sled, system, nodes) if sled else [])
             system.Assemble()
             settings = settings_for(steps, end)
-            ready = perf_counter()
+            ready = clocks()
             raised = _solve(system, settings)
-            seconds = perf_counter() - ready
-            kept = [np.array(system.GetSensorStoredData(sensor)).reshape(-1, 4 if i == 0 else 2)[1:]
-                    for i, sensor in enumerate(sensors)]
+            seconds, cpu_s = since(ready)
+            kept = [
+                np.array(system.GetSensorStoredData(sensor)).reshape(-1, 4 if i == 0 else 2)[1:]
+                for i, sensor in enumerate(sensors)
+            ]
             solver = system.sys["dynamicSolver"]
             return PeerRun(
                 times=kept[0][:, 0],
@@ -51,7 +54,8 @@ class Exudyn:
                 distance=kept[1][:, 1] if sled else np.zeros(0),
                 speed=kept[2][:, 1] if sled else np.zeros(0),
                 seconds=seconds,
-                set_up_s=ready - began,
+                cpu_s=cpu_s,
+                set_up_s=ready[0] - began,
                 steps=int(solver.it.currentStepIndex) - 1,
                 broke=_broke(solver, steps, raised) if raised else "",
             )

@@ -16,7 +16,7 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.peers import tree
-from verify.peers.case import Case, PeerRun, Sled, count, near, surface_speed
+from verify.peers.case import Case, PeerRun, Sled, clocks, count, near, since, surface_speed
 
 
 def model_text(case: Case, step: float, sled: Sled | None = None) -> str:
@@ -118,11 +118,11 @@ def _prepared(case: Case, sled: Sled | None, *, pushed: bool) -> Callable[[float
             data.qvel[case.n] = sled.speed
         track = tree.Track(case, sled, steps, step)
         with _called_back(push) as said:
-            ready = perf_counter()
+            ready = clocks()
             taken = _march(model, data, track) if pushed else _at_once(model, data, track)
-            seconds = perf_counter() - ready
+            spent = since(ready)
         broke = "" if taken == steps else _broke(data, (taken + 1) * step, said)
-        return track.run(seconds, ready - began, taken, broke)
+        return track.run(spent, ready[0] - began, taken, broke)
 
     return run
 

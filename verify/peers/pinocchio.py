@@ -7,14 +7,13 @@ raised. A run here stops where a joint has turned by half a turn, or is no numbe
 """
 
 from collections.abc import Callable
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from verify.models.arrays import Array
 from verify.peers import tree
-from verify.peers.case import Case, PeerRun, Sled, count, near, surface_speed
+from verify.peers.case import Case, PeerRun, Sled, clocks, count, near, since, surface_speed
 
 LIGHT = 1e-3
 """Of a link's mass: the carriage on which the far end rolls."""
@@ -70,10 +69,10 @@ class Pinocchio:
             q, v = np.zeros(size + 1), np.zeros(size + 1)
             if sled:
                 v[-1] = sled.speed
-            ready = perf_counter()
+            ready = clocks()
             with np.errstate(all="ignore"):
                 taken, broke = _march(_with_slider(case, sled, rates) if sled else _alone(rates), q, v, track)
-            return track.run(perf_counter() - ready, 0.0, taken, broke)
+            return track.run(since(ready), 0.0, taken, broke)
 
         return run
 

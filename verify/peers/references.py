@@ -36,6 +36,11 @@ def frequencies(case: Case) -> Array:
     return np.asarray(np.sqrt(stiffness / mass) / (2.0 * np.pi))
 
 
+def explicit_limit(case: Case) -> float:
+    """Seconds: the longest step of the classical Runge-Kutta method that the fastest mode bears, 2 sqrt(2) / omega."""
+    return float(np.sqrt(2.0) / (np.pi * frequencies(case)[-1]))
+
+
 def _polynomials(case: Case) -> tuple[Array, Array]:
     """Stiffness and mass of each mode, for joints that swing as sin(j k pi / n), over n/2."""
     s = 4.0 * np.sin(0.5 * np.arange(1, case.n) * np.pi / case.n) ** 2
@@ -103,7 +108,7 @@ def ride(case: Case, sled: Sled, end: float, steps: int = RIDE_STEPS) -> Ride:
 
     for first in range(0, steps, BLOCK):
         block = min(BLOCK, steps - first)
-        spins = _spins(case, step * (first + 0.5 * np.arange(2 * block + 1)))
+        spins = _spins(case, np.asarray(step * (first + 0.5 * np.arange(2 * block + 1)), dtype=np.float64))
         for k in range(block):
             now, middle, after = spins[2 * k : 2 * k + 3]
             k1 = pull(now, d, v)
@@ -113,7 +118,8 @@ def ride(case: Case, sled: Sled, end: float, steps: int = RIDE_STEPS) -> Ride:
             d += step * v + step**2 * (k1 + k2 + k3) / 6.0
             v += step * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
             kept[first + k + 1] = d, v
-    return Ride(times=step * np.arange(steps + 1), distance=kept[:, 0], speed=kept[:, 1])
+    times = np.asarray(step * np.arange(steps + 1), dtype=np.float64)
+    return Ride(times=times, distance=kept[:, 0], speed=kept[:, 1])
 
 
 def _spins(case: Case, times: Array) -> Array:

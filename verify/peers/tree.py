@@ -45,15 +45,16 @@ class Track:
             self.angles.append(np.cumsum(q[: self.middle + 1]))
             self.slid.append((x, v))
 
-    def run(self, seconds: float, set_up_s: float, steps: int, broke: str) -> PeerRun:
-        """All of it as a run."""
+    def run(self, spent: tuple[float, float], set_up_s: float, steps: int, broke: str) -> PeerRun:
+        """All of it as a run; `spent` are wall and processor seconds of its steps."""
         slid = np.array(self.slid if self.sled else []).reshape(-1, 2)
         return PeerRun(
             times=np.array(self.times),
             deflection=mid_span(self.case, self.angles),
             distance=slid[:, 0],
             speed=slid[:, 1],
-            seconds=seconds,
+            seconds=spent[0],
+            cpu_s=spent[1],
             set_up_s=set_up_s,
             steps=steps,
             broke=broke,

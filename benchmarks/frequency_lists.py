@@ -1,6 +1,6 @@
 """Natural frequencies by Exudyn, MuJoCo and PyElastica, as `tests/identify/data` holds them.
 
-    python -m benchmarks.peers.frequency_lists tests/identify/data
+    python -m benchmarks.frequency_lists tests/identify/data
 
 Run where `peers` and pyelastica are installed; nothing of `verify` is used. The steel cantilever and the paper's beam,
 SI. Recorded with Exudyn 1.13.6, MuJoCo 4.0.0 and PyElastica 1.0.0.
