@@ -130,7 +130,7 @@ def _add_slider(case: Case, sled: Sled, system: Any, nodes: list[int]) -> list[i
     node = system.AddNode(
         items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[sled.speed])
     )
-    system.AddObject(items.Mass1D(physicsMass=sled.mass, nodeNumber=node))
+    system.AddObject(items.Mass1D(mass=sled.mass, nodeNumber=node))
     marker = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
 
     def rub(mbs: Any, t: float, load: object) -> float:
@@ -163,10 +163,22 @@ def settings_for(steps: int, end: float) -> Any:
     settings.timeIntegration.newton.relativeTolerance = 1e-8
     settings.timeIntegration.newton.absoluteTolerance = 1e-12
     settings.timeIntegration.newton.numericalDifferentiation.minimumCoordinateSize = 1
-    settings.solutionSettings.writeSolutionToFile = False
-    settings.solutionSettings.sensorsWritePeriod = end / min(SAMPLES, steps)
-    settings.linearSolverType = exu.LinearSolverType.EigenSparse
+    _put(settings, False, "solution.file.write", "solutionSettings.writeSolutionToFile")
+    _put(settings, end / min(SAMPLES, steps), "solution.sensors.writePeriod", "solutionSettings.sensorsWritePeriod")
+    _put(settings, exu.LinearSolverType.EigenSparse, "linearSolver.solverType", "linearSolverType")
     return settings
+
+
+def _put(settings: Any, value: object, path: str, before: str) -> None:
+    """Put a value where the engine keeps it now, or kept it before."""
+    for names in (path.split("."), before.split(".")):
+        owner = settings
+        for name in names[:-1]:
+            owner = getattr(owner, name, None)
+        if hasattr(owner, names[-1]):
+            setattr(owner, names[-1], value)
+            return
+    raise AttributeError(f"Exudyn's settings have neither {path} nor {before}: another version is needed")
 
 
 def _solve(system: Any, settings: Any) -> str:

@@ -1,0 +1,26 @@
+"""A chain that is symmetric in nothing, and a slider on it."""
+
+import pytest
+
+from verify.beam import PointForce
+from verify.peers.case import case_of, sled_of
+from verify.slider import Slider
+
+FORCES = (
+    PointForce(position=0.0731, amplitude=0.013, phase_deg=-37.0),
+    PointForce(position=0.5219, amplitude=0.021, phase_deg=71.0),
+    PointForce(position=0.0797, amplitude=0.005, phase_deg=160.0),
+)
+"""The first and the last on one link of 13, not on joints."""
+FREQUENCY = 1234.5
+
+
+@pytest.fixture
+def asymmetric_case(titanium_strip):
+    return case_of(titanium_strip, 13, FORCES, FREQUENCY)
+
+
+@pytest.fixture
+def sled(titanium_strip):
+    slider = Slider(mass=2.3e-3, mu=0.31, slope=3e3, position=0.297, speed=1.7e-4, coupling="one-way")
+    return sled_of(titanium_strip, slider)

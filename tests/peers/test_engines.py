@@ -1,0 +1,122 @@
+"""The engines themselves, where they are installed: modes, motions, a slider, and what they do when they break."""
+
+import importlib
+
+import msgspec
+import numpy as np
+import pytest
+
+from tests.peers.conftest import FREQUENCY
+from verify.beam import PointForce
+from verify.errors import InputError
+from verify.peers import references
+from verify.peers.breaking import pushed
+from verify.peers.case import case_of
+from verify.peers.catalogue import PEERS, adapter, installed
+from verify.peers.ladder import deflection_error, ride_error
+
+MODULES = {"Exudyn": "exudyn", "MuJoCo": "mujoco", "Pinocchio": "pinocchio"}
+STEPS = {"Exudyn": 4e-6, "MuJoCo": 4e-5, "Pinocchio": 4e-5}
+ORDERS = {"Exudyn": (1.9, 2.1), "MuJoCo": (3.7, 5.2), "Pinocchio": (3.7, 5.2)}
+END = 2e-3
+
+
+@pytest.fixture(params=MODULES)
+def name(request):
+    pytest.importorskip(MODULES[request.param], reason="the peers extra is not installed")
+    return request.param
+
+
+@pytest.fixture
+def engine(name):
+    return adapter(PEERS[name])
+
+
+def test_the_version_told_is_the_one_imported(name):
+    module = importlib.import_module(MODULES[name])
+    assert installed(PEERS[name]) == module.__version__
+
+
+def test_natural_frequencies_are_the_rigid_chains(engine, asymmetric_case):
+    found = engine.frequencies(asymmetric_case)
+    assert found.shape == (12,)
+    assert found == pytest.approx(references.frequencies(asymmetric_case), rel=1e-9)
+
+
+def test_the_motion_converges_to_the_exact_linear_chain_at_the_engines_order(name, engine, asymmetric_case):
+    run = engine.prepare(asymmetric_case)
+    coarse, fine = (run(step, END) for step in (STEPS[name], 0.5 * STEPS[name]))
+    errors = [deflection_error(one, lambda t: references.deflection(asymmetric_case, t)) for one in (coarse, fine)]
+    assert errors[1] < 1e-3
+    low, high = ORDERS[name]
+    assert low < np.log2(errors[0] / errors[1]) < high
+    assert (coarse.broke, fine.broke) == ("", "")
+    assert fine.steps == pytest.approx(2 * coarse.steps, abs=1)
+    assert len(fine.times) >= 100
+    assert fine.times[-1] == pytest.approx(END, rel=0.03)
+
+
+def test_a_slider_rides_as_on_the_exact_linear_chain(name, engine, asymmetric_case, sled):
+    ride = references.ride(asymmetric_case, sled, END, 8000)
+    run = engine.prepare(asymmetric_case, sled)(0.5 * STEPS[name], END)
+    assert 1e-9 < ride_error(run, ride.at) < 1e-3
+    assert len(run.distance) == len(run.speed) == len(run.times)
+    assert deflection_error(run, lambda t: references.deflection(asymmetric_case, t)) < 1e-3
+
+
+def test_a_slider_on_a_still_chain_slows_down_by_the_exact_law(name, engine, titanium_strip, sled):
+    still = case_of(titanium_strip, 13, [PointForce(position=0.2, amplitude=0.0)], FREQUENCY)
+    run = engine.prepare(still, sled)(2e-6, 3e-4)
+    rate = sled.friction * sled.slope / sled.mass
+    exact = np.arcsinh(np.sinh(sled.slope * sled.speed) * np.exp(-rate * run.times)) / sled.slope
+    assert run.speed == pytest.approx(exact, rel=1e-3)
+
+
+def test_the_same_is_given_twice(engine, name, asymmetric_case, sled):
+    run = engine.prepare(asymmetric_case, sled)
+    first, other, again = run(1e-5, 4e-4), run(2e-5, 4e-4), run(1e-5, 4e-4)
+    assert np.array_equal(first.deflection, again.deflection)
+    assert np.array_equal(first.speed, again.speed)
+    assert not np.array_equal(first.speed[-1], other.speed[-1])
+
+
+SAYS = {
+    "Exudyn": ("raised 'SolveDynamic terminated'", "iteration stalled", "cut its step"),
+    "MuJoCo": ("put itself back to its start", "without an exception", "1 warning", "unstable"),
+    "Pinocchio": ("a joint has turned by", "nothing was raised"),
+}
+
+
+def test_an_engine_that_breaks_says_when_and_how_and_nothing_else_anywhere(
+    name, asymmetric_case, tmp_path, monkeypatch, capfd
+):
+    monkeypatch.chdir(tmp_path)
+    case = msgspec.structs.replace(
+        asymmetric_case, forces=tuple(msgspec.structs.replace(f, amplitude=1e3) for f in asymmetric_case.forces)
+    )
+    row = pushed(name, case, 2e-2)
+    assert all(words in row.did for words in SAYS[name])
+    time = float(row.did.partition("at t = ")[2].partition(" s ")[0])
+    assert row.until <= time < row.asked
+    assert row.steps > 0
+    assert list(tmp_path.iterdir()) == []
+    assert capfd.readouterr() == ("", "")
+
+
+def test_an_engine_that_broke_goes_on_with_the_next_run_as_if_it_had_not(name, engine, asymmetric_case):
+    step = 1.2 * references.explicit_limit(asymmetric_case) if name != "Exudyn" else 4e-6
+    run = engine.prepare(asymmetric_case)
+    before = run(1e-5, 4e-4).deflection
+    assert bool(run(step, 2e-2 if name != "Exudyn" else 4e-5).broke) == (name != "Exudyn")
+    assert np.array_equal(run(1e-5, 4e-4).deflection, before)
+
+
+def test_mujoco_is_left_as_it_was_found():
+    mujoco = pytest.importorskip("mujoco", reason="the peers extra is not installed")
+    assert mujoco.get_mjcb_control() is None
+    assert mujoco.get_mju_user_warning() is None
+
+
+def test_how_an_engine_from_outside_breaks_is_not_known(asymmetric_case):
+    with PEERS.registered(msgspec.structs.replace(PEERS["MuJoCo"], name="Another")), pytest.raises(InputError):
+        pushed("Another", asymmetric_case, 1e-3)
