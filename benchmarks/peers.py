@@ -157,7 +157,7 @@ def ladders(entries: dict[str, Entry]) -> list[Found]:
         def run(step: float, entry: Entry = entry, set_up: list[float] = set_up) -> tuple[float, float]:
             got = entry.run(step, END)
             set_up.append(got.set_up_s)
-            return entry.error(got), got.seconds
+            return entry.error(got), got.seconds if isnan(got.cpu_s) else got.cpu_s
 
         first = entry.first
         for wanted in WANTED:

@@ -84,6 +84,11 @@ def test_an_engine_of_ones_own_takes_part_by_the_same_interface(monkeypatch, asy
     assert "went home" in run(1e-5, 2e-3).broke
 
 
+def test_what_is_no_peer_is_refused():
+    with pytest.raises(InputError, match=r"peer = 'Exact' is no .*: make it one"):
+        PEERS.register(type("Own", (), {"name": "Exact"})())
+
+
 def test_a_peer_is_a_value():
     assert msgspec.structs.replace(NOBODY, name="Somebody") != NOBODY
     assert hash(NOBODY) == hash(msgspec.structs.replace(NOBODY))

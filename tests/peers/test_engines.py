@@ -111,6 +111,23 @@ def test_an_engine_that_broke_goes_on_with_the_next_run_as_if_it_had_not(name, e
     assert np.array_equal(run(1e-5, 4e-4).deflection, before)
 
 
+def test_a_slider_on_a_chain_that_breaks_is_told_too(name, engine, asymmetric_case, sled):
+    if name == "Exudyn":
+        pytest.skip("it has no limit of the step")
+    run = engine.prepare(asymmetric_case, sled)(1.5 * references.explicit_limit(asymmetric_case), 2e-2)
+    assert run.broke.startswith("at t = 0.00")
+    assert len(run.speed) == len(run.times) == run.steps
+
+
+def test_a_model_that_mujoco_does_not_take_is_told_as_broken_before_its_first_step(titanium_strip):
+    pytest.importorskip("mujoco", reason="the peers extra is not installed")
+    speck = msgspec.structs.replace(titanium_strip, length=1e-5, width=1e-6, thickness=1e-7)
+    run = adapter(PEERS["MuJoCo"]).prepare(case_of(speck, 13, [PointForce(position=2e-6)], FREQUENCY))(1e-9, 1e-8)
+    assert "at t = 0 s, before its first step, it refused the model" in run.broke
+    assert "\n" not in run.broke
+    assert len(run.times) == len(run.deflection) == run.steps == 0
+
+
 def test_mujoco_is_left_as_it_was_found():
     mujoco = pytest.importorskip("mujoco", reason="the peers extra is not installed")
     assert mujoco.get_mjcb_control() is None

@@ -1,7 +1,7 @@
 """What every engine is given: a uniform pinned chain with a roller end, its forces, and a slider that rides on it."""
 
 from collections.abc import Sequence
-from math import cos, nan, pi, radians, tanh
+from math import cos, isfinite, nan, pi, radians, tanh
 from time import perf_counter, process_time
 
 from verify.beam import Beam, PointForce, check_frequency
@@ -128,8 +128,8 @@ def surface_speed(case: Case, sled: Sled, spins: Sequence[float] | Array, x: flo
 
 
 def near(case: Case, x: float) -> int:
-    """The link, from 0, whose cubic holds at x: two links on either side of it are needed."""
-    return min(max(int(x / case.link), 2), case.n - 3)
+    """The link, from 0, whose cubic holds at x: two links on either side of it are needed; any where x is no number."""
+    return min(max(int(x / case.link), 2), case.n - 3) if isfinite(x) else 2
 
 
 class PeerRun(Value, frozen=True, eq=False, kw_only=True):

@@ -37,6 +37,11 @@ class Peer(Value, frozen=True, kw_only=True):
     """'module:class' of its adapter, which is made without arguments."""
 
 
+def _wrong(peer: object) -> str:
+    """What an engine from outside cannot be."""
+    return "" if isinstance(peer, Peer) else "is no verify.peers.catalogue.Peer: make it one"
+
+
 PEERS: Registry[Peer] = Registry(
     "peer",
     "verify.peers",
@@ -45,6 +50,7 @@ PEERS: Registry[Peer] = Registry(
         Peer(name="MuJoCo", package="mujoco", module="mujoco", home="verify.peers.mujoco:Mujoco"),
         Peer(name="Pinocchio", package="pin", module="pinocchio", home="verify.peers.pinocchio:Pinocchio"),
     ),
+    refuses=_wrong,
 )
 
 

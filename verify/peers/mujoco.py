@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.errors import one_line
 from verify.models.arrays import Array
 from verify.peers import tree
 from verify.peers.case import Case, PeerRun, Sled, clocks, count, near, since, surface_speed
@@ -25,7 +26,7 @@ def model_text(case: Case, step: float, sled: Sled | None = None) -> str:
     bodies = "".join(
         f'<body name="link{i}" pos="{0.0 if i == 0 else link!r} 0 0">'
         f'<joint name="hinge{i}" type="hinge" axis="0 -1 0" stiffness="{0.0 if i == 0 else case.spring!r}"/>'
-        f'<inertial pos="{link / 2!r} 0 0" mass="{case.mass!r}" diaginertia="{spin / 50!r} {spin!r} {spin!r}"/>'
+        f'<inertial pos="{link / 2!r} 0 0" mass="{case.mass!r}" diaginertia="{spin!r} {spin!r} {spin!r}"/>'
         for i in range(case.n)
     )
     slider = (
@@ -110,7 +111,11 @@ def _prepared(case: Case, sled: Sled | None, *, pushed: bool) -> Callable[[float
         steps, step = count(step, end)
         began = perf_counter()
         if step not in models:
-            model = mujoco.MjModel.from_xml_string(model_text(case, step, sled))
+            try:
+                model = mujoco.MjModel.from_xml_string(model_text(case, step, sled))
+            except ValueError as error:
+                refused = f"at t = 0 s, before its first step, it refused the model: {one_line(str(error))}"
+                return tree.Track(case, sled, steps, step).run((0.0, 0.0), perf_counter() - began, 0, refused)
             models[step] = model, mujoco.MjData(model)
         model, data = models[step]
         mujoco.mj_resetData(model, data)

@@ -124,7 +124,7 @@ def _with_slider(case: Case, sled: Sled, rates: Rates) -> Rates:
 
     def all_rates(t: float, q: Array, v: Array) -> Array:
         x = sled.start + float(q[-1])
-        first = near(case, x) - 2 if np.isfinite(x) else 0
+        first = near(case, x) - 2
         spins = np.cumsum(v[: first + 5])[first:].tolist()
         pulled = sled.force(float(v[-1]) - surface_speed(case, sled, spins, x, first)) / sled.mass
         return np.append(rates(t, q[:-1], v[:-1]), pulled)
