@@ -12,7 +12,8 @@ machine does not lengthen it), of this suite's slider wall time; medians of roun
 Two things a ratio does not say by itself: this suite's slider loop and its linear flow are linear, modes advanced by
 their exact step, where the others are nonlinear engines that could as well do large rotations; and set-up counts for a
 single run.
-Run: OMP_NUM_THREADS=1 python -m benchmarks.peers [--force N] [links ...]      (the `peers` extra brings the others)
+Run: OMP_NUM_THREADS=1 python -m benchmarks.peers [--force N] [links ...]      (the `peers` extra brings the others;
+what it prints is Markdown, for `docs/bench/peers.md`)
 """
 
 import argparse
@@ -179,7 +180,7 @@ def turn(run: Prepared, step: float, per_second: float) -> float:
     return median(taken) / end
 
 
-def race(title: str, entries: dict[str, Entry], beside: dict[str, tuple[str, Prepared]]) -> None:
+def race(title: str, n: int, entries: dict[str, Entry], beside: dict[str, tuple[str, Prepared]]) -> None:
     """Ladders, then interleaved times; `beside` are runs at the step of another, (whose, run)."""
     found = ladders(entries)
     jobs = {(row.name, row.wanted): (entries[row.name].run, row.rung.step) for row in found if row.rung.reached}
@@ -192,36 +193,39 @@ def race(title: str, entries: dict[str, Entry], beside: dict[str, tuple[str, Pre
             rounds[key].append(turn(run, step, rough[key]))
     taken = {key: median(times) for key, times in rounds.items()}
     ours = [name for name in entries if name.startswith("verify")]
-    print(f"  {title}")
-    heads = "".join(f"{'x ' + name.removeprefix('verify, '):>16}" for name in ours)
-    print(f"    {'engine':<24}{'wanted':>8}{'step':>12}{'error':>10}{'ms per ms':>13}{heads}{'set-up':>11}")
+    over = [f"over {name.removeprefix('verify, ')}" for name in ours]
+    head(f"{title}, N = {n}", "wanted", "step, us", "error", "ms per ms", *over, "set-up, ms")
     rows = {(row.name, row.wanted): row for row in found}
     for wanted in WANTED:
         for name in [*entries, *beside]:
-            print_row(name, wanted, rows.get((name, wanted)), taken, ours, jobs)
+            row = rows.get((name, wanted))
+            if row is not None and not row.rung.reached:
+                why = f"not reached: {row.rung.why_not}; least error {row.rung.error:.1e}"
+                line(name, f"{wanted:g}", why, *[""] * (len(ours) + 3))
+            elif (name, wanted) in taken:
+                ratios = [
+                    short(taken[name, wanted] / taken[one, wanted]) if (one, wanted) in taken else "" for one in ours
+                ]
+                step, took = short(1e6 * jobs[name, wanted][1]), short(taken[name, wanted])
+                error = f"{row.rung.error:.1e}" if row else "no forces"
+                line(name, f"{wanted:g}", step, error, took, *ratios, short(1e3 * row.set_up_s) if row else "")
 
 
-def print_row(
-    name: str,
-    wanted: float,
-    row: Found | None,
-    taken: dict[tuple[str, float], float],
-    ours: list[str],
-    jobs: dict[tuple[str, float], tuple[Prepared, float]],
-) -> None:
-    """One line of a table."""
-    if row is not None and not row.rung.reached:
-        print(f"    {name:<24}{wanted:>8g}  not reached: {row.rung.why_not}; least error {row.rung.error:.1e}")
-        return
-    if (name, wanted) not in taken:
-        return
-    ratios = "".join(
-        f"{taken[name, wanted] / taken[one, wanted]:>16.3g}" if (one, wanted) in taken else f"{'-':>16}" for one in ours
-    )
-    error = f"{row.rung.error:.1e}" if row else "no forces"
-    apart = f"{1e3 * row.set_up_s:>8.3g} ms" if row and row.set_up_s else f"{'-':>11}"
-    step = f"{1e6 * jobs[name, wanted][1]:.4g} us"
-    print(f"    {name:<24}{wanted:>8g}{step:>12}{error:>10}{taken[name, wanted]:>13.4g}{ratios}{apart}", flush=True)
+def short(value: float) -> str:
+    """Three digits; nothing for 0."""
+    return f"{float(f'{value:.3g}'):g}" if value else ""
+
+
+def line(*cells: str) -> None:
+    """One row."""
+    print("|", " | ".join(cells), "|", flush=True)
+
+
+def head(*cells: str) -> None:
+    """The first row, and the line below it."""
+    print()
+    line(*cells)
+    line(*["---"] * len(cells))
 
 
 def modes(case: Case, engines: dict[str, PeerAdapter]) -> None:
@@ -240,24 +244,23 @@ def modes(case: Case, engines: dict[str, PeerAdapter]) -> None:
             verb()
             rounds[name].append(since(begun)[1])
     base = median(rounds[f"verify, first {some}"])
-    print(f"  modes{'':<21}{f'error, 1..{some}':>16}{'all of them':>14}{'ms':>11}{'x verify':>10}")
+    head(f"modes, N = {case.n}", f"error, 1 to {some}", "of all", "ms", "over verify")
     for name, values in found.items():
         if values is None:
-            print(f"    {name}: has none")
+            line(name, "has none", "", "", "")
             continue
         off = np.abs(values / exact[: len(values)] - 1.0)
-        every = f"{off.max():.1e}" if len(values) == len(exact) else "-"
+        every = f"{off.max():.1e}" if len(values) == len(exact) else ""
         seconds = median(rounds[name])
-        print(f"    {name:<22}{off[:some].max():>16.1e}{every:>14}{1e3 * seconds:>11.3g}{seconds / base:>10.3g}")
+        line(name, f"{off[:some].max():.1e}", every, short(1e3 * seconds), short(seconds / base))
 
 
 def breaking(case: Case, engines: dict[str, PeerAdapter]) -> None:
     """What each does beyond what it bears."""
-    print("  pushed until they break, to 1 ms")
+    head(f"pushed, N = {case.n}", "by", "what it did", "good steps", "last sample, ms of 1", "wall time, s")
     for name in engines:
         row = pushed(name, case, END)
-        print(f"    {name}, by {row.pushed}: {row.did or 'it did not'}")
-        print(f"      {row.steps} good steps, last sample at {row.until:.3g} s, {row.seconds:.2g} s of wall time")
+        line(name, row.pushed, row.did or "did not break", str(row.steps), short(1e3 * row.until), short(row.seconds))
 
 
 def machine() -> str:
@@ -284,17 +287,17 @@ def main() -> None:
     engines = here()
     for n in given.links:
         case = case_of(n, given.force)
-        print(f"N = {n}, {given.force:g} N")
+        print(f"\n### N = {n}, {given.force:g} N")
         if given.force <= LINEAR_N:
             modes(case, engines)
-        race("transient, mid-span", transients(case, engines), {})
+        race("transient", n, transients(case, engines), {})
         if given.force <= LINEAR_N:
             bare = {}
             if "MuJoCo" in engines:
                 from verify.peers.mujoco import Mujoco
 
                 bare = {"MuJoCo, not called back": ("MuJoCo", Mujoco().bare(case, sled_of(BEAM, SLIDER)))}
-            race("transient with a slider", sliders(case, given.force, engines), bare)
+            race("slider", n, sliders(case, given.force, engines), bare)
         breaking(case, engines)
 
 
