@@ -19,7 +19,6 @@ from verify.models.arrays import Array
 from verify.peers import tree
 from verify.peers.case import Case, PeerRun, Sled, clocks, count, near, since, surface_speed
 
-
 KEPT = 4
 """Compiled models of so many steps, each with room for its data."""
 
