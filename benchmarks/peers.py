@@ -7,7 +7,7 @@ nonlinear one), the slider's distance and speed against a slider on the exact li
 reads its own spline, and is compared with itself converged. An explicit engine starts at 0.99 of its stability limit.
 Times are of the steps alone, for a simulated millisecond: processor time (all have one thread; other work on the
 machine does not lengthen it), of this suite's slider wall time; medians of rounds in which all take turns of at least
-20 ms, long runs by their first part. Set-up stands apart, in wall time, the median of a ladder's runs.
+20 ms, long runs by their first part. Set-up stands apart, in wall time, the least of a ladder's runs.
 
 Two things a ratio does not say by itself: this suite's slider loop and its linear flow are linear, modes advanced by
 their exact step, where the others are nonlinear engines that could as well do large rotations; and set-up counts for a
@@ -163,7 +163,7 @@ def ladders(entries: dict[str, Entry]) -> list[Found]:
         first = entry.first
         for wanted in WANTED:
             rung = longest_step(run, first, wanted, lambda got: got[0], patience=PATIENCE_S, clock=lambda got: got[1])
-            found.append(Found(name, wanted, rung, median(set_up)))
+            found.append(Found(name, wanted, rung, min(set_up)))
             first = rung.step if rung.reached else first
     return found
 

@@ -149,7 +149,7 @@ class PeerRun(Value, frozen=True, eq=False, kw_only=True):
     """Processor time of the steps, which other work on the machine does not lengthen as it does wall time; nan where it
     was not taken."""
     set_up_s: float
-    """Wall time of what a run needs anew before its first step."""
+    """Wall time of what a run of this step needs before its first one, also where it was kept from an earlier run."""
     steps: int
     """That the engine took, which may be others than it was asked for."""
     broke: str = ""

@@ -107,7 +107,7 @@ def _pusher(case: Case, sled: Sled | None) -> Callable[[Any, Any], None]:
 def _prepared(case: Case, sled: Sled | None, *, pushed: bool) -> Callable[[float, float], PeerRun]:
     import mujoco
 
-    models: dict[float, tuple[Any, Any]] = {}
+    models: dict[float, tuple[Any, Any, float]] = {}
     push = _pusher(case, sled) if pushed else None
 
     def run(step: float, end: float) -> PeerRun:
@@ -121,8 +121,8 @@ def _prepared(case: Case, sled: Sled | None, *, pushed: bool) -> Callable[[float
                 return tree.Track(case, sled, steps, step).run((0.0, 0.0), perf_counter() - began, 0, refused)
             if len(models) >= KEPT:
                 models.pop(next(iter(models)))
-            models[step] = model, mujoco.MjData(model)
-        model, data = models[step]
+            models[step] = model, mujoco.MjData(model), perf_counter() - began
+        model, data, set_up_s = models[step]
         mujoco.mj_resetData(model, data)
         if sled:
             data.qvel[case.n] = sled.speed
@@ -132,7 +132,7 @@ def _prepared(case: Case, sled: Sled | None, *, pushed: bool) -> Callable[[float
             taken = _march(model, data, track) if pushed else _at_once(model, data, track)
             spent = since(ready)
         broke = "" if taken == steps else _broke(data, (taken + 1) * step, said)
-        return track.run(spent, ready[0] - began, taken, broke)
+        return track.run(spent, set_up_s, taken, broke)
 
     return run
 
