@@ -6,8 +6,8 @@ error over its samples of 1e-3 and of 1e-5: mid-span against the exact linear ch
 nonlinear one), the slider's distance and speed against a slider on the exact linear chain; this suite's own slider
 reads its own spline, and is compared with itself converged. An explicit engine starts at 0.99 of its stability limit.
 Times are of the steps alone, for a simulated millisecond: processor time (all have one thread; other work on the
-machine does not lengthen it), of this suite's slider wall time; medians of rounds in which all take turns of at least
-20 ms, long runs by their first part. Set-up stands apart, in wall time, the least of a ladder's runs.
+machine does not lengthen it), of this suite's slider the least wall time of a turn; medians of rounds in which all take
+turns of at least 20 ms, long runs by their first part. Set-up stands apart, in wall time, the least of a ladder's runs.
 
 Two things a ratio does not say by itself: this suite's slider loop and its linear flow are linear, modes advanced by
 their exact step, where the others are nonlinear engines that could as well do large rotations; and set-up counts for a
@@ -169,15 +169,17 @@ def ladders(entries: dict[str, Entry]) -> list[Found]:
 
 
 def turn(run: Prepared, step: float, per_second: float) -> float:
-    """Seconds for a simulated second in a turn of at least TURN_S, by a first part where that is long: the median run.
+    """Seconds for a simulated second in a turn of at least TURN_S, by a first part where that is long.
 
-    Processor time where it was taken: other work on the machine lengthens wall time by what it pleases.
+    The median run's processor time; where that was not taken the least wall time, which other work lengthens at will.
     """
     end, begun, taken = min(END, max(10.0 * step, LONGEST_TURN_S / per_second)), perf_counter(), []
     while not taken or perf_counter() - begun < TURN_S:
         found = run(step, end)
-        taken.append(found.seconds if isnan(found.cpu_s) else found.cpu_s)
-    return median(taken) / end
+        taken.append(found)
+    if isnan(taken[0].cpu_s):
+        return min(run.seconds for run in taken) / end
+    return median(run.cpu_s for run in taken) / end
 
 
 def race(title: str, n: int, entries: dict[str, Entry], beside: dict[str, tuple[str, Prepared]]) -> None:
