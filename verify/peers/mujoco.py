@@ -1,6 +1,6 @@
 """MuJoCo: hinges in a tree, the far end held by a fixed tendon, which is linear in the angles; its own RK4.
 
-Bending happens in its x-z plane, about -y. The tendon is a soft equality as hard as the engine makes one; of its solvers
+Bending is in its x-z plane, about -y. The tendon is a soft equality as hard as the engine makes one; of its solvers
 Gauss and Seidel's is the quickest here, exact for one constraint, 1.7 to 2.6 times as fast as Newton's. A slider is a
 body on a slide joint, pushed in the control callback, which Runge-Kutta calls at every stage.
 
