@@ -117,8 +117,11 @@ def main() -> NoReturn:
     """Entry point of the command `verify`, behind `__main__`.
 
     The matrices here are small or sparse: BLAS threads only get in each other's way, so one is the default. What a
-    terminal cannot show is escaped.
+    terminal cannot show is escaped, and what scipy imports for others is not read (`asleep`).
     """
+    from verify.asleep import put_to_sleep
+
+    put_to_sleep()
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):
