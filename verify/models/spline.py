@@ -76,7 +76,7 @@ def _system(pieces: Array, ends: Ends) -> tuple[Array, Array, Array]:
 @lru_cache(maxsize=16)
 def _inverse(pieces: bytes, ends: Ends) -> Array:
     below, on, above = _system(np.frombuffer(pieces), ends)
-    return np.linalg.inv(np.diag(on) + np.diag(below, -1) + np.diag(above, 1))
+    return np.asarray(np.linalg.inv(np.diag(on) + np.diag(below, -1) + np.diag(above, 1)), dtype=float)
 
 
 def _by_band(pieces: Array, ends: Ends, right: Array) -> Array:
