@@ -84,6 +84,20 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
         )
 
 
+def one_by_one(fields: Sequence[HarmonicField]) -> HarmonicSweep:
+    """Fields of one model that were solved one after another, as a sweep."""
+    first = fields[0]
+    return HarmonicSweep(
+        model=first.model,
+        count=first.count,
+        beam=first.beam,
+        frequencies_hz=np.array([field.frequency_hz for field in fields]),
+        forces=first.forces,
+        shapes=lambda x, derivative: np.array([field.shapes(x, derivative) for field in fields]),
+        theory=first.theory,
+    )
+
+
 def swept_frequencies(beam: Beam, forces: Forces, frequencies_hz: Numbers, unknowns: int) -> Array:
     """The frequencies in a row, (n,). Raises InputError as `check_drive` does, by index, and for too many."""
     found = in_a_row(FIELD, frequencies_hz, "hertz").ravel()
