@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 ASLEEP = frozenset(
     {
-        *(f"numpy.{part}" for part in ("char", "core", "ctypeslib", "f2py", "fft", "ma", "polynomial", "random")),
+        *(f"numpy.{part}" for part in ("char", "core", "ctypeslib", "f2py", "fft", "ma", "polynomial")),
         *(f"numpy.{part}" for part in ("rec", "strings", "testing", "typing")),
         "scipy.linalg",
         "scipy.sparse.csgraph",
