@@ -91,7 +91,7 @@ def own_wavenumber(field: HarmonicField) -> complex:
     known = field.theory == "euler-bernoulli" and not (beam.tension or beam.foundation or beam.section)
     if field.count is None or not known:
         return field.wavenumber
-    free = replace(beam, mass=(), spring=())
+    free = replace(beam, mass=(), spring=()) if beam.mass or beam.spring else beam
     return MODELS.named(field.model).wavenumber(free, field.count, field.frequency_hz)
 
 

@@ -107,7 +107,7 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         known = self.theory == EULER and not (self.beam.tension or self.beam.foundation or self.beam.section)
         if self.count is None or not known:
             return wavenumber(self.beam, frequency, self.theory)
-        free = replace(self.beam, mass=(), spring=())
+        free = replace(self.beam, mass=(), spring=()) if self.beam.mass or self.beam.spring else self.beam
         return MODELS.named(self.model).wavenumber(free, self.count, frequency)
 
     def _responses(self, frequencies: Array, x: Array) -> ComplexArray:
