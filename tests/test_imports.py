@@ -188,7 +188,8 @@ HEAVY = {
         (("show", "paper"), {"msgspec", "tomllib"}),
         (("measure", "mode.frequency", "model=analytic", "mode=22"), {"msgspec", "tomllib"}),
         (("measure", "drive.rule_frequency"), {"msgspec", "tomllib"}),
-        (("measure", "mode.frequency", "model=segment", "mode=3", "count=9"), {"msgspec", "tomllib", "numpy", "scipy"}),
+        (("measure", "mode.frequency", "model=segment", "mode=3", "count=9"), {"msgspec", "tomllib", "numpy"}),
+        (("measure", "mode.shape_error", "model=segment", "mode=3", "count=49"), {"msgspec", "tomllib", "numpy"}),
         (
             ("measure", "mode.frequency", "model=fem", "mode=3", "count=9"),
             {"msgspec", "tomllib", "numpy", "scipy", "skfem"},
@@ -228,3 +229,83 @@ def test_importing_the_package_loads_nothing_heavy():
     assert verify.Beam.__module__ == "verify.beam"
     with pytest.raises(AttributeError, match="Baem"):
         _ = verify.Baem
+
+
+def read_by(*words):
+    """Modules that a command line really read in a fresh process, started as `verify` is; those asleep are not read."""
+    code = (
+        "import sys, json, io, contextlib\nfrom verify.asleep import put_to_sleep\nput_to_sleep()\n"
+        "from verify.cli import status_of\n"
+        "with contextlib.redirect_stdout(io.StringIO()):\n    status = status_of(sys.argv[1:])\n"
+        "asleep = [n for n, m in list(sys.modules.items()) if type(m).__name__ == '_LazyModule']\n"
+        "print(json.dumps([status, sorted(set(sys.modules) - set(asleep)), asleep]))"
+    )
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
+    status, names, asleep = json.loads(done.stdout)
+    assert status == 0, done.stderr
+    return set(names), set(asleep)
+
+
+SLOW = {
+    "importlib.metadata",
+    "numpy.f2py",
+    "numpy.ma",
+    "numpy.random",
+    "numpy.testing",
+    "plotly",
+    "rich",
+    "scipy.integrate",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "scipy.optimize",
+    "scipy.sparse",
+    "scipy.sparse.csgraph",
+    "scipy.spatial",
+    "scipy.special",
+    "skfem",
+}
+
+
+@pytest.mark.parametrize(
+    ("words", "allowed"),
+    [
+        (("measure", "mode.frequency", "model=segment", "mode=22", "count=49"), set()),
+        (
+            ("measure", "mode.frequency", "model=fem", "mode=22", "count=49"),
+            # scipy.linalg by skfem.utils, which names a solver of it; numpy.ma by np.unique, numpy.random by scipy
+            {"skfem", "scipy.sparse", "scipy.linalg", "numpy.ma", "numpy.random"},
+        ),
+        (
+            ("measure", "wave.standing_wave_ratio", "--scene", "paper-wave", "model=segment", "count=49"),
+            {"scipy.linalg", "numpy.random"},  # LAPACK's band, and a start vector for the distance to a resonance
+        ),
+    ],
+    ids=["segment figure", "element figure", "wave figure"],
+)
+def test_a_figure_reads_only_the_parts_of_packages_that_it_uses(words, allowed):
+    read, asleep = read_by(*words)
+    assert read & SLOW <= allowed
+    assert not asleep & read
+
+
+def test_what_is_asleep_wakes_when_it_is_looked_into():
+    code = (
+        "import sys\nfrom verify.asleep import ASLEEP, put_to_sleep\nput_to_sleep()\nput_to_sleep()\n"
+        "import numpy, scipy.linalg, scipy.sparse.linalg\n"
+        "kinds = [type(m).__name__ for m in (numpy.ma, scipy.linalg, scipy.sparse.linalg)]\n"
+        "assert kinds == ['_LazyModule'] * 3, kinds\n"
+        "assert scipy.linalg.det([[3.0, 1.0], [1.0, 2.0]]) == 5.0\n"
+        "assert numpy.ma.masked_less(numpy.arange(3), 1).sum() == 3\n"
+        "assert numpy.random.default_rng(3).random() < 1.0\n"
+        "assert scipy.sparse.linalg.norm(scipy.sparse.eye_array(4)) == 2.0\n"
+        "assert sys.meta_path.count(sys.meta_path[0]) == 1\n"
+        "from importlib.util import find_spec\n"
+        "assert all(find_spec(name) for name in ASLEEP)\n"
+    )
+    subprocess.run([sys.executable, "-W", "error::ImportWarning", "-c", code], check=True)
+
+
+def test_importing_the_package_puts_nothing_to_sleep():
+    code = "import verify, verify.cli, sys; print([f for f in sys.meta_path if 'Sleepers' in repr(f)])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -21,7 +21,7 @@ from verify.models.kind import Model
 from verify.models.modes import Modes
 from verify.quantities.catalogue import QUANTITIES
 from verify.quantities.kind import Arguments, Quantity
-from verify.registry import Registry, unusable
+from verify.registry import Registry, may_be_declared, unusable
 from verify.report.html import page
 from verify.run.plan import plan_scene
 from verify.studies.catalogue import STUDIES
@@ -358,10 +358,29 @@ def test_other_packages_are_looked_at_for_a_name_that_is_not_known_and_no_other(
         return [EntryPoint("far", "test_kinds:Far", group), EntryPoint("near", "no_such_module:Far", group)]
 
     monkeypatch.setattr("importlib.metadata.entry_points", entry_points)
+    monkeypatch.setattr("verify.registry.may_be_declared", lambda group, path: True)
     models = Registry("model", "toys.models", homes={"near": "test_kinds:Near"})
     assert ask(models)
     assert looked == (["toys.models"] if looks else [])
     assert unusable() == ()  # a name of our own stays ours
+
+
+def test_what_other_packages_declare_is_seen_without_reading_what_they_are(tmp_path):
+    """As `importlib.metadata` sees it, in a hundredth of its import; where it cannot be told, there may be something."""
+    for folder, text in (("a-1.dist-info", "[toys.models]\nfar = far:Far\n"), ("b-2.egg-info", "[ toys.studies ]\n")):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "entry_points.txt").write_text(text, encoding="utf-8")
+    (tmp_path / "c-3.dist-info").mkdir()
+    path = (str(tmp_path), str(tmp_path / "gone"))
+    asked = ("toys.models", "toys.studies", "toys", "models", "verify.models")
+    assert [may_be_declared(group, path) for group in asked] == [True, True, False, False, False]
+    (tmp_path / "archive.zip").write_bytes(b"PK")
+    assert may_be_declared("verify.models", (str(tmp_path / "archive.zip"),))
+    (tmp_path / "d-4.dist-info").mkdir()
+    (tmp_path / "d-4.dist-info" / "entry_points.txt").write_bytes(b"\xff\xfe")
+    assert may_be_declared("verify.studies", (str(tmp_path),))
+    assert may_be_declared("console_scripts", tuple(sys.path))
+    assert may_be_declared("pytest11", tuple(sys.path))
 
 
 class Near:

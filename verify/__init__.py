@@ -5,6 +5,7 @@ What there is (`help` of each says its fields, shapes and units; everything is S
   Beam, Section, PointMass, PointSpring, PointForce, Slider    what exists
   analytic_modes, fem_beam, segment_model                      the three models: solve_modes, solve_harmonic, ...
   Modes, HarmonicField                                         what those return
+  sweep_harmonic, sweep_modes of each                          many frequencies (HarmonicSweep) or beams in one call
   travelling_wave                                              what kind of wave a field carries: measure, WaveMeasures
   simulate, Motion                                             a driven beam in time, with a slider or without
   free_vibration, FreeVibration                                a beam let go from a shape, without forces
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from verify.errors import InputError
     from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
+    from verify.models.sweeps import HarmonicSweep
     from verify.motion.free_vibration import FreeVibration, free_vibration
     from verify.motion.result import Motion
     from verify.motion.simulate import simulate
@@ -42,6 +44,7 @@ __all__ = [
     "Bent",
     "FreeVibration",
     "HarmonicField",
+    "HarmonicSweep",
     "InputError",
     "Modes",
     "Motion",
@@ -69,6 +72,7 @@ _HOME = {
     "Bent": "verify.chain.bending",
     "FreeVibration": "verify.motion.free_vibration",
     "HarmonicField": "verify.models.fields",
+    "HarmonicSweep": "verify.models.sweeps",
     "InputError": "verify.errors",
     "Modes": "verify.models.modes",
     "Motion": "verify.motion.result",

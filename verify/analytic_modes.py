@@ -12,6 +12,7 @@ from verify.exact.modes import (
     solve_modes,
     stepped_frequency_hz,
 )
+from verify.exact.sweeps import sweep_harmonic, sweep_modes
 
 __all__ = [
     "buckling_load",
@@ -23,6 +24,8 @@ __all__ = [
     "solve_harmonic",
     "solve_modes",
     "stepped_frequency_hz",
+    "sweep_harmonic",
+    "sweep_modes",
     "time_basis",
     "unit_responses",
 ]

@@ -69,7 +69,8 @@ def cli() -> None:
 
     SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
     Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on. What would take more
-    than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment gives more seconds.
+    than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment gives more seconds. Readings are shared
+    among all cores; VERIFY_JOBS gives another number of processes.
     """
 
 
@@ -107,6 +108,11 @@ def _tell_of_unusable() -> None:
             click.echo(f"verify: left out: {why}", err=True)
 
 
+def _cores() -> str:
+    """How many processes share independent work (`cores`), unless the environment says."""
+    return str(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+
+
 def _hush() -> None:
     """Whoever read standard output has gone: leave the interpreter nothing to say about it at its end."""
     with suppress(OSError, ValueError):
@@ -117,8 +123,12 @@ def main() -> NoReturn:
     """Entry point of the command `verify`, behind `__main__`.
 
     The matrices here are small or sparse: BLAS threads only get in each other's way, so one is the default. What a
-    terminal cannot show is escaped.
+    terminal cannot show is escaped, and what scipy imports for others is not read (`asleep`).
     """
+    from verify.asleep import put_to_sleep
+
+    put_to_sleep()
+    os.environ.setdefault("VERIFY_JOBS", _cores())
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):

@@ -10,6 +10,7 @@ from verify.elements.linear import (
     unit_responses,
     unknowns,
 )
+from verify.elements.sweeps import sweep_harmonic, sweep_modes
 
 __all__ = [
     "buckling_load",
@@ -17,6 +18,8 @@ __all__ = [
     "n_elastic",
     "solve_harmonic",
     "solve_modes",
+    "sweep_harmonic",
+    "sweep_modes",
     "time_basis",
     "unit_responses",
     "unknowns",

@@ -1,7 +1,11 @@
 """What there is to choose from, by name: what the package brings, what was registered, what others installed."""
 
+import os
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from verify.errors import InputError, near_name, one_line
@@ -131,6 +135,8 @@ class Registry(MutableMapping[str, T]):
         if self._outside:
             return
         self._outside = True
+        if not may_be_declared(self._group, tuple(sys.path)):
+            return
         from importlib.metadata import entry_points
 
         for point in entry_points(group=self._group):
@@ -154,6 +160,44 @@ class Registry(MutableMapping[str, T]):
             )
         else:
             self[point.name] = found
+
+
+def may_be_declared(group: str, path: tuple[str, ...]) -> bool:
+    """Whether an installed package may have entry points of a group, without `importlib.metadata`, slow to import.
+
+    Packages are folders `*.dist-info` and their older kin on the path. Where anything else may have some (an archive on
+    the path, a finder of its own), and where a file cannot be read, there may be.
+    """
+    others = (finder for finder in sys.meta_path if finder.__module__ != _PATH_FINDER)
+    return any(hasattr(finder, "find_distributions") for finder in others) or f"[{group}]" in _declared(path)
+
+
+@cache
+def _declared(path: tuple[str, ...]) -> str:
+    """What the packages on a path declare, without spaces; every group of ours where that cannot be told."""
+    try:
+        return "\n".join(text for folder in dict.fromkeys(path) for text in _declared_in(Path(folder or ".")))
+    except (OSError, UnicodeError):
+        return _ANY
+
+
+_PATH_FINDER = "_frozen_importlib_external"
+_ANY = "".join(f"[verify.{what}]" for what in ("models", "quantities", "studies"))
+
+
+def _declared_in(folder: Path) -> Iterator[str]:
+    """The entry points that packages in a folder of the path declare."""
+    if not folder.is_dir():
+        yield _ANY if folder.exists() else ""  # an archive
+        return
+    for name in os.listdir(folder):
+        if name.endswith((".dist-info", ".egg-info", ".egg")):
+            home, egg = folder / name, name.endswith(".egg")
+            if egg and home.is_file():
+                yield _ANY
+            points = home / ("EGG-INFO" if egg else "") / "entry_points.txt"
+            if points.is_file():
+                yield points.read_text("utf-8").replace(" ", "")
 
 
 def _imported(home: str) -> Any:

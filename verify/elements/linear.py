@@ -1,12 +1,13 @@
 """Modes and harmonic fields of Hermite and Timoshenko elements: what the model answers in metres, hertz, newtons."""
 
+from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
 from math import pi, sqrt
 
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import KEPT, Elements, build_elements, interpolate, point_loads
@@ -63,7 +64,7 @@ def solve_modes(
     Shapes are the elements' own cubics. Raises InputError for a wrong grading, more modes than unknowns, sizes that
     do not fit into memory, what a theory lacks, or a compression at which the elements buckle.
     """
-    _check_asked(beam, n_modes, n_elements, grading, theory)
+    check_asked(beam, n_modes, n_elements, grading, theory)
     elements = build_elements(beam, n_elements, grading, theory)
     pairs = lowest(element_pencil(elements), n_modes)
     nodal = elements.all_values(pairs.vectors)
@@ -75,12 +76,13 @@ def check(
     beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0, theory: Theory = "euler-bernoulli"
 ) -> None:
     """Raise InputError where `solve_modes` would refuse: before anything is allocated, but for a mesh that buckles."""
-    _check_asked(beam, n_modes, n_elements, grading, theory)
+    check_asked(beam, n_modes, n_elements, grading, theory)
     if beam.tension < 0.0:
         check_unbuckled(build_elements(beam, n_elements, grading, theory))
 
 
-def _check_asked(beam: Beam, n_modes: int, n_elements: int, grading: float, theory: Theory) -> None:
+def check_asked(beam: Beam, n_modes: int, n_elements: int, grading: float, theory: Theory) -> None:
+    """Raise InputError, before anything is allocated, for what elements cannot be asked for."""
     check_whole("n_modes", n_modes, 1)
     check_whole(FIELD, n_elements, 1)
     check_theory(beam, theory)
@@ -95,7 +97,7 @@ def buckling_load(beam: Beam, n_elements: int, *, grading: float = 1.0) -> float
     0 where nothing keeps the beam from tilting. Raises InputError where `solve_modes` would.
     """
     compressed = replace(beam, tension=-float(beam.bending_stiffness / beam.length**2))
-    _check_asked(compressed, 1, n_elements, grading, "euler-bernoulli")
+    check_asked(compressed, 1, n_elements, grading, "euler-bernoulli")
     return mesh_buckling_load(build_elements(compressed, n_elements, grading))
 
 
@@ -158,25 +160,18 @@ def solve_harmonic(
     foundation have no loss.
     """
     forces = as_forces(forces)
-    _check_asked(beam, 1, n_elements, grading, theory)
+    check_asked(beam, 1, n_elements, grading, theory)
     check_drive(beam, forces, frequency_hz)
-    check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
-    elements, pencil = _driven(beam, n_elements, grading, theory)
-    basis, unit = elements.basis, elements.parts.unit
-    _check_dampings(elements, pencil, modal_damping)
+    elements, pencil = driven(beam, n_elements, grading, theory)
+    unit = elements.parts.unit
+    check_dampings(elements, pencil, modal_damping)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * unit**4
     if not (beam.loss_factor or modal_damping):
-        near = partial(_around, theory=theory, grading=grading)
+        near = partial(modes_around, theory=theory, grading=grading)
         refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, near, n_elements)
-    unit_loads = point_loads(basis, np.array([force.position for force in forces]) / unit)
-    total = sum(phasor(force) * load for force, load in zip(forces, unit_loads, strict=True))
-    loads = np.array(total, dtype=np.complex128)[elements.free, None] * (unit**3 / beam.bending_stiffness)
+    loads = force_loads(elements, forces)
     stiffness = damped_stiffness(elements, pencil)
-    nodal = elements.all_values(damped_response(pencil, loads, omega2, stiffness, modal_damping))
-
-    def shapes(x: Array, derivative: int) -> ComplexArray:
-        values: ComplexArray = interpolate(basis, nodal, x / unit, derivative)[0]
-        return values / unit**derivative
+    every = swept_shapes(elements, damped_response(pencil, loads, omega2, stiffness, modal_damping))
 
     return HarmonicField(
         theory=theory,
@@ -185,11 +180,30 @@ def solve_harmonic(
         beam=beam,
         frequency_hz=frequency_hz,
         forces=tuple(forces),
-        shapes=shapes,
+        shapes=lambda x, derivative: every(x, derivative)[0],
     )
 
 
-def _driven(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
+def swept_shapes(elements: Elements, free: ComplexArray) -> Callable[[Array, int], ComplexArray]:
+    """The elements' cubics of the unknowns (n, k) complex: (x, derivative) -> (k, len(x))."""
+    nodal, basis, unit = elements.all_values(free), elements.basis, elements.parts.unit
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        values: ComplexArray = interpolate(basis, nodal, x / unit, derivative)
+        return values / unit**derivative
+
+    return shapes
+
+
+def force_loads(elements: Elements, forces: Sequence[PointForce]) -> ComplexArray:
+    """Forces on the free unknowns, (n, 1), in the elements' units."""
+    unit = elements.parts.unit
+    unit_loads = point_loads(elements.basis, np.array([force.position for force in forces]) / unit)
+    total = sum(phasor(force) * load for force, load in zip(forces, unit_loads, strict=True))
+    return np.array(total, dtype=np.complex128)[elements.free, None] * (unit**3 / elements.beam.bending_stiffness)
+
+
+def driven(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
     """The elements of a beam and their pencil; small ones are kept for the next frequency."""
     return _kept(beam, n_elements, grading, theory) if n_elements < KEPT else _made(beam, n_elements, grading, theory)
 
@@ -202,7 +216,9 @@ def _made(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[
 _kept = lru_cache(maxsize=8)(_made)
 
 
-def _check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:
+def check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:
+    """Raise InputError for a modal ratio that is none, or beside a loss factor where the two couple the modes."""
+    check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
     if modal_damping and elements.beam.loss_factor and len(pencil.stiffness) > own_strains(elements):
         raise InputError(
             f"beam.loss_factor = {elements.beam.loss_factor!r} and modal_damping = {modal_damping!r} together: "
@@ -210,7 +226,7 @@ def _check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: f
         )
 
 
-def _around(beam: Beam, n_modes: int, n_elements: int, *, grading: float, theory: Theory) -> Modes:
+def modes_around(beam: Beam, n_modes: int, n_elements: int, *, grading: float, theory: Theory) -> Modes:
     """Modes among which that of a frequency is, `n_modes` of which a plain beam has below it: masses lower others."""
     wanted = n_modes if beam.uniform and theory == "euler-bernoulli" else 2 * n_modes + 2 * len(beam.mass)
     most = n_elastic(beam, n_elements, theory)
@@ -234,8 +250,8 @@ def unit_responses(
     """
     positions, x = in_a_row("positions", positions), in_a_row("x", x)
     frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
-    _check_asked(beam, 1, n_elements, 1.0, theory)
-    elements, pencil = _driven(beam, n_elements, 1.0, theory)
+    check_asked(beam, 1, n_elements, 1.0, theory)
+    elements, pencil = driven(beam, n_elements, 1.0, theory)
     basis, unit = elements.basis, elements.parts.unit
     weights = point_loads(basis, positions / unit)[:, elements.free].T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from math import factorial, pi, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -37,14 +38,20 @@ def solve_harmonic(beam: Beam, forces: Forces, frequency_hz: float, theory: str 
 
 def _closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> Callable[[Array, int], ComplexArray]:
     check_drive(beam, forces, frequency_hz)
-    if not beam.loss_factor:
-        mode = _nearest_mode(beam, frequency_hz)
-        if abs(frequency_hz / (resonance := mode_frequency_hz(beam, mode)) - 1.0) < RESONANCE:
-            refuse_resonance("analytic", frequency_hz, mode, resonance)
+    check_off_resonance(beam, frequency_hz)
     k = wavenumber(beam, frequency_hz)
     slow, pinned = abs(k) * beam.length < 1.0, beam.supports == ("pinned", "pinned")
     solve = slow_shapes if slow else pinned_shapes if pinned else spliced_shapes
     return solve(beam, forces, k)
+
+
+def check_off_resonance(beam: Beam, frequency_hz: float, field: str = "frequency_hz") -> None:
+    """Raise ResonanceError where a uniform undamped beam is driven on one of its resonances."""
+    if beam.loss_factor:
+        return
+    mode = _nearest_mode(beam, frequency_hz)
+    if abs(frequency_hz / (resonance := mode_frequency_hz(beam, mode)) - 1.0) < RESONANCE:
+        refuse_resonance("analytic", frequency_hz, mode, resonance, field)
 
 
 def _nearest_mode(beam: Beam, frequency_hz: float) -> int:
@@ -54,25 +61,27 @@ def _nearest_mode(beam: Beam, frequency_hz: float) -> int:
     return min(around, key=lambda n: abs(mode_frequency_hz(beam, n) - frequency_hz))
 
 
-def pinned_shapes(beam: Beam, forces: Sequence[PointForce], k: complex) -> Callable[[Array, int], ComplexArray]:
+def pinned_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[[Array, int], ComplexArray]:
     """Green's function of the pinned-pinned beam, summed over the forces: (x, derivative) -> (len(x),).
 
     w = F / (4 EI k^3) (-i e^{-ik(b-a)} S_ik(a) S_ik(L-b) / S_ik(L) - e^{-k(b-a)} S_k(a) S_k(L-b) / S_k(L)) with
-    a = min(x, xi), b = max(x, xi), S_q(z) = 1 - e^{-2qz}. Nothing is truncated and nothing grows.
+    a = min(x, xi), b = max(x, xi), S_q(z) = 1 - e^{-2qz}. Nothing is truncated and nothing grows. Of many
+    wavenumbers in a column, (n, 1): (x, derivative) -> (n, len(x)).
     """
     scale = 1.0 / (4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3)
+    near = k if np.any(np.imag(k)) else np.real(k)  # real powers take a fifth of complex ones' time
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
-        field = np.zeros(len(x), dtype=complex)
+        field = np.zeros(np.broadcast_shapes(np.shape(k), np.shape(x)), dtype=complex)
         for force in forces:
-            for q, factor in ((1j * k, -1j), (k, -1.0)):
+            for q, factor in ((1j * k, -1j), (near, -1.0)):
                 field += phasor(force) * scale * factor * _green(q, force.position, beam.length, x, derivative)
         return field
 
     return shapes
 
 
-def _green(q: complex, source: float, length: float, x: Array, derivative: int) -> ComplexArray:
+def _green(q: Any, source: float, length: float, x: Array, derivative: int) -> ComplexArray:
     """A derivative of e^{-q(b-a)} S(a) S(L-b) / S(L) by x, which is a or b: each one turns a sign in S, (len(x),)."""
     turned = -1.0 if derivative % 2 == 0 else 1.0
     left = x <= source
@@ -127,43 +136,47 @@ def _krylov(kappa: complex, d: int, derivative: int, z: Array) -> ComplexArray:
     return np.asarray(sum(terms), dtype=complex)
 
 
-def spliced_shapes(beam: Beam, forces: Sequence[PointForce], k: complex) -> Callable[[Array, int], ComplexArray]:
+def spliced_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[[Array, int], ComplexArray]:
     """Four exponentials on every span between forces, each decaying from the end it starts at, spliced.
 
-    Deflection, slope and moment go on over a force; EI (1 + i eta) times the third derivative jumps by it.
+    Deflection, slope and moment go on over a force; EI (1 + i eta) times the third derivative jumps by it. Of many
+    wavenumbers in a column, (n, 1): (x, derivative) -> (n, len(x)).
     """
+    each = np.asarray(k)[:, 0] if np.ndim(k) else np.asarray(k)
     inner = sorted({f.position for f in forces if 0.0 < f.position < beam.length})
     ends = np.array([0.0, *inner, beam.length])
     stiffness = beam.bending_stiffness * (1.0 + 1j * beam.loss_factor)
     jumps = {
-        p: sum(phasor(f) for f in forces if f.position == p) / stiffness / k**3 for p in (0.0, *inner, beam.length)
+        p: sum(phasor(f) for f in forces if f.position == p) / stiffness / each**3 for p in (0.0, *inner, beam.length)
     }
     rows = _end_rows(beam, k, ends, jumps)
     for span, at in enumerate(inner):
         for derivative in range(4):
-            here = {j: _exponentials(k, ends, span + j, np.array([at]), derivative)[:, 0] for j in (0, 1)}
+            here = {j: _exponentials(k, ends, span + j, np.array([at]), derivative)[..., 0] for j in (0, 1)}
             rows.append(({span: -here[0], span + 1: here[1]}, derivative, jumps[at] if derivative == 3 else 0.0))
-    matrix, right = np.zeros((len(rows), len(rows)), dtype=complex), np.zeros(len(rows), dtype=complex)
+    matrix = np.zeros((*each.shape, len(rows), len(rows)), dtype=complex)
+    right = np.zeros((*each.shape, len(rows), 1), dtype=complex)
     for row, (blocks, derivative, value) in enumerate(rows):
         for span, block in blocks.items():
-            matrix[row, 4 * span : 4 * span + 4] = block / k**derivative
-        right[row] = value
-    amplitudes = np.linalg.solve(matrix, right).reshape(-1, 4)
+            matrix[..., row, 4 * span : 4 * span + 4] = np.moveaxis(block, 0, -1) / each[..., None] ** derivative
+        right[..., row, 0] = value
+    amplitudes = np.linalg.solve(matrix, right).reshape(*each.shape, -1, 1, 4)
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
         span = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
-        field = np.zeros(len(x), dtype=complex)
+        field = np.zeros((*each.shape, len(x)), dtype=complex)
         for j in np.unique(span):
-            field[span == j] = amplitudes[j] @ _exponentials(k, ends, int(j), x[span == j], derivative)
+            parts = np.moveaxis(_exponentials(k, ends, int(j), x[span == j], derivative), 0, -2)
+            field[..., span == j] = (amplitudes[..., j, :, :] @ parts)[..., 0, :]
         return field
 
     return shapes
 
 
-Row = tuple[dict[int, ComplexArray], int, complex]
+Row = tuple[dict[int, ComplexArray], int, Any]
 
 
-def _end_rows(beam: Beam, k: complex, ends: Array, jumps: dict[float, complex]) -> list[Row]:
+def _end_rows(beam: Beam, k: Any, ends: Array, jumps: dict[float, Any]) -> list[Row]:
     """The conditions at both ends: (exponentials by span, derivative, value). A force at a free end is its shear."""
     rows: list[Row] = []
     for at, span, support, sign in (
@@ -171,13 +184,13 @@ def _end_rows(beam: Beam, k: complex, ends: Array, jumps: dict[float, complex]) 
         (beam.length, len(ends) - 2, beam.supports[1], -1.0),
     ):
         for derivative in _FREE_DERIVATIVES[support]:
-            block = _exponentials(k, ends, span, np.array([at]), derivative)[:, 0]
+            block = _exponentials(k, ends, span, np.array([at]), derivative)[..., 0]
             rows.append(({span: block}, derivative, sign * jumps[at] if derivative == 3 else 0.0))
     return rows
 
 
-def _exponentials(k: complex, ends: Array, span: int, x: Array, derivative: int) -> ComplexArray:
-    """e^{-ik}, e^{-k} from the left end of a span and from its right end, or a derivative, (4, len(x))."""
+def _exponentials(k: Any, ends: Array, span: int, x: Array, derivative: int) -> ComplexArray:
+    """e^{-ik}, e^{-k} from the left end of a span and from its right end, or a derivative, (4, [n,] len(x))."""
     ahead, back = x - ends[span], ends[span + 1] - x
     rows = [(-q) ** derivative * np.exp(-q * ahead) for q in (1j * k, k)]
     rows += [q**derivative * np.exp(-q * back) for q in (1j * k, k)]

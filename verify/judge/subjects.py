@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from verify.models.arrays import Array, ComplexArray
     from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
+    from verify.models.sweeps import HarmonicSweep
     from verify.models.time_basis import TimeBasis
 
 
@@ -48,6 +49,14 @@ class Exact(Model):
         from verify.exact.harmonic import solve_harmonic
 
         return solve_harmonic(beam, forces, frequency_hz, **settings)
+
+    def sweep_harmonic(
+        self, beam: "Beam", forces: "Sequence[PointForce]", frequencies_hz: "Array", count: int | None, **settings: Any
+    ) -> "HarmonicSweep":
+        """All at once."""
+        from verify.exact.sweeps import sweep_harmonic
+
+        return sweep_harmonic(beam, forces, frequencies_hz, **settings)
 
     def unit_responses(
         self,
@@ -117,6 +126,16 @@ class Discrete(Model):
     ) -> "HarmonicField":
         """The steady field under harmonic forces."""
         found: HarmonicField = self.verbs.solve_harmonic(beam, forces, frequency_hz, count, **settings)
+        return found
+
+    def sweep_harmonic(
+        self, beam: "Beam", forces: "Sequence[PointForce]", frequencies_hz: "Array", count: int | None, **settings: Any
+    ) -> "HarmonicSweep":
+        """All at once."""
+        from importlib import import_module
+
+        sweeps = import_module(f"{self.home.rpartition('.')[0]}.sweeps")
+        found: HarmonicSweep = sweeps.sweep_harmonic(beam, forces, frequencies_hz, count, **settings)
         return found
 
     def unit_responses(

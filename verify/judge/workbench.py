@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from verify.models.arrays import Array
     from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
+    from verify.models.sweeps import HarmonicSweep
     from verify.motion.result import Motion
 
 EULER = "euler-bernoulli"
@@ -148,6 +149,8 @@ class Workbench:
         self._exact: dict[tuple[int, str], float] = {}
         self.fields: dict[Any, HarmonicField] = {}
         """Harmonic fields by everything that makes them."""
+        self.sweeps: dict[Any, HarmonicSweep] = {}
+        """Harmonic fields over frequencies, likewise."""
         self.motions: dict[Any, Motion] = {}
         """Simulations by everything that makes them."""
         self.n_unkept_motions = 0

@@ -24,10 +24,9 @@ def damped_response(
     if not modal_damping:
         return forced_response(pencil, loads, omega2, stiffness)
     factors = stiffness / pencil.stiffness
-    if np.ptp(factors.imag) > 1e-9 * abs(factors).max():
-        raise InputError("joint_dashpot and modal_damping together: dashpots couple the modes, give one of the two")
+    check_couples(factors)
     check_dense(pencil, "modal_damping")
-    values, vectors = modal_basis(pencil)
+    values, vectors = receptance_basis(pencil)
     denominators = values * factors[0] - omega2 + 2j * modal_damping * np.sqrt(values * omega2)
     return np.asarray(vectors @ ((vectors.T @ loads) / denominators[:, None]))
 
@@ -41,13 +40,36 @@ def modal_receptance(
     Raises InputError beyond the dense size.
     """
     check_dense(pencil, "a map over frequency")
-    values, vectors = modal_basis(pencil)
+    values, vectors = receptance_basis(pencil)
     denominators = values * (1.0 + 1j * loss_factor) - omega2[:, None]
     near = abs(denominators) <= 2.0 * RESONANCE * omega2[:, None]
     known = np.full(len(omega2), True) if loss_factor else ~near.any(axis=1)
     shares = np.full((len(omega2), weights.shape[1], len(values)), np.nan, dtype=complex)
     shares[known] = (vectors.T @ weights).T / denominators[known, None, :]
     return vectors, shares
+
+
+def check_couples(factors: ComplexArray) -> None:
+    """Raise InputError where dashpots, by their share (..., m) in every stiffness, couple modes of one ratio."""
+    if (np.ptp(factors.imag, axis=-1) > 1e-9 * abs(factors).max(axis=-1)).any():
+        raise InputError("joint_dashpot and modal_damping together: dashpots couple the modes, give one of the two")
+
+
+def receptance_basis(pencil: FactoredPencil) -> tuple[Array, Array]:
+    """All eigenvalues and vectors as `modal_basis`, for sums over modes, which lose what the vectors lose.
+
+    Of a small even pencil from singular values, conditioned like n^2 where K is like n^4, and kept with the pencil.
+    """
+    if not takes_all_modes(pencil):
+        return modal_basis(pencil)
+    if not pencil.bases:
+        pencil.bases.append(modal_basis(pencil, sharp=True))
+    return pencil.bases[0]
+
+
+def takes_all_modes(pencil: FactoredPencil) -> bool:
+    """Whether all modes of a pencil are soon found, and sharp enough to be summed."""
+    return pencil.n <= DENSE_UNKNOWNS and not pencil.uneven
 
 
 def check_dense(pencil: FactoredPencil, what: str) -> None:
@@ -66,10 +88,22 @@ def refuse_near_resonance(
     count: int,
 ) -> None:
     """Raise InputError where an undamped pencil is driven at one of its own frequencies."""
-    if abs(resonance_distance(pencil, omega2)) > 2.0 * RESONANCE:
-        return
+    if abs(resonance_distance(pencil, omega2)) <= 2.0 * RESONANCE:
+        name_resonance(model, beam, pencil, frequency_hz, solve_modes, count)
+
+
+def name_resonance(
+    model: str,
+    beam: Beam,
+    pencil: FactoredPencil,
+    frequency_hz: float,
+    solve_modes: Callable[[Beam, int, int], Modes],
+    count: int,
+    field: str = "frequency_hz",
+) -> None:
+    """Raise ResonanceError for a frequency, named `field`, on a resonance: with the mode that lies nearest."""
     n_modes = pencil.n - pencil.rigid_modes
     guess = int(np.sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant) * beam.length / np.pi) + 4
     frequencies = solve_modes(beam, min(guess, n_modes), count).frequencies_hz
     nearest = int(abs(frequencies - frequency_hz).argmin())
-    refuse_resonance(model, frequency_hz, nearest + 1, float(frequencies[nearest]))
+    refuse_resonance(model, frequency_hz, nearest + 1, float(frequencies[nearest]), field)

@@ -46,6 +46,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
+    bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
+    """All modes of it, once they were asked for (`driven_pencil.receptance_basis`)."""
     uneven: bool = False
     """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
 
@@ -130,9 +132,13 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
         vectors = _svd_vectors(pencil, n_modes)
     else:
         vectors = _sparse_vectors(pencil, n_modes)
+    return _in_order(pencil, vectors, method_name(pencil.n, n_modes, pencil.uneven))
+
+
+def _in_order(pencil: FactoredPencil, vectors: Array, method: str) -> Eigenpairs:
+    """The pairs of vectors (n, k), their values read from the factored quotient."""
     values, vectors = factored_quotient(pencil, vectors)
     order = np.argsort(values, kind="stable")
-    method = method_name(pencil.n, n_modes, pencil.uneven)
     return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method)
 
 
@@ -150,27 +156,29 @@ def weighed_squares(vectors: Array, matrix: Any) -> Array:
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
-    """Vectors by LAPACK on the assembled pencil: their error enters the quotient squared."""
-    from scipy.linalg import eigh
+    """Vectors by LAPACK on the assembled pencil: their error enters the quotient squared.
 
+    Through numpy, which one small problem takes a third of scipy's start for.
+    """
     strain = pencil.strain(np.eye(pencil.n))
     stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
-    _, vectors = eigh(stiffness, pencil.mass_matrix(), driver="gvd", check_finite=False)
-    return np.asarray(vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes])
+    lower = np.linalg.cholesky(pencil.mass_matrix())
+    half = np.linalg.solve(lower, stiffness)
+    _, vectors = np.linalg.eigh(np.linalg.solve(lower, half.T))
+    wanted = vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes]
+    return np.asarray(np.linalg.solve(lower.T, wanted))
 
 
 def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     """Vectors by the SVD of diag(d)^{1/2} B L^{-T}, M = L L^T: conditioned like n^2 where K is like n^4."""
-    from scipy.linalg import cholesky, solve_triangular, svd
-
     mass = pencil.mass_matrix()
-    lower = cholesky(mass.toarray() if hasattr(mass, "toarray") else mass, lower=True)
+    lower = np.linalg.cholesky(mass.toarray() if hasattr(mass, "toarray") else mass)
     strain = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(np.eye(pencil.n))
     # full_matrices: where motions are rigid, B has fewer rows than columns, and those come last
-    right = svd(solve_triangular(lower, strain.T, lower=True).T, full_matrices=True)[2]
+    right = np.linalg.svd(np.linalg.solve(lower, strain.T).T, full_matrices=True)[2]
     last = pencil.n - pencil.rigid_modes
     wanted = right[last - n_modes : last][::-1].T
-    return np.asarray(solve_triangular(lower, wanted, lower=True, trans="T"))
+    return np.asarray(np.linalg.solve(lower.T, wanted))
 
 
 def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
@@ -312,11 +320,32 @@ def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:
     return float(vector[:, 0] @ inertia[:, 0] / (vector[:, 0] @ (pencil.mass_matrix() @ vector[:, 0])) / omega2)
 
 
-def modal_basis(pencil: FactoredPencil) -> tuple[Array, Array]:
-    """All eigenvalues, (n,), rigid ones first as zeros, and M-orthonormal vectors, (n, n). For dense sizes."""
-    pairs = lowest(pencil, pencil.n - pencil.rigid_modes)
+def modal_basis(pencil: FactoredPencil, sharp: bool = False) -> tuple[Array, Array]:
+    """All eigenvalues, (n,), rigid ones first as zeros, and M-orthonormal vectors, (n, n). For dense sizes.
+
+    `sharp`: vectors from singular values at any size, sharpened once; for pencils that are not uneven.
+    """
+    wanted = pencil.n - pencil.rigid_modes
+    pairs = _in_order(pencil, _svd_vectors(pencil, wanted), "dense SVD") if sharp else lowest(pencil, wanted)
     rigid: Array = pencil.rigid
     if rigid.shape[1]:
         gram = rigid.T @ (pencil.mass_matrix() @ rigid)
         rigid = np.asarray(np.linalg.solve(np.linalg.cholesky(gram), rigid.T).T, dtype=float)
-    return np.append(np.zeros(rigid.shape[1]), pairs.values), np.hstack([rigid, pairs.vectors])
+    values, vectors = np.append(np.zeros(rigid.shape[1]), pairs.values), np.hstack([rigid, pairs.vectors])
+    return _sharpened(pencil, values, vectors) if sharp else (values, vectors)
+
+
+def _sharpened(pencil: FactoredPencil, values: Array, vectors: Array) -> tuple[Array, Array]:
+    """All pairs with what low vectors have of high ones taken out, once (Ogita and Aishima, 2018, Algorithm 1).
+
+    V^T K V from the strains is as exact for low modes as for high ones, which no assembled K is.
+    """
+    strains = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(vectors)
+    lack = np.eye(pencil.n) - vectors.T @ (pencil.mass_matrix() @ vectors)
+    gaps = values - values[:, None]
+    apart = abs(gaps) > 1e-9 * (values + values[:, None])
+    mixed = (strains.T @ strains + values * lack) / np.where(apart, gaps, 1.0)
+    vectors = vectors + vectors @ np.where(apart, mixed, 0.5 * lack)
+    elastic = factored_quotient(pencil, vectors[:, pencil.rigid_modes :])
+    first = slice(pencil.rigid_modes)
+    return np.append(values[first], elastic[0]), np.hstack([vectors[:, first], elastic[1]])

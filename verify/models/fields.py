@@ -100,6 +100,11 @@ def check_drive(beam: Beam, forces: Forces, frequency_hz: float) -> None:
     Unit forces bend the thinnest beams to F L^2 / EI = 1e60; from LARGEST_SLOPE on resonance leaves no square of it.
     """
     check_frequency("frequency_hz", frequency_hz, beam)
+    check_forces(beam, forces)
+
+
+def check_forces(beam: Beam, forces: Forces) -> None:
+    """Raise InputError for no force, or a force off the beam or too large for it."""
     forces = as_forces(forces)
     if not forces:
         raise InputError("forces is empty: give at least one PointForce")
@@ -121,10 +126,12 @@ def phasor(force: PointForce) -> complex:
     return complex(force.amplitude * np.exp(1j * np.deg2rad(force.phase_deg)))
 
 
-def refuse_resonance(model: str, frequency_hz: float, mode: int, resonance_hz: float) -> None:
+def refuse_resonance(
+    model: str, frequency_hz: float, mode: int, resonance_hz: float, field: str = "frequency_hz"
+) -> None:
     """Raise ResonanceError naming the mode of an undamped resonance and the distance to it."""
     distance = abs(frequency_hz / resonance_hz - 1.0)
     raise ResonanceError(
-        f"frequency_hz = {frequency_hz!r} lies {distance:.1e} (relative) from the undamped resonance of mode {mode} "
+        f"{field} = {frequency_hz!r} lies {distance:.1e} (relative) from the undamped resonance of mode {mode} "
         f"of the {model} model at {resonance_hz!r} Hz: give the beam a loss_factor or choose another frequency"
     )

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from verify.models.arrays import Array, ComplexArray
     from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
+    from verify.models.sweeps import HarmonicSweep
     from verify.models.time_basis import TimeBasis
 
 Setting = str | float
@@ -92,6 +93,15 @@ class Model:
     ) -> "HarmonicField":
         """The steady field under harmonic forces. Raises InputError."""
         raise self._has_no("solve_harmonic", "harmonic fields")
+
+    def sweep_harmonic(
+        self, beam: "Beam", forces: "Sequence[PointForce]", frequencies_hz: "Array", count: int | None, **settings: Any
+    ) -> "HarmonicSweep":
+        """The fields at many frequencies, one after another unless a model knows better. Raises InputError."""
+        from verify.models.sweeps import one_by_one
+
+        fields = [self.solve_harmonic(beam, forces, float(f), count, **settings) for f in frequencies_hz]
+        return one_by_one(fields)
 
     def unit_responses(
         self,

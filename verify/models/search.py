@@ -1,6 +1,8 @@
 """The least of a figure over an interval: the best of a grid, then Brent's method around it."""
 
 from collections.abc import Callable
+from math import sqrt
+from typing import TypeAlias
 
 import msgspec
 import numpy as np
@@ -19,14 +21,64 @@ class Least(msgspec.Struct, frozen=True, kw_only=True):
 
 def least_over(figure: Callable[[Array], Array], grid: Array, tolerance: float) -> Least:
     """The least value of `figure`, which maps (n,) to (n,), on an ascending grid, to `tolerance` in x."""
-    from scipy.optimize import minimize_scalar
-
     values = figure(grid)
     least = int(np.argmin(values))
-    around = grid[max(least - 1, 0)], grid[min(least + 1, len(grid) - 1)]
-    found = minimize_scalar(
-        lambda x: float(figure(np.array([x]))[0]), bounds=around, method="bounded", options={"xatol": tolerance}
-    )
-    x, value = (found.x, found.fun) if found.fun <= values[least] else (grid[least], values[least])
+    low, high = float(grid[max(least - 1, 0)]), float(grid[min(least + 1, len(grid) - 1)])
+    x, value = least_between(lambda x: float(figure(np.array([x]))[0]), low, high, tolerance)
+    if value > values[least]:
+        x, value = grid[least], values[least]
     distance = min(x - grid[0], grid[-1] - x)
     return Least(x=float(x), value=float(value), at_edge=bool(distance < 0.01 * (grid[1] - grid[0])))
+
+
+GOLDEN = 0.5 * (3.0 - sqrt(5.0))
+MOST_STEPS = 500
+
+
+def least_between(figure: Callable[[float], float], low: float, high: float, tolerance: float) -> tuple[float, float]:
+    """(x, figure(x)) of the least value between two ends, to `tolerance` in x: parabolas, golden sections where not.
+
+    Brent (Algorithms for Minimization without Derivatives, 1973, 5.8) in the order of Forsythe, Malcolm and Moler's
+    FMIN, as `scipy.optimize.minimize_scalar(method="bounded")` has it, step by step.
+    """
+    x = w = v = low + GOLDEN * (high - low)  # the best, the second best and the one before it
+    fx = fw = fv = figure(x)
+    step = before = 0.0
+    for _ in range(MOST_STEPS - 1):
+        middle = 0.5 * (low + high)
+        finest = sqrt(2.2e-16) * abs(x) + tolerance / 3.0
+        if abs(x - middle) <= 2.0 * finest - 0.5 * (high - low):
+            break
+        parabola = _by_parabola((x, fx), (w, fw), (v, fv), before, (low, high)) if abs(before) > finest else None
+        if parabola is None:
+            before = low - x if x >= middle else high - x
+            step = GOLDEN * before
+        else:
+            before, step = step, parabola
+            if min(x + step - low, high - (x + step)) < 2.0 * finest:
+                step = finest if middle >= x else -finest
+        there = x + (step if abs(step) >= finest else finest if step >= 0.0 else -finest)
+        found = figure(there)
+        if found <= fx:
+            low, high = (x, high) if there >= x else (low, x)
+            (v, fv), (w, fw), (x, fx) = (w, fw), (x, fx), (there, found)
+        else:
+            low, high = (there, high) if there < x else (low, there)
+            if found <= fw or w == x:
+                (v, fv), (w, fw) = (w, fw), (there, found)
+            elif found <= fv or v in (x, w):
+                v, fv = there, found
+    return x, fx
+
+
+Point: TypeAlias = tuple[float, float]
+
+
+def _by_parabola(best: Point, second: Point, third: Point, before: float, ends: Point) -> float | None:
+    """The step to the lowest point of a parabola through three, None where it leads out or shrinks too slowly."""
+    (x, fx), (w, fw), (v, fv) = best, second, third
+    r, q = (x - w) * (fx - fv), (x - v) * (fx - fw)
+    p, q = (x - v) * q - (x - w) * r, 2.0 * (q - r)
+    p, q = (-p if q > 0.0 else p), abs(q)
+    taken = abs(p) < abs(0.5 * q * before) and q * (ends[0] - x) < p < q * (ends[1] - x)
+    return (p + 0.0) / q if taken else None

@@ -89,7 +89,7 @@ def solve_modes(
     order 2, is the reading "raw") and through a cubic spline between. Raises InputError for unknown settings,
     more modes than the chain has, sizes that do not fit into memory, and compression beyond the chain's buckling.
     """
-    settings = _settings(wall, joints, grading, theory, attachment)
+    settings = settings_of(wall, joints, grading, theory, attachment)
     check(beam, n_modes, n_segments, **settings)
     chain = build_chain(beam, n_segments, **settings)
     try:
@@ -103,7 +103,8 @@ def solve_modes(
         ) from None
 
 
-def _settings(wall: Wall, joints: Joints, grading: float, theory: Theory, attachment: Attachment) -> dict[str, Any]:
+def settings_of(wall: Wall, joints: Joints, grading: float, theory: Theory, attachment: Attachment) -> dict[str, Any]:
+    """How the chain is set up, by the keywords of `build_chain`."""
     return {"wall": wall, "joints": joints, "grading": grading, "theory": theory, "attachment": attachment}
 
 
@@ -206,17 +207,18 @@ def solve_harmonic(
     resonance of the chain is refused.
     """
     forces = as_forces(forces)
-    settings = _settings(wall, joints, grading, theory, attachment)
+    settings = settings_of(wall, joints, grading, theory, attachment)
     check(beam, 1, n_segments, **settings)
-    _check_harmonic(beam, forces, frequency_hz, load, reading, modal_damping, joint_dashpot)
-    chain, pencil = _driven(beam, n_segments, settings)
+    check_drive(beam, forces, frequency_hz)
+    check_settings(load, reading, modal_damping, joint_dashpot)
+    chain, pencil = driven(beam, n_segments, settings)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * chain.unit**4
     if not (beam.loss_factor or modal_damping or joint_dashpot):
         solve = partial(solve_modes, **settings)
         refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments)
-    _check_dampings(beam, chain, modal_damping)
-    loads = _loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
-    stiffness = _damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
+    check_dampings(beam, chain, modal_damping)
+    loads = force_loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
+    stiffness = damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
     free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
     return HarmonicField(
         theory=theory,
@@ -229,7 +231,7 @@ def solve_harmonic(
     )
 
 
-def _check_dampings(beam: Beam, chain: Chain, modal_damping: float) -> None:
+def check_dampings(beam: Beam, chain: Chain, modal_damping: float) -> None:
     """Raise InputError for a loss factor beside a modal ratio where something on the beam has no loss."""
     if modal_damping and beam.loss_factor and not chain.plain:
         raise InputError(
@@ -242,7 +244,7 @@ KEPT = 4000
 """Links up to which a chain is kept for the next frequency."""
 
 
-def _driven(beam: Beam, n_segments: int, settings: dict[str, Any]) -> tuple[Chain, FactoredPencil]:
+def driven(beam: Beam, n_segments: int, settings: dict[str, Any]) -> tuple[Chain, FactoredPencil]:
     """The chain of a beam and its pencil; small ones are kept."""
     given = tuple(settings.items())
     return _kept(beam, n_segments, given) if n_segments < KEPT else _made(beam, n_segments, given)
@@ -256,7 +258,7 @@ def _made(beam: Beam, n_segments: int, settings: tuple[tuple[str, Any], ...]) ->
 _kept = lru_cache(maxsize=8)(_made)
 
 
-def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:
+def damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:
     """The stiffness with the beam's loss factor and dashpots of omega c, N m, at every joint."""
     if not chain.plain:
         from verify.segments.loaded import lossy_stiffness
@@ -268,10 +270,8 @@ def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -
     return np.asarray(lossy, dtype=complex)
 
 
-def _check_harmonic(
-    beam: Beam, forces: Sequence[PointForce], frequency_hz: float, load: str, reading: str, zeta: float, dashpot: float
-) -> None:
-    check_drive(beam, forces, frequency_hz)
+def check_settings(load: str, reading: str, zeta: float, dashpot: float) -> None:
+    """Raise InputError for a load or a reading that is not known, or a damping that is none."""
     if load not in LOADS:
         raise InputError(f"load = {load!r} is not known: {near_name(load, LOADS)}")
     if reading not in READINGS:
@@ -280,7 +280,7 @@ def _check_harmonic(
     check_number("joint_dashpot", dashpot, "N m s, 0 means none", at_least=0)
 
 
-def _loads(chain: Chain, forces: Sequence[PointForce], rule: str, n: int) -> ComplexArray:
+def force_loads(chain: Chain, forces: Sequence[PointForce], rule: str, n: int) -> ComplexArray:
     """The forces on the n unknowns, (n, 1), newton: on the free joints, which come first."""
     total = sum(phasor(force) * joint_weights(chain, force.position, rule) for force in forces)
     joints = np.asarray(total, dtype=complex)[free_joints(chain)]
@@ -289,15 +289,22 @@ def _loads(chain: Chain, forces: Sequence[PointForce], rule: str, n: int) -> Com
 
 def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
     """The field between the joints; free is (n, 1) complex."""
+    every = swept_shapes(chain, free, reading)
+    return lambda x, derivative: every(x, derivative)[0]
+
+
+def swept_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:
+    """Fields between the joints of the unknowns (n, k) complex: (x, derivative) -> (k, len(x))."""
     if reading == "links":
-        return lambda x, derivative: _link_reading(chain, free, x, derivative)
+        columns = free.T[:, :, None]
+        return lambda x, derivative: np.array([_link_reading(chain, one, x, derivative) for one in columns])
     parts = np.hstack([free.real, free.imag])
     values = joint_readings(chain, parts) if reading == "corrected" else joint_positions(chain, parts)
 
     line = line_through(chain, lambda: values)
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
-        real, imaginary = line(x, derivative)
+        real, imaginary = np.split(line(x, derivative), 2)
         return np.asarray(real + 1j * imaginary)
 
     return shapes
@@ -344,18 +351,18 @@ def unit_responses(
     """
     positions, x = in_a_row("positions", positions), in_a_row("x", x)
     frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
-    settings = _settings("gregory", joints, 1.0, theory, attachment)
+    settings = settings_of("gregory", joints, 1.0, theory, attachment)
     check(beam, 1, n_segments, **settings)
-    chain, pencil = _driven(beam, n_segments, settings)
+    chain, pencil = driven(beam, n_segments, settings)
     weights = np.zeros((pencil.n, len(positions)))
     loads = [joint_weights(chain, p, "reciprocal")[free_joints(chain)] for p in positions]
     weights[: len(loads[0]) if loads else 0] = np.array(loads).T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * chain.unit**4
     scale = chain.unit**3 / beam.bending_stiffness
     if beam.loss_factor and not chain.plain:  # what has no loss couples the modes
-        stiffness = _damped(beam, chain, pencil, 0.0)
-        driven = [forced_response(pencil, weights, float(square), stiffness) for square in omega2]
-        read = [_read_at(chain, free.real, x) + 1j * _read_at(chain, free.imag, x) for free in driven]
+        stiffness = damped(beam, chain, pencil, 0.0)
+        found = [forced_response(pencil, weights, float(square), stiffness) for square in omega2]
+        read = [_read_at(chain, free.real, x) + 1j * _read_at(chain, free.imag, x) for free in found]
         return np.asarray(np.array(read, dtype=complex) * scale)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
     return np.asarray(receptance @ _read_at(chain, modes, x)) * scale

@@ -277,6 +277,7 @@ def _pointwise(
             raise InputError(f"quantity = {found.name!r} is complex: map a real figure")
         values[index] = value
         bench.fields.clear()
+        bench.sweeps.clear()
     return DesignMap(
         quantity=found.name,
         unit=found.unit,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 from msgspec.structs import replace
 
+from verify.cores import for_each
 from verify.errors import InputError
 from verify.motion.figures import CHAIN, Condition
 from verify.scenes.claims import Claim, asks_for_turned
@@ -203,10 +204,14 @@ def readings_study(scene: "Scene", asked: ReadingsAsk, progress: Progress = lamb
     claims = tuple(claim for claim in scene.claim if claim.of_run)
     searched = searched_of(scene, asked)
     drawn: dict[tuple[float | str | None, ...], list[tuple[Scene, Reading]]] = {}
-    for number, values in enumerate(product(*(searched[name] or (None,) for name in LISTS))):
-        progress(f"reading {number + 1} of {asked.n_readings}")
-        read = read_as(scene, asked, dict(zip(LISTS, values, strict=True)))
-        found = reading(read, claims, asked.model, read.motion.count)  # type: ignore[union-attr]
+    varied = list(product(*(searched[name] or (None,) for name in LISTS)))
+    scenes = [read_as(scene, asked, dict(zip(LISTS, values, strict=True))) for values in varied]
+
+    def judged(read: "Scene") -> Reading:
+        return reading(read, claims, asked.model, read.motion.count)  # type: ignore[union-attr]
+
+    every_reading = for_each(judged, scenes, lambda number: progress(f"reading {number} of {asked.n_readings}"))
+    for values, read, found in zip(varied, scenes, every_reading, strict=True):
         drawn.setdefault(values[: len(GROUPED_BY)], []).append((read, found))
     best = {key: max(rows, key=lambda row: row[1].n_met) for key, rows in drawn.items()}
     shown = sorted(best, key=lambda key: -best[key][1].n_met)[: asked.shown]

@@ -1,6 +1,7 @@
 """Driven beams evaluated: fields by model, measures, power, best frequency, orders."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
@@ -14,10 +15,20 @@ from verify.models.catalogue import MODELS
 from verify.models.eigen import solve_seconds
 from verify.models.fields import HarmonicField, phasor
 from verify.models.search import Least, least_over
+from verify.models.sweeps import HarmonicSweep
 from verify.patience import check_work
 from verify.waves.case import DrivenCase
 from verify.waves.imposed import driven_field
-from verify.waves.measures import WaveMeasures, measure, middle_half, two_waves
+from verify.waves.measures import (
+    WaveMeasures,
+    amplitudes_of,
+    check_moving,
+    check_window,
+    measure,
+    middle_half,
+    two_waves,
+    window_rule,
+)
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -45,6 +56,16 @@ def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     return field
 
 
+def swept(case: DrivenCase, frequencies: Array, bench: "Workbench") -> HarmonicSweep:
+    """The fields of a case under forces at many frequencies, kept on the bench. Raises InputError."""
+    key = (case.model, case.count, case.beam, frequencies.tobytes(), case.forces, case.settings)
+    if key not in bench.sweeps:
+        solve = MODELS.named(case.model).sweep_harmonic
+        bench.sweeps[key] = solve(case.beam, case.forces, frequencies, case.count, **dict(case.settings))
+        bench.n_fields += len(frequencies)
+    return bench.sweeps[key]
+
+
 def check_fields(beam: Beam, name: str, counts: Sequence[int | None], times: int = 1) -> None:
     """Raise InputError where driven fields of a model of parts at all sizes, so many times, would take too long."""
     sizes = [count for count in counts if count is not None]
@@ -70,7 +91,7 @@ def own_wavenumber(field: HarmonicField) -> complex:
     known = field.theory == "euler-bernoulli" and not (beam.tension or beam.foundation or beam.section)
     if field.count is None or not known:
         return field.wavenumber
-    free = replace(beam, mass=(), spring=())
+    free = replace(beam, mass=(), spring=()) if beam.mass or beam.spring else beam
     return MODELS.named(field.model).wavenumber(free, field.count, field.frequency_hz)
 
 
@@ -122,8 +143,28 @@ def quietest_drive(case: DrivenCase, span: float, window: Window | None, bench: 
             return 1.0  # on a resonance the wave stands
         return two_waves(field, window or middle_half(field.beam), own_wavenumber(field)).reflection
 
+    def reflections(frequencies: Array) -> Array:
+        if len(frequencies) > 1 and case.kind == "force":
+            with suppress(ResonanceError):
+                return _swept_reflections(swept(case, frequencies, bench), window or middle_half(case.beam))
+        return np.array([reflection(float(f)) for f in frequencies])
+
     grid = np.linspace((1.0 - span) * centre, (1.0 + span) * centre, 41)
-    return quietest(lambda frequencies: np.array([reflection(float(f)) for f in frequencies]), grid)
+    return quietest(reflections, grid)
+
+
+def _swept_reflections(sweep: HarmonicSweep, window: Window) -> Array:
+    """The reflection in a window at every frequency of a sweep, as `two_waves` finds it in each field, (n,)."""
+    fields = [sweep.field(index) for index in range(len(sweep))]
+    for field in fields:
+        check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
+    rule = window_rule(window, max(field.wavenumber.real for field in fields))
+    deflections = sweep.deflection(rule.x)
+    for field, deflection in zip(fields, deflections, strict=True):
+        check_moving(field, deflection)
+    k = np.array([own_wavenumber(field) for field in fields])
+    sizes = np.sort(abs(amplitudes_of(rule, k, deflections[:, None], 0.5 * sum(window))[:, :, 0]), axis=1)
+    return np.asarray(sizes[:, 0] / sizes[:, 1])
 
 
 def quietest(reflection: Callable[[Array], Array], frequencies: Array) -> Least:

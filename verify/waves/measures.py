@@ -162,12 +162,24 @@ def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: co
     start = field.wavenumber
     rule = window_rule(window, start.real)
     deflection = field.deflection(rule.x)
-    force = sum(abs(phasor(force)) for force in field.forces)
-    if abs(deflection).max() <= STILL * force * unit_response(field.beam, field.frequency_hz):
-        raise zero_field()
+    check_moving(field, deflection)
     if wave_number is None:
         wave_number = fitted_wavenumber(rule.x, deflection, start, rule.weights)
     return fit_waves(rule.x, deflection, wave_number, rule.weights)
+
+
+def check_moving(field: HarmonicField, deflection: ComplexArray) -> None:
+    """Raise ZeroFieldError where what was read of a field is rounding beside its forces."""
+    force = sum(abs(phasor(force)) for force in field.forces)
+    if abs(deflection).max() <= STILL * force * unit_response(field.beam, field.frequency_hz):
+        raise zero_field()
+
+
+def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle: float) -> ComplexArray:
+    """Forward and backward amplitudes at the middle, (n, 2, m), of fields (n, m, len(rule.x)) with wavenumbers (n,)."""
+    basis = wave_basis(rule.x, k, middle)
+    adjoint = np.conj(np.swapaxes(basis, 1, 2)) * rule.weights
+    return np.asarray(np.linalg.solve(adjoint @ basis, adjoint @ np.swapaxes(deflections, 1, 2)), dtype=complex)
 
 
 Along: TypeAlias = Callable[[Array], ComplexArray]

@@ -16,10 +16,10 @@ from verify.waves.imposed import held_units
 from verify.waves.measures import (
     STANDING,
     STILL,
+    amplitudes_of,
     check_window,
     crest_speed,
     energy_flux,
-    wave_basis,
     window_rule,
     zero_field,
 )
@@ -96,10 +96,8 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
             except NoFigureError as error:
                 gaps.add(error, points)
         known = np.isfinite(k)
-        basis = wave_basis(rule.x, k[known], 0.5 * sum(self.window))
-        adjoint = np.conj(np.swapaxes(basis, 1, 2)) * rule.weights
-        waves = np.linalg.solve(adjoint @ basis, adjoint @ np.swapaxes(fields[known], 1, 2))
-        return UnitWaves(known, k[known], np.asarray(waves[:, 0], complex), np.asarray(waves[:, 1], complex))
+        waves = amplitudes_of(rule, k[known], fields[known], 0.5 * sum(self.window))
+        return UnitWaves(known, k[known], waves[:, 0], waves[:, 1])
 
     def _wavenumber(self, frequency: float, field: ComplexArray) -> complex:
         """The model's own. Raises NoFigureError where the frequency has none, or no field."""
@@ -109,7 +107,7 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         known = self.theory == EULER and not (self.beam.tension or self.beam.foundation or self.beam.section)
         if self.count is None or not known:
             return wavenumber(self.beam, frequency, self.theory)
-        free = replace(self.beam, mass=(), spring=())
+        free = replace(self.beam, mass=(), spring=()) if self.beam.mass or self.beam.spring else self.beam
         return MODELS.named(self.model).wavenumber(free, self.count, frequency)
 
     def _responses(self, frequencies: Array, x: Array) -> ComplexArray:

@@ -1,0 +1,45 @@
+"""Splines and searches that numpy alone makes, against scipy's, which are the same curves and the same steps."""
+
+from math import cos, sin
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
+
+from verify.models.search import least_between
+from verify.models.spline import SMALL, natural_or_flat
+
+
+@pytest.mark.parametrize("n_nodes", [2, 3, 8, SMALL, SMALL + 7])
+@pytest.mark.parametrize("ends", [(1, 1), (2, 2), (1, 2), (2, 1)])
+def test_a_spline_is_scipys_to_rounding(n_nodes, ends):
+    rng = np.random.default_rng(61)
+    nodes = np.cumsum(0.3 + rng.random(n_nodes)) - 1.7
+    values = rng.standard_normal((3, n_nodes))
+    known = CubicSpline(nodes, values, axis=1, bc_type=tuple((order, np.zeros(3)) for order in ends))
+    own = natural_or_flat(nodes, values, ends)
+    x = np.concatenate([nodes, np.linspace(nodes[0], nodes[-1], 301)])
+    for derivative in range(5):
+        size = abs(known(x, derivative)).max() + 1e-300
+        assert own(x, derivative) == pytest.approx(known(x, derivative), abs=3e-13 * size, rel=0.0), derivative
+    assert own.c.shape == known.c.shape
+    assert own.c == pytest.approx(known.c, abs=3e-13 * abs(known.c).max(), rel=0.0)
+
+
+@pytest.mark.parametrize(
+    ("figure", "low", "high"),
+    [
+        (lambda x: (x - 0.37) ** 2 + 0.1 * x**3, -1.0, 2.0),
+        (lambda x: abs(x - 4277.3) ** 1.5, 4260.0, 4290.0),
+        (lambda x: cos(3.0 * x) + 0.2 * sin(17.0 * x), 0.1, 1.9),
+        (lambda x: -x, 0.0, 1.3),
+        (lambda x: 1.0, 2.0, 3.0),
+    ],
+)
+def test_a_search_takes_scipys_steps_one_by_one(figure, low, high):
+    places = []
+    known = minimize_scalar(figure, bounds=(low, high), method="bounded", options={"xatol": 1e-7})
+    x, value = least_between(lambda at: places.append(at) or figure(at), low, high, 1e-7)
+    assert (x, value) == (known.x, known.fun)
+    assert len(places) == known.nfev

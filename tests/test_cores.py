@@ -1,0 +1,86 @@
+"""Independent work on several cores gives what one core gives, and leaves nobody behind."""
+
+import os
+import sys
+import time
+
+import pytest
+
+from verify.cores import for_each
+from verify.errors import InputError
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="work is shared where the system forks safely")
+
+
+def children():
+    """Processes that this one has started and not yet waited for."""
+    try:
+        return os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+    except ChildProcessError:
+        return "none"
+
+
+@pytest.mark.parametrize("n_jobs", [1, 2, 3, 40])
+def test_results_come_in_order_whoever_is_done_first(monkeypatch, n_jobs):
+    monkeypatch.setenv("VERIFY_JOBS", str(n_jobs))
+    heard = []
+
+    def work(item):
+        time.sleep(0.003 * (7 - item % 8))
+        return item**0.5, os.getpid()
+
+    found = for_each(work, range(17), heard.append)
+    assert [root for root, _ in found] == [item**0.5 for item in range(17)]
+    assert heard == list(range(1, 18))
+    assert found[0][1] == os.getpid()
+    assert len({process for _, process in found}) == (1 if n_jobs == 1 else min(n_jobs, 16) + 1)
+    assert children() == "none"
+
+
+@pytest.mark.parametrize("n_jobs", [1, 2, 5])
+def test_of_several_refusals_the_first_is_raised_as_it_is(monkeypatch, n_jobs):
+    monkeypatch.setenv("VERIFY_JOBS", str(n_jobs))
+
+    def work(item):
+        time.sleep(0.02 if item == 3 else 0.0)
+        if item in (3, 4, 9):
+            raise InputError(f"item = {item} is no good: take another")
+        return item
+
+    with pytest.raises(InputError, match=r"^item = 3 is no good"):
+        for_each(work, range(12), lambda number: None)
+    assert children() == "none"
+
+
+def test_what_a_process_that_dies_leaves_undone_is_done_here(monkeypatch):
+    monkeypatch.setenv("VERIFY_JOBS", "2")
+    here = os.getpid()
+
+    def work(item):
+        if item == 5 and os.getpid() != here:
+            os._exit(9)
+        return item, os.getpid() == here
+
+    found = for_each(work, range(9), lambda number: None)
+    assert [item for item, _ in found] == list(range(9))
+    assert [item for item, done_here in found if done_here] == [0, 5, 7]
+    assert children() == "none"
+
+
+def test_an_interrupt_ends_all_processes(monkeypatch):
+    monkeypatch.setenv("VERIFY_JOBS", "2")
+
+    def stop(number):
+        if number == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        for_each(lambda item: time.sleep(0.01 if item < 4 else 30.0), range(20), stop)
+    assert children() == "none"
+
+
+@pytest.mark.parametrize("given", ["0", "-2", "two", "1.5", "\u00b2"])
+def test_a_number_of_jobs_that_is_none_is_refused(monkeypatch, given):
+    monkeypatch.setenv("VERIFY_JOBS", given)
+    with pytest.raises(InputError, match=r"VERIFY_JOBS = .* give a whole number of processes"):
+        for_each(abs, [1, 2, 3], lambda number: None)

@@ -1,0 +1,116 @@
+"""Independent work shared among the cores: the same results, to the last digit and in the same order."""
+
+import os
+import pickle
+import select
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import BinaryIO, NoReturn, TypeVar
+
+from verify.errors import InputError
+
+VARIABLE = "VERIFY_JOBS"
+"""The environment variable that says how many processes work; one where it is not set, as in Python."""
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+def jobs() -> int:
+    """How many processes work. Raises InputError where the variable is no whole number above 0."""
+    given = os.environ.get(VARIABLE, "") or "1"
+    if not (given.isascii() and given.isdigit() and int(given)):
+        raise InputError(f"{VARIABLE} = {given!r}: give a whole number of processes from 1, or leave it unset")
+    return int(given)
+
+
+def for_each(work: Callable[[Item], Result], items: Sequence[Item], tell: Callable[[int], None]) -> list[Result]:
+    """`work` of every item, in their order; `tell` hears of each how many there are with it.
+
+    The first is done here, so that what is compiled and kept for it is there for all; the others by `jobs` processes
+    where there are several and the system forks safely (Linux), else here too. What a process that dies leaves undone
+    is done here. Raises what `work` raises of the first item that it refuses.
+    """
+    n = min(jobs(), len(items) - 1)
+    if n < 2 or sys.platform != "linux":
+        return [_told(tell, number, work(item)) for number, item in enumerate(items, 1)]
+    found: dict[int, Result | Exception] = {0: _told(tell, 1, work(items[0]))}
+    children: dict[int, tuple[int, BinaryIO]] = {}
+    try:
+        for part in range(n):
+            share = range(1 + part, len(items), n)
+            children |= dict([_child(work, items, share, [pipe for _, pipe in children.values()])])
+        _gather(children, found, tell)
+    finally:
+        _end(children)
+    for index, item in enumerate(items):
+        if index not in found:
+            found[index] = _told(tell, len(found) + 1, work(item))
+        if isinstance(failed := found[index], Exception):
+            raise failed
+    return [found[index] for index in range(len(items))]  # type: ignore[misc]
+
+
+def _told(tell: Callable[[int], None], number: int, result: Result) -> Result:
+    tell(number)
+    return result
+
+
+def _child(
+    work: Callable[[Item], Result], items: Sequence[Item], share: Sequence[int], others: list[BinaryIO]
+) -> tuple[int, tuple[int, BinaryIO]]:
+    """A process that does its share and writes every result, or its first refusal: (file number, (id, pipe))."""
+    reading, writing = os.pipe()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError, AttributeError):
+            stream.flush()  # or the child would write it again
+    if (child := os.fork()) == 0:
+        os.close(reading)
+        for pipe in others:
+            os.close(pipe.fileno())
+        _work(work, items, share, writing)
+    os.close(writing)
+    return reading, (child, os.fdopen(reading, "rb"))
+
+
+def _work(work: Callable[[Item], Result], items: Sequence[Item], share: Sequence[int], writing: int) -> NoReturn:
+    """In the child: nothing of the parent's is flushed, closed or told at its end."""
+    try:
+        with os.fdopen(writing, "wb") as pipe:
+            for index in share:
+                try:
+                    result: Result | Exception = work(items[index])
+                except Exception as error:
+                    result = error
+                pickle.dump((index, result), pipe)
+                pipe.flush()
+                if isinstance(result, Exception):
+                    break
+    finally:
+        os._exit(0)
+
+
+def _gather(
+    children: dict[int, tuple[int, BinaryIO]], found: dict[int, Result | Exception], tell: Callable[[int], None]
+) -> None:
+    """Take results as they come, until every process has closed its pipe."""
+    left = set(children)
+    while left:
+        for ready in select.select(left, [], [])[0]:
+            try:
+                index, result = pickle.load(children[ready][1])
+            except (EOFError, pickle.UnpicklingError):
+                left.remove(ready)
+                continue
+            found[index] = _told(tell, len(found) + 1, result)
+
+
+def _end(children: dict[int, tuple[int, BinaryIO]]) -> None:
+    """None is left behind, whatever happened."""
+    for child, pipe in children.values():
+        pipe.close()
+        with suppress(ProcessLookupError):
+            os.kill(child, signal.SIGTERM)
+        with suppress(ChildProcessError):
+            os.waitpid(child, 0)

@@ -1,0 +1,119 @@
+"""The exact beam over many frequencies or many beams in one call: arrays in, arrays out."""
+
+from collections.abc import Callable, Sequence
+from math import pi
+
+import numpy as np
+
+from verify.beam import Beam, PointForce
+from verify.checks import check_whole, several
+from verify.errors import InputError
+from verify.exact.closed_forms import frequency_hz, wavenumber_length
+from verify.exact.harmonic import check_off_resonance, pinned_shapes, solve_harmonic, spliced_shapes
+from verify.exact.modes import exact_frequency_hz
+from verify.models.arrays import Array, ComplexArray, Indices
+from verify.models.fields import RESONANCE, wavenumber
+from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.models.sweeps import FIELD, HarmonicSweep, check_held, of_each, swept_frequencies
+
+EULER = "euler-bernoulli"
+UNKNOWNS = 8
+"""Complex numbers that a frequency's field is made of."""
+
+
+@as_typed
+def sweep_harmonic(beam: Beam, forces: Forces, frequencies_hz: Numbers, theory: str = EULER) -> HarmonicSweep:
+    """The exact fields of `solve_harmonic` at many frequencies, in one call and to rounding.
+
+    Uniform Euler-Bernoulli beams from |k| L = 1 on are taken all at once, all others one by one. Raises InputError as
+    `solve_harmonic` does, by index: of several resonances the first.
+    """
+    forces = as_forces(forces)
+    frequencies = swept_frequencies(beam, forces, frequencies_hz, UNKNOWNS * (len(forces) + 1))
+    return HarmonicSweep(
+        theory=theory,
+        model="analytic",
+        count=None,
+        beam=beam,
+        frequencies_hz=frequencies,
+        forces=forces,
+        shapes=_shapes(beam, forces, frequencies, theory),
+    )
+
+
+def _shapes(
+    beam: Beam, forces: tuple[PointForce, ...], frequencies: Array, theory: str
+) -> Callable[[Array, int], ComplexArray]:
+    """(x, derivative) -> (n, len(x)): at once where waves are short enough, else one by one."""
+    waves = np.array([wavenumber(beam, float(f)) for f in frequencies]) if theory == EULER and beam.uniform else None
+    fast = np.full(len(frequencies), False) if waves is None else abs(waves) * beam.length >= 1.0
+    parts: list[tuple[Indices, Callable[[Array, int], ComplexArray]]] = []
+    if waves is not None and fast.any():
+        _refuse_resonances(beam, frequencies)
+        solve = pinned_shapes if beam.supports == ("pinned", "pinned") else spliced_shapes
+        parts.append((np.flatnonzero(fast), solve(beam, forces, waves[fast, None])))
+    slow = np.flatnonzero(~fast).tolist()
+    parts += [(np.array([i]), _one(beam, forces, float(frequencies[i]), i, theory)) for i in slow]
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        found = np.empty((len(frequencies), len(x)), dtype=complex)
+        for which, some in parts:
+            found[which] = some(x, derivative)
+        return found
+
+    return shapes
+
+
+def _one(
+    beam: Beam, forces: tuple[PointForce, ...], frequency: float, index: int, theory: str
+) -> Callable[[Array, int], ComplexArray]:
+    """One of them as `solve_harmonic` has it; its refusal says which."""
+    try:
+        return solve_harmonic(beam, forces, frequency, theory).shapes
+    except InputError as error:
+        raise type(error)(str(error).replace("frequency_hz = ", f"{FIELD}[{index}] = ", 1)) from None
+
+
+def _refuse_resonances(beam: Beam, frequencies: Array) -> None:
+    """Raise ResonanceError for the first frequency on an undamped resonance of a uniform beam, by index."""
+    if beam.loss_factor:
+        return
+    turns = np.sqrt(2.0 * pi * frequencies / beam.wave_constant) * beam.length / pi
+    numbers = np.unique(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
+    resonances = np.array([frequency_hz(beam, int(n)) for n in numbers])
+    nearest = abs(frequencies[:, None] / resonances[_beside(resonances, frequencies)] - 1.0).min(axis=1)
+    for index in np.flatnonzero(nearest < 2.0 * RESONANCE):
+        check_off_resonance(beam, float(frequencies[index]), f"{FIELD}[{index}]")
+
+
+def _beside(ascending: Array, values: Array) -> Array:
+    """Indices of the two that lie around each value, (n, 2)."""
+    above = np.clip(np.searchsorted(ascending, values), 0, len(ascending) - 1)
+    return np.stack([np.maximum(above - 1, 0), above], axis=1)
+
+
+@as_typed
+def sweep_modes(beams: Sequence[Beam], n_modes: int, theory: str = EULER) -> Array:
+    """Exact frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
+
+    Uniform Euler-Bernoulli beams on the same supports share their roots. Raises InputError as `solve_modes` does,
+    naming the beam by its index.
+    """
+    beams = several("beams", beams, Beam)
+    check_whole("n_modes", n_modes, 1)
+    if not beams:
+        raise InputError("beams is empty: give at least one Beam")
+    check_held(len(beams), n_modes, "beams")
+    plain = np.array([theory == EULER and beam.uniform for beam in beams])
+    found = np.empty((len(beams), n_modes))
+    for supports in {beam.supports for beam in beams}:
+        which = [i for i, beam in enumerate(beams) if plain[i] and beam.supports == supports]
+        if which:
+            roots = np.array([wavenumber_length(supports, n) for n in range(1, n_modes + 1)])
+            lengths, constants = np.array([(beams[i].length, beams[i].wave_constant) for i in which]).T[:, :, None]
+            found[which] = (roots / lengths) ** 2 * constants / (2.0 * pi)
+    others = np.flatnonzero(~plain).tolist()
+    numbers = range(1, n_modes + 1)
+    rows = of_each(others, beams, lambda beam: [exact_frequency_hz(beam, n, theory) for n in numbers])
+    found[others] = np.array(rows).reshape(len(others), n_modes)
+    return found

@@ -1,0 +1,229 @@
+"""What every model's sweeps share: fields over many frequencies in one value, solved together, refused one by one.
+
+A sweep gives what a loop over `solve_harmonic` or `solve_modes` would, to rounding, arrays in and arrays out.
+"""
+
+from collections.abc import Callable, Sequence
+from math import pi
+from typing import TypeVar
+
+import numpy as np
+
+from verify.beam import Beam, PointForce, check_frequency
+from verify.errors import InputError
+from verify.field_docs import Value
+from verify.models.arrays import Array, ComplexArray
+from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
+from verify.models.eigen import (
+    DENSE_UNKNOWNS,
+    FactoredPencil,
+    factored_quotient,
+    forced_response,
+    lowest,
+    resonance_distance,
+)
+from verify.models.fields import RESONANCE, HarmonicField, check_forces
+from verify.models.places import Forces, Numbers, in_a_row, places
+
+MOST_VALUES = 50_000_000
+"""Complex numbers that a sweep holds at once: 0.8 GB."""
+FEW = 4
+"""Frequencies up to which each is solved by itself."""
+STACK = 64
+"""Dense pencils that LAPACK is given at once."""
+FIELD = "frequencies_hz"
+Found = TypeVar("Found")
+
+
+class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
+    """Steady motions Re(w(x) e^{+i omega t}) of one model under the same harmonic point forces at many frequencies."""
+
+    model: str
+    """Its name."""
+    count: int | None
+    """Elements or segments; None for the exact beam."""
+    beam: Beam
+    """On which it runs."""
+    frequencies_hz: Array
+    """(n_frequencies,), of the drive, hertz, in the order in which they were given."""
+    forces: tuple[PointForce, ...]
+    """What drives it, newton."""
+    shapes: Callable[[Array, int], ComplexArray]
+    """(x, derivative) -> (n_frequencies, len(x)) complex, metres per metre^derivative."""
+    theory: str = "euler-bernoulli"
+    """Of the beam."""
+
+    def __len__(self) -> int:
+        return len(self.frequencies_hz)
+
+    def deflection(self, x: Numbers) -> ComplexArray:
+        """Complex deflection at x (metres), (n_frequencies, *shape of x), metres. Raises InputError off the beam."""
+        return self._read(x, 0)
+
+    def slope(self, x: Numbers) -> ComplexArray:
+        """Complex slope at x (metres), likewise, radians. Raises InputError off the beam."""
+        return self._read(x, 1)
+
+    def _read(self, x: Numbers, derivative: int) -> ComplexArray:
+        at = places("x", x, self.beam.length)
+        check_held(len(self), at.size, "x")
+        return self.shapes(at.ravel(), derivative).reshape(len(self), *at.shape)
+
+    def field(self, index: int) -> HarmonicField:
+        """The field at one of the frequencies, counted from 0. Raises InputError for one that is not there."""
+        if not -len(self) <= index < len(self):
+            raise InputError(f"index = {index!r}: the sweep has {len(self)} frequencies, counted from 0")
+        return HarmonicField(
+            model=self.model,
+            count=self.count,
+            beam=self.beam,
+            frequency_hz=float(self.frequencies_hz[index]),
+            forces=self.forces,
+            shapes=lambda x, derivative: self.shapes(x, derivative)[index],
+            theory=self.theory,
+        )
+
+
+def one_by_one(fields: Sequence[HarmonicField]) -> HarmonicSweep:
+    """Fields of one model that were solved one after another, as a sweep."""
+    first = fields[0]
+    return HarmonicSweep(
+        model=first.model,
+        count=first.count,
+        beam=first.beam,
+        frequencies_hz=np.array([field.frequency_hz for field in fields]),
+        forces=first.forces,
+        shapes=lambda x, derivative: np.array([field.shapes(x, derivative) for field in fields]),
+        theory=first.theory,
+    )
+
+
+def swept_frequencies(beam: Beam, forces: Forces, frequencies_hz: Numbers, unknowns: int) -> Array:
+    """The frequencies in a row, (n,). Raises InputError as `check_drive` does, by index, and for too many."""
+    found = in_a_row(FIELD, frequencies_hz, "hertz").ravel()
+    if not found.size:
+        raise InputError(f"{FIELD} is empty: give at least one frequency in hertz")
+    check_held(len(found), unknowns, FIELD)
+    check_forces(beam, forces)
+    for index in (int(np.argmin(found)), int(np.argmax(found))):  # a NaN is both
+        check_frequency(f"{FIELD}[{index}]", float(found[index]), beam)
+    return found
+
+
+def check_held(n_frequencies: int, each: int, field: str) -> None:
+    """Raise InputError for more numbers than are held at once."""
+    if n_frequencies * each > MOST_VALUES:
+        raise InputError(
+            f"{field}: {n_frequencies} frequencies of {each} numbers each are more than {MOST_VALUES:.0e}: give fewer, "
+            "sweep by sweep"
+        )
+
+
+def of_each(which: Sequence[int], beams: Sequence[Beam], make: Callable[[Beam], Found]) -> list[Found]:
+    """What is made of each of some beams; refusals say of which. Raises InputError."""
+    found = []
+    for index in which:
+        try:
+            found.append(make(beams[index]))
+        except InputError as error:
+            raise InputError(f"beams[{index}]: {error}") from None
+    return found
+
+
+def swept_response(
+    pencil: FactoredPencil, loads: ComplexArray, omega2: Array, stiffness: ComplexArray, modal_damping: float
+) -> ComplexArray:
+    """The responses (n, n_frequencies) to loads (n, 1), as `damped_response` gives them one by one.
+
+    `stiffness` is (m,) or, where it changes with the frequency, (n_frequencies, m). All modes are solved once and
+    summed where damping leaves them uncoupled; where it does not, and of few frequencies, each is solved as a band.
+    Raises InputError for both dampings together where they couple modes.
+    """
+    over = np.broadcast_to(stiffness, (len(omega2), len(pencil.stiffness)))
+    factors = over / pencil.stiffness
+    coupled = np.ptp(factors.imag, axis=1) > 1e-15 * abs(factors).max(axis=1)
+    if modal_damping:
+        check_couples(factors)
+        check_dense(pencil, "modal_damping")
+    elif coupled.any() or len(omega2) <= FEW or not takes_all_modes(pencil):
+        found = [forced_response(pencil, loads, float(w2), d) for w2, d in zip(omega2, over, strict=True)]
+        return np.hstack(found).astype(complex)
+    values, vectors = receptance_basis(pencil)
+    denominators = values * factors[:, :1] - omega2[:, None]
+    if modal_damping:
+        denominators = denominators + 2j * modal_damping * np.sqrt(values * omega2[:, None])
+    return np.asarray(vectors @ ((vectors.T @ loads) / denominators.T))
+
+
+def refuse_resonances(pencil: FactoredPencil, omega2: Array, refuse: Callable[[int], None]) -> None:
+    """Call `refuse` with the index of the first frequency at which an undamped pencil resonates, if there is one."""
+    if len(omega2) > FEW and takes_all_modes(pencil):
+        values = receptance_basis(pencil)[0]
+        distance = abs(values / omega2[:, None] - 1.0).min(axis=1)
+    else:
+        distance = np.array([abs(resonance_distance(pencil, float(w2))) for w2 in omega2])
+    for index in np.flatnonzero(distance <= 2.0 * RESONANCE):
+        refuse(int(index))
+
+
+def swept_modes(
+    beams: Sequence[Beam], n_modes: int, theory: str, make: Callable[[Beam], tuple[FactoredPencil, float]]
+) -> Array:
+    """Frequencies of many beams, (n_beams, n_modes) in Hz; `make` checks one and gives its pencil and unit, metres.
+
+    Plain uniform beams on the same supports differ by their scale alone and share one solve; all others are taken as a
+    stack. Raises InputError, naming the beam by its index.
+    """
+    if not beams:
+        raise InputError("beams is empty: give at least one Beam")
+    check_held(len(beams), n_modes, "beams")
+    leaders = _leaders(beams, theory)
+    solved = sorted(set(leaders))
+    made = of_each(solved, beams, make)
+    rows = dict(zip(solved, _values([pencil for pencil, _ in made], n_modes), strict=True))
+    units = {i: unit / beams[i].length for i, (_, unit) in zip(solved, made, strict=True)}
+    lengths = [units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)]
+    scales = [beam.wave_constant / (2.0 * pi) / unit**2 for beam, unit in zip(beams, lengths, strict=True)]
+    return np.asarray(np.sqrt([rows[i] for i in leaders]) * np.array(scales)[:, None])
+
+
+def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:
+    """For every beam the first that has its pencil: itself, unless it is plain and differs from one by its scale."""
+    first: dict[object, int] = {}
+    plain = [theory == "euler-bernoulli" and beam.uniform and not beam.section for beam in beams]
+    keys = (beam.supports if alike else i for i, (beam, alike) in enumerate(zip(beams, plain, strict=True)))
+    return [first.setdefault(key, i) for i, key in enumerate(keys)]
+
+
+def _values(pencils: Sequence[FactoredPencil], n_modes: int) -> list[Array]:
+    """The lowest elastic eigenvalues of every pencil, (n_modes,) each, those of one size together."""
+    found: list[Array] = [np.empty(0)] * len(pencils)
+    together: dict[tuple[int, int, int], list[int]] = {}
+    for i, pencil in enumerate(pencils):
+        if pencil.n <= DENSE_UNKNOWNS and not pencil.uneven:
+            together.setdefault((pencil.n, len(pencil.stiffness), pencil.rigid_modes), []).append(i)
+        else:
+            found[i] = lowest(pencil, n_modes).values
+    for group in together.values():
+        for start in range(0, len(group), STACK):
+            part = group[start : start + STACK]
+            for i, values in zip(part, _stacked([pencils[i] for i in part], n_modes), strict=True):
+                found[i] = values
+    return found
+
+
+def _stacked(pencils: Sequence[FactoredPencil], n_modes: int) -> Array:
+    """The same of dense pencils of one size, (n_pencils, n_modes), by LAPACK on a stack of them as `eigen.lowest` does.
+
+    Every value is read from its own factored quotient.
+    """
+    one = np.eye(pencils[0].n)
+    strains = np.array([pencil.strain(one) for pencil in pencils])
+    stiffness = np.array([pencil.stiffness for pencil in pencils])
+    lower = np.linalg.cholesky(np.array([pencil.mass_matrix() for pencil in pencils]))
+    half = np.linalg.solve(lower, np.swapaxes(strains, 1, 2) @ (stiffness[:, :, None] * strains))
+    _, vectors = np.linalg.eigh(np.linalg.solve(lower, np.swapaxes(half, 1, 2)))
+    first = pencils[0].rigid_modes
+    wanted = np.linalg.solve(np.swapaxes(lower, 1, 2), vectors[:, :, first : first + n_modes])
+    found = [factored_quotient(pencil, own)[0] for pencil, own in zip(pencils, wanted, strict=True)]
+    return np.sort(np.array(found), axis=1)

@@ -1,0 +1,124 @@
+"""Chains over many frequencies or many beams in one call: arrays in, arrays out."""
+
+from collections.abc import Sequence
+from functools import partial
+from math import pi
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.checks import check_whole, several
+from verify.models.arrays import Array, ComplexArray
+from verify.models.driven_pencil import name_resonance
+from verify.models.eigen import FactoredPencil
+from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.models.sweeps import (
+    FIELD,
+    HarmonicSweep,
+    refuse_resonances,
+    swept_frequencies,
+    swept_modes,
+    swept_response,
+)
+from verify.options import Attachment, Joints, Load, Reading, Theory, Wall
+from verify.segments.linear import (
+    check,
+    check_dampings,
+    check_settings,
+    damped,
+    driven,
+    force_loads,
+    settings_of,
+    solve_modes,
+    swept_shapes,
+)
+from verify.segments.links import Chain, build_chain, chain_pencil
+
+
+@as_typed
+def sweep_harmonic(
+    beam: Beam,
+    forces: Forces,
+    frequencies_hz: Numbers,
+    n_segments: int,
+    *,
+    load: Load = "reciprocal",
+    reading: Reading = "corrected",
+    modal_damping: float = 0.0,
+    joint_dashpot: float = 0.0,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
+) -> HarmonicSweep:
+    """The steady fields of `solve_harmonic` at many frequencies, in one call and to rounding.
+
+    All modes of the chain are solved once, from singular values, and summed; where damping couples them every
+    frequency is solved as a band. Raises InputError as `solve_harmonic` does, by index: of several resonances the
+    first.
+    """
+    forces = as_forces(forces)
+    settings = settings_of(wall, joints, grading, theory, attachment)
+    check(beam, 1, n_segments, **settings)
+    frequencies = swept_frequencies(beam, forces, frequencies_hz, 2 * n_segments)
+    check_settings(load, reading, modal_damping, joint_dashpot)
+    chain, pencil = driven(beam, n_segments, settings)
+    omega2 = (2.0 * pi * frequencies / beam.wave_constant) ** 2 * chain.unit**4
+    if not (beam.loss_factor or modal_damping or joint_dashpot):
+        solve = partial(solve_modes, **settings)
+
+        def refuse(index: int) -> None:
+            frequency = float(frequencies[index])
+            name_resonance("segment", beam, pencil, frequency, solve, n_segments, f"{FIELD}[{index}]")
+
+        refuse_resonances(pencil, omega2, refuse)
+    check_dampings(beam, chain, modal_damping)
+    loads = force_loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
+    stiffness = _damped(beam, chain, pencil, frequencies, joint_dashpot)
+    free = swept_response(pencil, loads, omega2, stiffness, modal_damping)
+    return HarmonicSweep(
+        theory=theory,
+        model="segment",
+        count=n_segments,
+        beam=beam,
+        frequencies_hz=frequencies,
+        forces=forces,
+        shapes=swept_shapes(chain, free, reading),
+    )
+
+
+def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, frequencies: Array, dashpot: float) -> ComplexArray:
+    """The stiffness with the beam's loss factor, (m,), with dashpots of c, N m s, at every frequency, (n, m)."""
+    if not dashpot:
+        return damped(beam, chain, pencil, 0.0)
+    return np.array([damped(beam, chain, pencil, 2.0 * pi * float(f) * dashpot) for f in frequencies])
+
+
+@as_typed
+def sweep_modes(
+    beams: Sequence[Beam],
+    n_modes: int,
+    n_segments: int,
+    *,
+    wall: Wall = "gregory",
+    joints: Joints = "series",
+    grading: float = 1.0,
+    theory: Theory = "euler-bernoulli",
+    attachment: Attachment = "reciprocal",
+) -> Array:
+    """Frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
+
+    Beams that differ by their scale alone share one solve; others are taken by LAPACK as one stack. Raises InputError
+    as `solve_modes` does, naming the beam by its index.
+    """
+    beams = several("beams", beams, Beam)
+    check_whole("n_modes", n_modes, 1)
+    settings = settings_of(wall, joints, grading, theory, attachment)
+
+    def make(beam: Beam) -> tuple[FactoredPencil, float]:
+        check(beam, n_modes, n_segments, **settings)
+        chain = build_chain(beam, n_segments, **settings)
+        return chain_pencil(chain), chain.unit
+
+    return swept_modes(beams, n_modes, theory, make)
