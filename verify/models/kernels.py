@@ -17,14 +17,17 @@ from numba import njit
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
+
+
 def compiled(**options: Any) -> Callable[[Function], Function]:
     """Compile with these options of numba; what is kept on disk holds while the room's kernels stay as they are."""
 
     def compile_one(function: Function) -> Function:
-        found = njit(cache=True, **options)(function)
+        found = njit(cache=True, **{**ALWAYS, **options})(function)
         index: Any = getattr(getattr(found, "_cache", None), "_cache_file", None)
         if not hasattr(index, "_source_stamp"):
-            return njit(**options)(function)  # type: ignore[no-any-return]
+            return njit(**{**ALWAYS, **options})(function)  # type: ignore[no-any-return]
         index._source_stamp = index._source_stamp, room_stamp(Path(function.__code__.co_filename).parent)
         return found  # type: ignore[no-any-return]
 
@@ -40,5 +43,7 @@ def room_stamp(room: Path) -> str:
 
 lean = partial(compiled, _nrt=False)
 """For kernels that allocate nothing: without numba's memory runtime no loop counts references, twice the speed."""
+part = partial(lean, no_cpython_wrapper=True)
+"""For kernels that kernels alone call."""
 FAST = {"reassoc", "contract", "nsz"}
 """What sums over modes may do with their order."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import lean
+from verify.models.kernels import lean, part
 from verify.motion.books_kernels import account, correct_powers, loss, power
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import advance, friction, give, slip
@@ -51,7 +51,7 @@ from verify.motion.records import (
 from verify.motion.surface_kernels import climb, find_piece, rotate_half, set_factors, set_local, touch
 
 
-@lean(inline="always")
+@part()
 def _see(
     row: int,
     time: float,
@@ -75,14 +75,14 @@ def _see(
         seen[row, LOSS] = loss(surface.modes, books.answers, factors)
 
 
-@lean(inline="always")
+@part()
 def _remember(local: Array) -> None:
     """Keep the deflection at the start of a step."""
     for d in range(local.shape[1]):
         local[BEFORE, d] = local[STILL, d]
 
 
-@lean()
+@part()
 def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: Law, space: Space) -> None:
     """Inertia and drift along the surface at the end of a step with what the contact has added, half at mid-step."""
     seen = space.seen
@@ -93,7 +93,7 @@ def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: 
     space.slip[GIVEN_END] += 0.5 * dt * (seen[2, PULL] - pull)
 
 
-@lean(inline="always")
+@part()
 def _answer(
     end: float, dt: float, x: float, v: float, here: Here, surface: Surface, rider: Rider, books: Books, space: Space
 ) -> tuple[float, float]:
@@ -105,7 +105,8 @@ def _answer(
         feel(dt, rider, space.seen)
     works = push_back(motion[V], motion[STUCK] > 0.0, dt, here, surface, rider, space)
     if law.held:
-        motion[FALL] = max(motion[FALL], (law.load - motion[NORMAL]) / law.mass)
+        fall = (law.load - motion[NORMAL]) / law.mass
+        motion[FALL] = fall if fall > motion[FALL] else motion[FALL]
     set_factors(end, surface.modes, surface.drive, space.factors)
     if books.open:
         correct_powers(end, surface, books, space)
@@ -115,32 +116,40 @@ def _answer(
     return works
 
 
-@lean(error_model="numpy", inline="always")
+@part()
 def _step(
-    number: int, dt: float, piece: int, fresh: bool, surface: Surface, rider: Rider, books: Books, space: Space
+    number: int,
+    dt: float,
+    piece: int,
+    fresh: bool,
+    two_way: bool | None,
+    surface: Surface,
+    rider: Rider,
+    books: Books,
+    space: Space,
 ) -> None:
-    """One step of beam and slider."""
+    """One step of beam and slider. `two_way` is the rider's, by itself so that numba drops what a step has not."""
     motion, law, seen = rider.motion, rider.law, space.seen
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
     _see(0, number * dt, x, v, piece, fresh, surface, law, books, space)
-    rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law))
+    rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
     along = v + seen[0, DRIFT]
     here, pressed, lifted, x1, v1 = Here(piece, 0.0, 0.0), 0.0, 0.0, x, v
-    if rider.two_way:
+    if two_way is not None:
         _remember(space.local)
     for row in range(1, 3):
         rotate_half(surface.modes)
         t = 0.5 * row * dt
         x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
         _see(row, (number + 0.5 * row) * dt, x1, v1, piece, True, surface, law, books, space)
-        if rider.two_way and row == 1:
+        if two_way is not None and row == 1:
             here = set_levers(surface, piece, space.local, x1, law.half)
     give(dt, seen, space.slip)
-    if rider.two_way:
+    if two_way is not None:
         pressed, lifted = _answer((number + 1) * dt, dt, x1, v1, here, surface, rider, books, space)
     else:
         feel(dt, rider, seen)
-        slip(v, stuck, 0.0, 0.0, 0.0, law, dt, space)
+        slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
     moved = advance(dt, rate, motion, law, seen, space.slip)
     if books.open:
         account(v, moved, pressed, dt, rider, books, seen)
@@ -157,12 +166,12 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
     motion, tally, took = rider.motion, kept.tally, space.slip
     piece, fresh = 0, True
     for _ in range(n_steps):
-        here = find_piece(surface.edges, motion[X], max(piece, 0))
+        here = find_piece(surface.edges, motion[X], piece)
         if here < 0:
             return OFF_PIECES
-        fresh = fresh or here != piece or rider.two_way
+        fresh = fresh or here != piece or rider.two_way is not None
         piece, number = here, tally[STEP]
-        _step(number, dt, piece, fresh, surface, rider, books, space)
+        _step(number, dt, piece, fresh, rider.two_way, surface, rider, books, space)
         fresh = False
         tally[STEP] += 1
         if not np.isfinite(motion[V] + space.factors[STILL, 0]):
@@ -175,7 +184,7 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
     return DONE
 
 
-@lean()
+@part()
 def _note_events(time: float, x: float, took: Array, events: Array, tally: Indices) -> None:
     """Write down all events of a step, as long as there is room; all of them are counted."""
     for i in range(int(took[N_EVENTS])):
@@ -185,15 +194,15 @@ def _note_events(time: float, x: float, took: Array, events: Array, tally: Indic
         tally[EVENTS] += 1
 
 
-@lean()
+@part()
 def _keep(dt: float, rider: Rider, kept: Kept, space: Space) -> None:
     """Write one sample; friction that sticks is the step's mean."""
     motion, surface, row, points = rider.motion, space.seen[2, SURFACE], kept.tally[SAMPLES], kept.points
-    rows = kept.kept
+    rows, law = kept.kept, rider.law
     rows[row, KEPT_X], rows[row, KEPT_V], rows[row, KEPT_SURFACE] = motion[X], motion[V], surface
     rows[row, KEPT_NORMAL] = motion[NORMAL]
     mean = space.slip[CHANGE] / dt
-    rows[row, KEPT_FRICTION] = mean if motion[STUCK] > 0.0 else friction(motion[V] - surface, rider.law)
+    rows[row, KEPT_FRICTION] = mean if motion[STUCK] > 0.0 else friction(motion[V] - surface, law.static, law)
     for p in range(points.shape[0]):
         total = 0.0
         for j in range(points.shape[1]):
@@ -211,10 +220,10 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
     for number in range(n_steps + 1):
         x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
         if x < edges[0] or x > edges[1]:
-            return max(number - 1, 0)
+            return number - 1 if number > 0 else 0
         touch(given.local[2 * number], edges, 0, x, v, law, seen, 0)
         seen[0, SURFACE] += given.along[2 * number]
-        rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law))
+        rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
         kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
         kept[number, KEPT_FRICTION] = space.slip[CHANGE] / dt if stuck else rate - seen[0, PULL]
         if number == n_steps:
@@ -225,20 +234,24 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
             touch(given.local[half], edges, 0, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
             seen[row, SURFACE] += given.along[half]
         give(dt, seen, space.slip)
-        slip(v, stuck, 0.0, 0.0, 0.0, law, dt, space)
+        slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
         advance(dt, rate, motion, law, seen, space.slip)
     return n_steps
 
 
 @lean()
-def look(surface: Surface, rider: Rider, space: Space) -> tuple[float, float]:
-    """(speed of the surface under the slider, friction per mass) at time 0; sets the slider's height and climb."""
+def look(surface: Surface, rider: Rider, space: Space, piece: int) -> tuple[float, float]:
+    """(speed of the surface under the slider, friction per mass) at time 0; sets the slider's height and climb.
+
+    `piece` is the first to be tried, and stands for one off the pieces.
+    """
     motion, law, seen, edges = rider.motion, rider.law, space.seen, surface.edges
-    piece = max(find_piece(edges, motion[X], 0), 0)
+    found = find_piece(edges, motion[X], piece)
+    piece = found if found >= 0 else piece
     set_factors(0.0, surface.modes, surface.drive, space.factors)
     set_local(surface.table, piece, space.factors, space.local)
     touch(space.local, edges, piece, motion[X], motion[V], law, seen, 0)
     speed = seen[0, SURFACE]
     motion[HEIGHT], motion[NORMAL] = seen[0, LEVEL], law.load
     motion[CLIMB] = climb(space.local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law.half)
-    return speed, 0.0 if motion[STUCK] > 0.0 else friction(motion[V] - speed, law)
+    return speed, 0.0 if motion[STUCK] > 0.0 else friction(motion[V] - speed, law.static, law)

@@ -40,12 +40,10 @@ SPANS = 20
 class Law(NamedTuple):
     """How a slider rubs and what it weighs."""
 
-    coulomb: bool
-    """With true sticking, else tanh, Eq. (3)."""
     kinetic: float
     """mu N / m, m/s^2."""
-    static: float
-    """The same at rest."""
+    static: float | None
+    """The same at rest, of Coulomb's law with true sticking; None: tanh, Eq. (3), and no other law is compiled."""
     slope: float
     """K of Eq. (3), s/m."""
     mass: float
@@ -90,8 +88,8 @@ class Rider(NamedTuple):
     motion: Array
     """(7,), `X` and so on; advanced in place."""
     law: Law
-    two_way: bool
-    """Whether the beam feels it."""
+    two_way: bool | None
+    """True where the beam feels it; None: it does not, and nothing of that is compiled."""
 
 
 class Books(NamedTuple):
