@@ -4,20 +4,73 @@ What numba keeps on disk bears the stamp of the file a function stands in, thoug
 into it: an edit in another file would go unseen. So the stamp here is that of all kernels of the room, with the records
 they read; a kernel imports from there alone (`tests/test_imports.py`). Where numba's index has no stamp to put it on,
 nothing is kept on disk.
+
+A kernel that Python calls is `lean`; one that kernels alone call is a `part` of them, neither optimised nor turned into
+machine code by itself, which takes most of the time of compilation. A part has one signature: what is written out in a
+call, numba takes for a type of its own, so that a number or a truth that differs from call to call is a variable.
 """
 
 from collections.abc import Callable
 from functools import cache, partial
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from numba import njit
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-
 ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
+"""Options of numba for every kernel: divisions are not checked, and no C function is made that nothing calls."""
+
+
+class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """The code of a part: linked with what it calls, and left at that."""
+
+    def finalize(self) -> None:
+        """Link."""
+        self._raise_if_finalized()
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """None: there is no machine code."""
+        self._ensure_finalized()
+        return 0
+
+    @property
+    def codegen(self) -> "_PartLibrary":
+        """What numba hands a function's Python objects to: nobody, since Python does not call it."""
+        return self
+
+    def set_env(self, name: str, env: Any) -> None:
+        """Forget them."""
+
+
+class _PartCompiler(Compiler):  # type: ignore[misc]
+    """Numba's, into a part's library."""
+
+    def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
+        super().__init__(typingctx, targetctx, library or _PartLibrary(targetctx.codegen(), "part"), *given)
+
+
+def _refuse(*given: Any, **more: Any) -> NoReturn:
+    raise TypeError("a part of kernels is called by kernels alone: give it @lean() to call it from Python")
+
+
+def part(**options: Any) -> Callable[[Function], Function]:
+    """Compile, with these options of numba, what kernels alone call and what allocates nothing."""
+
+    def compile_one(function: Function) -> Function:
+        found = njit(_nrt=False, no_cpython_wrapper=True, pipeline_class=_PartCompiler, **{**ALWAYS, **options})(function)
+        found._compile_for_args = _refuse
+        found.add_overload = lambda made: found.overloads.__setitem__(tuple(made.signature.args), made)
+        return found  # type: ignore[no-any-return]
+
+    return compile_one
 
 
 def compiled(**options: Any) -> Callable[[Function], Function]:
@@ -43,7 +96,5 @@ def room_stamp(room: Path) -> str:
 
 lean = partial(compiled, _nrt=False)
 """For kernels that allocate nothing: without numba's memory runtime no loop counts references, twice the speed."""
-part = partial(lean, no_cpython_wrapper=True)
-"""For kernels that kernels alone call."""
 FAST = {"reassoc", "contract", "nsz"}
 """What sums over modes may do with their order."""

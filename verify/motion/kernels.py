@@ -8,6 +8,8 @@ from verify.motion.books_kernels import account, correct_powers, loss, power
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import advance, friction, give, slip
 from verify.motion.records import (
+    AT_END,
+    AT_START,
     BEFORE,
     CHANGE,
     CLIMB,
@@ -87,7 +89,7 @@ def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: 
     """Inertia and drift along the surface at the end of a step with what the contact has added, half at mid-step."""
     seen = space.seen
     surface, pull, drift = seen[2, SURFACE], seen[2, PULL], seen[2, DRIFT]
-    touch(space.local, edges, piece, x, v, law, seen, 2)
+    touch(space.local, edges, piece, x, v, law, seen, AT_END)
     seen[2, SURFACE] = surface
     seen[1, DRIFT] += 0.5 * (seen[2, DRIFT] - drift)
     space.slip[GIVEN_END] += 0.5 * dt * (seen[2, PULL] - pull)
@@ -131,17 +133,18 @@ def _step(
     """One step of beam and slider. `two_way` is the rider's, by itself so that numba drops what a step has not."""
     motion, law, seen = rider.motion, rider.law, space.seen
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
-    _see(0, number * dt, x, v, piece, fresh, surface, law, books, space)
-    rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
-    along = v + seen[0, DRIFT]
-    here, pressed, lifted, x1, v1 = Here(piece, 0.0, 0.0), 0.0, 0.0, x, v
-    if two_way is not None:
-        _remember(space.local)
-    for row in range(1, 3):
-        rotate_half(surface.modes)
+    here, pressed, lifted, x1, v1, rate, along = Here(piece, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0
+    for row in range(3):
         t = 0.5 * row * dt
-        x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
-        _see(row, (number + 0.5 * row) * dt, x1, v1, piece, True, surface, law, books, space)
+        if row > 0:
+            rotate_half(surface.modes)
+            x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
+        _see(row, (number + 0.5 * row) * dt, x1, v1, piece, fresh or row > 0, surface, law, books, space)
+        if row == 0:
+            rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
+            along = v + seen[0, DRIFT]
+        if two_way is not None and row == 0:
+            _remember(space.local)
         if two_way is not None and row == 1:
             here = set_levers(surface, piece, space.local, x1, law.half)
     give(dt, seen, space.slip)
@@ -164,7 +167,7 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
     agree whenever the caller is interrupted.
     """
     motion, tally, took = rider.motion, kept.tally, space.slip
-    piece, fresh = 0, True
+    piece, fresh = AT_START, True
     for _ in range(n_steps):
         here = find_piece(surface.edges, motion[X], piece)
         if here < 0:
@@ -221,7 +224,7 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
         if x < edges[0] or x > edges[1]:
             return number - 1 if number > 0 else 0
-        touch(given.local[2 * number], edges, 0, x, v, law, seen, 0)
+        touch(given.local[2 * number], edges, AT_START, x, v, law, seen, AT_START)
         seen[0, SURFACE] += given.along[2 * number]
         rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
         kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
@@ -231,7 +234,7 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         ahead = v + seen[0, DRIFT]
         for row in range(1, 3):
             t, half = 0.5 * row * dt, 2 * number + row
-            touch(given.local[half], edges, 0, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
+            touch(given.local[half], edges, AT_START, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
             seen[row, SURFACE] += given.along[half]
         give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
@@ -250,7 +253,7 @@ def look(surface: Surface, rider: Rider, space: Space, piece: int) -> tuple[floa
     piece = found if found >= 0 else piece
     set_factors(0.0, surface.modes, surface.drive, space.factors)
     set_local(surface.table, piece, space.factors, space.local)
-    touch(space.local, edges, piece, motion[X], motion[V], law, seen, 0)
+    touch(space.local, edges, piece, motion[X], motion[V], law, seen, AT_START)
     speed = seen[0, SURFACE]
     motion[HEIGHT], motion[NORMAL] = seen[0, LEVEL], law.load
     motion[CLIMB] = climb(space.local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law.half)

@@ -8,6 +8,8 @@ imaginary part of (t/T)^d e^{i omega t}.
 
 from typing import NamedTuple
 
+import numpy as np
+
 from verify.models.arrays import Array, Indices
 
 X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL = range(7)
@@ -33,6 +35,8 @@ STILL, MOVING, BEFORE = range(3)
 CHANGE, STICKING, GIVEN_MIDDLE, GIVEN_END, N_EVENTS, FIRST_EVENT = range(6)
 """Entries of `Space.slip`: what friction adds to the speed, sticking at the end, what else adds by the middle and the
 end, how many events, and from FIRST_EVENT on their times within the step and their kinds in turns."""
+AT_START, AT_END = np.int64(0), np.int64(2)
+"""Rows of `Space.seen` for calls: a number written out would have a copy of the kernel compiled for itself."""
 SPANS = 20
 """Of a step, between which friction changes its mind."""
 
