@@ -32,6 +32,7 @@ COMMANDS = {
     "show": "scenes:show",
     "keys": "keys",
     "schema": "keys:schema",
+    "warm-up": "warm_up:warm_up",
 }
 """Where each command is: a module of `commands`, and its name there where that is another."""
 
@@ -79,6 +80,7 @@ def status_of(argv: list[str] | None = None) -> int:
         result = cli.main(args=argv, prog_name="verify", standalone_mode=False)
         sys.stdout.flush()
         _tell_of_unusable()
+        _tell_of_compiling()
     except (BrokenPipeError, ReaderGoneError):
         _hush()
         return NO_READER
@@ -95,6 +97,7 @@ def status_of(argv: list[str] | None = None) -> int:
     except SystemExit as stop:
         result = stop.code if isinstance(stop.code, int) else BAD_INPUT
         _tell_of_unusable()
+        _tell_of_compiling()
     return result if isinstance(result, int) else 0
 
 
@@ -105,6 +108,15 @@ def _tell_of_unusable() -> None:
 
         for why in unusable():
             click.echo(f"verify: left out: {why}", err=True)
+
+
+def _tell_of_compiling() -> None:
+    """A sentence where kernels had to be compiled and no folder keeps them."""
+    if "verify.models.compiling" in sys.modules:
+        from verify.models.compiling import told
+
+        for sentence in told():
+            click.echo(f"verify: {sentence}", err=True)
 
 
 def _hush() -> None:

@@ -46,7 +46,7 @@ def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> tuple[float,
     return kinetic, elastic, height
 
 
-@lean(fastmath={"contract"})
+@part(fastmath={"contract"})
 def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
     """Rates of the state (q, v, energy lost, work put in), (2N + 2,)."""
     n = f.links.shape[0]

@@ -208,9 +208,8 @@ def _bear(normal: float, dt: float, rider: Rider) -> None:
 
 
 @part()
-def feel(dt: float, rider: Rider, seen: Array) -> None:
+def feel(dt: float, motion: Array, law: Law, seen: Array) -> None:
     """The slider's normal reaction and how fast the surface falls away under it, where it does not push back."""
-    motion, law = rider.motion, rider.law
     lift = 4.0 * (seen[0, LEVEL] - 2.0 * seen[1, LEVEL] + seen[2, LEVEL]) / (dt * dt)
     motion[NORMAL] = law.load + (law.mass * lift if law.held else 0.0)
     motion[FALL] = -lift if -lift > motion[FALL] else motion[FALL]

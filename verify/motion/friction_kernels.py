@@ -14,6 +14,7 @@ from verify.motion.records import (
     GIVEN_END,
     GIVEN_MIDDLE,
     N_EVENTS,
+    NOUGHT,
     PULL,
     SLIPS,
     SPANS,
@@ -153,7 +154,7 @@ def coulomb_span(
             beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
             if beyond > 0.0 and rate != 0.0:
                 at = (bound - a0) / rate
-                at = 0.0 if 0.0 > at else at
+                at = 0.0 if at < 0.0 else at
                 return dt if dt < at else at, 0.0, False, SLIPS
         return dt, 0.0, True, 0.0
     side = np.sign(r) if r != 0.0 else -np.sign(a0 if a0 != 0.0 else rate)
@@ -226,9 +227,7 @@ def slip(
     if abs(r) <= 1e-9 * law.kinetic * dt and abs(a0) <= static:
         r, stuck = 0.0, True  # put on a surface at rest, to rounding
     for _ in range(SPANS):
-        span, r, stuck, event = coulomb_span(
-            r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, static, dt - used, stuck
-        )
+        span, r, stuck, event = coulomb_span(r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, static, dt - used, stuck)
         used += span
         if event in (STICKS, SLIPS):
             here = FIRST_EVENT + 2 * int(took[N_EVENTS])
@@ -322,9 +321,7 @@ def slide_on_belt(
     `state` is (x, v, stuck) and is advanced in place; `stiffness` is k/m, `pull` an acceleration. `events` is
     (capacity, 3): time, kind, x; a turn of the velocity relative to the surface is an event as well.
     """
-    n_events = 0
+    n_events = NOUGHT
     for step in range(n_steps):
-        n_events = _step_on_belt(
-            (step + 1) * dt, dt, law.static, law, belt, stiffness, pull, state, events, n_events
-        )
+        n_events = _step_on_belt((step + 1) * dt, dt, law.static, law, belt, stiffness, pull, state, events, n_events)
     return n_events

@@ -4,7 +4,7 @@ import numpy as np
 
 from verify.models.arrays import Array, Indices
 from verify.models.kernels import lean, part
-from verify.motion.books_kernels import account, correct_powers, loss, power
+from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import advance, friction, give, slip
 from verify.motion.records import (
@@ -31,6 +31,7 @@ from verify.motion.records import (
     N_EVENTS,
     NORMAL,
     NOT_FINITE,
+    NOUGHT,
     OFF_PIECES,
     POWER,
     PULL,
@@ -104,7 +105,7 @@ def _answer(
     if law.held:
         set_reads(surface, here.piece, space.local, x, law.half)
     else:
-        feel(dt, rider, space.seen)
+        feel(dt, motion, law, space.seen)
     works = push_back(motion[V], motion[STUCK] > 0.0, dt, here, surface, rider, space)
     if law.held:
         fall = (law.load - motion[NORMAL]) / law.mass
@@ -151,11 +152,13 @@ def _step(
     if two_way is not None:
         pressed, lifted = _answer((number + 1) * dt, dt, x1, v1, here, surface, rider, books, space)
     else:
-        feel(dt, rider, seen)
+        feel(dt, motion, law, seen)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
     moved = advance(dt, rate, motion, law, seen, space.slip)
     if books.open:
-        account(v, moved, pressed, dt, rider, books, seen)
+        if two_way is None:
+            pressed = by_parts(v, motion[V], moved, dt, law.mass, seen)
+        account(v, motion[V], pressed, dt, law.mass, books.ledger, seen)
         books.ledger[LIFTED] += lifted
 
 
@@ -167,7 +170,7 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
     agree whenever the caller is interrupted.
     """
     motion, tally, took = rider.motion, kept.tally, space.slip
-    piece, fresh = AT_START, True
+    piece, fresh = NOUGHT, True
     for _ in range(n_steps):
         here = find_piece(surface.edges, motion[X], piece)
         if here < 0:
@@ -182,7 +185,7 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
         if took[N_EVENTS] > 0.0:
             _note_events(surface.drive.origin + number * dt, motion[X], took, kept.events, tally)
         if tally[STEP] % kept.every == 0:
-            _keep(dt, rider, kept, space)
+            _keep(dt, motion, rider.law, kept, space)
             tally[SAMPLES] += 1
     return DONE
 
@@ -198,10 +201,9 @@ def _note_events(time: float, x: float, took: Array, events: Array, tally: Indic
 
 
 @part()
-def _keep(dt: float, rider: Rider, kept: Kept, space: Space) -> None:
+def _keep(dt: float, motion: Array, law: Law, kept: Kept, space: Space) -> None:
     """Write one sample; friction that sticks is the step's mean."""
-    motion, surface, row, points = rider.motion, space.seen[2, SURFACE], kept.tally[SAMPLES], kept.points
-    rows, law = kept.kept, rider.law
+    surface, row, points, rows = space.seen[2, SURFACE], kept.tally[SAMPLES], kept.points, kept.kept
     rows[row, KEPT_X], rows[row, KEPT_V], rows[row, KEPT_SURFACE] = motion[X], motion[V], surface
     rows[row, KEPT_NORMAL] = motion[NORMAL]
     mean = space.slip[CHANGE] / dt
@@ -224,7 +226,7 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
         if x < edges[0] or x > edges[1]:
             return number - 1 if number > 0 else 0
-        touch(given.local[2 * number], edges, AT_START, x, v, law, seen, AT_START)
+        touch(given.local[2 * number], edges, NOUGHT, x, v, law, seen, AT_START)
         seen[0, SURFACE] += given.along[2 * number]
         rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
         kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
@@ -234,7 +236,7 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         ahead = v + seen[0, DRIFT]
         for row in range(1, 3):
             t, half = 0.5 * row * dt, 2 * number + row
-            touch(given.local[half], edges, AT_START, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
+            touch(given.local[half], edges, NOUGHT, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
             seen[row, SURFACE] += given.along[half]
         give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)

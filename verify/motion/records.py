@@ -35,8 +35,8 @@ STILL, MOVING, BEFORE = range(3)
 CHANGE, STICKING, GIVEN_MIDDLE, GIVEN_END, N_EVENTS, FIRST_EVENT = range(6)
 """Entries of `Space.slip`: what friction adds to the speed, sticking at the end, what else adds by the middle and the
 end, how many events, and from FIRST_EVENT on their times within the step and their kinds in turns."""
-AT_START, AT_END = np.int64(0), np.int64(2)
-"""Rows of `Space.seen` for calls: a number written out would have a copy of the kernel compiled for itself."""
+NOUGHT, AT_START, AT_END = np.int64(0), np.int64(0), np.int64(2)
+"""A count, and rows of `Space.seen`, for calls: a number written out would have a copy of the kernel compiled."""
 SPANS = 20
 """Of a step, between which friction changes its mind."""
 
