@@ -23,13 +23,13 @@ SMALL = 0.5
 """Relative angles below this take the short series for sine and cosine."""
 
 
-@part()
+@part(fastmath={"contract"})
 def turned(c: float, s: float, x: float, y: float) -> tuple[float, float]:
     """A vector in a frame turned by the angle with cosine c and sine s."""
     return c * x + s * y, c * y - s * x
 
 
-@part()
+@part(fastmath={"contract"})
 def _turned_matrix(c: float, s: float, x11: float, x12: float, x22: float) -> tuple[float, float, float]:
     """A symmetric matrix in a frame turned by the angle with cosine c and sine s."""
     c2, s2 = c * c - s * s, 2.0 * c * s
@@ -38,7 +38,7 @@ def _turned_matrix(c: float, s: float, x11: float, x12: float, x22: float) -> tu
     return mean + d, off, mean - d
 
 
-@part()
+@part(fastmath={"contract"})
 def _inverse(x11: float, x12: float, x22: float) -> tuple[float, float, float]:
     """The inverse of a symmetric 2 x 2 matrix."""
     d = 1.0 / (x11 * x22 - x12 * x12)

@@ -1,12 +1,13 @@
 """What is compiled in this process, for whoever shows or counts it; numba is not loaded for that."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import msgspec
 
 COMPILING = "compiling kernels, once on this machine"
 AT_EVERY_RUN = (
-    "kernels are compiled at every run: set NUMBA_CACHE_DIR to a folder that can be written, then verify warm-up"
+    "kernels are compiled at every run: set NUMBA_CACHE_DIR to a folder that can be written to, then `verify warm-up`"
 )
 
 
@@ -30,3 +31,13 @@ unkept: list[str] = []
 def told() -> tuple[str, ...]:
     """What to say at the end of a run, in sentences."""
     return (AT_EVERY_RUN,) if unkept and compiled else ()
+
+
+@contextmanager
+def heard(hear: Callable[[str], None]) -> Iterator[None]:
+    """Tell `hear` what is compiled in the meantime."""
+    hearers.append(hear)
+    try:
+        yield
+    finally:
+        hearers.remove(hear)
