@@ -42,7 +42,8 @@ FELT = {"push_back", "_answer", "_balance", "set_levers", "_reaction"}
 def child(code, cache, **environment):
     """Standard output of a process of its own, in which a warning is an error."""
     given = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_CACHE_DIR": str(cache), **environment}
-    return subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, env=given)
+    command = [sys.executable, "-W", "error", "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, env=given, check=False)
 
 
 def compiled_by(what, cache):

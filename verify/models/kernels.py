@@ -30,12 +30,12 @@ ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
 """Options of numba for every kernel: divisions are not checked, and no C function is made that nothing calls."""
 
 
-class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
+class _PartLibrary(JITCodeLibrary):
     """The code of a part: linked with what it calls, and left at that."""
 
     def finalize(self) -> None:
         """Link."""
-        self._raise_if_finalized()
+        self._raise_if_finalized()  # type: ignore[no-untyped-call]
         for library in dict.fromkeys(self._linking_libraries):
             self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
@@ -43,7 +43,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
 
     def get_pointer_to_function(self, name: str) -> int:
         """None: there is no machine code."""
-        self._ensure_finalized()
+        self._ensure_finalized()  # type: ignore[no-untyped-call]
         return 0
 
     @property
@@ -55,11 +55,12 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         """Forget them."""
 
 
-class _PartCompiler(Compiler):  # type: ignore[misc]
+class _PartCompiler(Compiler):
     """Numba's, into a part's library."""
 
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
-        super().__init__(typingctx, targetctx, library or _PartLibrary(targetctx.codegen(), "part"), *given)
+        into = library or _PartLibrary(targetctx.codegen(), "part")  # type: ignore[no-untyped-call]
+        super().__init__(typingctx, targetctx, into, *given)  # type: ignore[no-untyped-call]
 
 
 PART = {**ALWAYS, "_nrt": False, "no_cpython_wrapper": True, "pipeline_class": _PartCompiler}
@@ -127,7 +128,7 @@ def _forgive(kept: Any, name: str) -> None:
     kept.load_overload, kept.save_overload = load_or_compile, save_or_tell
 
 
-class _Watch(event.Listener):  # type: ignore[misc]
+class _Watch(event.Listener):
     """Tells `compiling` what is compiled; one kernel's compilation asks for that of those it calls."""
 
     def __init__(self) -> None:
@@ -157,7 +158,7 @@ def _tell(what: str) -> None:
         hear(what)
 
 
-event.register("numba:compile", _Watch())
+event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]
 
 
 @cache

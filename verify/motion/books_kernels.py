@@ -67,7 +67,7 @@ def by_parts(v: float, v1: float, moved: float, dt: float, mass: float, seen: Ar
     """Work of a step's friction on a beam that does not feel it: of friction times the surface's line, by parts."""
     mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
     rise = seen[2, SURFACE] - seen[0, SURFACE]
-    return -mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved)
+    return float(-mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved))
 
 
 @part()

@@ -35,7 +35,9 @@ STILL, MOVING, BEFORE = range(3)
 CHANGE, STICKING, GIVEN_MIDDLE, GIVEN_END, N_EVENTS, FIRST_EVENT = range(6)
 """Entries of `Space.slip`: what friction adds to the speed, sticking at the end, what else adds by the middle and the
 end, how many events, and from FIRST_EVENT on their times within the step and their kinds in turns."""
-NOUGHT, AT_START, AT_END = np.int64(0), np.int64(0), np.int64(2)
+NOUGHT: int = np.int64(0)  # type: ignore[assignment]
+AT_START: int = np.int64(0)  # type: ignore[assignment]
+AT_END: int = np.int64(2)  # type: ignore[assignment]
 """A count, and rows of `Space.seen`, for calls: a number written out would have a copy of the kernel compiled."""
 SPANS = 20
 """Of a step, between which friction changes its mind."""
