@@ -32,6 +32,7 @@ COMMANDS = {
     "show": "scenes:show",
     "keys": "keys",
     "schema": "keys:schema",
+    "warm-up": "warm_up:warm_up",
 }
 """Where each command is: a module of `commands`, and its name there where that is another."""
 
@@ -80,6 +81,7 @@ def status_of(argv: list[str] | None = None) -> int:
         result = cli.main(args=argv, prog_name="verify", standalone_mode=False)
         sys.stdout.flush()
         _tell_of_unusable()
+        _tell_of_compiling()
     except (BrokenPipeError, ReaderGoneError):
         _hush()
         return NO_READER
@@ -96,6 +98,7 @@ def status_of(argv: list[str] | None = None) -> int:
     except SystemExit as stop:
         result = stop.code if isinstance(stop.code, int) else BAD_INPUT
         _tell_of_unusable()
+        _tell_of_compiling()
     return result if isinstance(result, int) else 0
 
 
@@ -111,6 +114,13 @@ def _tell_of_unusable() -> None:
 def _cores() -> str:
     """How many processes share independent work (`cores`), unless the environment says."""
     return str(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+def _tell_of_compiling() -> None:
+    """A sentence where kernels had to be compiled and no folder keeps them."""
+    if "verify.models.compiling" in sys.modules:
+        from verify.models.compiling import told
+
+        for sentence in told():
+            click.echo(f"verify: {sentence}", err=True)
 
 
 def _hush() -> None:

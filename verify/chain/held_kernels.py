@@ -5,21 +5,21 @@ import numpy as np
 from verify.chain.records import HALF, ROLLER, Flat
 from verify.chain.recursion_kernels import direction, hub_motion, solve
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import compiled
+from verify.models.kernels import lean, part
 
 
-@compiled(fastmath={"contract"})
-def rise(f: Flat, k: int, work: Array, spins: int) -> float:
-    """Vertical acceleration of a held point for the angular accelerations in a column; with column 3's rates."""
+@part(fastmath={"contract"})
+def rise(f: Flat, k: int, work: Array) -> float:
+    """Vertical acceleration of a held point for column 12's angular accelerations and column 3's rates."""
     total, link = 0.0, int(f.held[k, 4])
     for i in range(link + 1):
         c, s = direction(work[i, 2])
         reach = 2.0 * f.links[i, HALF] if i < link else f.links[i, HALF] + f.held[k, 0]
-        total += reach * (c * work[i, spins] - s * work[i, 3] * work[i, 3])
+        total += reach * (c * work[i, 12] - s * work[i, 3] * work[i, 3])
     return total
 
 
-@compiled()
+@part()
 def solve_small(a: Array, n: int) -> None:
     """Gauss with row exchange on an (n, n + 1) array; the answer in its last column."""
     for j in range(n):
@@ -38,7 +38,7 @@ def solve_small(a: Array, n: int) -> None:
         a[j, n] /= a[j, j]
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def hold(f: Flat, t: float, work: Array) -> float:
     """Forces of the actuators that keep their points on the prescribed y; their power.
 
@@ -51,7 +51,7 @@ def hold(f: Flat, t: float, work: Array) -> float:
     for k in range(count):
         phase = f.held[k + first, 2] * t + f.held[k + first, 3]
         wanted = -f.held[k + first, 1] * f.held[k + first, 2] ** 2 * np.cos(phase)
-        f.small[k, count] = wanted - rise(f, k + first, work, 14)
+        f.small[k, count] = wanted - rise(f, k + first, work)
     for i in range(n):
         work[i, 15] = work[i, 3]
         work[i, 3] = 0.0
@@ -65,7 +65,7 @@ def hold(f: Flat, t: float, work: Array) -> float:
         for i in range(n):
             work[i, 16 + k] = work[i, 12]
         for m in range(count):
-            f.small[m, k] = rise(f, m + first, work, 12)
+            f.small[m, k] = rise(f, m + first, work)
     solve_small(f.small, count)
     power = 0.0
     for i in range(n):
@@ -78,7 +78,7 @@ def hold(f: Flat, t: float, work: Array) -> float:
     return power
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
     """Angles and rates into columns 2, 3; positions and velocities of joints 0..N into 13 to 16."""
     angle, rate, _ = hub_motion(f.numbers, t)
@@ -94,7 +94,7 @@ def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
     work[n, 13], work[n, 14], work[n, 15], work[n, 16] = x, y, vx, vy
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) -> None:
     """Residuals of the held points (or of their rates), and derivatives by the dependent angles, into `small`."""
     count = f.held.shape[0]
@@ -112,26 +112,28 @@ def constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) ->
             f.small[k, d] = x - work[pivots[d], 13] if pivots[d] <= i else 0.0
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, settled: float, work: Array) -> float:
     """Bring dependent angles (Newton, until a change is below `settled`) and rates onto the held points.
 
     The largest change of an angle; infinite where 20 steps do not suffice.
     """
     count, moved = f.held.shape[0], 0.0
-    if count == 0:
+    settling = count == 0  # False from here on; written out, numba would compile one copy for it and one for True
+    if settling:
         return 0.0
     for _ in range(20):
         place(f, t, q, v, work)
-        constraints(f, t, pivots, work, False)
+        constraints(f, t, pivots, work, settling)
         solve_small(f.small, count)
         change = 0.0
         for d in range(count):
             q[pivots[d]] -= f.small[d, count]
-            change = max(change, abs(f.small[d, count]))
-        moved = max(moved, change)
+            size = abs(f.small[d, count])
+            change = size if size > change else change
+        moved = change if change > moved else moved
         if change < settled:
-            constraints(f, t, pivots, work, True)
+            constraints(f, t, pivots, work, not settling)
             solve_small(f.small, count)
             for d in range(count):
                 v[pivots[d]] -= f.small[d, count]
@@ -139,7 +141,7 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, settled: flo
     return np.inf
 
 
-@compiled()
+@part()
 def repivot(f: Flat, pivots: Indices, work: Array, loss: float) -> bool:
     """Exchange the roller's dependent angle, where it is the only one, if its lever arm has become short."""
     if f.held.shape[0] != 1:

@@ -6,10 +6,10 @@ from verify.chain.held_kernels import hold, place, project, repivot
 from verify.chain.records import DIVERGED, DONE, INERTIA, MASS, ROLLER, RUNNING, SPRING, TOO_SMALL, Flat, March
 from verify.chain.recursion_kernels import cosines, hub_motion, load_power, loads, moments, shortening, solve, weigh
 from verify.models.arrays import Array
-from verify.models.kernels import compiled
+from verify.models.kernels import lean, part
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -> tuple[float, float]:
     """Relative angular accelerations, (N,), into `out`; (power lost, power put in by loads, actuators and hub)."""
     lost, power = moments(f, t, q, v, work)
@@ -29,7 +29,7 @@ def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -
     return lost, power
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> tuple[float, float, float]:
     """Kinetic, elastic (joints and axial spring) and gravitational energy, joule."""
     place(f, t, q, v, work)
@@ -46,7 +46,7 @@ def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> tuple[float,
     return kinetic, elastic, height
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
     """Rates of the state (q, v, energy lost, work put in), (2N + 2,)."""
     n = f.links.shape[0]
@@ -55,12 +55,13 @@ def derivative(f: Flat, t: float, y: Array, work: Array, out: Array) -> None:
         out[i] = y[n + i]
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _stages(f: Flat, t: float, h: float, y: Array, a: Array, c: Array, k: Array, new: Array, work: Array) -> None:
     """Stages 1.. of an explicit Runge-Kutta step into k[1:], its answer (the last row of `a`) into `new`."""
     stages = a.shape[1]
     for s in range(1, stages + 1):
-        new[:] = y
+        for i in range(y.size):
+            new[i] = y[i]
         for j in range(s):
             if a[s, j] != 0.0:
                 weight = h * a[s, j]
@@ -70,7 +71,7 @@ def _stages(f: Flat, t: float, h: float, y: Array, a: Array, c: Array, k: Array,
             derivative(f, t + c[s] * h, new, work, k[s])
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _keep(t: float, h: float, at: float, y: Array, new: Array, k0: Array, k1: Array, n: int, out: Array) -> None:
     """The state at a time within a step: quintic Hermite in the angles, its derivative in the rates."""
     s = (at - t) / h
@@ -90,27 +91,29 @@ def _keep(t: float, h: float, at: float, y: Array, new: Array, k0: Array, k1: Ar
         out[i] = u0 * y[i] + u1 * new[i] + h * s * r * (r * k0[i] - s * k1[i])
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _error(n: int, h: float, k: Array, weights: Array, y: Array, scale: Array) -> float:
     """Norm of a step's estimated error over its tolerance: angles and rates each by their root mean square.
 
     `scale` is relative tolerance, absolute tolerance of the angles, of the rates, and the largest means of `y` so far.
     """
     worst = 0.0
-    for part in range(2):
+    for row in range(2):
         error, size = 0.0, 0.0
-        for i in range(part * n, (part + 1) * n):
+        for i in range(row * n, (row + 1) * n):
             e = 0.0
             for j in range(weights.size):
                 e += weights[j] * k[j, i]
             error += e * e
             size += y[i] * y[i]
-        scale[3 + part] = max(scale[3 + part], np.sqrt(size / n))
-        worst = max(worst, h * np.sqrt(error / n) / (scale[1 + part] + scale[0] * scale[3 + part]))
+        mean = np.sqrt(size / n)
+        scale[3 + row] = mean if mean > scale[3 + row] else scale[3 + row]
+        over = h * np.sqrt(error / n) / (scale[1 + row] + scale[0] * scale[3 + row])
+        worst = over if over > worst else worst
     return worst
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def torn(rates: Array, h: float) -> bool:
     """Whether rates are not finite, or one step would turn a joint by more than half a turn."""
     fine = True
@@ -119,15 +122,17 @@ def torn(rates: Array, h: float) -> bool:
     return not fine
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _propose(error: float, order: float, h: float) -> float:
     """The next step after one with this error over its tolerance."""
     if not error >= 0.0:
         return 0.2 * h
-    return float(h * min(4.0, max(0.2, 0.9 * max(error, 1e-10) ** (-1.0 / order))))
+    share = 0.9 * (error if error > 1e-10 else 1e-10) ** (-1.0 / order)
+    share = share if share > 0.2 else 0.2
+    return h * (share if share < 4.0 else 4.0)
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _keep_samples(m: March, t: float, h: float) -> None:
     """What lies within an accepted step."""
     last, n = m.k.shape[0] - 1, m.y.size // 2 - 1
@@ -136,7 +141,7 @@ def _keep_samples(m: March, t: float, h: float) -> None:
         m.counts[3] += 1
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def march(f: Flat, m: March, budget: int, work: Array) -> int:
     """At most `budget` steps, fixed or held to the tolerances of `scale`; each ends on the held points."""
     n, last = f.links.shape[0], m.k.shape[0] - 1
@@ -162,5 +167,6 @@ def march(f: Flat, m: March, budget: int, work: Array) -> int:
         m.counts[0] += 1
         m.clock[0] = t + h
         _keep_samples(m, t, h)
-        m.y[:], m.k[0] = m.new, m.k[last]
+        for i in range(m.y.size):
+            m.y[i], m.k[0, i] = m.new[i], m.k[last, i]
     return DONE if m.counts[3] >= m.samples.size else RUNNING

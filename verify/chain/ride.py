@@ -94,7 +94,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
     n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
     local, along, edges = _surface(chain, start)
     given, kept = Given(local, along, edges - start), np.zeros((n_steps + 1, 4))
-    rider = Rider(fresh_motion(slider.speed), law_of(slider, beam), two_way=False)
+    rider = Rider(fresh_motion(slider.speed), law_of(slider, beam), two_way=None)
     ready = perf_counter()
     done = kernels.slide_given(n_steps, dt, given, rider, kept, contact_space())
     wall, kept, ends = perf_counter() - ready, kept[: done + 1], slice(0, 2 * done + 1, 2)

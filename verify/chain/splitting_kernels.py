@@ -6,14 +6,14 @@ from verify.chain.kernels import accelerate, torn
 from verify.chain.records import DIVERGED, DONE, HALF, RUNNING, Flat, Modal
 from verify.chain.recursion_kernels import direction
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import compiled
+from verify.models.kernels import lean, part
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _expand(modes: Array, state: Array, rest: Array, q: Array, v: Array) -> None:
     """Angles and rates from modal coordinates, (m, 2); `modes` is (m, N)."""
-    q[:] = rest
-    v[:] = 0.0
+    for i in range(q.size):
+        q[i], v[i] = rest[i], 0.0
     even = modes.shape[0] // 2 * 2
     for j in range(0, even, 2):
         a, b, c, d = state[j, 0], state[j, 1], state[j + 1, 0], state[j + 1, 1]
@@ -26,7 +26,7 @@ def _expand(modes: Array, state: Array, rest: Array, q: Array, v: Array) -> None
             v[i] += state[j, 1] * modes[j, i]
 
 
-@compiled(fastmath={"contract", "reassoc"})
+@part(fastmath={"contract", "reassoc"})
 def _reduce(duals: Array, a: Array, out: Array) -> None:
     """Modal accelerations, (m,); `duals` is (m, N)."""
     for j in range(duals.shape[0]):
@@ -36,7 +36,7 @@ def _reduce(duals: Array, a: Array, out: Array) -> None:
         out[j] = total
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _rotate(turns: Array, state: Array) -> None:
     """Exact linear flow: `turns` (m, 3) holds cos, sin / omega and - omega sin of the step."""
     for j in range(turns.shape[0]):
@@ -44,10 +44,11 @@ def _rotate(turns: Array, state: Array) -> None:
         state[j, 0], state[j, 1] = turns[j, 0] * x + turns[j, 1] * y, turns[j, 2] * x + turns[j, 0] * y
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
     """Steady answer of the modes to the harmonic loads, (m, 2); `shares` is (n_loads, m)."""
-    out[:] = 0.0
+    for j in range(out.shape[0]):
+        out[j, 0], out[j, 1] = 0.0, 0.0
     for k in range(drives.shape[0]):
         phase = drives[k, 0] * t + drives[k, 1]
         now, rate = np.cos(phase), -drives[k, 0] * np.sin(phase)
@@ -56,7 +57,7 @@ def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
             out[j, 1] += shares[k, j] * rate
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _close(f: Flat, tilt: float, free: Array, work: Array) -> None:
     """One chord step of the roller's closure along the last mode, which turns the tip off its line by `tilt`."""
     gap, speed = 0.0, 0.0
@@ -69,7 +70,7 @@ def _close(f: Flat, tilt: float, free: Array, work: Array) -> None:
     free[last, 1] -= speed / tilt
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _flow(omega: Array, time: float, start: Array, out: Array) -> None:
     """Exact linear flow of a time from one state to another."""
     for j in range(omega.size):
@@ -79,7 +80,7 @@ def _flow(omega: Array, time: float, start: Array, out: Array) -> None:
         out[j, 1] = c * y - w * s * x
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _between(s: float, h: float, omega: Array, flowing: Array, miss: Array, steady: Array, out: Array) -> None:
     """Modal state at a share s of a step, (2, m): the linear flow from its start, a cubic through what kicks added."""
     slow0, slow1 = s * s * (3.0 - 2.0 * s), h * s * s * (s - 1.0)
@@ -94,7 +95,7 @@ def _between(s: float, h: float, omega: Array, flowing: Array, miss: Array, stea
         out[1, j] += flowing[j, 1] + steady[j, 1]
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _kick(f: Flat, d: Modal, t: float, h: float, free: Array, work: Array) -> None:
     """Nonlinear kick of a step h: what the linear flow leaves out of the accelerations, by the explicit mid-point.
 
@@ -118,11 +119,12 @@ def _kick(f: Flat, d: Modal, t: float, h: float, free: Array, work: Array) -> No
         free[j, 1] += h * d.force[j]
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _keep_modal(d: Modal, t: float, h: float, counts: Indices, samples: Array, kept: Array, free: Array) -> None:
     """Samples within a step that went from `d.start` to `free`; an even spacing takes one sine for each mode."""
     miss, first = d.trial, True
-    miss[:] = d.start
+    for j in range(free.shape[0]):
+        miss[j, 0], miss[j, 1] = d.start[j, 0], d.start[j, 1]
     _rotate(d.flows[d.kicks.size + 1], miss)
     for j in range(free.shape[0]):
         miss[j, 0], miss[j, 1] = free[j, 0] - miss[j, 0], free[j, 1] - miss[j, 1]
@@ -141,7 +143,7 @@ def _keep_modal(d: Modal, t: float, h: float, counts: Indices, samples: Array, k
         counts[3] += 1
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def march_modal(
     f: Flat, d: Modal, clock: Array, counts: Indices, samples: Array, kept: Array, budget: int, free: Array, work: Array
 ) -> int:
@@ -154,7 +156,8 @@ def march_modal(
         if counts[3] >= samples.size:
             return DONE
         t = clock[0]
-        d.start[:] = free
+        for j in range(free.shape[0]):
+            d.start[j, 0], d.start[j, 1] = free[j, 0], free[j, 1]
         for k in range(d.kicks.size):
             _rotate(d.flows[k], free)
             t += d.shares_of_step[k] * h

@@ -166,7 +166,11 @@ class _Run:
             scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0]),
             pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
         )
-        kernels.derivative(self.flat, start.time, self.m.y, self.work, self.m.k[0])
+        n, y, first_rates = system.n_links, self.m.y, self.m.k[0]
+        first_rates[:n] = y[n : 2 * n]
+        first_rates[2 * n :] = kernels.accelerate(
+            self.flat, start.time, y[:n], y[n : 2 * n], self.work, first_rates[n : 2 * n]
+        )
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.m.kept[:at_start], self.m.counts[3] = self.m.y, at_start
 

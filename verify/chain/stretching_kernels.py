@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import compiled
+from verify.models.kernels import lean, part
 
 
 class Elastic(NamedTuple):
@@ -26,7 +26,7 @@ class Elastic(NamedTuple):
     """(N + 1, 2, 2): of the mass matrix over joints, for x and y: coupling to the joint before, reciprocal pivot."""
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def factorise(diagonal: Array, coupling: Array, free: Array, factors: Array) -> None:
     """L D L^T of the mass matrix with held joints left out; `free` is (N + 1, 2), 1 or 0."""
     for axis in range(2):
@@ -37,7 +37,7 @@ def factorise(diagonal: Array, coupling: Array, free: Array, factors: Array) -> 
             factors[j, axis, 0], factors[j, axis, 1] = ratio, free[j, axis] / pivot
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _solve(e: Elastic, force: Array) -> None:
     """Accelerations in the place of forces, (N + 1, 2); zero at held joints."""
     last = force.shape[0] - 1
@@ -50,7 +50,7 @@ def _solve(e: Elastic, force: Array) -> None:
             force[j, axis] -= e.factors[j + 1, axis, 0] * force[j + 1, axis]
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _strain(e: Elastic, i: int, u: Array) -> tuple[float, float, float, float]:
     """Length, cosine and sine of a link, and its stretch."""
     length = e.links[i, 0]
@@ -59,7 +59,7 @@ def _strain(e: Elastic, i: int, u: Array) -> tuple[float, float, float, float]:
     return now, (length + dx) / now, dy / now, (dx * (2.0 * length + dx) + dy * dy) / (now + length)
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _turn(force: Array, i: int, now: float, c: float, s: float, moment: float) -> None:
     """A moment on a link as forces across it at both ends."""
     pair = moment / now
@@ -67,12 +67,12 @@ def _turn(force: Array, i: int, now: float, c: float, s: float, moment: float) -
     force[i + 1, 0], force[i + 1, 1] = force[i + 1, 0] - pair * s, force[i + 1, 1] + pair * c
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def _load(e: Elastic, t: float, u: Array, force: Array) -> None:
     """Dead loads shared between the joints of their links."""
     for k in range(e.loads.shape[0]):
-        share, fx, fy, moment, omega, phase, link = e.loads[k]
-        i, now = int(link), np.cos(omega * t + phase)
+        share, fx, fy, moment = e.loads[k, 0], e.loads[k, 1], e.loads[k, 2], e.loads[k, 3]
+        i, now = int(e.loads[k, 6]), np.cos(e.loads[k, 4] * t + e.loads[k, 5])
         for end in range(2):
             part = now * (share if end else 1.0 - share)
             force[i + end, 0], force[i + end, 1] = force[i + end, 0] + part * fx, force[i + end, 1] + part * fy
@@ -81,11 +81,12 @@ def _load(e: Elastic, t: float, u: Array, force: Array) -> None:
             _turn(force, i, length, c, s, now * moment)
 
 
-@compiled(fastmath={"contract"})
+@part(fastmath={"contract"})
 def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
     """Accelerations of all joints, (N + 1, 2), from displacements and velocities."""
     n = e.links.shape[0]
-    out[:] = 0.0
+    for j in range(n + 1):
+        out[j, 0], out[j, 1] = 0.0, 0.0
     before_length, before_c, before_s, before_rate = 1.0, 1.0, 0.0, 0.0
     for i in range(n):
         now, c, s, stretch = _strain(e, i, u)
@@ -105,7 +106,7 @@ def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
     _solve(e, out)
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def energy(e: Elastic, diagonal: Array, coupling: Array, u: Array, v: Array) -> float:
     """Kinetic and elastic energy, and that of gravity, joule."""
     total, before_c, before_s = 0.0, 1.0, 0.0
@@ -124,18 +125,23 @@ def energy(e: Elastic, diagonal: Array, coupling: Array, u: Array, v: Array) -> 
     return total
 
 
-@compiled(fastmath={"contract"})
+@lean(fastmath={"contract"})
 def march(e: Elastic, t: float, h: float, steps: int, u: Array, v: Array, k: Array, w: Array) -> bool:
     """RK4 steps; `k` is (4, N + 1, 2), `w` (2, N + 1, 2). Whether the state is still finite."""
     for step in range(steps):
         now = t + step * h
-        accelerate(e, now, u, v, k[0])
-        w[0], w[1] = u + 0.5 * h * v, v + 0.5 * h * k[0]
-        accelerate(e, now + 0.5 * h, w[0], w[1], k[1])
-        w[0], w[1] = u + 0.5 * h * v + 0.25 * h * h * k[0], v + 0.5 * h * k[1]
-        accelerate(e, now + 0.5 * h, w[0], w[1], k[2])
-        w[0], w[1] = u + h * v + 0.5 * h * h * k[1], v + h * k[2]
-        accelerate(e, now + h, w[0], w[1], k[3])
+        for stage in range(4):
+            if stage == 0:
+                accelerate(e, now, u, v, k[0])
+                continue
+            share = h if stage == 3 else 0.5 * h
+            square = 0.0 if stage == 1 else 0.5 * share * h
+            for j in range(u.shape[0]):
+                for axis in range(2):
+                    place = u[j, axis] + share * v[j, axis]
+                    w[0, j, axis] = place if stage == 1 else place + square * k[stage - 2, j, axis]
+                    w[1, j, axis] = v[j, axis] + share * k[stage - 1, j, axis]
+            accelerate(e, now + share, w[0], w[1], k[stage])
         for j in range(u.shape[0]):
             for axis in range(2):
                 u[j, axis] += h * v[j, axis] + h * h / 6.0 * (k[0, j, axis] + k[1, j, axis] + k[2, j, axis])

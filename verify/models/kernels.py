@@ -3,32 +3,162 @@
 What numba keeps on disk bears the stamp of the file a function stands in, though what that function calls is compiled
 into it: an edit in another file would go unseen. So the stamp here is that of all kernels of the room, with the records
 they read; a kernel imports from there alone (`tests/test_imports.py`). Where numba's index has no stamp to put it on,
-nothing is kept on disk.
+nothing is kept on disk; where no folder takes what is kept, kernels are compiled anew and `compiling` knows.
+
+A kernel that Python calls is `lean`; one that kernels alone call is a `part` of them, neither optimised nor turned into
+machine code by itself, which takes most of the time of compilation. A part has one signature: what is written out in a
+call, numba takes for a type of its own, so that a number or a truth that differs from call to call is a variable.
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache, partial
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from time import perf_counter
+from typing import Any, NoReturn, TypeVar
 
 from numba import njit
+from numba.core import event
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+
+from verify.models import compiling
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
+"""Options of numba for every kernel: divisions are not checked, and no C function is made that nothing calls."""
+
+
+class _PartLibrary(JITCodeLibrary):
+    """The code of a part: linked with what it calls, and left at that."""
+
+    def finalize(self) -> None:
+        """Link."""
+        self._raise_if_finalized()  # type: ignore[no-untyped-call]
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """None: there is no machine code."""
+        self._ensure_finalized()  # type: ignore[no-untyped-call]
+        return 0
+
+    @property
+    def codegen(self) -> "_PartLibrary":
+        """What numba hands a function's Python objects to: nobody, since Python does not call it."""
+        return self
+
+    def set_env(self, name: str, env: Any) -> None:
+        """Forget them."""
+
+
+class _PartCompiler(Compiler):
+    """Numba's, into a part's library."""
+
+    def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
+        into = library or _PartLibrary(targetctx.codegen(), "part")  # type: ignore[no-untyped-call]
+        super().__init__(typingctx, targetctx, into, *given)  # type: ignore[no-untyped-call]
+
+
+PART = {**ALWAYS, "_nrt": False, "no_cpython_wrapper": True, "pipeline_class": _PartCompiler}
+
+
+def _refuse(*given: Any, **more: Any) -> NoReturn:
+    raise TypeError("a part of kernels is called by kernels alone: give it @lean() to call it from Python")
+
+
+def part(**options: Any) -> Callable[[Function], Function]:
+    """Compile, with these options of numba, what kernels alone call and what allocates nothing."""
+
+    def compile_one(function: Function) -> Function:
+        found = njit(**{**PART, **options})(function)
+        found._compile_for_args = _refuse
+        found.add_overload = lambda made: found.overloads.__setitem__(tuple(made.signature.args), made)
+        return found  # type: ignore[no-any-return]
+
+    return compile_one
 
 
 def compiled(**options: Any) -> Callable[[Function], Function]:
     """Compile with these options of numba; what is kept on disk holds while the room's kernels stay as they are."""
 
     def compile_one(function: Function) -> Function:
-        found = njit(cache=True, **options)(function)
-        index: Any = getattr(getattr(found, "_cache", None), "_cache_file", None)
-        if not hasattr(index, "_source_stamp"):
-            return njit(**options)(function)  # type: ignore[no-any-return]
-        index._source_stamp = index._source_stamp, room_stamp(Path(function.__code__.co_filename).parent)
+        found = njit(**{**ALWAYS, **options})(function)
+        nothing = found._cache
+        try:
+            found.enable_caching()
+        except (RuntimeError, OSError):
+            compiling.unkept.append(function.__qualname__)
+            return found  # type: ignore[no-any-return]
+        index: Any = getattr(found._cache, "_cache_file", None)
+        if hasattr(index, "_source_stamp"):
+            index._source_stamp = index._source_stamp, room_stamp(Path(function.__code__.co_filename).parent)
+            _forgive(found._cache, function.__qualname__)
+        else:
+            found._cache = nothing
         return found  # type: ignore[no-any-return]
 
     return compile_one
+
+
+def _forgive(kept: Any, name: str) -> None:
+    """A file that cannot be read is compiled again; one that cannot be written is done without, and `compiling` knows.
+
+    Nothing is half-written: numba writes each file beside its place and renames it.
+    """
+    load, save = kept.load_overload, kept.save_overload
+
+    def load_or_compile(signature: Any, target: Any) -> Any:
+        try:
+            return load(signature, target)
+        except Exception:  # whatever a damaged pickle raises
+            with suppress(OSError):
+                kept.flush()
+            return None
+
+    def save_or_tell(signature: Any, made: Any) -> None:
+        try:
+            save(signature, made)
+        except OSError:
+            compiling.unkept.append(name)
+
+    kept.load_overload, kept.save_overload = load_or_compile, save_or_tell
+
+
+class _Watch(event.Listener):
+    """Tells `compiling` what is compiled; one kernel's compilation asks for that of those it calls."""
+
+    def __init__(self) -> None:
+        self.open: list[tuple[float, float]] = []
+        """When each began, and the seconds of those within it."""
+
+    def on_start(self, event: Any) -> None:
+        """A kernel's compilation begins."""
+        if not self.open:
+            _tell(compiling.COMPILING)
+        self.open.append((perf_counter(), 0.0))
+
+    def on_end(self, event: Any) -> None:
+        """It is over."""
+        (began, within), function = self.open.pop(), event.data["dispatcher"].py_func
+        seconds = perf_counter() - began
+        if self.open:
+            self.open[-1] = self.open[-1][0], self.open[-1][1] + seconds
+        kernel = f"{function.__module__.removeprefix('verify.')}.{function.__qualname__}"
+        compiling.compiled.append(compiling.Compiled(kernel, seconds - within))
+        if not self.open:
+            _tell("")
+
+
+def _tell(what: str) -> None:
+    for hear in compiling.hearers:
+        hear(what)
+
+
+event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]
 
 
 @cache

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, lean
+from verify.models.kernels import FAST, part
 from verify.motion.records import (
     DAMPED,
     DRIVEN,
@@ -17,14 +17,12 @@ from verify.motion.records import (
     SURFACE,
     Books,
     Drive,
-    Rider,
     Space,
     Surface,
-    V,
 )
 
 
-@lean(fastmath=FAST, error_model="numpy")
+@part(fastmath=FAST)
 def power(drive: Drive, books: Books, time: float, factors: Array) -> float:
     """Power of the driving forces, watts."""
     angle = drive.omega * (drive.origin + time)
@@ -41,7 +39,7 @@ def power(drive: Drive, books: Books, time: float, factors: Array) -> float:
     return total
 
 
-@lean(fastmath=FAST)
+@part(fastmath=FAST)
 def loss(modes: Array, answers: Array, factors: Array) -> float:
     """Power lost in the modes, watts."""
     total, n = 0.0, modes.shape[1]
@@ -53,7 +51,7 @@ def loss(modes: Array, answers: Array, factors: Array) -> float:
     return total
 
 
-@lean()
+@part()
 def correct_powers(time: float, surface: Surface, books: Books, space: Space) -> None:
     """Powers at the end of a step with what the contact has added to the speeds since its start, half at mid-step."""
     seen = space.seen
@@ -64,17 +62,20 @@ def correct_powers(time: float, surface: Surface, books: Books, space: Space) ->
     seen[2, POWER], seen[2, LOSS] = driven, damped
 
 
-@lean(inline="always")
-def account(v: float, moved: float, pressed: float, dt: float, rider: Rider, books: Books, seen: Array) -> None:
-    """Add one step from the speed v to the ledger. `pressed` is the work of friction on the beam (two-way)."""
-    mass, v1, ledger = rider.law.mass, rider.motion[V], books.ledger
+@part()
+def by_parts(v: float, v1: float, moved: float, dt: float, mass: float, seen: Array) -> float:
+    """Work of a step's friction on a beam that does not feel it: of friction times the surface's line, by parts."""
+    mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
+    rise = seen[2, SURFACE] - seen[0, SURFACE]
+    return float(-mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved))
+
+
+@part()
+def account(v: float, v1: float, pressed: float, dt: float, mass: float, ledger: Array, seen: Array) -> None:
+    """Add one step from the speed v to v1 to the ledger. `pressed` is the work of friction on the beam."""
     ledger[DRIVEN] += dt * (seen[0, POWER] + 4.0 * seen[1, POWER] + seen[2, POWER]) / 6.0
     ledger[DAMPED] += dt * (seen[0, LOSS] + 4.0 * seen[1, LOSS] + seen[2, LOSS]) / 6.0
     on_slider = 0.5 * mass * (v1 * v1 - v * v)
-    if not rider.two_way:  # the integral of friction times the surface's line, by parts
-        mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
-        rise = seen[2, SURFACE] - seen[0, SURFACE]
-        pressed = -mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved)
     ledger[ON_BEAM] += pressed
     ledger[ON_SLIDER] += on_slider
     ledger[RUBBED] -= on_slider + pressed

@@ -225,7 +225,7 @@ def _grip(slider: Slider) -> float:
 def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> Sliding:
     """Room for the slider's run from where it starts."""
     start, speed, stuck = put_on(request, slider)
-    rider = Rider(fresh_motion(speed, stuck), law_of(slider, request.beam), coupling.two_way)
+    rider = Rider(fresh_motion(speed, stuck), law_of(slider, request.beam), coupling.two_way or None)
     samples = sum(stage.n_steps // stage.every for stage in stages)
     sliding = Sliding.fresh(start, samples, request.points, rider, request.accounts and request.start == "rest")
     if request.before is not None and request.before.height is not None:

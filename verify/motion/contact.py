@@ -22,9 +22,8 @@ def law_of(slider: Slider, beam: Beam) -> Law:
     pressing = slider.normal_force / slider.mass
     static = slider.mu if slider.mu_static is None else slider.mu_static
     return Law(
-        coulomb=slider.law == "coulomb",
         kinetic=float(slider.mu * pressing),
-        static=float(static * pressing),
+        static=float(static * pressing) if slider.law == "coulomb" else None,
         slope=float(slider.slope),
         mass=float(slider.mass),
         half=float(beam.surface_distance),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, lean
+from verify.models.kernels import FAST, part
 from verify.motion.friction_kernels import slip
 from verify.motion.records import (
     CLIMB,
@@ -32,7 +32,7 @@ from verify.motion.records import (
 from verify.motion.surface_kernels import carried, climbed, material
 
 
-@lean(fastmath=FAST, error_model="numpy")
+@part(fastmath=FAST)
 def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float) -> Here:
     """How unit forces on the surface at x load every mode: a tangential one -(h/2) on its slope, w' on its rise.
 
@@ -57,7 +57,7 @@ def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float
     return Here(piece, at, slope)
 
 
-@lean(fastmath=FAST, error_model="numpy")
+@part(fastmath=FAST)
 def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float) -> None:
     """The deflection of every mode under the slider at x."""
     table, edges, modes = surface.table, surface.edges, surface.modes
@@ -69,50 +69,58 @@ def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float)
         modes[READ, j] = value
 
 
-@lean(fastmath=FAST, error_model="numpy")
-def _mobility(modes: Array, acts: int, turn: int) -> float:
-    """Tangential speed of the surface after a constant unit force has acted for half a step or a whole one, m/s per N.
+@part(fastmath=FAST)
+def _mobilities(modes: Array) -> tuple[float, float, float, float]:
+    """Tangential speed of the surface after a constant unit force has acted for half a step and a whole one, m/s per N.
 
-    `acts` is the row of the force's levers.
+    (Of a tangential force, half and whole, of a normal one, half and whole.)
     """
-    total = 0.0
+    half, full, across_half, across = 0.0, 0.0, 0.0, 0.0
     for j in range(modes.shape[1]):
-        total += modes[LEVER, j] * modes[acts, j] * modes[turn, j] / modes[OMEGA, j]
-    return total
+        lever, omega = modes[LEVER, j], modes[OMEGA, j]
+        lift = modes[LIFT, j]
+        half += lever * lever * modes[HALF_IM, j] / omega
+        full += lever * lever * modes[FULL_IM, j] / omega
+        across_half += lever * lift * modes[HALF_IM, j] / omega
+        across += lever * lift * modes[FULL_IM, j] / omega
+    return half, full, across_half, across
 
 
-@lean(fastmath=FAST, error_model="numpy")
-def _compliance(modes: Array, acts: int) -> float:
-    """How far a constant unit force lifts the surface under the slider in a step, m/N."""
-    total = 0.0
+@part(fastmath=FAST)
+def _compliances(modes: Array) -> tuple[float, float]:
+    """How far constant unit forces lift the surface under the slider in a step, a normal and a tangential one, m/N."""
+    by_normal, by_push = 0.0, 0.0
     for j in range(modes.shape[1]):
         decay, omega = modes[SIGMA, j], modes[OMEGA, j]
         gain = 1.0 - modes[FULL_RE, j] - modes[FULL_IM, j] * decay / omega
-        total += modes[READ, j] * modes[acts, j] * gain / (omega * omega + decay * decay)
-    return total
+        lifted = modes[READ, j] * gain / (omega * omega + decay * decay)
+        by_normal += modes[LIFT, j] * lifted
+        by_push += modes[LEVER, j] * lifted
+    return by_normal, by_push
 
 
-@lean(fastmath=FAST, error_model="numpy")
-def _press(force: float, acts: int, modes: Array) -> None:
-    """Add what a constant force over the whole step adds to the modes: (1 - turn) about the shifted rest position."""
+@part(fastmath=FAST)
+def _press(along: float, across: float, modes: Array) -> None:
+    """Add what constant forces over the whole step add to the modes: (1 - turn) about the shifted rest position."""
     for j in range(modes.shape[1]):
         decay, omega = modes[SIGMA, j], modes[OMEGA, j]
-        real = force * modes[acts, j] / (omega * omega + decay * decay)
+        real = (along * modes[LEVER, j] + across * modes[LIFT, j]) / (omega * omega + decay * decay)
         imaginary = -real * decay / omega
         modes[Z_RE, j] += real - (modes[FULL_RE, j] * real - modes[FULL_IM, j] * imaginary)
         modes[Z_IM, j] += imaginary - (modes[FULL_RE, j] * imaginary + modes[FULL_IM, j] * real)
 
 
-@lean(fastmath=FAST)
-def _given_way(modes: Array, acts: int) -> float:
-    """How far the free modes have moved the surface along a force's levers, metres."""
-    total = 0.0
+@part(fastmath=FAST)
+def _given_ways(modes: Array) -> tuple[float, float]:
+    """How far the free modes have moved the surface along the levers of a tangential force and of a normal one."""
+    along, across = 0.0, 0.0
     for j in range(modes.shape[1]):
-        total += modes[acts, j] * modes[Z_RE, j]
-    return total
+        along += modes[LEVER, j] * modes[Z_RE, j]
+        across += modes[LIFT, j] * modes[Z_RE, j]
+    return along, across
 
 
-@lean()
+@part()
 def _reaction(dt: float, modes: Array, motion: Array, law: Law, seen: Array) -> tuple[float, float]:
     """The normal reaction, mean over a step, that keeps a slider with inertia on the surface.
 
@@ -122,26 +130,33 @@ def _reaction(dt: float, modes: Array, motion: Array, law: Law, seen: Array) -> 
     does along x (w' dx/dt and all convective terms) is in the height of the surface where it ends up.
     """
     stiff = 2.0 * law.mass / (dt * dt)
-    own = 1.0 + stiff * _compliance(modes, LIFT)
+    by_normal, by_push = _compliances(modes)
+    own = 1.0 + stiff * by_normal
     free = law.load + stiff * (seen[2, LEVEL] - motion[HEIGHT] - dt * motion[CLIMB])
-    return free / own, stiff * _compliance(modes, LEVER) / own
+    return free / own, stiff * by_push / own
 
 
-@lean(error_model="numpy")
-def _balance(v: float, stuck: bool, half: float, full: float, law: Law, dt: float, space: Space) -> float:
+@part()
+def _balance(
+    v: float, stuck: bool, half: float, full: float, static: float | None, law: Law, dt: float, space: Space
+) -> float:
     """The contact force, newton, mean over the step, at which slider and beam agree: regula falsi (Illinois).
 
     The slider's impulse falls as the beam gives way, so there is one root between the limits of friction.
     """
     per = law.mass / dt
-    high = 1.000001 * law.mass * max(law.kinetic, law.static)
+    most = law.kinetic
+    if static is not None:
+        most = static if static > most else most
+    high = 1.000001 * law.mass * most
     low = -high
-    at_low = per * slip(v, stuck, -low, half, full, law, dt, space) - low
-    at_high = per * slip(v, stuck, -high, half, full, law, dt, space) - high
-    force = per * slip(v, stuck, 0.0, half, full, law, dt, space)
+    at_low = per * slip(v, stuck, -low, half, full, static, law, dt, space) - low
+    at_high = per * slip(v, stuck, -high, half, full, static, law, dt, space) - high
+    force = per * slip(v, stuck, 0.0, half, full, static, law, dt, space)
     for _ in range(60):
-        force = min(max(force, low), high)
-        miss = per * slip(v, stuck, -force, half, full, law, dt, space) - force
+        force = low if low > force else force
+        force = high if high < force else force
+        miss = per * slip(v, stuck, -force, half, full, static, law, dt, space) - force
         if abs(miss) <= 1e-14 * (high - low) or abs(miss) <= 1e-15 * abs(force):
             break
         if miss > 0.0:
@@ -152,7 +167,7 @@ def _balance(v: float, stuck: bool, half: float, full: float, law: Law, dt: floa
     return float(force)
 
 
-@lean()
+@part()
 def push_back(
     v: float, stuck: bool, dt: float, here: Here, surface: Surface, rider: Rider, space: Space
 ) -> tuple[float, float]:
@@ -162,41 +177,39 @@ def push_back(
     square of the step.
     """
     modes, law, seen = surface.modes, rider.law, space.seen
-    half, full = _mobility(modes, LEVER, HALF_IM), _mobility(modes, LEVER, FULL_IM)
+    half, full, across_half, across = _mobilities(modes)
     normal, per_push = 0.0, 0.0
     if law.held:
         normal, per_push = _reaction(dt, modes, rider.motion, law, seen)
-        across_half, across = _mobility(modes, LIFT, HALF_IM), _mobility(modes, LIFT, FULL_IM)
         seen[1, SURFACE] -= normal * across_half
         seen[2, SURFACE] -= normal * across
         half, full = half - per_push * across_half, full - per_push * across
-    force = _balance(v, stuck, half, full, law, dt, space)
-    way = carried(space.local, surface.edges, here, law.half) - _given_way(modes, LEVER)
-    climb = climbed(space.local, here.at) - _given_way(modes, LIFT) if law.held else 0.0
+    force = _balance(v, stuck, half, full, law.static, law, dt, space)
+    along, up = _given_ways(modes)
+    way, climb = carried(space.local, surface.edges, here, law.half) - along, 0.0
     if law.held:
+        climb = climbed(space.local, here.at) - up
         normal -= per_push * force
-        _bear(normal, dt, modes, rider)
-    _press(-force, LEVER, modes)
+        _bear(normal, dt, rider)
+    _press(-force, -normal, modes)
     seen[2, SURFACE] -= force * full
-    lifted = -normal * (climb + _given_way(modes, LIFT)) if law.held else 0.0
-    return -force * (way + _given_way(modes, LEVER)), lifted
+    along, up = _given_ways(modes)
+    return -force * (way + along), -normal * (climb + up)
 
 
-@lean()
-def _bear(normal: float, dt: float, modes: Array, rider: Rider) -> None:
-    """Give a normal reaction to slider and beam."""
+@part()
+def _bear(normal: float, dt: float, rider: Rider) -> None:
+    """Give a normal reaction to the slider."""
     motion, law = rider.motion, rider.law
-    _press(-normal, LIFT, modes)
     gained = dt * (normal - law.load) / law.mass
     motion[HEIGHT] += dt * (motion[CLIMB] + 0.5 * gained)
     motion[CLIMB] += gained
     motion[NORMAL] = normal
 
 
-@lean(inline="always")
-def feel(dt: float, rider: Rider, seen: Array) -> None:
+@part()
+def feel(dt: float, motion: Array, law: Law, seen: Array) -> None:
     """The slider's normal reaction and how fast the surface falls away under it, where it does not push back."""
-    motion, law = rider.motion, rider.law
     lift = 4.0 * (seen[0, LEVEL] - 2.0 * seen[1, LEVEL] + seen[2, LEVEL]) / (dt * dt)
     motion[NORMAL] = law.load + (law.mass * lift if law.held else 0.0)
-    motion[FALL] = max(motion[FALL], -lift)
+    motion[FALL] = -lift if -lift > motion[FALL] else motion[FALL]

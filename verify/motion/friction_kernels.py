@@ -6,7 +6,7 @@ A slider on a belt, at the end of the file, is friction alone.
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import lean
+from verify.models.kernels import lean, part
 from verify.motion.records import (
     CHANGE,
     DRIFT,
@@ -14,6 +14,7 @@ from verify.motion.records import (
     GIVEN_END,
     GIVEN_MIDDLE,
     N_EVENTS,
+    NOUGHT,
     PULL,
     SLIPS,
     SPANS,
@@ -43,18 +44,20 @@ def tanh_speed_change(r: float, a: float, b: float, slope: float, dt: float) -> 
     alpha, rho = side * alpha, side * slope * r
     if (1.0 + alpha) * tau < 0.01:
         return float(side * _brief_change(rho, alpha, tau) / slope)
-    if min(rho, rho - (alpha + 1.0) * tau) > 20.0:
+    if rho > 20.0 and rho - (alpha + 1.0) * tau > 20.0:
         return -side * b * dt  # |tanh| is 1 throughout, to e^-40
-    if max(rho, rho - (alpha - 1.0) * tau) < -20.0:
+    if rho < -20.0 and rho - (alpha - 1.0) * tau < -20.0:
         return side * b * dt
     if abs(alpha - 1.0) < 1e-7:
         alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)  # 1e-7 of b in this step; the formulas part there
     change = _held_change(rho, alpha, tau) if alpha < 1.0 else _swept_change(rho, alpha, tau)
-    added = min(max(change + alpha * tau, -tau), tau)  # rounding gives no more than friction has
+    added = change + alpha * tau  # rounding gives no more than friction has
+    added = -tau if -tau > added else added
+    added = tau if tau < added else added
     return float(side * added / slope)
 
 
-@lean()
+@part()
 def _brief_change(rho: float, alpha: float, tau: float) -> float:
     """What friction adds to rho in a short tau: four stages, off by less than 1e-11 of it, where logarithms cancel."""
     first = np.tanh(rho)
@@ -64,7 +67,7 @@ def _brief_change(rho: float, alpha: float, tau: float) -> float:
     return float(-tau * (first + 2.0 * second + 2.0 * third + fourth) / 6.0)
 
 
-@lean(error_model="numpy")
+@part()
 def _swept_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), alpha > 1: there is no speed at rest with the surface.
 
@@ -91,13 +94,13 @@ def _swept_change(rho: float, alpha: float, tau: float) -> float:
     return float(change)
 
 
-@lean()
+@part()
 def _ln_cosh(delta: float) -> float:
     """Ln(2 cosh delta), without overflow."""
     return float(abs(delta) + np.log1p(np.exp(-2.0 * abs(delta))))
 
 
-@lean()
+@part()
 def _held_change(rho: float, alpha: float, tau: float) -> float:
     """Change of rho in tau under rho' = -(tanh rho + alpha), 0 <= alpha < 1: rho tends to rest = -artanh alpha.
 
@@ -112,7 +115,8 @@ def _held_change(rho: float, alpha: float, tau: float) -> float:
     lean = side * alpha
     start = _ln_sinh(eta)
     goal = start - lean * eta - (1.0 - alpha * alpha) * tau
-    level = min(start, goal + lean * eta)
+    level = goal + lean * eta
+    level = level if level < start else start
     for _ in range(80):
         here = _arsinh_exp(level)
         step = (level - lean * here - goal) / (1.0 - lean * np.tanh(here))
@@ -122,12 +126,12 @@ def _held_change(rho: float, alpha: float, tau: float) -> float:
     return float(side * _arsinh_exp(level) + rest - rho)
 
 
-@lean()
+@part()
 def _ln_sinh(eta: float) -> float:
     return float(np.log(np.sinh(eta))) if eta < 1.0 else eta - np.log(2.0) + np.log1p(-np.exp(-2.0 * eta))
 
 
-@lean()
+@part()
 def _arsinh_exp(level: float) -> float:
     return float(np.arcsinh(np.exp(level))) if level < 20.0 else level + np.log(2.0)
 
@@ -149,7 +153,9 @@ def coulomb_span(
         for bound in (static, -static):
             beyond = (a1 - bound) * (1.0 if bound > 0.0 else -1.0)
             if beyond > 0.0 and rate != 0.0:
-                return min(max((bound - a0) / rate, 0.0), dt), 0.0, False, SLIPS
+                at = (bound - a0) / rate
+                at = 0.0 if at < 0.0 else at
+                return dt if dt < at else at, 0.0, False, SLIPS
         return dt, 0.0, True, 0.0
     side = np.sign(r) if r != 0.0 else -np.sign(a0 if a0 != 0.0 else rate)
     slowing = kinetic * side + a0  # r(t) = r - slowing t - rate t^2 / 2
@@ -159,7 +165,7 @@ def coulomb_span(
     return used, 0.0, abs(a0 + rate * used) <= static, STICKS if abs(a0 + rate * used) <= static else TURNS
 
 
-@lean()
+@part()
 def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     """The first t in (0, dt) where r - slowing t - rate t^2/2 changes sign, else dt."""
     if r == 0.0:
@@ -179,17 +185,29 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     return best
 
 
-@lean(inline="always")
-def friction(r: float, law: Law) -> float:
-    """Friction per mass at relative speed r where it does not depend on sticking."""
-    if not law.coulomb:
+@part()
+def friction(r: float, static: float | None, law: Law) -> float:
+    """Friction per mass at relative speed r where it does not depend on sticking; `static` is the law's."""
+    if static is None:
         return float(-law.kinetic * np.tanh(law.slope * r))
     return float(-law.kinetic * np.sign(r))
 
 
-@lean(error_model="numpy", inline="always")
-def slip(v: float, stuck: bool, push: float, half: float, full: float, law: Law, dt: float, space: Space) -> float:
+@part()
+def slip(
+    v: float,
+    stuck: bool,
+    push: float,
+    half: float,
+    full: float,
+    static: float | None,
+    law: Law,
+    dt: float,
+    space: Space,
+) -> float:
     """Speed change by friction in one step under a contact force `push` on the beam; fills `space.slip`.
+
+    `static` is the law's, handed on by itself so that numba drops the branch of the other law.
 
     For tanh the speed of the surface is replaced by its least-squares line, which keeps both moments: order 4
     where friction is smooth, exact where it is steep. Coulomb's law follows the parabola, with sticking and
@@ -200,18 +218,16 @@ def slip(v: float, stuck: bool, push: float, half: float, full: float, law: Law,
     sm = seen[1, SURFACE] - took[GIVEN_MIDDLE] + push * half
     s1 = seen[2, SURFACE] - took[GIVEN_END] + push * full
     took[STICKING], took[N_EVENTS] = 0.0, 0.0
-    if not law.coulomb:
+    if static is None:
         mean, rise = (s0 + 4.0 * sm + s1) / 6.0, s1 - s0
         took[CHANGE] = tanh_speed_change(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
         return float(took[CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
     r, used = 0.0 if stuck else v - s0, 0.0
-    if abs(r) <= 1e-9 * law.kinetic * dt and abs(a0) <= law.static:
+    if abs(r) <= 1e-9 * law.kinetic * dt and abs(a0) <= static:
         r, stuck = 0.0, True  # put on a surface at rest, to rounding
     for _ in range(SPANS):
-        span, r, stuck, event = coulomb_span(
-            r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, law.static, dt - used, stuck
-        )
+        span, r, stuck, event = coulomb_span(r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, static, dt - used, stuck)
         used += span
         if event in (STICKS, SLIPS):
             here = FIRST_EVENT + 2 * int(took[N_EVENTS])
@@ -223,14 +239,14 @@ def slip(v: float, stuck: bool, push: float, half: float, full: float, law: Law,
     return float(took[CHANGE])
 
 
-@lean()
+@part()
 def give(dt: float, seen: Array, took: Array) -> None:
     """What everything but friction adds to the speed by the middle and the end of a step."""
     took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
     took[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
 
 
-@lean()
+@part()
 def advance(dt: float, rate: float, motion: Array, law: Law, seen: Array, took: Array) -> float:
     """Move the slider to the end of a step; the distance that its own speed made. `rate` was its acceleration."""
     v = motion[V]
@@ -238,18 +254,19 @@ def advance(dt: float, rate: float, motion: Array, law: Law, seen: Array, took: 
     if took[STICKING] > 0.0:
         v1, rate1 = seen[2, SURFACE], rate
     else:
-        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], law)
+        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], law.static, law)
     moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
     motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
     motion[V], motion[STUCK] = v1, took[STICKING]
     return float(moved)
 
 
-@lean()
+@part()
 def _tanh_on_belt(
-    x: float, v: float, dt: float, kinetic: float, slope: float, belt: float, stiffness: float, pull: float
-) -> tuple[float, float]:
-    """(x, v) after a step of a spring-held slider under Eq. (3): the spring's mean force, friction solved exactly."""
+    dt: float, kinetic: float, slope: float, belt: float, stiffness: float, pull: float, state: Array
+) -> None:
+    """A step of a spring-held slider under Eq. (3): the spring's mean force, friction solved exactly."""
+    x, v = state[0], state[1]
     start = pull - stiffness * x
     rate = start - kinetic * np.tanh(slope * (v - belt))
     middle = pull - stiffness * (x + 0.5 * dt * v + 0.125 * dt * dt * rate)
@@ -257,7 +274,42 @@ def _tanh_on_belt(
     given = dt * (start + 4.0 * middle + end) / 6.0
     v1 = v + given + tanh_speed_change(v - belt, -given / dt, kinetic, slope, dt)
     rate1 = end - kinetic * np.tanh(slope * (v1 - belt))
-    return x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
+    state[0], state[1] = x + 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0, v1
+
+
+@part()
+def _step_on_belt(
+    end: float,
+    dt: float,
+    static: float | None,
+    law: Law,
+    belt: float,
+    stiffness: float,
+    pull: float,
+    state: Array,
+    events: Array,
+    n_events: int,
+) -> int:
+    """One step, under Coulomb's law from event to event; the number of events so far."""
+    if static is None:
+        _tanh_on_belt(dt, law.kinetic, law.slope, belt, stiffness, pull, state)
+        return n_events
+    x, v, stuck, kinetic, left = state[0], state[1], state[2] > 0.0, law.kinetic, dt
+    while left > 0.0:
+        force0 = pull - stiffness * x
+        rate = 0.0 if stuck else force0 - kinetic * np.sign(v - belt)
+        force1 = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
+        used, r1, stuck1, event = coulomb_span(v - belt, -force0, -force1, kinetic, static, left, stuck)
+        rate1 = 0.0 if stuck else force0 + (force1 - force0) * used / left - kinetic * np.sign(v - belt)
+        x += 0.5 * used * (v + belt + r1) + used * used * (rate - rate1) / 12.0
+        v, stuck, left = belt + r1, stuck1, left - used
+        if event != 0.0 and n_events < len(events):
+            events[n_events, 0], events[n_events, 1], events[n_events, 2] = end - left, event, x
+            n_events += 1
+        if used <= 0.0 and event == 0.0:
+            left = 0.0
+    state[0], state[1], state[2] = x, v, 1.0 if stuck else 0.0
+    return n_events
 
 
 @lean()
@@ -269,26 +321,7 @@ def slide_on_belt(
     `state` is (x, v, stuck) and is advanced in place; `stiffness` is k/m, `pull` an acceleration. `events` is
     (capacity, 3): time, kind, x; a turn of the velocity relative to the surface is an event as well.
     """
-    x, v, stuck = state[0], state[1], state[2] > 0.0
-    kinetic, static, slope = law.kinetic, law.static, law.slope
-    n_events = 0
+    n_events = NOUGHT
     for step in range(n_steps):
-        left = dt
-        while left > 0.0:
-            force0 = pull - stiffness * x
-            if not law.coulomb:
-                x, v = _tanh_on_belt(x, v, dt, kinetic, slope, belt, stiffness, pull)
-                break
-            rate = 0.0 if stuck else force0 - kinetic * np.sign(v - belt)
-            end = pull - stiffness * (x + left * v + 0.5 * left * left * rate)
-            used, r1, stuck1, event = coulomb_span(v - belt, -force0, -end, kinetic, static, left, stuck)
-            rate1 = 0.0 if stuck else force0 + (end - force0) * used / left - kinetic * np.sign(v - belt)
-            x += 0.5 * used * (v + belt + r1) + used * used * (rate - rate1) / 12.0
-            v, stuck, left = belt + r1, stuck1, left - used
-            if event != 0.0 and n_events < len(events):
-                events[n_events, 0], events[n_events, 1], events[n_events, 2] = (step + 1) * dt - left, event, x
-                n_events += 1
-            if used <= 0.0 and event == 0.0:
-                left = 0.0
-    state[0], state[1], state[2] = x, v, 1.0 if stuck else 0.0
+        n_events = _step_on_belt((step + 1) * dt, dt, law.static, law, belt, stiffness, pull, state, events, n_events)
     return n_events

@@ -3,11 +3,13 @@
 import numpy as np
 
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import lean
-from verify.motion.books_kernels import account, correct_powers, loss, power
+from verify.models.kernels import lean, part
+from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import advance, friction, give, slip
 from verify.motion.records import (
+    AT_END,
+    AT_START,
     BEFORE,
     CHANGE,
     CLIMB,
@@ -29,6 +31,7 @@ from verify.motion.records import (
     N_EVENTS,
     NORMAL,
     NOT_FINITE,
+    NOUGHT,
     OFF_PIECES,
     POWER,
     PULL,
@@ -51,7 +54,7 @@ from verify.motion.records import (
 from verify.motion.surface_kernels import climb, find_piece, rotate_half, set_factors, set_local, touch
 
 
-@lean(inline="always")
+@part()
 def _see(
     row: int,
     time: float,
@@ -75,25 +78,25 @@ def _see(
         seen[row, LOSS] = loss(surface.modes, books.answers, factors)
 
 
-@lean(inline="always")
+@part()
 def _remember(local: Array) -> None:
     """Keep the deflection at the start of a step."""
     for d in range(local.shape[1]):
         local[BEFORE, d] = local[STILL, d]
 
 
-@lean()
+@part()
 def _correct_pull(dt: float, x: float, v: float, piece: int, edges: Array, law: Law, space: Space) -> None:
     """Inertia and drift along the surface at the end of a step with what the contact has added, half at mid-step."""
     seen = space.seen
     surface, pull, drift = seen[2, SURFACE], seen[2, PULL], seen[2, DRIFT]
-    touch(space.local, edges, piece, x, v, law, seen, 2)
+    touch(space.local, edges, piece, x, v, law, seen, AT_END)
     seen[2, SURFACE] = surface
     seen[1, DRIFT] += 0.5 * (seen[2, DRIFT] - drift)
     space.slip[GIVEN_END] += 0.5 * dt * (seen[2, PULL] - pull)
 
 
-@lean(inline="always")
+@part()
 def _answer(
     end: float, dt: float, x: float, v: float, here: Here, surface: Surface, rider: Rider, books: Books, space: Space
 ) -> tuple[float, float]:
@@ -102,10 +105,11 @@ def _answer(
     if law.held:
         set_reads(surface, here.piece, space.local, x, law.half)
     else:
-        feel(dt, rider, space.seen)
+        feel(dt, motion, law, space.seen)
     works = push_back(motion[V], motion[STUCK] > 0.0, dt, here, surface, rider, space)
     if law.held:
-        motion[FALL] = max(motion[FALL], (law.load - motion[NORMAL]) / law.mass)
+        fall = (law.load - motion[NORMAL]) / law.mass
+        motion[FALL] = fall if fall > motion[FALL] else motion[FALL]
     set_factors(end, surface.modes, surface.drive, space.factors)
     if books.open:
         correct_powers(end, surface, books, space)
@@ -115,35 +119,46 @@ def _answer(
     return works
 
 
-@lean(error_model="numpy", inline="always")
+@part()
 def _step(
-    number: int, dt: float, piece: int, fresh: bool, surface: Surface, rider: Rider, books: Books, space: Space
+    number: int,
+    dt: float,
+    piece: int,
+    fresh: bool,
+    two_way: bool | None,
+    surface: Surface,
+    rider: Rider,
+    books: Books,
+    space: Space,
 ) -> None:
-    """One step of beam and slider."""
+    """One step of beam and slider. `two_way` is the rider's, by itself so that numba drops what a step has not."""
     motion, law, seen = rider.motion, rider.law, space.seen
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
-    _see(0, number * dt, x, v, piece, fresh, surface, law, books, space)
-    rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law))
-    along = v + seen[0, DRIFT]
-    here, pressed, lifted, x1, v1 = Here(piece, 0.0, 0.0), 0.0, 0.0, x, v
-    if rider.two_way:
-        _remember(space.local)
-    for row in range(1, 3):
-        rotate_half(surface.modes)
+    here, pressed, lifted, x1, v1, rate, along = Here(piece, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0
+    for row in range(3):
         t = 0.5 * row * dt
-        x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
-        _see(row, (number + 0.5 * row) * dt, x1, v1, piece, True, surface, law, books, space)
-        if rider.two_way and row == 1:
+        if row > 0:
+            rotate_half(surface.modes)
+            x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
+        _see(row, (number + 0.5 * row) * dt, x1, v1, piece, fresh or row > 0, surface, law, books, space)
+        if row == 0:
+            rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
+            along = v + seen[0, DRIFT]
+        if two_way is not None and row == 0:
+            _remember(space.local)
+        if two_way is not None and row == 1:
             here = set_levers(surface, piece, space.local, x1, law.half)
     give(dt, seen, space.slip)
-    if rider.two_way:
+    if two_way is not None:
         pressed, lifted = _answer((number + 1) * dt, dt, x1, v1, here, surface, rider, books, space)
     else:
-        feel(dt, rider, seen)
-        slip(v, stuck, 0.0, 0.0, 0.0, law, dt, space)
+        feel(dt, motion, law, seen)
+        slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
     moved = advance(dt, rate, motion, law, seen, space.slip)
     if books.open:
-        account(v, moved, pressed, dt, rider, books, seen)
+        if two_way is None:
+            pressed = by_parts(v, motion[V], moved, dt, law.mass, seen)
+        account(v, motion[V], pressed, dt, law.mass, books.ledger, seen)
         books.ledger[LIFTED] += lifted
 
 
@@ -155,14 +170,14 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
     agree whenever the caller is interrupted.
     """
     motion, tally, took = rider.motion, kept.tally, space.slip
-    piece, fresh = 0, True
+    piece, fresh = NOUGHT, True
     for _ in range(n_steps):
-        here = find_piece(surface.edges, motion[X], max(piece, 0))
+        here = find_piece(surface.edges, motion[X], piece)
         if here < 0:
             return OFF_PIECES
-        fresh = fresh or here != piece or rider.two_way
+        fresh = fresh or here != piece or rider.two_way is not None
         piece, number = here, tally[STEP]
-        _step(number, dt, piece, fresh, surface, rider, books, space)
+        _step(number, dt, piece, fresh, rider.two_way, surface, rider, books, space)
         fresh = False
         tally[STEP] += 1
         if not np.isfinite(motion[V] + space.factors[STILL, 0]):
@@ -170,12 +185,12 @@ def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books,
         if took[N_EVENTS] > 0.0:
             _note_events(surface.drive.origin + number * dt, motion[X], took, kept.events, tally)
         if tally[STEP] % kept.every == 0:
-            _keep(dt, rider, kept, space)
+            _keep(dt, motion, rider.law, kept, space)
             tally[SAMPLES] += 1
     return DONE
 
 
-@lean()
+@part()
 def _note_events(time: float, x: float, took: Array, events: Array, tally: Indices) -> None:
     """Write down all events of a step, as long as there is room; all of them are counted."""
     for i in range(int(took[N_EVENTS])):
@@ -185,15 +200,14 @@ def _note_events(time: float, x: float, took: Array, events: Array, tally: Indic
         tally[EVENTS] += 1
 
 
-@lean()
-def _keep(dt: float, rider: Rider, kept: Kept, space: Space) -> None:
+@part()
+def _keep(dt: float, motion: Array, law: Law, kept: Kept, space: Space) -> None:
     """Write one sample; friction that sticks is the step's mean."""
-    motion, surface, row, points = rider.motion, space.seen[2, SURFACE], kept.tally[SAMPLES], kept.points
-    rows = kept.kept
+    surface, row, points, rows = space.seen[2, SURFACE], kept.tally[SAMPLES], kept.points, kept.kept
     rows[row, KEPT_X], rows[row, KEPT_V], rows[row, KEPT_SURFACE] = motion[X], motion[V], surface
     rows[row, KEPT_NORMAL] = motion[NORMAL]
     mean = space.slip[CHANGE] / dt
-    rows[row, KEPT_FRICTION] = mean if motion[STUCK] > 0.0 else friction(motion[V] - surface, rider.law)
+    rows[row, KEPT_FRICTION] = mean if motion[STUCK] > 0.0 else friction(motion[V] - surface, law.static, law)
     for p in range(points.shape[0]):
         total = 0.0
         for j in range(points.shape[1]):
@@ -211,10 +225,10 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
     for number in range(n_steps + 1):
         x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
         if x < edges[0] or x > edges[1]:
-            return max(number - 1, 0)
-        touch(given.local[2 * number], edges, 0, x, v, law, seen, 0)
+            return number - 1 if number > 0 else 0
+        touch(given.local[2 * number], edges, NOUGHT, x, v, law, seen, AT_START)
         seen[0, SURFACE] += given.along[2 * number]
-        rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law))
+        rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
         kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
         kept[number, KEPT_FRICTION] = space.slip[CHANGE] / dt if stuck else rate - seen[0, PULL]
         if number == n_steps:
@@ -222,23 +236,27 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         ahead = v + seen[0, DRIFT]
         for row in range(1, 3):
             t, half = 0.5 * row * dt, 2 * number + row
-            touch(given.local[half], edges, 0, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
+            touch(given.local[half], edges, NOUGHT, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
             seen[row, SURFACE] += given.along[half]
         give(dt, seen, space.slip)
-        slip(v, stuck, 0.0, 0.0, 0.0, law, dt, space)
+        slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
         advance(dt, rate, motion, law, seen, space.slip)
     return n_steps
 
 
 @lean()
-def look(surface: Surface, rider: Rider, space: Space) -> tuple[float, float]:
-    """(speed of the surface under the slider, friction per mass) at time 0; sets the slider's height and climb."""
+def look(surface: Surface, rider: Rider, space: Space, piece: int) -> tuple[float, float]:
+    """(speed of the surface under the slider, friction per mass) at time 0; sets the slider's height and climb.
+
+    `piece` is the first to be tried, and stands for one off the pieces.
+    """
     motion, law, seen, edges = rider.motion, rider.law, space.seen, surface.edges
-    piece = max(find_piece(edges, motion[X], 0), 0)
+    found = find_piece(edges, motion[X], piece)
+    piece = found if found >= 0 else piece
     set_factors(0.0, surface.modes, surface.drive, space.factors)
     set_local(surface.table, piece, space.factors, space.local)
-    touch(space.local, edges, piece, motion[X], motion[V], law, seen, 0)
+    touch(space.local, edges, piece, motion[X], motion[V], law, seen, AT_START)
     speed = seen[0, SURFACE]
     motion[HEIGHT], motion[NORMAL] = seen[0, LEVEL], law.load
     motion[CLIMB] = climb(space.local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law.half)
-    return speed, 0.0 if motion[STUCK] > 0.0 else friction(motion[V] - speed, law)
+    return speed, 0.0 if motion[STUCK] > 0.0 else friction(motion[V] - speed, law.static, law)

@@ -82,6 +82,6 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
 
 def _period(stage: Stage, law: Law, x: float, speed: float) -> tuple[float, float]:
     """(distance travelled, speed) after one period."""
-    sliding = Sliding.fresh(x, 1, np.empty(0), Rider(fresh_motion(speed), law, False), False)
+    sliding = Sliding.fresh(x, 1, np.empty(0), Rider(fresh_motion(speed), law, None), False)
     run_stages([stage], np.zeros((2, 0)), sliding, (), lambda n: None)
     return float(sliding.motion[X]), float(sliding.motion[V])

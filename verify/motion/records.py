@@ -8,6 +8,8 @@ imaginary part of (t/T)^d e^{i omega t}.
 
 from typing import NamedTuple
 
+import numpy as np
+
 from verify.models.arrays import Array, Indices
 
 X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL = range(7)
@@ -33,6 +35,10 @@ STILL, MOVING, BEFORE = range(3)
 CHANGE, STICKING, GIVEN_MIDDLE, GIVEN_END, N_EVENTS, FIRST_EVENT = range(6)
 """Entries of `Space.slip`: what friction adds to the speed, sticking at the end, what else adds by the middle and the
 end, how many events, and from FIRST_EVENT on their times within the step and their kinds in turns."""
+NOUGHT: int = np.int64(0)  # type: ignore[assignment]
+AT_START: int = np.int64(0)  # type: ignore[assignment]
+AT_END: int = np.int64(2)  # type: ignore[assignment]
+"""A count, and rows of `Space.seen`, for calls: a number written out would have a copy of the kernel compiled."""
 SPANS = 20
 """Of a step, between which friction changes its mind."""
 
@@ -40,12 +46,10 @@ SPANS = 20
 class Law(NamedTuple):
     """How a slider rubs and what it weighs."""
 
-    coulomb: bool
-    """With true sticking, else tanh, Eq. (3)."""
     kinetic: float
     """mu N / m, m/s^2."""
-    static: float
-    """The same at rest."""
+    static: float | None
+    """The same at rest, of Coulomb's law with true sticking; None: tanh, Eq. (3), and no other law is compiled."""
     slope: float
     """K of Eq. (3), s/m."""
     mass: float
@@ -90,8 +94,8 @@ class Rider(NamedTuple):
     motion: Array
     """(7,), `X` and so on; advanced in place."""
     law: Law
-    two_way: bool
-    """Whether the beam feels it."""
+    two_way: bool | None
+    """True where the beam feels it; None: it does not, and nothing of that is compiled."""
 
 
 class Books(NamedTuple):

@@ -24,9 +24,8 @@ MOST_STEPS = 40_000_000
 def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Law:
     """Friction alone, accelerations in m/s^2."""
     return Law(
-        coulomb=coulomb,
         kinetic=float(kinetic),
-        static=float(static),
+        static=float(static) if coulomb else None,
         slope=float(slope),
         mass=1.0,
         half=0.0,

@@ -203,7 +203,7 @@ def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     from verify.motion import kernels
 
     motion, surface = sliding.motion, Surface(fed.modes, fed.drive, *around)
-    speed, friction = kernels.look(surface, sliding.rider, fed.space)
+    speed, friction = kernels.look(surface, sliding.rider, fed.space, 0)
     sliding.first[records.KEPT_X], sliding.first[records.KEPT_V] = motion[records.X], motion[records.V]
     sliding.first[records.KEPT_FRICTION], sliding.first[records.KEPT_SURFACE] = friction, speed
     sliding.first[records.KEPT_NORMAL] = motion[records.NORMAL]

@@ -266,14 +266,20 @@ def progress_bar(n_steps: int) -> Iterator[Callable[[str], None]]:
     """A bar on the error stream that disappears when done."""
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+    from verify.models.compiling import heard
+
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total}"))
     with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("starting", total=n_steps)
-        started = False
+        started, before = False, "starting"
 
         def step(name: str) -> None:
-            nonlocal started
+            nonlocal started, before
             bar.update(task, description=name, advance=1 if started else 0)
-            started = True
+            started, before = True, name
 
-        yield step
+        def hear(compiling: str) -> None:
+            bar.update(task, description=compiling or before, refresh=True)
+
+        with heard(hear):
+            yield step

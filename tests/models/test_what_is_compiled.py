@@ -1,0 +1,179 @@
+"""Which kernels a run compiles: those of its law and its coupling, each once; and what is kept of them.
+
+Runs have processes of their own and an empty cache, since a process that has compiled compiles no more.
+"""
+
+import errno
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from verify.models import compiling
+from verify.models.kernels import compiled, part
+
+START = """
+import json, sys
+from verify.beam import Beam, PointForce
+from verify.models import compiling
+from verify.slider import Slider
+STRIP = Beam(length=0.31, width=0.013, thickness=0.0009, youngs_modulus=113e9, density=4430.0)
+FORCES = (PointForce(position=0.07, amplitude=0.4), PointForce(position=0.23, amplitude=0.3, phase_deg=70.0))
+
+def slid(**given):
+    from verify.motion.simulate import simulate
+    slider = Slider(mass=0.003, mu=0.3, position=0.19, **given)
+    simulate(STRIP, FORCES, 430.0, 1e-4, count=4, slider=slider, samples=3)
+
+def stepped():
+    from verify.chain.dynamics import at_rest
+    from verify.chain.stepping import simulate
+    from verify.chain.system import build_system
+    system = build_system(STRIP, 4, FORCES, 430.0)
+    simulate(system, at_rest(system), [1e-5, 2e-5])
+"""
+END = "\nprint(json.dumps([one.kernel for one in compiling.compiled]))"
+LAWS = {"tanh": {"tanh_speed_change", "_held_change", "_swept_change"}, "coulomb": {"coulomb_span", "_first_zero"}}
+FELT = {"push_back", "_answer", "_balance", "set_levers", "_reaction"}
+
+
+def child(code, cache, **environment):
+    """Standard output of a process of its own, in which a warning is an error."""
+    given = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_CACHE_DIR": str(cache), **environment}
+    command = [sys.executable, "-W", "error", "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, env=given, check=False)
+
+
+def compiled_by(what, cache):
+    done = child(START + what + END, cache)
+    assert done.returncode == 0, done.stderr
+    return [name for name in json.loads(done.stdout.splitlines()[-1]) if not name.startswith("numba.")]
+
+
+@pytest.mark.parametrize(
+    ("given", "law", "felt"),
+    [
+        ("coupling='one-way'", "tanh", False),
+        ("coupling='two-way'", "tanh", True),
+        ("coupling='one-way', law='coulomb'", "coulomb", False),
+    ],
+)
+def test_a_slider_compiles_its_law_and_its_coupling_each_kernel_once(tmp_path, given, law, felt):
+    names = compiled_by(f"slid({given})", tmp_path)
+    assert len(names) == len(set(names))
+    assert {name.split(".")[0] for name in names} == {"motion"}
+    found = {name.rpartition(".")[2] for name in names}
+    assert {"slide", "look", "slip"} <= found
+    for one, own in LAWS.items():
+        assert found & own == (own if one == law else set())
+    assert found & FELT == (FELT if felt else set())
+    assert compiled_by(f"slid({given})", tmp_path) == []
+
+
+def test_a_chain_of_rigid_links_compiles_neither_sliders_nor_modes_nor_links_that_stretch(tmp_path):
+    names = compiled_by("stepped()", tmp_path)
+    assert len(names) == len(set(names))
+    assert {name.rpartition(".")[0] for name in names} == {
+        "chain.kernels",
+        "chain.recursion_kernels",
+        "chain.held_kernels",
+    }
+
+
+def test_after_a_warm_up_no_packaged_scene_compiles(tmp_path):
+    first = child("from verify.cli import status_of; raise SystemExit(status_of(['warm-up', '--json']))", tmp_path)
+    assert first.returncode == 0, first.stderr
+    told = json.loads(first.stdout)
+    made = {one["kernel"].partition(".")[0] for one in told["kernels"]}
+    assert made == {"motion", "chain"}
+    assert len(told["folders"]) == 2
+    assert all(folder.startswith(str(tmp_path)) for folder in told["folders"])
+    scenes = (
+        "from verify.run.runner import run_scene\nfor one in ('moving-load', 'paper-slider', 'chain'): run_scene(one)"
+    )
+    assert compiled_by(scenes, tmp_path) == []
+    again = child("from verify.cli import status_of; raise SystemExit(status_of(['warm-up']))", tmp_path)
+    assert again.stdout.startswith("all kernels were there already")
+
+
+UNWRITABLE = """
+from numba.core import caching
+def refuse(self): raise OSError(30, "Read-only file system")
+caching._CacheLocator.ensure_cache_path = refuse
+"""
+
+
+def test_where_nothing_can_be_kept_a_run_goes_on_and_says_how_to_keep_it(tmp_path):
+    run = (
+        "from verify.cli import status_of; raise SystemExit(status_of(['run', 'moving-load', '--no-report', '--json']))"
+    )
+    done = child(UNWRITABLE + run, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["passed"]
+    assert done.stderr == f"verify: {compiling.AT_EVERY_RUN}\n"
+
+
+@pytest.mark.parametrize(("before", "folder"), [(UNWRITABLE, "kept"), ("", "file/kept")])
+def test_a_warm_up_that_can_keep_nothing_is_refused_in_a_sentence(tmp_path, before, folder):
+    (tmp_path / "file").write_text("no folder", "utf-8")
+    warm_up = "from verify.cli import status_of; raise SystemExit(status_of(['warm-up']))"
+    done = child(before + warm_up, tmp_path / folder)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert "NUMBA_CACHE_DIR" in done.stderr
+
+
+def test_a_full_disk_costs_what_is_kept_and_nothing_else(monkeypatch):
+    @compiled()
+    def thrice(x):
+        return 3.0 * x
+
+    def full(*given):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(compiling, "unkept", [])
+    monkeypatch.setattr(thrice._cache._cache_file, "save", full)
+    assert thrice(1.7) == 3.0 * 1.7
+    assert len(compiling.unkept) == 1
+
+
+def test_what_cannot_be_read_is_compiled_again(monkeypatch):
+    @compiled()
+    def fourfold(x):
+        return 4.0 * x
+
+    def damaged(*given):
+        raise EOFError("Ran out of input")
+
+    monkeypatch.setattr(compiling, "unkept", [])
+    monkeypatch.setattr(fourfold._cache._cache_file, "load", damaged)
+    assert fourfold(1.7) == 4.0 * 1.7
+    assert compiling.unkept == []
+
+
+def test_two_processes_that_compile_at_once_both_get_their_figures(tmp_path):
+    code = START + "slid(coupling='one-way')" + END
+    given = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_CACHE_DIR": str(tmp_path)}
+    pair = [subprocess.Popen([sys.executable, "-c", code], env=given, stdout=subprocess.PIPE) for _ in range(2)]
+    assert [one.wait() for one in pair] == [0, 0]
+    for one in pair:
+        one.stdout.close()
+    assert compiled_by("slid(coupling='one-way')", tmp_path) == []
+    assert not list(tmp_path.rglob("*.tmp.*"))
+
+
+def test_a_part_is_no_function_of_python():
+    @part()
+    def half(x):
+        return 0.5 * x
+
+    @compiled()
+    def quarter(x):
+        return 0.5 * half(x)
+
+    assert quarter(1.7) == 0.25 * 1.7
+    with pytest.raises(TypeError, match="by kernels alone"):
+        half(1.7)

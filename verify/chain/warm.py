@@ -1,0 +1,93 @@
+"""The calls for which the kernels of a chain are compiled, with values of the right kinds."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from verify.chain.records import FREE, Flat, March, Modal
+
+Call = tuple[Callable[..., Any], tuple[Any, ...]]
+"""A kernel and what it is called with."""
+
+
+def calls() -> Iterator[Call]:
+    """Rigid links in steps and in modes, links that stretch."""
+    from verify.chain import held_kernels, kernels, recursion_kernels, splitting_kernels
+
+    flat, one, chain = np.zeros((1, 1)), np.zeros(1), _flat()
+    few = np.zeros(1, dtype=np.int64)
+    yield recursion_kernels.hub_motion, (one, 0.0)
+    yield held_kernels.place, (chain, 0.0, one, one, flat)
+    yield held_kernels.project, (chain, 0.0, one, one, few, 0.0, flat)
+    yield kernels.accelerate, (chain, 0.0, one, one, flat, one)
+    yield kernels.energies, (chain, 0.0, one, one, flat)
+    yield kernels.march, (chain, _march(), 1, flat)
+    yield splitting_kernels.march_modal, (chain, _modal(), one, few, one, np.zeros((1, 1, 1)), 1, flat, flat)
+    yield from _stretching()
+
+
+def _stretching() -> Iterator[Call]:
+    from verify.chain import stretching_kernels
+
+    flat, one, cube = np.zeros((1, 1)), np.zeros(1), np.zeros((1, 1, 1))
+    links = stretching_kernels.Elastic(links=flat, loads=flat, gravity=one, factors=cube)
+    yield stretching_kernels.factorise, (one, one, flat, cube)
+    yield stretching_kernels.energy, (links, one, one, flat, flat)
+    yield stretching_kernels.march, (links, 0.0, 0.0, 1, flat, flat, cube, cube)
+
+
+def _flat() -> Flat:
+    flat = np.zeros((1, 1))
+    return Flat(
+        links=flat,
+        numbers=np.zeros(1),
+        loads=flat,
+        held=flat,
+        small=flat,
+        tip=FREE,
+        tip_spring=0.0,
+        axial=True,
+        ledger=False,
+    )
+
+
+def _march() -> March:
+    flat, one, few = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64)
+    return March(
+        a=flat,
+        c=one,
+        weights=one,
+        order=5.0,
+        y=one,
+        new=one,
+        k=flat,
+        clock=one,
+        counts=few,
+        samples=one,
+        kept=flat,
+        scale=one,
+        pivots=few,
+    )
+
+
+def _modal() -> Modal:
+    flat, one = np.zeros((1, 1)), np.zeros(1)
+    return Modal(
+        kicks=one,
+        shares_of_step=one,
+        flows=np.zeros((1, 1, 1)),
+        spacing=flat,
+        omega=one,
+        modes=flat,
+        duals=flat,
+        rest=one,
+        drives=flat,
+        shares=flat,
+        tilt=0.0,
+        start=flat,
+        steady=flat,
+        trial=flat,
+        vectors=flat,
+        force=one,
+    )

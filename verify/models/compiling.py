@@ -1,0 +1,43 @@
+"""What is compiled in this process, for whoever shows or counts it; numba is not loaded for that."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import msgspec
+
+COMPILING = "compiling kernels, once on this machine"
+AT_EVERY_RUN = (
+    "kernels are compiled at every run: set NUMBA_CACHE_DIR to a folder that can be written to, then `verify warm-up`"
+)
+
+
+class Compiled(msgspec.Struct, frozen=True):
+    """One kernel for one signature."""
+
+    kernel: str
+    """With its module: motion.kernels.slide."""
+    seconds: float
+    """Without those of the kernels that it calls."""
+
+
+compiled: list[Compiled] = []
+"""In the order in which they were ready."""
+hearers: list[Callable[[str], None]] = []
+"""Told what begins, and nothing, "", when it is over."""
+unkept: list[str] = []
+"""Kernels for which there is no folder, or none that takes what is written."""
+
+
+def told() -> tuple[str, ...]:
+    """What to say at the end of a run, in sentences."""
+    return (AT_EVERY_RUN,) if unkept and compiled else ()
+
+
+@contextmanager
+def heard(hear: Callable[[str], None]) -> Iterator[None]:
+    """Tell `hear` what is compiled in the meantime."""
+    hearers.append(hear)
+    try:
+        yield
+    finally:
+        hearers.remove(hear)
