@@ -20,6 +20,14 @@ DENSE_UNKNOWNS = 250
 """Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
 _LANCZOS = 1e-10
 """Where Lanczos stops: the error of a vector enters the quotient squared."""
+_UNLIKE = 1e5
+"""Of K_ii / M_ii: between parts so unlike, graded or stepped, assembling drowns what is soft."""
+_HEAVY = 1e6
+"""Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
+_SAME = 0.9
+"""Cosine of two vectors that are one mode."""
+_HOMING = 3
+"""Steps to a mode that is nearly known, each the cube of the one before."""
 _POLISHED = 50_000
 """Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
 square would be 1e-9 of the eigenvalues of a million parts."""
@@ -58,6 +66,7 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def rigid_modes(self) -> int:
         """R, how many motions have no strain."""
         return int(self.rigid.shape[1])
+
 
 
 class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -127,19 +136,55 @@ def method_name(n_unknowns: int, n_modes: int, uneven: bool = False) -> str:
 
 def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
     """The lowest `n_modes` elastic eigenpairs. The caller has checked the size with `check_size`."""
-    strains = None
-    if pencil.uneven and uses_dense(pencil.n, n_modes):
+    strains, inverted = None, pencil.uneven
+    if inverted and uses_dense(pencil.n, n_modes):
         vectors = _inverse_vectors(pencil, n_modes)
     elif pencil.n <= DENSE_UNKNOWNS:
-        vectors = _dense_vectors(pencil, n_modes)
+        stiffness, mass = _assembled(pencil)
+        inverted = _is_unlike(stiffness, mass)
+        vectors = _inverse_vectors(pencil, n_modes) if inverted else _dense_vectors(pencil, n_modes, stiffness, mass)
     elif uses_dense(pencil.n, n_modes):
         vectors = _svd_vectors(pencil, n_modes)
     else:
         vectors, strains = _sparse_vectors(pencil, n_modes)
+    if _is_heavy(pencil):
+        vectors, strains = _homed(pencil, vectors), None
     values, vectors = factored_quotient(pencil, vectors, strains)
     order = np.argsort(values, kind="stable")
-    method = method_name(pencil.n, n_modes, pencil.uneven)
+    method = method_name(pencil.n, n_modes, inverted)
     return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method)
+
+
+def _is_heavy(pencil: FactoredPencil) -> bool:
+    """Whether something on the beam weighs far more than the parts of it."""
+    masses = pencil.mass_matrix().diagonal()
+    return bool(masses.max() > _HEAVY * np.median(masses))
+
+
+def _homed(pencil: FactoredPencil, vectors: Array) -> Array:
+    """Vectors by Rayleigh quotient iteration on the mixed matrix, (n, k); one that would leave its mode stays.
+
+    B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
+    """
+    from scipy.sparse import block_array, csc_array, diags_array
+
+    mass, strain = csc_array(pencil.mass_matrix()), csc_array(pencil.strain_matrix())
+    springs, n_strains = diags_array(-1.0 / pencil.stiffness), len(pencil.stiffness)
+    homed = vectors.copy()
+    for k in range(vectors.shape[1]):
+        vector = vectors[:, [k]]
+        for _ in range(_HOMING):
+            value, vector = factored_quotient(pencil, vector)
+            right = np.concatenate([np.zeros(n_strains), (mass @ vector)[:, 0]])
+            try:
+                mixed = block_array([[springs, strain], [strain.T, -value[0] * mass]], format="csc")
+                vector = factorised(mixed).solve(right)[n_strains:, None]
+            except InputError:  # singular to the last digit: it is the mode
+                break
+        _, vector = factored_quotient(pencil, vector)
+        if abs(vector[:, 0] @ (mass @ homed[:, k])) > _SAME * np.sqrt(homed[:, k] @ (mass @ homed[:, k])):
+            homed[:, k] = vector[:, 0]
+    return homed
 
 
 def factored_quotient(pencil: FactoredPencil, vectors: Array, strains: Array | None = None) -> tuple[Array, Array]:
@@ -169,13 +214,23 @@ def _in_pairs(products: Array) -> Array:
     return np.asarray(np.ascontiguousarray(products.T).sum(axis=1))
 
 
-def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+def _assembled(pencil: FactoredPencil) -> tuple[Array, Array]:
+    """B^T diag(d) B and M, dense."""
+    strain = pencil.strain(np.eye(pencil.n))
+    return strain.T @ (pencil.stiffness[:, None] * strain), pencil.mass_matrix()
+
+
+def _is_unlike(stiffness: Array, mass: Array) -> bool:
+    """Whether the parts' own frequencies lie so far apart that K has lost those of the soft ones."""
+    squares = stiffness.diagonal() / mass.diagonal()
+    return bool(squares.max() > _UNLIKE * squares.min())
+
+
+def _dense_vectors(pencil: FactoredPencil, n_modes: int, stiffness: Array, mass: Array) -> Array:
     """Vectors by LAPACK on the assembled pencil: their error enters the quotient squared."""
     from scipy.linalg import eigh
 
-    strain = pencil.strain(np.eye(pencil.n))
-    stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
-    _, vectors = eigh(stiffness, pencil.mass_matrix(), driver="gvd", check_finite=False)
+    _, vectors = eigh(stiffness, mass, driver="gvd", check_finite=False)
     return np.asarray(vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes])
 
 

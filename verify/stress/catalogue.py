@@ -6,7 +6,7 @@ from importlib import import_module
 from verify.errors import InputError, near_name
 from verify.stress.kind import Row
 
-FAMILIES = ("sizes",)
+FAMILIES = ("sizes", "scales")
 """Modules of this room with `ROWS`, in the order of the table."""
 
 

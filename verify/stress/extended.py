@@ -87,7 +87,7 @@ def links(beam: Divided) -> tuple[Bands, Bands]:
     return stiffness, mass
 
 
-def relative_error(bands: tuple[Bands, Bands], rank: int, omega: float) -> float:
+def relative_error(bands: tuple[Bands, Bands], rank: int, omega: float | Decimal) -> float:
     """|omega / the model's own - 1| for the eigenvalue of that rank, rigid ones counted; at least 1e-18.
 
     Found by bisection between counts, to one part in a hundred of the error; infinite beyond one.
