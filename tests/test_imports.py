@@ -23,6 +23,7 @@ ROOMS = (
     "scenes",
     "quantities",
     "studies",
+    "stress",
     "run",
     "identify",
     "report",
