@@ -75,7 +75,7 @@ def _show(found: "StressFound", as_json: bool, layout: str | None, target: Path 
     else:
         from verify.report.terminal import print_found
 
-        print_found(found)
+        print_found(found, every_table=False)
         if target is not None:
             click.echo(f"report: {target}")
 
