@@ -31,8 +31,6 @@ _HOMING = 3
 _POLISHED = 50_000
 """Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
 square would be 1e-9 of the eigenvalues of a million parts."""
-_REFINEMENTS = 2
-"""Of that solution."""
 _BYTES_PER_UNKNOWN = 2000
 """Of the sparse factorisation and its matrices, beside the Lanczos basis (measured peaks at 3e5 parts in all: 1300
 for modes, 2230 for a driven field, which counts as one mode and 700 of basis)."""
@@ -350,14 +348,13 @@ def _polished(
         load -= inertia @ (motions.T @ load)
         load /= abs(load).max()
         right = np.concatenate([np.zeros(n_strains), load[free]])
-        found, answer, left = factor.solve(right), np.zeros(pencil.n), np.empty_like(right)
-        for _ in range(_REFINEMENTS):
-            force, answer[free] = found[:n_strains], found[n_strains:]
-            left[:n_strains] = force / pencil.stiffness - pencil.strain(answer[:, None])[:, 0]
-            left[n_strains:] = load[free] - transposed @ force
-            if pencil.below:
-                left[n_strains:] += pencil.below * (mass @ answer)[free]
-            found += factor.solve(left)
+        found, answer = factor.solve(right), np.zeros(pencil.n)
+        force, answer[free] = found[:n_strains], found[n_strains:]
+        right[:n_strains] = force / pencil.stiffness - pencil.strain(answer[:, None])[:, 0]
+        right[n_strains:] -= transposed @ force
+        if pencil.below:
+            right[n_strains:] += pencil.below * (mass @ answer)[free]
+        found += factor.solve(right)
         answer[free] = found[n_strains:]
         polished[:, k] = answer - motions @ (inertia.T @ answer)
         strains[:, k] = found[:n_strains] / pencil.stiffness

@@ -22,7 +22,7 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
 
     outcomes: tuple[Outcome, ...]
     left_out: tuple[str, ...] = ()
-    """Rows that were not begun, by id, with the reason."""
+    """Ids of rows that were not begun, since they take longer than was given."""
     date: str = ""
     machine: dict[str, str | int] = {}
 
@@ -48,7 +48,9 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
         if close := self.worst()[:WORST]:
             said.append("closest to their promise: " + ", ".join(f"{one.id} (margin {one.margin:.2g})" for one in close))
         said += [f"{one.id} is not held: {one.reason}" for one in self.outcomes if not one.held]
-        return (*said, *self.left_out)
+        if self.left_out:
+            said.append(f"left out, for they take longer than --seconds gives: {', '.join(self.left_out)}")
+        return tuple(said)
 
     def worst(self) -> list[Outcome]:
         """Rows with a margin, the thinnest first."""
@@ -95,7 +97,7 @@ def stress_table(found: StressFound) -> Table:
             Column("margin", ".2g"),
             Column("held", left=True),
             Column("pushed to", left=True),
-            Column("textbook", ".1e"),
+            Column("textbook", ".1e", wide=True),
             Column("s", ".1f", wide=True),
         ),
         rows=tuple(_cells(one) for one in found.outcomes),
@@ -123,7 +125,8 @@ def pushed(one: Outcome) -> str:
     """The value it was pushed to, or from where on it breaks, in words."""
     if one.value is None:
         return ""
-    return f"{'breaks at ' if one.breaks else ''}{one.value:.2g} {one.along}"
+    number = f"{one.value:g}" if float(one.value).is_integer() and abs(one.value) < 1e5 else f"{one.value:.3g}"
+    return f"{'breaks at ' if one.breaks else ''}{number} {one.along}"
 
 
 def textbook_table(found: StressFound) -> Table:
@@ -163,10 +166,10 @@ def chosen(names: Iterable[str], *, quick: bool) -> tuple[Row, ...]:
 def stress(
     asked: Iterable[Row], step: Callable[[str], None], bench: "Workbench | None" = None, *, cap: float | None = None
 ) -> Iterator[Outcome | str]:
-    """Every outcome as soon as it is there; a sentence in place of one whose estimate lies beyond `cap` seconds."""
+    """Every outcome as soon as it is there; its id where its estimate lies beyond `cap` seconds."""
     for one in asked:
         if cap is not None and one.seconds > cap:
-            yield f"{one.id} is left out: it takes about {one.seconds:g} s, more than --seconds {cap:g}"
+            yield one.id
             continue
         step(one.id)
         yield outcome_on(bench, one.id) if bench is not None else one.run()
