@@ -132,9 +132,13 @@ def _costs(unit: str, rows: list[Outcome]) -> Chart:
     )
 
 
+SHOWN = 14
+"""Bars that a chart has room for."""
+
+
 def _shares(ranked: list[Outcome]) -> Chart:
-    """Every row's share of its promise, the thinnest margin on top."""
-    shown = [one for one in ranked if one.share not in (0.0, inf)][::-1]
+    """The rows with the thinnest margins, the thinnest on top."""
+    shown = [one for one in ranked if one.share not in (0.0, inf)][:SHOWN][::-1]
     bars: Figure = {
         "type": "bar",
         "orientation": "h",
@@ -147,8 +151,8 @@ def _shares(ranked: list[Outcome]) -> Chart:
     edge = {"type": "line", "x0": 1, "x1": 1, "yref": "paper", "y0": 0, "y1": 1, "line": {"color": GREY, "width": 2}}
     return Chart(
         "stress-shares",
-        "How much of every promise is used",
-        "Left of the line is held. Refusals have no size and are not here.",
+        "The worst rows",
+        "How much of its promise each uses; left of the line at 1 is held. Refusals have no size and are not here.",
         [bars],
-        layout | {"height": 120 + 20 * len(shown), "shapes": [edge]},
+        layout | {"shapes": [edge]},
     )

@@ -1,6 +1,7 @@
 """Memory and time over size, with fitted exponents."""
 
 from collections.abc import Callable
+from functools import cache
 from time import process_time
 from typing import Literal
 
@@ -13,17 +14,20 @@ NEARLY_LINEAR = 1.15
 """Of memory: in proportion, with room for what a process takes beside."""
 BEYOND_CACHES = 1.25
 """Of time: in proportion, but for a factor of two each time that the data outgrow a cache, twice in two decades."""
+HELD = (5000, 15_000, 50_000)
+"""Parts of which memory is measured."""
 _CHILD = """
-import sys
 from verify.models.catalogue import MODELS
 from verify.stress.beams import STRIP
-MODELS[{model!r}].solve_modes(STRIP, {modes}, 300)
-with open("/proc/self/status") as told:
-    before = [line for line in told if line.startswith("VmHWM")]
-MODELS[{model!r}].solve_modes(STRIP, {modes}, {count})
-with open("/proc/self/status") as told:
-    after = [line for line in told if line.startswith("VmHWM")]
-print((int(after[0].split()[1]) - int(before[0].split()[1])) / 1024.0)
+def peak():
+    with open("/proc/self/status") as told:
+        return next(int(line.split()[1]) / 1024.0 for line in told if line.startswith("VmHWM"))
+solve = MODELS[{model!r}].solve_modes
+solve(STRIP, {modes}, 300)
+before = peak()
+for n in {sizes}:
+    solve(STRIP, {modes}, n)
+    print(peak() - before)
 """
 
 
@@ -67,25 +71,24 @@ def dense_seconds(model: Literal["segment", "fem"]) -> Callable[[float], float]:
 
 
 def megabytes(model: str) -> Callable[[float], float]:
-    """N -> memory that three modes take at most, in a process of their own, less that of 300 parts.
+    """N, one of HELD -> memory that three modes take at most, in a process of their own, less that of 300 parts."""
+    return lambda n: _peaks(model)[HELD.index(int(n))]
 
-    Raises InputError where the system does not tell.
-    """
 
-    def cost(n: float) -> float:
-        import subprocess
-        import sys
-        from pathlib import Path
+@cache
+def _peaks(model: str) -> tuple[float, ...]:
+    """Megabytes of each size, ascending, so that each is the largest so far. Raises InputError where nobody tells."""
+    import subprocess
+    import sys
+    from pathlib import Path
 
-        from verify.errors import InputError
+    from verify.errors import InputError
 
-        if not Path("/proc/self/status").exists():
-            raise InputError("memory: this system has no /proc/self/status, leave rows of memory out")
-        code = _CHILD.format(model=model, modes=MODES, count=int(n))
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-        return float(done.stdout)
-
-    return cost
+    if not Path("/proc/self/status").exists():
+        raise InputError("memory: this system has no /proc/self/status, leave rows of memory out")
+    code = _CHILD.format(model=model, modes=MODES, sizes=HELD)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return tuple(float(line) for line in done.stdout.split())
 
 
 def dense_megabytes(n: float) -> float:
@@ -116,17 +119,16 @@ ROWS: tuple[Row, ...] = (
             title=f"Time of three modes of {parts}",
             why="DESIGN: O(N) everywhere; the band of the mixed matrix has no fill-in that grows.",
             along=parts,
-            at=(3000, 10_000, 30_000, 100_000),
+            at=(1000, 3000, 10_000, 30_000),
             promise=BEYOND_CACHES,
             unit="s",
             of="processor seconds",
-            rounds=2,
+            rounds=3,
             cost=seconds(model),
             beside=dense_seconds(model),  # type: ignore[arg-type]
             beside_at=(200, 400, 800) if model == "segment" else (100, 200, 400),
             textbook=f"LAPACK on dense matrices of {parts}",
-            seconds=12.0 if model == "fem" else 6.0,
-            quick=False,
+            seconds=5.0,
         )
         for model, parts in (("segment", "segments"), ("fem", "elements"))
     ),
@@ -155,8 +157,7 @@ ROWS: tuple[Row, ...] = (
         of="processor seconds",
         rounds=5,
         cost=chain_seconds,
-        seconds=6.0,
-        quick=False,
+        seconds=4.0,
     ),
     *(
         Growth(
@@ -164,7 +165,7 @@ ROWS: tuple[Row, ...] = (
             title=f"Memory of three modes of {parts}",
             why="models/eigen.py: bytes in proportion to the unknowns.",
             along=parts,
-            at=(10_000, 30_000, 100_000),
+            at=HELD,
             promise=NEARLY_LINEAR,
             unit="MB",
             of="megabytes",
@@ -172,8 +173,7 @@ ROWS: tuple[Row, ...] = (
             beside=dense_megabytes,
             beside_at=(300, 1000, 3000),
             textbook=f"dense K, M and vectors of {parts}",
-            seconds=15.0,
-            quick=False,
+            seconds=5.0,
         )
         for model, parts in (("segment", "segments"), ("fem", "elements"))
     ),
