@@ -11,6 +11,7 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.stress.figures import StressFound
+    from verify.stress.kind import Outcome
 
 
 @click.command()
@@ -49,11 +50,11 @@ def stress(
             click.echo(f"{row.id:34} {row.title}")
         return
     target = None if no_report else writable_folder(Path(folder), "reports") / "stress-table.html"
-    found, broken_off = [], False
+    found: list[Outcome | str] = []
+    broken_off = False
     with progress(len(rows), quiet=as_json or bool(layout)) as step:
         try:
-            for outcome in measured(rows, step, cap=cap):
-                found.append(outcome)
+            found.extend(measured(rows, step, cap=cap))  # what came before an interrupt stays
         except KeyboardInterrupt:
             broken_off = True
     _show(result := told(found), as_json, layout, None if broken_off else target)

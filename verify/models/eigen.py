@@ -66,7 +66,6 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return int(self.rigid.shape[1])
 
 
-
 class Eigenpairs(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Elastic eigenpairs, ascending."""
 

@@ -6,7 +6,7 @@ from importlib import import_module
 from verify.errors import InputError, near_name
 from verify.stress.kind import Row
 
-FAMILIES = ("sizes", "scales", "drive", "friction", "turns", "runs", "growth")
+FAMILIES = ("sizes", "scales", "standing", "drive", "friction", "turns", "runs", "growth")
 """Modules of this room with `ROWS`, in the order of the table."""
 
 

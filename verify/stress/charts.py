@@ -1,5 +1,6 @@
 """Charts of the stress table as plain plotly figure data."""
 
+from collections.abc import Iterable
 from math import exp, inf, isfinite, log, pi
 from typing import TYPE_CHECKING
 
@@ -43,6 +44,11 @@ def takes_over(points: Points) -> float | None:
             return exp(log(before[0]) + share * (log(n) - log(before[0])))
         before = n, here
     return None
+
+
+def _below(rows: Iterable[Outcome]) -> float:
+    """The largest rounding of factored parts."""
+    return max(error for one in rows for _, error in one.points)
 
 
 def _errors(sizes: dict[str, Outcome], by_id: dict[str, Outcome]) -> Chart:
@@ -100,7 +106,7 @@ def _errors(sizes: dict[str, Outcome], by_id: dict[str, Outcome]) -> Chart:
         "Rounding over size",
         "Worst of modes 1 to 5 of a pinned strip against the discrete dispersion in closed form. Dotted: where the "
         "rounding of assembled matrices takes over from what the division itself leaves of mode 1 (grey). Kept "
-        "factored, it never does in this range.",
+        f"factored, it does where both are below {_below(sizes.values()):.0e}.",
         data,
         layout | {"shapes": shapes, "annotations": notes},
     )

@@ -39,8 +39,8 @@ def sinh(x: Number) -> Decimal:
     """By its series for small arguments."""
     with localcontext() as context:
         context.prec = DIGITS
-        if abs(x) < 1:
-            term = total = Decimal(x)
+        term = total = Decimal(x)
+        if abs(total) < 1:
             square, k = total * total, 1
             while abs(term) > abs(total) * Decimal(10) ** -DIGITS:
                 term *= square / ((k + 1) * (k + 2))
@@ -57,7 +57,7 @@ def asinh(x: Number) -> Decimal:
         if size < Decimal("1e-12"):
             return Decimal(x) * (1 - Decimal(x) ** 2 / 6)
         found = (size + (size * size + 1).sqrt()).ln()
-        return found if x > 0 else -found
+        return found.copy_sign(Decimal(x))
 
 
 def cantilever_root(mode: int) -> Decimal:
@@ -81,5 +81,3 @@ def relative(found: float, exact: Decimal) -> float:
     with localcontext() as context:
         context.prec = DIGITS
         return float(abs(Decimal(found) / exact - 1))
-
-

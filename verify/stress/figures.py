@@ -24,7 +24,7 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
     left_out: tuple[str, ...] = ()
     """Ids of rows that were not begun, since they take longer than was given."""
     date: str = ""
-    machine: dict[str, str | int] = {}
+    machine: dict[str, str | int] = msgspec.field(default_factory=dict)
 
     @property
     def held(self) -> bool:
@@ -46,7 +46,9 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
         n, held = len(self.outcomes), sum(one.held for one in self.outcomes)
         said = [f"{held} of {n} rows are held"]
         if close := self.worst()[:WORST]:
-            said.append("closest to their promise: " + ", ".join(f"{one.id} (margin {one.margin:.2g})" for one in close))
+            said.append(
+                "closest to their promise: " + ", ".join(f"{one.id} (margin {one.margin:.2g})" for one in close)
+            )
         said += [f"{one.id} is not held: {one.reason}" for one in self.outcomes if not one.held]
         if self.left_out:
             said.append(f"left out, for they take longer than --seconds gives: {', '.join(self.left_out)}")

@@ -1,7 +1,7 @@
 """What a row of the stress table is: a promise, a way to measure it, and what comes of it."""
 
 from collections.abc import Callable, Iterable
-from math import exp, inf, isfinite, log
+from math import exp, inf, isfinite, isnan, log
 from time import perf_counter
 from typing import ClassVar, Literal, TypeAlias
 
@@ -134,7 +134,7 @@ def _tried(figure: Figure, value: float) -> float:
             found = float(figure(value))
         except Exception:  # it is the textbook's, which breaks as it likes
             return inf
-    return found if found == found else inf
+    return inf if isnan(found) else found
 
 
 class Floor(Row, frozen=True, kw_only=True, eq=False):

@@ -31,9 +31,7 @@ def phase_error(periods: float) -> float:
 
     hertz = frequency_hz(STRIP, 1)
     time = (periods + 0.25) / hertz
-    run = free_vibration(
-        STRIP, 1, time, amplitude=1e-3, model="analytic", modes=2, at=[0.5 * STRIP.length], samples=2
-    )
+    run = free_vibration(STRIP, 1, time, amplitude=1e-3, model="analytic", modes=2, at=[0.5 * STRIP.length], samples=2)
     with localcontext() as context:
         context.prec = 50
         angle = 2 * PI * Decimal(hertz) * Decimal(time)
@@ -94,9 +92,7 @@ def _size() -> float:
     """Largest deflection of the place over some periods, metres."""
     from verify.motion.simulate import simulate
 
-    run = simulate(
-        STRIP, FORCE, HERTZ, 0.2, model="analytic", modes=MODES, at=[0.29 * STRIP.length], samples=2001
-    )
+    run = simulate(STRIP, FORCE, HERTZ, 0.2, model="analytic", modes=MODES, at=[0.29 * STRIP.length], samples=2001)
     return float(abs(run.deflection).max())
 
 

@@ -1,6 +1,5 @@
 """How many parts, how many modes."""
 
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from decimal import Decimal, localcontext
@@ -8,7 +7,6 @@ from math import pi
 
 import numpy as np
 from msgspec.structs import replace
-
 
 from verify.beam import Beam
 from verify.models.catalogue import MODELS
@@ -127,7 +125,7 @@ def shape_error(mode: float) -> float:
 
 
 def _exact_shape(mode: int, x: float, length: float) -> Decimal:
-    """cosh - cos - sigma (sinh - sin) with the growing exponentials taken together."""
+    """Cosh - cos - sigma (sinh - sin) with the growing exponentials taken together."""
     with localcontext() as context:
         context.prec = 50
         y, z = cantilever_root(mode), Decimal(x) / Decimal(length)

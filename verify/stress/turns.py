@@ -100,7 +100,7 @@ def spun_error(turns: float) -> float:
     end = 2.0 * pi * turns / RATE
     motion = simulate(system, start, [end], method="rk4", step=0.5 * step_limit(system, start), ledger=False)
     angles = motion.angles[-1]
-    return max(abs(angles[0] / (RATE * end) - 1.0), abs(angles[1:]).max() / (RATE * end))
+    return max(float(abs(angles[0] / (RATE * end) - 1.0)), float(abs(angles[1:]).max()) / (RATE * end))
 
 
 TOLERANCE = 1e-10
@@ -185,7 +185,7 @@ ROWS: tuple[Row, ...] = (
     Floor(
         id="dead-load",
         title=f"{LINKS} links bent by a dead load, over what order 2 leaves",
-        why="Of a polygon: kappa^2 l^2 / 24 of a length, and the curvature is at most sqrt(2 load) / L: load / (12 N^2).",
+        why="Of a polygon: kappa^2 l^2 / 24 of a length; curvature is at most sqrt(2 load) / L: load / (12 N^2).",
         along="PL^2/EI",
         at=(0.1, 1.0, 4.0, 10.0, 100.0),
         beyond=(1000.0, 1e4),
