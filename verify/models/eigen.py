@@ -342,8 +342,9 @@ def _polished(
     transposed = pencil.strain_matrix()[:, free].T
     inertia = mass @ pencil.rigid
     polished, strains = np.empty_like(vectors), np.empty((n_strains, vectors.shape[1]))
+    carried = np.empty_like(vectors)
     for k, vector in enumerate(vectors.T):
-        load = mass @ vector
+        load = mass @ (vector - polished[:, :k] @ (carried[:, :k].T @ vector))
         load -= inertia @ (motions.T @ load)
         load /= abs(load).max()
         right = np.concatenate([np.zeros(n_strains), load[free]])
@@ -355,8 +356,13 @@ def _polished(
             right[n_strains:] += pencil.below * (mass @ answer)[free]
         found += factor.solve(right)
         answer[free] = found[n_strains:]
-        polished[:, k] = answer - motions @ (inertia.T @ answer)
-        strains[:, k] = found[:n_strains] / pencil.stiffness
+        answer -= motions @ (inertia.T @ answer)
+        lower = carried[:, :k].T @ answer  # which each step of inverse iteration raises
+        answer -= polished[:, :k] @ lower
+        size = np.sqrt(answer @ (mass @ answer))
+        polished[:, k] = answer / size
+        carried[:, k] = mass @ polished[:, k]
+        strains[:, k] = (found[:n_strains] / pencil.stiffness - strains[:, :k] @ lower) / size
     return polished, strains
 
 
