@@ -327,43 +327,11 @@ def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array 
             "n_modes: the lowest modes lie too close together to be told apart on so many parts, lower count"
         ) from None
     found = np.asarray(vectors[:, np.argsort(values)])
-    return _polished(pencil, factor, found, free, motions) if pencil.n >= _POLISHED else (found, None)
+    if pencil.n < _POLISHED:
+        return found, None
+    from verify.models.polishing import polished
 
-
-def _polished(
-    pencil: FactoredPencil, factor: Any, vectors: Array, free: Indices, motions: Array
-) -> tuple[Array, Array]:
-    """A step of inverse iteration whose solution is refined once, (n, k), and its strains, (m, k).
-
-    The residual is by differences of differences. The strains are those of the mixed solution: digits of the last
-    place of v alone would be n^2 eps of them.
-    """
-    n_strains, mass = len(pencil.stiffness), pencil.mass_matrix()
-    transposed = pencil.strain_matrix()[:, free].T
-    inertia = mass @ pencil.rigid
-    polished, strains = np.empty_like(vectors), np.empty((n_strains, vectors.shape[1]))
-    carried = np.empty_like(vectors)
-    for k, vector in enumerate(vectors.T):
-        load = mass @ (vector - polished[:, :k] @ (carried[:, :k].T @ vector))
-        load -= inertia @ (motions.T @ load)
-        load /= abs(load).max()
-        right = np.concatenate([np.zeros(n_strains), load[free]])
-        found, answer = factor.solve(right), np.zeros(pencil.n)
-        force, answer[free] = found[:n_strains], found[n_strains:]
-        right[:n_strains] = force / pencil.stiffness - pencil.strain(answer[:, None])[:, 0]
-        right[n_strains:] -= transposed @ force
-        if pencil.below:
-            right[n_strains:] += pencil.below * (mass @ answer)[free]
-        found += factor.solve(right)
-        answer[free] = found[n_strains:]
-        answer -= motions @ (inertia.T @ answer)
-        lower = carried[:, :k].T @ answer  # which each step of inverse iteration raises
-        answer -= polished[:, :k] @ lower
-        size = np.sqrt(answer @ (mass @ answer))
-        polished[:, k] = answer / size
-        carried[:, k] = mass @ polished[:, k]
-        strains[:, k] = (found[:n_strains] / pencil.stiffness - strains[:, :k] @ lower) / size
-    return polished, strains
+    return polished(pencil, factor, found, free, motions)
 
 
 def factorised(matrix: Any) -> Any:
