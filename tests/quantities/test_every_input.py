@@ -737,6 +737,7 @@ WORDS = {
     "title": ["t"],
     "description": ["d"],
     "quantity": ["wave.crest_speed"],
+    "row": ["foundation"],
 }
 """What words without a list of their own are turned to."""
 
