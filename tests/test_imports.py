@@ -24,6 +24,7 @@ ROOMS = (
     "quantities",
     "studies",
     "peers",
+    "stress",
     "run",
     "identify",
     "report",

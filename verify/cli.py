@@ -27,6 +27,7 @@ COMMANDS = {
     "compare": "compare",
     "quantities": "quantities:list_quantities",
     "plan": "plan",
+    "stress": "stress",
     "scenes": "scenes",
     "init": "scenes:init",
     "show": "scenes:show",

@@ -103,8 +103,8 @@ def joints_read_raw(patch):
 def shapes_with_unit_amplitude_instead_of_unit_mass(patch):
     true = eigen.factored_quotient
 
-    def rescaled(pencil, vectors):
-        values, scaled = true(pencil, vectors)
+    def rescaled(pencil, vectors, strains=None):
+        values, scaled = true(pencil, vectors, strains)
         return values, scaled / abs(scaled).max(axis=0)
 
     patch.setattr(eigen, "factored_quotient", rescaled)

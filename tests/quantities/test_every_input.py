@@ -167,6 +167,7 @@ FEM, SEGMENT = {"model": "fem", "count": 9}, {"model": "segment", "count": 9}
 SETTINGS = {"wall": "third-order", "grading": 1.3, "joints": "printed"}
 FIELDS = ("standing_wave_ratio", "reflection", "envelope", "travelling_index", "signed_area_spread", "crest_speed")
 CASES: dict[str, list[Case]] = {
+    "stress.share": [Case({"row": "taut"})],
     "mode.frequency": [
         Case({"model": "analytic", "mode": 3}, on("clamped", "free")),
         Case(
@@ -438,6 +439,8 @@ DEAD = [
         "name title description gate spectrum.* convergence.* sensitivity.* wave.* axial_inertia.*",
         "what a scene asks for beside the figure",
     ),
+    Dead("*", "stress.*", "a table that a scene asks for beside the figure"),
+    Dead("stress.share", "beam.* drive.* slider.* motion.*", "rows stand on beams of their own"),
     Dead("*", "claim readings.*", "a published claim and what is tried of it move no figure"),
     Dead("*", "motion.count motion.counts motion.samples", "sizes and samples of the scene's own study"),
     Dead(
@@ -734,6 +737,7 @@ WORDS = {
     "title": ["t"],
     "description": ["d"],
     "quantity": ["wave.crest_speed"],
+    "row": ["foundation"],
 }
 """What words without a list of their own are turned to."""
 

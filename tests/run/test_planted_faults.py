@@ -5,14 +5,14 @@ from itertools import chain
 import faults.everything  # noqa: F401
 import pytest
 from faults import chain as of_the_chain
-from faults import modes, motion, waves
+from faults import modes, motion, stress, waves
 
 from verify.quantities.catalogue import QUANTITIES
 from verify.run.gates import judge
 from verify.run.runner import workbench_for
 from verify.scenes.scene import load_scene, packaged_scenes
 
-FAMILIES = (modes.FAULTS, waves.FAULTS, of_the_chain.FAULTS, motion.FAULTS)
+FAMILIES = (modes.FAULTS, waves.FAULTS, of_the_chain.FAULTS, motion.FAULTS, stress.FAULTS)
 FAULTS = {
     scene: dict(chain.from_iterable(family.get(scene, {}).items() for family in FAMILIES))
     for scene in packaged_scenes()

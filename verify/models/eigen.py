@@ -20,6 +20,17 @@ DENSE_UNKNOWNS = 250
 """Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
 _LANCZOS = 1e-10
 """Where Lanczos stops: the error of a vector enters the quotient squared."""
+_UNLIKE = 1e5
+"""Of K_ii / M_ii: between parts so unlike, graded or stepped, assembling drowns what is soft."""
+_HEAVY = 1e6
+"""Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
+_SAME = 0.9
+"""Cosine of two vectors that are one mode."""
+_HOMING = 3
+"""Steps to a mode that is nearly known, each the cube of the one before."""
+_POLISHED = 50_000
+"""Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
+square would be 1e-9 of the eigenvalues of a million parts."""
 _BYTES_PER_UNKNOWN = 2000
 """Of the sparse factorisation and its matrices, beside the Lanczos basis (measured peaks at 3e5 parts in all: 1300
 for modes, 2230 for a driven field, which counts as one mode and 700 of basis)."""
@@ -124,45 +135,106 @@ def method_name(n_unknowns: int, n_modes: int, uneven: bool = False) -> str:
 
 def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
     """The lowest `n_modes` elastic eigenpairs. The caller has checked the size with `check_size`."""
-    if pencil.uneven and uses_dense(pencil.n, n_modes):
+    strains, inverted = None, pencil.uneven
+    if inverted and uses_dense(pencil.n, n_modes):
         vectors = _inverse_vectors(pencil, n_modes)
     elif pencil.n <= DENSE_UNKNOWNS:
-        vectors = _dense_vectors(pencil, n_modes)
+        stiffness, mass = _assembled(pencil)
+        inverted = _is_unlike(stiffness, mass)
+        vectors = _inverse_vectors(pencil, n_modes) if inverted else _dense_vectors(pencil, n_modes, stiffness, mass)
     elif uses_dense(pencil.n, n_modes):
         vectors = _svd_vectors(pencil, n_modes)
     else:
-        vectors = _sparse_vectors(pencil, n_modes)
-    return _in_order(pencil, vectors, method_name(pencil.n, n_modes, pencil.uneven))
+        vectors, strains = _sparse_vectors(pencil, n_modes)
+    if _is_heavy(pencil):
+        vectors, strains = _homed(pencil, vectors), None
+    return _in_order(pencil, vectors, method_name(pencil.n, n_modes, inverted), strains)
 
 
-def _in_order(pencil: FactoredPencil, vectors: Array, method: str) -> Eigenpairs:
-    """The pairs of vectors (n, k), their values read from the factored quotient."""
-    values, vectors = factored_quotient(pencil, vectors)
+def _in_order(pencil: FactoredPencil, vectors: Array, method: str, strains: Array | None = None) -> Eigenpairs:
+    """The pairs of vectors (n, k), their values read from the factored quotient; `strains` as there."""
+    values, vectors = factored_quotient(pencil, vectors, strains)
     order = np.argsort(values, kind="stable")
     return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method)
 
 
-def factored_quotient(pencil: FactoredPencil, vectors: Array) -> tuple[Array, Array]:
-    """Rayleigh quotients sum d (B v)^2 / v^T M v, (k,), and the vectors scaled to v^T M v = 1, (n, k)."""
-    strains = pencil.strain(vectors)
+def _is_heavy(pencil: FactoredPencil) -> bool:
+    """Whether something on the beam weighs far more than the parts of it."""
+    masses = pencil.mass_matrix().diagonal()
+    return bool(masses.max() > _HEAVY * np.median(masses))
+
+
+def _homed(pencil: FactoredPencil, vectors: Array) -> Array:
+    """Vectors by Rayleigh quotient iteration on the mixed matrix, (n, k); one that would leave its mode stays.
+
+    B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
+    """
+    from scipy.sparse import block_array, csc_array, diags_array
+
+    mass, strain = csc_array(pencil.mass_matrix()), csc_array(pencil.strain_matrix())
+    springs, n_strains = diags_array(-1.0 / pencil.stiffness), len(pencil.stiffness)
+    homed = vectors.copy()
+    for k in range(vectors.shape[1]):
+        vector = vectors[:, [k]]
+        for _ in range(_HOMING):
+            value, vector = factored_quotient(pencil, vector)
+            right = np.concatenate([np.zeros(n_strains), (mass @ vector)[:, 0]])
+            try:
+                mixed = block_array([[springs, strain], [strain.T, -value[0] * mass]], format="csc")
+                vector = factorised(mixed).solve(right)[n_strains:, None]
+            except InputError:  # singular to the last digit: it is the mode
+                break
+        _, vector = factored_quotient(pencil, vector)
+        if abs(vector[:, 0] @ (mass @ homed[:, k])) > _SAME * np.sqrt(homed[:, k] @ (mass @ homed[:, k])):
+            homed[:, k] = vector[:, 0]
+    return homed
+
+
+def factored_quotient(pencil: FactoredPencil, vectors: Array, strains: Array | None = None) -> tuple[Array, Array]:
+    """Rayleigh quotients sum d (B v)^2 / v^T M v, (k,), and the vectors scaled to v^T M v = 1, (n, k).
+
+    `strains` (m, k) are B v where they are known better than the vectors' own digits tell.
+    """
+    strains = pencil.strain(vectors) if strains is None else strains
     masses = pencil.masses(vectors) if pencil.masses else weighed_squares(vectors, pencil.mass_matrix())
-    values = np.einsum("i,ij,ij->j", pencil.stiffness, strains, strains) / masses
+    if len(vectors) < _POLISHED:
+        values = np.einsum("i,ij,ij->j", pencil.stiffness, strains, strains) / masses
+    else:
+        values = _in_pairs(pencil.stiffness[:, None] * strains**2) / masses
     return values, vectors / np.sqrt(masses)
 
 
 def weighed_squares(vectors: Array, matrix: Any) -> Array:
     """V^T M v of every column, (k,)."""
-    return np.asarray(np.einsum("ij,ij->j", vectors, matrix @ vectors))
+    carried = matrix @ vectors
+    if len(vectors) < _POLISHED:
+        return np.asarray(np.einsum("ij,ij->j", vectors, carried))
+    return _in_pairs(vectors * carried)
 
 
-def _dense_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+def _in_pairs(products: Array) -> Array:
+    """Sums of columns, (k,), pairwise: a million terms one after another leave 1e-12 of their sum."""
+    return np.asarray(np.ascontiguousarray(products.T).sum(axis=1))
+
+
+def _assembled(pencil: FactoredPencil) -> tuple[Array, Array]:
+    """B^T diag(d) B and M, dense."""
+    strain = pencil.strain(np.eye(pencil.n))
+    return strain.T @ (pencil.stiffness[:, None] * strain), pencil.mass_matrix()
+
+
+def _is_unlike(stiffness: Array, mass: Array) -> bool:
+    """Whether the parts' own frequencies lie so far apart that K has lost those of the soft ones."""
+    squares = stiffness.diagonal() / mass.diagonal()
+    return bool(squares.max() > _UNLIKE * squares.min())
+
+
+def _dense_vectors(pencil: FactoredPencil, n_modes: int, stiffness: Array, mass: Array) -> Array:
     """Vectors by LAPACK on the assembled pencil: their error enters the quotient squared.
 
     Through numpy, which one small problem takes a third of scipy's start for.
     """
-    strain = pencil.strain(np.eye(pencil.n))
-    stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
-    lower = np.linalg.cholesky(pencil.mass_matrix())
+    lower = np.linalg.cholesky(mass)
     half = np.linalg.solve(lower, stiffness)
     _, vectors = np.linalg.eigh(np.linalg.solve(lower, half.T))
     wanted = vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes]
@@ -230,8 +302,8 @@ def _grounds(rigid: Array) -> list[int]:
     return grounds
 
 
-def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
-    """Vectors by Lanczos on the inverse of the mixed matrix, which never forms B^T diag(d) B.
+def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array | None]:
+    """Vectors by Lanczos on the inverse of the mixed matrix, which never forms B^T diag(d) B; their strains if many.
 
     Rigid motions are projected out of load and answer, which makes it the pseudo-inverse. The start vector is
     fixed, so that runs repeat.
@@ -262,7 +334,12 @@ def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
         raise InputError(
             "n_modes: the lowest modes lie too close together to be told apart on so many parts, lower count"
         ) from None
-    return np.asarray(vectors[:, np.argsort(values)])
+    found = np.asarray(vectors[:, np.argsort(values)])
+    if pencil.n < _POLISHED:
+        return found, None
+    from verify.models.polishing import polished
+
+    return polished(pencil, factor, found, free, motions)
 
 
 def factorised(matrix: Any) -> Any:

@@ -30,6 +30,7 @@ QUANTITIES: Registry[Quantity[Any]] = Registry(
     "quantity",
     "verify.quantities",
     own=(*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES, *CHAIN_QUANTITIES),
+    homes={"stress.share": "verify.stress.quantity:SHARE"},
 )
 
 

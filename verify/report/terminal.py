@@ -96,11 +96,11 @@ def print_compared(result: "Compared", report: Path | None) -> None:
         console.print(f"report: {report}", soft_wrap=True, markup=False)
 
 
-def print_found(found: "Found") -> None:
-    """What a study found: its facts and all its tables. Raises InputError where it has neither."""
+def print_found(found: "Found", *, every_table: bool = True) -> None:
+    """What a study found: its facts and all its tables, or those of a run. Raises InputError where it has neither."""
     if not found.facts() and not found.tables():
         raise InputError("--of: the study has no table that a terminal holds, ask for --csv, --markdown or --json")
-    _print_found(Terminal(), found, every_table=True)
+    _print_found(Terminal(), found, every_table=every_table)
 
 
 def _print_found(console: Console, found: "Found", *, every_table: bool) -> None:

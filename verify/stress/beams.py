@@ -1,0 +1,27 @@
+"""The beams that are pushed: plain figures of no symmetry, in metres and kilograms."""
+
+from math import pi
+
+from msgspec.structs import replace
+
+from verify.beam import Beam
+
+STRIP = Beam(
+    length=0.73,
+    width=0.031,
+    thickness=0.0023,
+    youngs_modulus=113e9,
+    density=4470.0,
+    supports=("pinned", "pinned"),
+)
+"""A strip of titanium between pins."""
+
+
+def held(*supports: str) -> Beam:
+    """The strip between other supports."""
+    return replace(STRIP, supports=supports)
+
+
+def root_of(beam: Beam, frequency_hz: float, length: float) -> float:
+    """Omega over sqrt(EI / (rho A)) times length^2, dimensionless."""
+    return 2.0 * pi * frequency_hz / beam.wave_constant * length**2

@@ -1,0 +1,27 @@
+"""Which rows there are, by family; a family is imported when its rows are asked for."""
+
+from functools import cache
+from importlib import import_module
+
+from verify.errors import InputError, near_name
+from verify.stress.kind import Row
+
+FAMILIES = ("sizes", "scales", "standing", "drive", "friction", "turns", "runs", "growth")
+"""Modules of this room with `ROWS`, in the order of the table."""
+
+
+@cache
+def rows() -> dict[str, Row]:
+    """Every row by its id."""
+    found: dict[str, Row] = {}
+    for family in FAMILIES:
+        for row in import_module(f"verify.stress.{family}").ROWS:
+            found[row.id] = row
+    return found
+
+
+def row(name: str, field: str = "row") -> Row:
+    """One of them. Raises InputError with the nearest id."""
+    if name not in rows():
+        raise InputError(f"{field} = {name!r} is not known: {near_name(name, tuple(rows()))}")
+    return rows()[name]
