@@ -23,6 +23,7 @@ ROOMS = (
     "scenes",
     "quantities",
     "studies",
+    "bench",
     "run",
     "identify",
     "report",
