@@ -13,13 +13,20 @@ Run: TypeAlias = Callable[[], "Told"]
 
 
 class Told(msgspec.Struct, frozen=True, eq=False):
-    """What one run gave, with its own times where it knows them better than a clock around it."""
+    """What one run gave, with how long its parts took where it knows."""
 
     answer: Any
     set_up_s: float | None = None
     """Seconds of modes and tables that this run made anew."""
     warm_s: float | None = None
     """Seconds of the rest."""
+
+    @property
+    def set_up_share(self) -> float | None:
+        """Of the run's time; None where nobody knows."""
+        if self.set_up_s is None or self.warm_s is None or self.set_up_s + self.warm_s <= 0.0:
+            return None
+        return self.set_up_s / (self.set_up_s + self.warm_s)
 
 
 class Reference(msgspec.Struct, frozen=True):

@@ -1,8 +1,12 @@
-"""Rows measured: what fits into the time, first calls, set-ups, then rounds in which all methods take turns."""
+"""Rows measured: what fits into the time, first calls, set-ups, then rounds in which all methods take turns.
+
+Times are of the processor, spent by this process in one thread, so that what else a machine does counts less; on a
+machine that does nothing else they are what a clock on the wall shows.
+"""
 
 from collections.abc import Callable, Iterable, Sequence
 from statistics import median, quantiles
-from time import perf_counter
+from time import process_time
 from typing import TypeAlias
 
 import msgspec
@@ -13,7 +17,7 @@ from verify.errors import InputError
 from verify.judge.crossing import Point, observed
 
 Clock: TypeAlias = Callable[[], float]
-"""Seconds from anywhere."""
+"""Seconds from anywhere; those of the processor unless a test gives another."""
 
 LEAST_ROUNDS = 3
 TURN_S = 2e-3
@@ -76,7 +80,7 @@ def _last(case: Case, key: int, why: dict[int, str]) -> bool:
 
 
 def measured(
-    case: Case, left_out: dict[int, str], rounds: int, budget_s: float, clock: Clock = perf_counter
+    case: Case, left_out: dict[int, str], rounds: int, budget_s: float, clock: Clock = process_time
 ) -> list[Outcome]:
     """Every entry of a case with its error and times; with the reason where it has none. Raises InputError."""
     told: dict[int, str] = {id(e): left_out[id(e)] for e in case.entries if id(e) in left_out}
@@ -124,13 +128,15 @@ def _rounds(
 
 
 def _turn(one: _Ready, clock: Clock) -> tuple[float, float | None]:
-    """Mean seconds of a run within a turn, and of its set-up where the run makes one anew."""
+    """Mean seconds of a run within a turn, and of its set-up where the run makes one anew: the share that it told."""
     begun = clock()
     told: list[Told] = [one.run() for _ in range(one.repeats)]
     seconds = (clock() - begun) / one.repeats
-    own = [t.warm_s for t in told if t.warm_s is not None]
-    made = [t.set_up_s for t in told if t.set_up_s is not None]
-    return (sum(own) / len(own) if own else seconds), (sum(made) / len(made) if made else None)
+    shares = [t.set_up_share for t in told if t.set_up_share is not None]
+    if not shares:
+        return seconds, None
+    share = sum(shares) / len(shares)
+    return (1.0 - share) * seconds, share * seconds
 
 
 def _row(
@@ -149,7 +155,8 @@ def _row(
         return row
     turns = times[id(entry)]
     warm, set_ups = [w for w, _ in turns], [s for _, s in turns if s is not None]
-    made = median(set_ups) if set_ups else ready.set_up_s if entry.sets_up else None
+    made = ready.set_up_s if entry.sets_up else None
+    made = median(set_ups) + (made or 0.0) if set_ups else made
     return msgspec.structs.replace(
         row,
         error=ready.judged.error,

@@ -1,7 +1,7 @@
 """A bench run: cases of every set, what fits into the time, rows, sentences, what processes of their own paid."""
 
 from collections.abc import Callable, Iterator
-from time import perf_counter
+from time import process_time
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -72,7 +72,7 @@ def benched(
     scene: "Scene",
     bench: "Workbench",
     step: Progress = lambda step: None,
-    clock: Clock = perf_counter,
+    clock: Clock = process_time,
 ) -> BenchFound:
     """Everything a [bench] asks for. `step` is told the set about to be run. Raises InputError."""
     cases, notes = all_cases(asked, scene, bench)
