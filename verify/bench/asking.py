@@ -49,5 +49,3 @@ def job_of(scene: "Scene", asked: Bench) -> "tuple[int, Callable[[Progress], Ben
         return study.run(asked, scene, bench, {}, step)
 
     return study.n_steps(asked, scene), run
-
-

@@ -4,7 +4,7 @@ Other engines move the same chain, so that they stand in the same case.
 """
 
 from collections.abc import Callable, Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -14,12 +14,11 @@ from verify.bench.field_set import forces_of, relative_rms
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
 from verify.bench.study import Settled
 from verify.chain.dynamics import at_rest
-from verify.chain.problems import check_modes_of
 from verify.chain.ride import check_moved
 from verify.chain.splitting import linear_deflection, modal_basis, simulate_modal
 from verify.chain.stepping import simulate, step_limit
 from verify.chain.system import ChainState, ChainSystem, build_system
-from verify.chain.work import fixed_steps, modal_work, per_evaluation
+from verify.chain.work import check_modes_of, fixed_steps, modal_work, per_evaluation
 from verify.errors import InputError
 from verify.models.arrays import Array
 
@@ -105,13 +104,6 @@ def chain_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
         )
 
 
-def _steps(chain: Chain, first: float) -> list[float]:
-    """A ladder of halved steps of which samples are whole numbers, where they are shorter than what lies between."""
-    gap = chain.duration / SAMPLES
-    ladder = [min(first, chain.duration) / 2**k for k in range(HALVINGS)]
-    return [gap / np.ceil(gap / step) if step < gap else step for step in ladder]
-
-
 def _kicks(chain: Chain, number: int) -> Iterator[Entry]:
     line = Line(name=f"{KICKS}, {number}", orders=(2.0, 2.0 * number), refined="step", settings={"kicks": number})
 
@@ -125,36 +117,38 @@ def _kicks(chain: Chain, number: int) -> Iterator[Entry]:
 
         return run
 
-    for step in _steps(chain, FIRST_STEP * chain.period):
+    for step in (min(FIRST_STEP * chain.period, chain.duration) / 2**k for k in range(HALVINGS)):
         work = LINK_S * modal_work(chain.duration, step, number, chain.count, chain.count)
-        yield _entry(chain, line, step, work + 2e-3 + 1e-7 * chain.count**3, lambda step=step: prepare(step))
+        yield _entry(chain, line, step, work + 2e-3 + 1e-7 * chain.count**3, partial(prepare, step))
 
 
 def _rk4(chain: Chain) -> Iterator[Entry]:
     limit = step_limit(chain.system, chain.start)
 
     def run(step: float) -> Told:
-        moved = simulate(
-            chain.system, chain.start, chain.times, method="rk4", step=step, ledger=False, limit=limit
-        )
+        moved = simulate(chain.system, chain.start, chain.times, method="rk4", step=step, ledger=False, limit=limit)
         check_moved(moved)
         return Told(moved.deflection([chain.x])[:, 0])
 
     line = Line(name=RK4, orders=(4.0, 4.0), refined="step")
     for step in (BELOW_LIMIT * limit / 2**k for k in range(HALVINGS)):
         work = 4.0 * fixed_steps(chain.duration, step) * per_evaluation(chain.count) * LINK_S
-        yield _entry(chain, line, step, work, lambda step=step: lambda: run(step), sets_up=False)
+        yield _entry(chain, line, step, work, partial(partial, run, step), sets_up=False)
 
 
 def _adaptive(chain: Chain) -> Iterator[Entry]:
     line = Line(name=ADAPTIVE, orders=(1.0, 1.0), refined="tolerance")
+
+    def run(tolerance: float) -> Told:
+        return Told(_moved(chain, tolerance, chain.times))
+
     for tolerance in TOLERANCES:
         yield Entry(
             line=line,
             size=tolerance,
             count=chain.count,
             estimate_s=_adaptive_seconds(chain, tolerance),
-            prepare=lambda tolerance=tolerance: lambda: Told(_moved(chain, tolerance, chain.times)),
+            prepare=partial(partial, run, tolerance),
             settings={"tolerance": tolerance},
         )
 

@@ -33,14 +33,17 @@ def _chart(name: str, rows: "list[Row]", found: "BenchFound") -> Chart:
     for about in abouts:
         for method in methods:
             own = [row for row in rows if (row.about, row.method) == (about, method) and row.error and row.whole_s]
-            data += [_trace(own, methods.index(method), abouts.index(about), named=not _named(data, method))] * bool(own)
+            data += [_trace(own, methods.index(method), abouts.index(about), named=not _named(data, method))] * bool(
+                own
+            )
     several = len(abouts) > 1
     keys = [line(about, GREY, [None], [None], **_style(i)) for i, about in enumerate(abouts)] if several else []
     return Chart(
         id=f"bench-{name}",
         title=f"{TITLES[name]}: run time against error",
-        caption=f"Set-up and run together, medians of interleaved rounds of {found.date} on {found.machine['processor']}."
-        " Errors fall to the right, lower is faster; sizes, steps or tolerances stand at the points.",
+        caption="Set-up and run together, medians of interleaved rounds of "
+        f"{found.date} on {found.machine['processor']}. Errors fall to the right, lower is faster; sizes, steps or "
+        "tolerances stand at the points.",
         data=[*data, *keys],
         layout=axes(
             "size of the error, %",

@@ -95,4 +95,3 @@ def _seconds(prepare: "Callable[[], Run]") -> float:
     begun = process_time()
     prepare()()
     return process_time() - begun
-

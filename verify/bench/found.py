@@ -24,10 +24,12 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
     """Sets and methods that take no part, each with the reason."""
     estimate_s: float = 0.0
     """Seconds that the work was estimated to take, from above."""
+    moved: tuple[Sentence, ...] = ()
+    """Against an earlier run: what moved."""
 
     def facts(self) -> tuple[str, ...]:
-        """A sentence for each comparison."""
-        return tuple(one.text for one in self.sentences)
+        """What moved against an earlier run, where there is one; then a sentence for each comparison."""
+        return tuple(one.text for one in (*self.moved, *self.sentences))
 
     def tables(self) -> tuple[Table, ...]:
         """One for each case, and what processes of their own paid."""
@@ -87,7 +89,7 @@ def _case_table(rows: tuple[Row, ...]) -> Table:
         title=f"{first.set}, {first.about}" if first.about else first.set,
         columns=COLUMNS,
         rows=tuple(
-            (row.method, _at(row), row.error, row.order, row.warm_s, row.spread_s, row.set_up_s, row.first_s)
+            (row.method, _at(row), row.error or None, row.order, row.warm_s, row.spread_s, row.set_up_s, row.first_s)
             for row in rows
         ),
         notes=tuple(notes),

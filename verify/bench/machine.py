@@ -20,7 +20,7 @@ def machine() -> dict[str, str]:
     cores = len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count()
     return {
         "processor": _processor(),
-        "cores": str(cores),
+        "cores": f"{cores} cores",
         "system": f"{platform.system()} {platform.machine()}",
     }
 

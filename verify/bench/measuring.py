@@ -117,7 +117,7 @@ def _first(entry: Entry, error: Callable[[Entry, object], Judged], clock: Clock)
 def _rounds(
     ready: Sequence[_Ready], rounds: int, budget_s: float, clock: Clock
 ) -> dict[int, list[tuple[float, float | None]]]:
-    """(seconds, seconds of set-up) of every entry in each round, by its identity."""
+    """(seconds of a run, the share of its set-up) of every entry in each round, by its identity."""
     found: dict[int, list[tuple[float, float | None]]] = {id(one.entry): [] for one in ready}
     begun, done = clock(), 0
     while ready and done < rounds and (done < LEAST_ROUNDS or clock() - begun < budget_s):
@@ -128,15 +128,12 @@ def _rounds(
 
 
 def _turn(one: _Ready, clock: Clock) -> tuple[float, float | None]:
-    """Mean seconds of a run within a turn, and of its set-up where the run makes one anew: the share that it told."""
+    """Mean seconds of a run within a turn, and what share of it went into a set-up that the run made anew."""
     begun = clock()
     told: list[Told] = [one.run() for _ in range(one.repeats)]
     seconds = (clock() - begun) / one.repeats
     shares = [t.set_up_share for t in told if t.set_up_share is not None]
-    if not shares:
-        return seconds, None
-    share = sum(shares) / len(shares)
-    return (1.0 - share) * seconds, share * seconds
+    return seconds, median(shares) if shares else None
 
 
 def _row(
@@ -154,17 +151,17 @@ def _row(
     if ready is None:
         return row
     turns = times[id(entry)]
-    warm, set_ups = [w for w, _ in turns], [s for _, s in turns if s is not None]
+    seconds, shares = [s for s, _ in turns], [share for _, share in turns if share is not None]
+    whole, share = median(seconds), median(shares) if shares else 0.0
     made = ready.set_up_s if entry.sets_up else None
-    made = median(set_ups) + (made or 0.0) if set_ups else made
     return msgspec.structs.replace(
         row,
         error=ready.judged.error,
         reference=ready.judged.reference.name,
         reference_uncertainty=ready.judged.reference.uncertainty,
-        warm_s=median(warm),
-        spread_s=spread(warm),
-        set_up_s=made,
+        warm_s=(1.0 - share) * whole,
+        spread_s=spread(seconds),
+        set_up_s=(made or 0.0) + share * whole if shares else made,
         first_s=ready.first_s,
         rounds=len(turns),
     )

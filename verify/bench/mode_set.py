@@ -3,6 +3,8 @@
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
 from verify.bench.study import Settled
 from verify.errors import InputError
@@ -119,7 +121,7 @@ def _mean_entry(beam: "Beam", count: int, mode: int) -> Entry:
 
     def prepare() -> Callable[[], Told]:
         Workbench(beam).bracket(mode, count)  # raises where rounding is wider than the bracket
-        return lambda: Told(sum(m.solve_modes(beam, mode, count).frequencies_hz[mode - 1] for m in models) / 2.0)
+        return lambda: Told(float(sum(m.solve_modes(beam, mode, count).frequencies_hz[mode - 1] for m in models)) / 2.0)
 
     seconds = sum(OVERHEAD_S + solve_seconds(model.unknowns(beam, count), mode) for model in models)
     line = Line(name=MEAN_OF_BOTH, model=MEAN, orders=(6.0, 6.0))
@@ -130,10 +132,15 @@ def _exact_entry(beam: "Beam", mode: int) -> Entry:
     """In closed form where there is one, else the root of the characteristic equation."""
     from verify.exact.closed_forms import frequency_hz
     from verify.exact.modes import exact_frequency_hz
+    from verify.exact.roots import trials
 
-    solve = frequency_hz if beam.uniform else exact_frequency_hz
-    line = Line(name=EXACT, model="analytic")
-    return Entry(line=line, size=0.0, estimate_s=OVERHEAD_S, prepare=lambda: lambda: Told(solve(beam, mode)))
+    def run() -> Told:
+        if beam.uniform:
+            return Told(frequency_hz(beam, mode))
+        trials.cache_clear()  # what a run before has tried would be found at once
+        return Told(exact_frequency_hz(beam, mode))
+
+    return Entry(line=Line(name=EXACT, model="analytic"), size=0.0, estimate_s=OVERHEAD_S, prepare=lambda: run)
 
 
 def _judge(bench: Workbench, mode: int) -> Callable[[], Callable[[Entry, Any], Judged]]:
@@ -146,9 +153,11 @@ def _judge(bench: Workbench, mode: int) -> Callable[[], Callable[[Entry, Any], J
         )
 
         def error(entry: Entry, answer: Any) -> Judged:
-            value = _paired(bench, entry, answer, mode) if isinstance(answer, Modes) else answer
-            value = value[mode - 1] if getattr(value, "ndim", 0) else value
-            return Judged(relative_error(float(value), exact), reference)
+            if isinstance(answer, Modes):
+                value = _paired(bench, entry, answer, mode)
+            else:
+                value = float(answer[mode - 1] if isinstance(answer, np.ndarray) else answer)
+            return Judged(relative_error(value, exact), reference)
 
         return error
 
@@ -159,4 +168,4 @@ def _paired(bench: Workbench, entry: Entry, modes: Modes, mode: int) -> float:
     """Of the computed mode with the shape of the exact one. Raises PairingError."""
     assert entry.count is not None
     settings = tuple(entry.line.settings.items())
-    return float(modes.frequencies_hz[bench.paired_index(entry.line.model, entry.count, mode, settings)])  # type: ignore[arg-type]
+    return float(modes.frequencies_hz[bench.paired_index(entry.line.model, entry.count, mode, settings)])

@@ -4,6 +4,7 @@ What they are given and give is said in `verify.peers`; one that is missing is n
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -157,7 +158,7 @@ def _ladder(
             size=step,
             count=count,
             estimate_s=seconds,
-            prepare=lambda step=step: prepare(step),
+            prepare=partial(prepare, step),
             sets_up=True,
             settings={"step": step},
         )
@@ -249,7 +250,7 @@ def _own(scene: "Scene", its: Settled, slider: "Slider", period: float, count: i
             size=step,
             count=count,
             estimate_s=seconds,
-            prepare=lambda step=step: lambda: run(step),
+            prepare=partial(partial, run, step),
             sets_up=True,
             settings={"step": step},
         )

@@ -27,7 +27,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     warm_s: float | None = None
     """Seconds of a run after its set-up, median of interleaved rounds."""
     spread_s: float | None = None
-    """Between the quartiles of the rounds."""
+    """Between the quartiles of the rounds, of all that each ran."""
     set_up_s: float | None = None
     """Seconds before it, for models and modes that are made once; None where the run is all there is."""
     first_s: float | None = None

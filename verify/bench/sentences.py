@@ -6,10 +6,10 @@ from math import log
 from verify.bench.kind import Case
 from verify.bench.measuring import Outcome, floors
 from verify.bench.rows import Sentence
-from verify.judge.crossing import ABOVE_FLOOR, Crossing, Point, Stretch, Unearned, converging, crossing
+from verify.judge.crossing import ABOVE_FLOOR, Crossing, Point, Stretch, Unearned, at_error, converging, crossing
 
-ASTRAY = 0.5
-"""How far an observed order may lie from the known one."""
+NEAR = 0.01
+"""Within which a method of parts is set beside the exact solution."""
 
 
 def sentences_of(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
@@ -30,7 +30,9 @@ def _compared(case: Case, found: Sequence[Outcome], scene: str, first: str, seco
     if isinstance(answer, Unearned):
         text = f"{about}: no time is set against another, {answer.why}; {answer.remedy}"
         return _sentence(case, (first, second), text)
-    text = f"{about}: {_verdict(first, second, answer)}{_wanted(case, answer, a, b)} ({_condition(case, found, scene)})"
+    parts = (_verdict(first, second, answer), *_wanted(case, answer, a, b), *_alone(found, (first, second), answer))
+    orders = f"observed orders {_span(a.orders)} and {_span(b.orders)}"
+    text = f"{about}: {'; '.join(parts)} ({orders}; {_condition(case, found, scene)})"
     return _sentence(case, (first, second), text, answer)
 
 
@@ -44,71 +46,81 @@ def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unear
     floor = ABOVE_FLOOR * floors(case, (one.row for one, point in pairs if point is not None))
     if not points:
         return Unearned(own[-1].row.left_out or "it has no figure", "see its rows")
-    return converging(points, orders, ASTRAY, floor)
+    return converging(points, orders, floor)
 
 
 def _verdict(first: str, second: str, answer: Crossing) -> str:
     """Which is cheaper, over which errors, by how much."""
-    span = f"from {percent(answer.high)} down to {percent(answer.low)}"
+    span = f"at errors from {percent(answer.high)} down to {percent(answer.low)}"
+    (_, fine), (_, coarse) = answer.ratios[0], answer.ratios[-1]
+    if answer.crossings:
+        changes = ", ".join(percent(error) for error in reversed(answer.crossings))
+        above, below = (first if ratio > 1.0 else second for ratio in (coarse, fine))
+        sizes = (
+            f"{_slower(first, second, ratio)} at {percent(e)}" for e, ratio in (answer.ratios[0], answer.ratios[-1])
+        )
+        return f"the cheaper one changes at an error of {changes}: {above} above, {below} below; {', '.join(ends)}"
     sizes = [ratio for _, ratio in answer.ratios]
     low, high = min(sizes), max(sizes)
-    if not answer.crossings:
-        if max(abs(log(low)), abs(log(high))) <= answer.spread:
-            return (
-                f"neither is cheaper at errors {span}: ratios {low:.2f} to {high:.2f} lie within the spread of "
-                f"{100 * answer.spread:.0f} %"
-            )
-        loser, times = (second, (low, high)) if low * high > 1.0 else (first, (1.0 / high, 1.0 / low))
-        return f"at errors {span}, {loser} takes {_times(*times)} as long"
-    changes = ", ".join(percent(error) for error in reversed(answer.crossings))
-    at_high = first if answer.ratios[-1][1] > 1.0 else second
-    fine = answer.ratios[0]
-    finer = first if fine[1] > 1.0 else second
-    size = max(fine[1], 1.0 / fine[1])
-    return (
-        f"the cheaper one changes at an error of {changes}: above it {at_high}, at {percent(answer.low)} {finer} by "
-        f"{size:.2f} times"
-    )
+    if max(abs(log(low)), abs(log(high))) <= answer.spread:
+        return f"{span} neither is cheaper beyond the spread of {100 * answer.spread:.0f} %, ratios {_span(sizes)}"
+    if log(low) + log(high) < 0.0:
+        first, second, low, high = second, first, 1.0 / high, 1.0 / low
+    if low < 1.0:
+        return (
+            f"{span} {first} cost less wherever the two differ beyond the spread, up to {_slower(first, second, high)}"
+        )
+    return f"{span} it takes {_span((low, high))} times as long by {second} as by {first}"
 
 
-def _times(low: float, high: float) -> str:
-    return f"{low:.2f} times" if high < 1.02 * low else f"{low:.2f} to {high:.2f} times"
+def _slower(first: str, second: str, ratio: float) -> str:
+    """'1.62 times as long by elements'."""
+    return f"{max(ratio, 1.0 / ratio):.2f} times as long by {second if ratio > 1.0 else first}"
 
 
-def _wanted(case: Case, answer: Crossing, a: Stretch, b: Stretch) -> str:
+def _span(values: Sequence[float]) -> str:
+    low, high = min(values), max(values)
+    return f"{high:.2f}" if high - low < 0.02 * abs(high) else f"{low:.2f} to {high:.2f}"
+
+
+def _wanted(case: Case, answer: Crossing, a: Stretch, b: Stretch) -> list[str]:
     """The ratio at errors that somebody asks for, where both reach them."""
     inside = [error for error in case.wanted if answer.low <= error <= answer.high]
-    return "".join(f"; at {error:g} the ratio is {b.seconds(error) / a.seconds(error):.2f}" for error in inside)
+    return [f"{b.seconds(error) / a.seconds(error):.2f} at {percent(error)}" for error in inside]
+
+
+def _alone(found: Sequence[Outcome], methods: tuple[str, str], answer: Crossing) -> list[str]:
+    """The ratio of the runs without their set-up, at the smallest error that both reach; nothing without a set-up."""
+    seconds = []
+    for name in methods:
+        own = sorted(
+            (o for o in found if o.entry.line.name == name and o.point), key=lambda o: -abs(o.row.error or 0.0)
+        )
+        seconds.append(at_error([abs(o.row.error or 0.0) for o in own], [o.row.warm_s or 0.0 for o in own], answer.low))
+    if not any(o.row.set_up_s for o in found if o.entry.line.name in methods):
+        return []
+    return [f"runs without their set-up {seconds[1] / seconds[0]:.2f} at {percent(answer.low)}"]
 
 
 def _condition(case: Case, found: Sequence[Outcome], scene: str) -> str:
-    rounds = [one.row.rounds for one in found if one.row.rounds]
-    return (
-        f"{scene}, {case.question}; {case.condition}; set-up and run, medians of {min(rounds)} rounds, this run on this "
-        "machine"
-    )
+    rounds = min(one.row.rounds for one in found if one.row.rounds)
+    return f"{scene}, {case.question}; {case.condition}; medians of {rounds} rounds of this run on this machine"
 
 
 def _exact(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
-    """Where a method has no size, what it costs beside the cheapest of parts."""
+    """What the exact solution costs beside the cheapest of parts that is within what is asked of it at least."""
     exact = next((one for one in found if one.entry.line.orders is None and one.row.model == "analytic"), None)
-    others = [one for one in found if one.entry.line.orders is not None and one.row.whole_s]
-    if exact is None or exact.row.whole_s is None or not others:
+    near = [one for one in found if one.entry.line.orders and one.row.whole_s and abs(one.row.error or 0.0) <= NEAR]
+    if exact is None or exact.row.whole_s is None or not near:
         return []
-    least = min(others, key=lambda one: one.row.whole_s or 0.0)
-    own, other = exact.row.whole_s, least.row.whole_s
-    assert other is not None
-    assert least.row.error is not None
-    compared = (
-        f"{other / own:.2f} times less than the cheapest of parts, {least.entry.told}"
-        if other > own
-        else f"{own / other:.2f} times as long as the cheapest of parts, {least.entry.told}"
-    )
+    least = min(near, key=lambda one: one.row.whole_s or 0.0)
+    own, other, name = exact.row.whole_s, least.row.whole_s or 0.0, exact.entry.line.name
     text = (
-        f"{case.name}: the exact solution takes {1e3 * own:.3g} ms, {compared} with its error of "
-        f"{percent(abs(least.row.error))} ({_condition(case, found, scene)})"
+        f"{case.name}: the exact solution takes {1e3 * own:.3g} ms, the cheapest of parts within {percent(NEAR)}, "
+        f"{least.entry.told}, {1e3 * other:.3g} ms: {_slower(name, least.entry.line.name, other / own)} "
+        f"({_condition(case, found, scene)})"
     )
-    methods = (exact.entry.line.name, least.entry.line.name)
+    methods = (name, least.entry.line.name)
     return [Sentence(set=case.set, about=case.about, methods=methods, text=text, earned=True, ratio=other / own)]
 
 

@@ -46,7 +46,9 @@ def bench(
     """Run time against error: every method, its reference, and one sentence for each comparison.
 
     Modes by every rule of segments, elements, stock scikit-fem; harmonic fields; motions in time; the slider; the
-    nonlinear chain; other engines where they are installed. Example: `verify bench paper --sets modes --counts 25-100:25`
+    nonlinear chain; other engines where they are installed.
+
+    Example: `verify bench paper --sets modes --counts 25-100:25`
     """
     from verify.bench.asking import asked_of, job_of
 

@@ -11,6 +11,8 @@ import msgspec
 
 ABOVE_FLOOR = 3.0
 """How many times an error has to exceed what its reference leaves open."""
+ASTRAY = 1.0
+"""How far an observed order may lie from the known one for times to be compared."""
 LEAST = 3
 """Points between which an order is seen twice."""
 
@@ -31,6 +33,8 @@ class Stretch(msgspec.Struct, frozen=True):
     """Points between which errors fall at their order, coarse to fine."""
 
     points: tuple[Point, ...]
+    orders: tuple[float, ...]
+    """Observed between them."""
 
     @property
     def span(self) -> tuple[float, float]:
@@ -85,10 +89,11 @@ def observed(a: Point, b: Point, floor: float) -> float | None:
     return log(a.error / b.error) / log(a.size / b.size)
 
 
-def converging(points: Sequence[Point], orders: tuple[float, float], astray: float, floor: float) -> Stretch | Unearned:
-    """The longest stretch whose observed orders lie within `astray` of the known ones; of two the finer.
+def converging(points: Sequence[Point], orders: tuple[float, float], floor: float) -> Stretch | Unearned:
+    """The stretch, up to the finest error above `floor`, whose observed orders lie within ASTRAY of the known ones.
 
-    `points` from coarse to fine; errors up to `floor` are rounding.
+    `points` from coarse to fine; errors up to `floor` are rounding. What falls at an order for a while and then does
+    not has no order there.
     """
     known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:g} to {orders[1]:g}"
     above = [p for p in points if abs(p.error) > floor]
@@ -97,22 +102,12 @@ def converging(points: Sequence[Point], orders: tuple[float, float], astray: flo
     if len(above) < LEAST:
         return Unearned(f"errors down to {min(abs(p.error) for p in points):.1e} are rounding", "give coarser sizes")
     seen = [observed(a, b, floor) for a, b in pairwise(above)]
-    fit = [order is not None and orders[0] - astray <= order <= orders[1] + astray for order in seen]
-    first, last = _longest(fit)
-    if last - first + 1 < LEAST:
+    fit = [order is not None and orders[0] - ASTRAY <= order <= orders[1] + ASTRAY for order in seen]
+    first = max((i + 1 for i, good in enumerate(fit) if not good), default=0)
+    if len(above) - first < LEAST:
         words = ", ".join("a change of sign" if order is None else f"{order:.1f}" for order in seen)
         return Unearned(f"errors fall not at order {known} but at {words}", "give larger sizes")
-    return Stretch(tuple(above[first : last + 1]))
-
-
-def _longest(fit: Sequence[bool]) -> tuple[int, int]:
-    """First and last point of the longest run of intervals that fit; of two the later."""
-    best, start = (0, 0), 0
-    for i, good in enumerate(fit, start=1):
-        start = start if good else i
-        if i - start >= best[1] - best[0]:
-            best = (start, i)
-    return best
+    return Stretch(tuple(above[first:]), tuple(order for order in seen[first:] if order is not None))
 
 
 def crossing(a: Stretch, b: Stretch) -> Crossing | Unearned:

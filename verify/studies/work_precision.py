@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.compare import check_reference, relative_error
-from verify.judge.crossing import ABOVE_FLOOR, at_error
+from verify.judge.crossing import ABOVE_FLOOR, ASTRAY, at_error
 from verify.models.catalogue import bounding, discrete
 from verify.motion.stepping import slider_seconds
 from verify.patience import check_work
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from verify.motion.result import Motion
     from verify.scenes.scene import Scene
 
-ORDER, ASTRAY = 4.0, 1.0
-"""Of both models' errors in the size, and how far an observed order may lie from it for times to be compared."""
+ORDER = 4.0
+"""Of both models' errors in the size."""
 
 
 class WorkRow(msgspec.Struct, frozen=True, kw_only=True):
