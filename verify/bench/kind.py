@@ -71,6 +71,10 @@ class Entry(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """What is made once, before runs that can be repeated."""
     sets_up: bool = False
     """Whether that is work worth telling."""
+    runs_first: bool = False
+    """Whether making it takes a run as well, which is no part of its cost."""
+    afresh: bool = False
+    """Whether every run finds nothing that one before it has kept: its time is that from the beam on."""
     settings: dict[str, Setting] = {}
     """Its step or tolerance."""
 

@@ -4,6 +4,7 @@ Times are of the processor, spent by this process in one thread, so that what el
 machine that does nothing else they are what a clock on the wall shows.
 """
 
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from statistics import median, quantiles
 from time import process_time
@@ -19,6 +20,8 @@ from verify.judge.crossing import Point, observed
 Clock: TypeAlias = Callable[[], float]
 """Seconds from anywhere; those of the processor unless a test gives another."""
 
+KEEPERS = ("verify.elements.", "verify.segments.", "verify.exact.")
+"""Modules of models, which keep some of what they solved."""
 LEAST_ROUNDS = 3
 TURN_S = 2e-3
 """Shortest turn of a round: shorter runs are repeated within it, so that a clock and its neighbours matter less."""
@@ -108,10 +111,27 @@ def _first(entry: Entry, error: Callable[[Entry, object], Judged], clock: Clock)
     begun = clock()
     run = entry.prepare()
     set_up = clock() - begun
-    begun = clock()
-    run()
-    took = clock() - begun
+    _, took = _timed(entry, run, clock)
+    set_up = max(set_up - took, 0.0) if entry.runs_first else set_up
     return _Ready(entry, run, judged, first, set_up, max(1, round(TURN_S / took)) if took > 0.0 else 1)
+
+
+def _timed(entry: Entry, run: Run, clock: Clock) -> tuple[Told, float]:
+    """What a run gave, and its seconds."""
+    if entry.afresh:
+        forget()
+    begun = clock()
+    told = run()
+    return told, clock() - begun
+
+
+def forget() -> None:
+    """Let the models forget what they solved for whoever asks again."""
+    for name, module in list(sys.modules.items()):
+        if name.startswith(KEEPERS):
+            for value in list(vars(module).values()):
+                if callable(clear := getattr(value, "cache_clear", None)):
+                    clear()
 
 
 def _rounds(
@@ -129,9 +149,13 @@ def _rounds(
 
 def _turn(one: _Ready, clock: Clock) -> tuple[float, float | None]:
     """Mean seconds of a run within a turn, and what share of it went into a set-up that the run made anew."""
-    begun = clock()
-    told: list[Told] = [one.run() for _ in range(one.repeats)]
-    seconds = (clock() - begun) / one.repeats
+    if one.entry.afresh:
+        pairs = [_timed(one.entry, one.run, clock) for _ in range(one.repeats)]
+        told, seconds = [t for t, _ in pairs], median(s for _, s in pairs)
+    else:
+        begun = clock()
+        told = [one.run() for _ in range(one.repeats)]
+        seconds = (clock() - begun) / one.repeats
     shares = [t.set_up_share for t in told if t.set_up_share is not None]
     return seconds, median(shares) if shares else None
 

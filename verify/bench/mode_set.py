@@ -81,7 +81,7 @@ def _variant_entry(beam: "Beam", one: Variant, count: int, mode: int) -> Entry:
         return run
 
     seconds = OVERHEAD_S + solve_seconds(model.unknowns(beam, count, **how), mode)
-    return Entry(line=_line(beam, one), size=1.0 / count, count=count, estimate_s=seconds, prepare=prepare)
+    return Entry(line=_line(beam, one), size=1 / count, count=count, estimate_s=seconds, prepare=prepare, afresh=True)
 
 
 def _beside(beam: "Beam", its: Settled) -> tuple[list[Callable[["Beam", int, int], Entry]], list[str]]:
@@ -125,22 +125,22 @@ def _mean_entry(beam: "Beam", count: int, mode: int) -> Entry:
 
     seconds = sum(OVERHEAD_S + solve_seconds(model.unknowns(beam, count), mode) for model in models)
     line = Line(name=MEAN_OF_BOTH, model=MEAN, orders=(6.0, 6.0))
-    return Entry(line=line, size=1.0 / count, count=count, estimate_s=seconds, prepare=prepare)
+    return Entry(line=line, size=1.0 / count, count=count, estimate_s=seconds, prepare=prepare, afresh=True)
 
 
 def _exact_entry(beam: "Beam", mode: int) -> Entry:
     """In closed form where there is one, else the root of the characteristic equation."""
     from verify.exact.closed_forms import frequency_hz
     from verify.exact.modes import exact_frequency_hz
-    from verify.exact.roots import trials
 
-    def run() -> Told:
-        if beam.uniform:
-            return Told(frequency_hz(beam, mode))
-        trials.cache_clear()  # what a run before has tried would be found at once
-        return Told(exact_frequency_hz(beam, mode))
-
-    return Entry(line=Line(name=EXACT, model="analytic"), size=0.0, estimate_s=OVERHEAD_S, prepare=lambda: run)
+    solve = frequency_hz if beam.uniform else exact_frequency_hz
+    return Entry(
+        line=Line(name=EXACT, model="analytic"),
+        size=0.0,
+        estimate_s=OVERHEAD_S,
+        prepare=lambda: lambda: Told(solve(beam, mode)),
+        afresh=not beam.uniform,
+    )
 
 
 def _judge(bench: Workbench, mode: int) -> Callable[[], Callable[[Entry, Any], Judged]]:

@@ -56,7 +56,7 @@ def _verdict(first: str, second: str, answer: Crossing) -> str:
     if answer.crossings:
         changes = ", ".join(percent(error) for error in reversed(answer.crossings))
         above, below = (first if ratio > 1.0 else second for ratio in (coarse, fine))
-        sizes = (
+        ends = (
             f"{_slower(first, second, ratio)} at {percent(e)}" for e, ratio in (answer.ratios[0], answer.ratios[-1])
         )
         return f"the cheaper one changes at an error of {changes}: {above} above, {below} below; {', '.join(ends)}"

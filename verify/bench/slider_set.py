@@ -64,7 +64,7 @@ def _entry(scene: "Scene", model: Model, count: int) -> Entry:
         count=count,
         estimate_s=loop + TABLES_S * unknowns + solve_seconds(unknowns, unknowns),
         prepare=lambda: run,
-        sets_up=True,
+        afresh=True,
     )
 
 

@@ -99,7 +99,7 @@ def unasked(name: str, scene: "Scene") -> str:
     """Why a set is left out that nobody names; empty where the scene has what it takes."""
     driven = scene.drive is not None and any(force.amplitude for force in scene.drive.force)
     if name in ("harmonic", "transient") and not driven:
-        return "the scene has no drive"
+        return "nothing drives the beam"
     if name == "slider" and (scene.slider is None or scene.motion is None):
         return f"the scene has no [{'slider' if scene.slider is None else 'motion'}]"
     if name == "chain":

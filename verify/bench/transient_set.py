@@ -62,7 +62,7 @@ def _entry(scene: "Scene", its: Settled, model: Model, count: int | None) -> Ent
         count=count,
         estimate_s=TIME_S + TIME_PER_PART_S * unknowns + (solve_seconds(unknowns, unknowns) if count else 0.0),
         prepare=lambda: run,
-        sets_up=True,
+        afresh=True,
     )
 
 
