@@ -33,9 +33,8 @@ def _chart(name: str, rows: "list[Row]", found: "BenchFound") -> Chart:
     for about in abouts:
         for method in methods:
             own = [row for row in rows if (row.about, row.method) == (about, method) and row.error and row.whole_s]
-            data += [_trace(own, methods.index(method), abouts.index(about), named=not _named(data, method))] * bool(
-                own
-            )
+            if own:
+                data.append(_trace(own, methods.index(method), abouts.index(about), named=not _named(data, method)))
     several = len(abouts) > 1
     keys = [line(about, GREY, [None], [None], **_style(i)) for i, about in enumerate(abouts)] if several else []
     return Chart(

@@ -6,6 +6,7 @@ machine that does nothing else they are what a clock on the wall shows.
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from statistics import median, quantiles
 from time import process_time
 from typing import TypeAlias
@@ -127,11 +128,16 @@ def _timed(entry: Entry, run: Run, clock: Clock) -> tuple[Told, float]:
 
 def forget() -> None:
     """Let the models forget what they solved for whoever asks again."""
-    for name, module in list(sys.modules.items()):
-        if name.startswith(KEEPERS):
-            for value in list(vars(module).values()):
-                if callable(clear := getattr(value, "cache_clear", None)):
-                    clear()
+    for clear in _clears(len(sys.modules)):
+        clear()
+
+
+@lru_cache(maxsize=1)
+def _clears(n_modules: int) -> tuple[Callable[[], None], ...]:
+    """What makes each of them forget, as long as no module is added."""
+    kept = (vars(module).values() for name, module in list(sys.modules.items()) if name.startswith(KEEPERS))
+    found = (getattr(value, "cache_clear", None) for values in kept for value in values)
+    return tuple(clear for clear in found if callable(clear))
 
 
 def _rounds(

@@ -37,7 +37,8 @@ class Bench(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     modes: Modes | None = None
     """Which modes; those of the scene's [convergence] unless given."""
     duration: float | None = None
-    """Seconds of motions in time; the scene's [motion] unless given, else four periods of the drive."""
+    """Seconds of beams and chains in time; the scene's [motion], else four periods of the drive, unless given. The
+    slider's own run lasts as its [motion] says."""
     x: float | None = None
     """Metres from the left end where motions are read; mid-span unless given."""
     seconds: float = 20.0
