@@ -41,8 +41,8 @@ def _chart(name: str, rows: "list[Row]", found: "BenchFound") -> Chart:
         id=f"bench-{name}",
         title=f"{TITLES[name]}: run time against error",
         caption="Set-up and run together, medians of interleaved rounds of "
-        f"{found.date} on {found.machine['processor']}. Errors fall to the right, lower is faster; sizes, steps or "
-        "tolerances stand at the points.",
+        f"{found.date} on {found.machine['processor']}. Errors fall to the right, lower is faster; point at one "
+        "for its size, step or tolerance.",
         data=[*data, *keys],
         layout=axes(
             "size of the error, %",

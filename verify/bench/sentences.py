@@ -67,9 +67,8 @@ def _verdict(first: str, second: str, answer: Crossing) -> str:
     if log(low) + log(high) < 0.0:
         first, second, low, high = second, first, 1.0 / high, 1.0 / low
     if low < 1.0:
-        return (
-            f"{span} {first} cost less wherever the two differ beyond the spread, up to {_slower(first, second, high)}"
-        )
+        most = _slower(first, second, high)
+        return f"{span} the cheaper one, where they differ beyond the spread, is {first}: up to {most}"
     return f"{span} it takes {_span((low, high))} times as long by {second} as by {first}"
 
 
