@@ -25,8 +25,12 @@ SPENT = "import sys, time; sys.stdout.write(str(time.process_time()))"
 """What a process says at its end: seconds of the processor since it began."""
 COMPILED = ("slider", "chain")
 """Sets whose methods are compiled."""
-LIBRARIES = {"numpy": (), "scipy.sparse.linalg": (), "skfem": ("modes", "harmonic", "transient", "slider")}
-"""What is imported, and the sets that need it where not all do."""
+LIBRARIES = {
+    "numpy": (),
+    "scipy.sparse.linalg": (),
+    "verify.elements.element": ("modes", "harmonic", "transient", "slider"),
+}
+"""What is imported, the elements with scikit-fem behind them, and the sets that need it where not all do."""
 PATIENCE_S = 600.0
 """Of one process."""
 
