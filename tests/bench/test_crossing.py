@@ -52,6 +52,7 @@ def test_a_line_that_is_exactly_as_dear_stands_at_one():
         ((1e-2, -1e-3, 1e-4), "a change of sign"),
         ((1e-2, 6e-4, 3e-5, 3e-5), "not at order 4"),
         ((1e-13, 2e-13, 1e-14), "rounding"),
+        ((0.96, 0.06, 0.0038), "errors up to 96 % are no answers"),
     ],
 )
 def test_times_stand_for_nothing_where_errors_do_not_fall_at_their_order(errors, why):

@@ -1,5 +1,7 @@
 """A bench as a dated page of Markdown, to be kept beside the source: what it says holds for that day and machine."""
 
+from textwrap import fill
+
 from verify.bench.found import BenchFound
 from verify.studies.told import Table
 from verify.words import cell
@@ -10,14 +12,21 @@ def page(found: BenchFound) -> str:
     made = (*found.machine.values(), *(f"{name} {version}" for name, version in found.versions.items()))
     parts = [
         f"# Run time against error: {found.scene}\n",
-        f"{found.date}, on {', '.join(made)}. Seconds are of the processor, in one thread; medians of interleaved "
-        "rounds. Ratios hold for this machine and these versions.\n",
+        _wrapped(
+            f"{found.date}, on {', '.join(made)}. Seconds are of the processor, in one thread; medians of interleaved "
+            "rounds. Ratios hold for this machine and these versions."
+        ),
         f"Made by `verify bench {found.scene} --keep docs/bench`.\n",
         "## What it says\n",
-        "".join(f"- {fact}\n" for fact in found.facts()),
+        "".join(_wrapped(f"- {fact}") for fact in found.facts()),
         *(_as_markdown(table) for table in found.tables()),
     ]
     return "\n".join(parts)
+
+
+def _wrapped(text: str) -> str:
+    indent = "  " if text.startswith("- ") else ""
+    return fill(text, 120, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False) + "\n"
 
 
 def _as_markdown(table: Table) -> str:
@@ -32,5 +41,5 @@ def _as_markdown(table: Table) -> str:
         + " |"
         for row in table.rows
     )
-    notes = "".join(f"- {note}\n" for note in table.notes)
+    notes = "".join(_wrapped(f"- {note}") for note in table.notes)
     return f"## {table.title[:1].upper()}{table.title[1:]}\n\n" + "\n".join([heads, rule, *rows]) + f"\n\n{notes}"

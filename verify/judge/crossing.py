@@ -13,6 +13,8 @@ ABOVE_FLOOR = 3.0
 """How many times an error has to exceed what its reference leaves open."""
 ASTRAY = 1.0
 """How far an observed order may lie from the known one for times to be compared."""
+NO_ANSWER = 0.5
+"""An error from which on a figure is none: what falls from there on falls at no order."""
 LEAST = 3
 """Points between which an order is seen twice."""
 
@@ -92,15 +94,18 @@ def observed(a: Point, b: Point, floor: float) -> float | None:
 def converging(points: Sequence[Point], orders: tuple[float, float], floor: float) -> Stretch | Unearned:
     """The stretch, up to the finest error above `floor`, whose observed orders lie within ASTRAY of the known ones.
 
-    `points` from coarse to fine; errors up to `floor` are rounding. What falls at an order for a while and then does
-    not has no order there.
+    `points` from coarse to fine; errors up to `floor` are rounding, those from NO_ANSWER on are none. What falls at an
+    order for a while and then does not has no order there.
     """
     known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:g} to {orders[1]:g}"
-    above = [p for p in points if abs(p.error) > floor]
+    above = [p for p in points if floor < abs(p.error) < NO_ANSWER]
     if len(points) < LEAST:
         return Unearned(f"{len(points)} sizes show no order", "give three or more")
     if len(above) < LEAST:
-        return Unearned(f"errors down to {min(abs(p.error) for p in points):.1e} are rounding", "give coarser sizes")
+        low, high = min(abs(p.error) for p in points), max(abs(p.error) for p in points)
+        if low > floor:
+            return Unearned(f"errors up to {100 * high:.2g} % are no answers", "give finer sizes")
+        return Unearned(f"errors down to {low:.1e} are rounding", "give coarser sizes")
     seen = [observed(a, b, floor) for a, b in pairwise(above)]
     fit = [order is not None and orders[0] - ASTRAY <= order <= orders[1] + ASTRAY for order in seen]
     first = max((i + 1 for i, good in enumerate(fit) if not good), default=0)
