@@ -153,7 +153,7 @@ def test_a_sentence_names_the_crossing_where_both_converge():
 def test_a_sentence_is_withheld_where_errors_do_not_converge_and_says_why():
     told = compared((0.05, 1.0, None), (0.02, 2.0, lambda n: EXACT * (1.0 + 0.03 / n)))
     assert (told.earned, told.crossing, told.ratio) == (False, None, None)
-    assert "b: errors fall not at order 4 but at 1.0, 1.0, 1.0; give finer ones" in told.text
+    assert "b: errors fall not at order 4 but at 1.00, 1.00, 1.00; give finer ones" in told.text
 
 
 def test_errors_that_the_reference_does_not_know_earn_nothing():

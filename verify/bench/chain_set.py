@@ -95,7 +95,7 @@ def chain_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
                 (f"{KICKS}, 2", ADAPTIVE),
                 (f"{KICKS}, 2", f"{KICKS}, 1"),
                 (ADAPTIVE, RK4),
-                *((f"{KICKS}, 2", name) for name in names),
+                *((ours, name) for name in names for ours in (f"{KICKS}, 2", RK4)),
             ),
             judge=_judge(chain),
             estimate_s=2.0 * _adaptive_seconds(chain, CONVERGED),

@@ -24,13 +24,11 @@ if TYPE_CHECKING:
     from verify.slider import Slider
 
 ROOM = "verify.peers"
-FIRST_STEP, RUNGS = 1.0 / 12.0, 8
+FIRST_STEP, RUNGS = 1.0 / 12.0, 7
 """Of the drive's period, the longest step; and how often it is halved."""
 STEP_LINK_S, START_S = 4e-6, 0.1
 """Of a step of one link, and of a model made, from above."""
 LEAST_SAMPLES = 40
-FINER = 16
-"""Of our shortest step, that of our own converged slider."""
 
 
 class PeerRun(Protocol):
@@ -257,30 +255,36 @@ def _own(scene: "Scene", its: Settled, slider: "Slider", period: float, count: i
 
 
 def _converged(entries: tuple[Entry, ...]) -> Callable[[], Callable[[Entry, Any], Judged]]:
-    """Every engine against its own run at a fraction of its shortest step: readings of a surface differ."""
-    known: dict[str, tuple[Array, Array, Array, float]] = {}
+    """Every engine against its own run at its shortest step: readings of a surface differ.
 
-    def reference(entry: Entry) -> tuple[Array, Array, Array, float]:
-        name = entry.line.name
-        if name not in known:
-            finest = min((one for one in entries if one.line.name == name), key=lambda one: one.size)
-            times, way, speed = finest.prepare()().answer
-            known[name] = times, way, speed, finest.size
-        return known[name]
+    How well that is known is what the step twice as long changes, which at order 1 is its own error.
+    """
+    known: dict[str, tuple[tuple[Array, ...], float, Reference]] = {}
+
+    def made(name: str) -> tuple[tuple[Array, ...], float, Reference]:
+        own = sorted((one for one in entries if one.line.name == name), key=lambda one: one.size)
+        finest, next_to = (one.prepare()().answer for one in own[:2])
+        step = own[0].size
+        return finest, step, Reference(f"its own run at a step of {step:.3g} s", _apart(next_to, finest))
 
     def judge() -> Callable[[Entry, Any], Judged]:
-        from scipy.interpolate import CubicSpline
-
         def error(entry: Entry, answer: Any) -> Judged:
-            times, way, speed, finest = reference(entry)
-            if entry.size == finest:
-                raise InputError(f"{entry.line.name}: its shortest step is its own reference")
-            at, *found = answer
-            trues = (CubicSpline(times, true)(at) for true in (way, speed))
-            far = max(relative_rms(one, true) for one, true in zip(found, trues, strict=True))
-            left = far * finest / entry.size
-            return Judged(far, Reference(f"its own run at a step of {finest:.3g} s", left))
+            name = entry.line.name
+            if name not in known:
+                known[name] = made(name)
+            finest, step, reference = known[name]
+            if entry.size == step:
+                raise InputError(f"{name}: its shortest step is its own reference")
+            return Judged(_apart(answer, finest), reference)
 
         return error
 
     return judge
+
+
+def _apart(found: tuple[Array, ...], true: tuple[Array, ...]) -> float:
+    """The larger of the relative rms errors of way and speed, each (times, way, speed)."""
+    from scipy.interpolate import CubicSpline
+
+    pairs = zip(found[1:], true[1:], strict=True)
+    return max(relative_rms(one, CubicSpline(true[0], other)(found[0])) for one, other in pairs)

@@ -110,7 +110,7 @@ def converging(points: Sequence[Point], orders: tuple[float, float], floor: floa
     fit = [order is not None and orders[0] - ASTRAY <= order <= orders[1] + ASTRAY for order in seen]
     first = max((i + 1 for i, good in enumerate(fit) if not good), default=0)
     if len(above) - first < LEAST:
-        words = ", ".join("a change of sign" if order is None else f"{order:.1f}" for order in seen)
+        words = ", ".join("a change of sign" if order is None else f"{order:.2f}" for order in seen)
         grows = abs(above[-1].error) >= abs(above[-2].error)
         remedy = "leave out the finest, at which it grows" if grows else "give finer ones"
         return Unearned(f"errors fall not at order {known} but at {words}", remedy)
