@@ -29,6 +29,8 @@ FIRST_STEP, RUNGS = 1.0 / 12.0, 7
 STEP_LINK_S, START_S = 4e-6, 0.1
 """Of a step of one link, and of a model made, from above."""
 LEAST_SAMPLES = 40
+SAMPLES = 41
+"""Of our own slider, so few that its longest step fits between two of them."""
 
 
 class PeerRun(Protocol):
@@ -233,7 +235,7 @@ def _own(scene: "Scene", its: Settled, slider: "Slider", period: float, count: i
             count=count,
             slider=slider,
             step=step,
-            samples=201,
+            samples=SAMPLES,
             ledger=False,
             patient=False,
         )
