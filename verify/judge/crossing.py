@@ -111,8 +111,8 @@ def converging(points: Sequence[Point], orders: tuple[float, float], floor: floa
     first = max((i + 1 for i, good in enumerate(fit) if not good), default=0)
     if len(above) - first < LEAST:
         words = ", ".join("a change of sign" if order is None else f"{order:.2f}" for order in seen)
-        grows = abs(above[-1].error) >= abs(above[-2].error)
-        remedy = "leave out the finest, at which it grows" if grows else "give finer ones"
+        grows = abs(above[-1].error) >= min(abs(p.error) for p in above[:-1])
+        remedy = "leave out the finest, which are no better" if grows else "give finer ones"
         return Unearned(f"errors fall not at order {known} but at {words}", remedy)
     return Stretch(tuple(above[first:]), tuple(order for order in seen[first:] if order is not None))
 
