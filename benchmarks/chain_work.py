@@ -1,10 +1,8 @@
-"""Run time against error of the nonlinear chain's integrators, and of an implicit one with an O(N) Newton iteration.
+"""An implicit method beside the bench's own on the nonlinear chain: midpoint with an O(N) Newton iteration.
 
-The paper's beam from rest for two milliseconds under 10 N. Every integrator takes a ladder of steps (the adaptive one
-of tolerances); errors are rms at mid-span against the converged chain, times medians of interleaved rounds, models and
-modes made beforehand. The implicit one is midpoint in absolute coordinates: three to a link, joints and roller held by
-multipliers, a banded Newton step with half bandwidth 5, all compiled. It has no step limit, order 2, or order 4 by
-Suzuki's five steps.
+The bench of a chain (`verify bench chain --sets chain`) has exact linear flow with kicks, RK4 and adaptive steps. Here
+midpoint in absolute coordinates joins it: three to a link, joints and roller held by multipliers, a banded Newton step
+with half bandwidth 5, all compiled. It has no step limit, order 2, or order 4 by Suzuki's five steps.
 
 Trap: cos sets in as a step load and rings modes of every frequency. Implicit steps that follow the drive but not those
 turn them by wrong phases, and stall at what these modes hold of the deflection.
@@ -12,22 +10,24 @@ Run: OMP_NUM_THREADS=1 python -m benchmarks.chain_work [links ...]
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from msgspec.structs import replace
 from numba import njit
-from scipy.interpolate import CubicSpline
 
-from benchmarks.chains import END, MODES, SAMPLES, Run, case_of, converged, error, fixed_steps, system_of, timed
-from verify.chain.dynamics import at_rest
-from verify.chain.splitting import ModalBasis, modal_basis, simulate_modal
-from verify.chain.stepping import simulate, step_limit
+from verify.bench.chain_set import SAMPLES, Chain, chain_cases, chain_of
+from verify.bench.kind import Entry, Line, Told
+from verify.bench.measuring import measured
+from verify.bench.sentences import sentences_of
+from verify.bench.study import Bench, settled
+from verify.chain.splitting import ModalBasis, modal_basis
 from verify.models.arrays import Array
-from verify.peers.case import Case
+from verify.scenes.scene import load_scene
 
-FORCE = 10.0
 BAND, WIDTH = 5, 16
 """Half bandwidth, and of a row with what pivoting fills in."""
 SHARE = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
@@ -179,72 +179,36 @@ def march(s: Links, h: float, shares: Array, between: int, kept: Array, at: floa
     return taken
 
 
-def links_of(case: Case) -> Links:
-    """The case for the implicit kernels."""
-    loads = []
-    for force in case.forces:
-        i, at = case.place(force.position)
-        omega = 2 * np.pi * case.frequency
-        loads.append((i, at - 0.5 * case.link, force.amplitude, omega, np.deg2rad(force.phase_deg)))
-    return Links(case.link, case.mass, case.inertia, case.spring, np.array(loads))
+def links_of(chain: Chain) -> Links:
+    """The chain for the implicit kernels."""
+    system = chain.system
+    link = float(system.lengths[0])
+    loads = [
+        (load.link - 1, load.at - 0.5 * link, load.force[1], 2 * np.pi * load.frequency_hz, np.deg2rad(load.phase_deg))
+        for load in system.loads
+    ]
+    return Links(link, float(system.masses[0]), float(system.inertias[0]), float(system.stiffness[1]), np.array(loads))
 
 
-def implicit(case: Case, shares: Array) -> Run:
-    """Midpoint steps, composed by `shares` (1 alone is order 2)."""
-    s, n = links_of(case), case.n
+def implicit(chain: Chain, name: str, shares: Array, halvings: int) -> Iterator[Entry]:
+    """Midpoint steps, composed by `shares` (1 alone is order 2), over halved steps."""
+    s, n = links_of(chain), chain.count
+    order = 2.0 if len(shares) == 1 else 4.0
+    line = Line(name=name, orders=(order, order), refined="step")
 
-    def run(step: float, end: float) -> tuple[Array, Array]:
+    def run(between: int) -> Told:
         q = np.zeros((n, 3))
-        q[:, 0] = (np.arange(n) + 0.5) * case.link
+        q[:, 0] = (np.arange(n) + 0.5) * s.link
         work = (q.copy(), q.copy(), q.copy(), np.zeros((5 * n + 1, WIDTH)), np.zeros(5 * n + 1))
-        between, kept = max(round(end / SAMPLES / step), 1), np.zeros(SAMPLES)
-        at = case.length / 2 - (n // 2 + 0.5) * case.link
-        march(s, end / SAMPLES / between, shares, between, kept, at, q, work)
-        return np.linspace(end / SAMPLES, end, SAMPLES), kept
+        kept = np.zeros(SAMPLES)
+        at = chain.x - (n // 2 + 0.5) * s.link
+        march(s, chain.duration / SAMPLES / between, shares, between, kept, at, q, work)
+        return Told(kept)
 
-    return run
-
-
-def adaptive(case: Case) -> Run:
-    """Dormand and Prince; the "step" is the tolerance."""
-    system = system_of(case)
-    start = at_rest(system)
-
-    def run(tolerance: float, end: float) -> tuple[Array, Array]:
-        times = np.linspace(end / SAMPLES, end, SAMPLES)
-        motion = simulate(system, start, times, tolerance=tolerance, ledger=False)
-        return times, motion.deflection([case.length / 2])[:, 0]
-
-    return run
-
-
-def kicks(case: Case, number: int, most: int) -> Run:
-    """Exact linear flow, so many kicks to a step on the lowest `most` modes."""
-    basis, start = modal_basis(system_of(case)), at_rest(system_of(case))
-
-    def run(step: float, end: float) -> tuple[Array, Array]:
-        times = np.linspace(end / SAMPLES, end, SAMPLES)
-        motion = simulate_modal(basis, start, times, step=step, kicks=number, n_modes=min(most, case.n - 1))
-        return motion.times, motion.deflection([case.length / 2])[:, 0]
-
-    return run
-
-
-def ladders(case: Case) -> dict[str, tuple[Run, list[float]]]:
-    """Integrators with their steps, seconds; tolerances for the adaptive one."""
-    system = system_of(case)
-    limit = 0.97 * step_limit(system, at_rest(system))
-    rounds = [END / SAMPLES / between for between in (1, 2, 4, 8, 16, 32)]
-    strang = [8e-5, 4e-5, 2e-5, 1e-5, 5e-6]
-    part = {f"1 kick, {MODES} modes": (kicks(case, 1, MODES), strang)} if case.n - 1 > MODES else {}
-    return part | {
-        "RK4": (fixed_steps(case), [limit, limit / 2, limit / 4]),
-        "adaptive, tolerance": (adaptive(case), [1e-3, 1e-4, 1e-5, 1e-6]),
-        "1 kick, all modes": (kicks(case, 1, case.n), strang),
-        "2 kicks, all modes": (kicks(case, 2, case.n), strang[:4]),
-        "midpoint": (implicit(case, np.ones(1)), rounds),
-        "midpoint, order 4": (implicit(case, SUZUKI), rounds[:5]),
-    }
+    for between in (2**k for k in range(halvings)):
+        step = chain.duration / SAMPLES / between
+        prepare: Callable[[], Callable[[], Told]] = partial(partial, run, between)
+        yield Entry(line=line, size=step, count=n, estimate_s=0.0, prepare=prepare, settings={"step": step})
 
 
 def ringing(basis: ModalBasis, x: float, above_hz: float) -> float:
@@ -260,39 +224,31 @@ def ringing(basis: ModalBasis, x: float, above_hz: float) -> float:
 
 
 def compare(n: int) -> None:
-    """One table."""
-    case = case_of(n, FORCE)
-    times = np.linspace(END / 4000, END, 4000)
-    dense = converged(case, times)
-    reference: Callable[[Array], Array] = CubicSpline(times, dense)
-    scale = float(np.sqrt(np.mean(dense**2)))
-    print(f"N = {n}, {FORCE:g} N, {1e3 * END:g} ms from rest: mid-span rms {1e6 * scale:.3f} um")
-    entries = {f"{name} {step:.3g}": (run, step) for name, (run, steps) in ladders(case).items() for step in steps}
-    errors = {name: error(run, step, reference) for name, (run, step) in entries.items()}
-    taken = timed(entries)
-    print(f"  {'integrator and step, s':<34}{'rms error':>12}{'ms per simulated ms':>22}")
-    for name, found in errors.items():
-        print(f"  {name:<34}{found:>12.1e}{taken[name] / END:>22.3f}")
-    _fastest(errors, taken)
-    _trap(case, scale, [found for name, found in errors.items() if name.startswith("midpoint, order 4")])
+    """All integrators on one chain: rows, sentences, and what the step load leaves ringing."""
+    scene = load_scene("chain")
+    its = settled(Bench(sets=("chain",), counts=(n,), duration=2e-3, peers=False), scene)
+    chain, (case,) = chain_of(scene, its, n), chain_cases(scene, its)
+    midpoint = [*implicit(chain, "midpoint", np.ones(1), 6), *implicit(chain, "midpoint, order 4", SUZUKI, 5)]
+    pairs = (*case.pairs, *(("kicks, 2", one) for one in ("midpoint", "midpoint, order 4")))
+    found = measured(replace(case, entries=(*case.entries, *midpoint), pairs=pairs), {}, 9, 60.0)
+    for one in found:
+        row = one.row
+        size = "" if not one.entry.size else f"{one.entry.size:.3g}"
+        order = "" if row.order is None else f"{row.order:.2f}"
+        took = f"{1e3 * (row.whole_s or 0.0):.3f} ms" if row.rounds else row.left_out
+        print(f"  {row.method:<20}{size:>10}{row.error or 0.0:>12.1e}{order:>7}{took:>14}")
+    for told in sentences_of(replace(case, pairs=pairs), found, scene.name):
+        print(f"- {told.text}")
+    _trap(chain, [one.row.error or 0.0 for one in found if one.row.method == "midpoint, order 4"])
 
 
-def _fastest(errors: dict[str, float], taken: dict[str, float]) -> None:
-    """The fastest step of every integrator to an accuracy, the fastest integrator first."""
-    for wanted in (1e-2, 1e-3, 1e-4):
-        kinds: dict[str, str] = {}
-        for name in sorted(taken, key=taken.__getitem__):
-            if errors[name] <= wanted:
-                kinds.setdefault(name.rsplit(" ", 1)[0], f"{name} in {taken[name] / END:.3g} ms per ms")
-        print(f"  to {wanted:g}: " + ("; ".join(kinds.values()) or "none of these"))
-
-
-def _trap(case: Case, scale: float, errors: list[float]) -> None:
+def _trap(chain: Chain, errors: list[float]) -> None:
     """What the step load leaves ringing, and what that does to an implicit method of order 4."""
-    basis = modal_basis(system_of(case))
-    held = {khz: ringing(basis, case.length / 2, 1e3 * khz) / scale for khz in (6, 10, 20, 40, 80)}
+    basis = modal_basis(chain.system)
+    all_of_it = ringing(basis, chain.x, 0.0)
+    held = {khz: ringing(basis, chain.x, 1e3 * khz) / all_of_it for khz in (6, 10, 20, 40, 80)}
     print(
-        "  the step load leaves ringing, over the mid-span rms: "
+        "  the step load leaves ringing, over all free motion there: "
         + ", ".join(f"{share:.1e} above {khz} kHz" for khz, share in held.items() if share)
     )
     falls = ", ".join(f"{a / b:.3g}" for a, b in pairwise(errors))

@@ -24,6 +24,7 @@ ROOMS = (
     "quantities",
     "studies",
     "peers",
+    "bench",
     "stress",
     "run",
     "identify",

@@ -22,6 +22,7 @@ class ReaderGoneError(Exception):
 COMMANDS = {
     "run": "run",
     "table": "table",
+    "bench": "bench",
     "measure": "measure",
     "choose": "choose",
     "compare": "compare",

@@ -1002,6 +1002,6 @@ def test_every_entry_of_the_table_speaks_of_some_input_of_some_case():
 
 def test_the_base_has_every_part_that_a_scene_can_have():
     """A new part of scenes is turned as well, or this says so."""
-    assert set(BASE) | {"title", "description", "axial_inertia", "readings"} == {
+    assert set(BASE) | {"title", "description", "axial_inertia", "readings", "bench"} == {
         f.name for f in msgspec.structs.fields(scene_type())
     }

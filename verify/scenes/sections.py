@@ -61,6 +61,7 @@ SECTIONS: Registry[Section] = Registry(
         "readings": "verify.studies.readings:ReadingsStudy",
         "claims": "verify.studies.claims:ClaimsStudy",
         "axial_inertia": "verify.studies.axial_inertia:AxialInertiaStudy",
+        "bench": "verify.bench.study:BenchStudy",
         "stress": "verify.stress.study:StressStudy",
     },
     refuses=_wrong,

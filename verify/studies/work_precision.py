@@ -1,6 +1,6 @@
 """Run time against error of a slider's displacement: segments and elements with the same contact code."""
 
-from math import exp, log
+from math import log
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.compare import check_reference, relative_error
+from verify.judge.crossing import ABOVE_FLOOR, ASTRAY, at_error
 from verify.models.catalogue import bounding, discrete
 from verify.motion.stepping import slider_seconds
 from verify.patience import check_work
@@ -22,10 +23,8 @@ if TYPE_CHECKING:
     from verify.motion.result import Motion
     from verify.scenes.scene import Scene
 
-ORDER, ASTRAY = 4.0, 1.0
-"""Of both models' errors in the size, and how far an observed order may lie from it for times to be compared."""
-ABOVE_FLOOR = 3.0
-"""How many times an error has to exceed what the step leaves."""
+ORDER = 4.0
+"""Of both models' errors in the size."""
 
 
 class WorkRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -125,7 +124,7 @@ class NotCompared(msgspec.Struct, frozen=True, kw_only=True):
 def work_of(scene: "Scene", counts: tuple[int, ...], progress: Progress = lambda step: None) -> Work:
     """Both models at every size; the exact beam is the reference. Raises InputError."""
     _check_rounds(scene, counts)
-    exact, floor = _exact(scene)
+    exact, floor = exact_way(scene)
     check_reference(exact)
     cases = [(model.name, n) for model in discrete("time_basis", scene.beam) for n in sorted(set(counts))]
     runs: dict[tuple[str, int], list[Motion]] = {case: [] for case in cases}
@@ -151,7 +150,7 @@ def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
     check_work("motion.counts", list(counts), 2.0 * seconds, "give fewer or smaller ones, or a shorter duration")
 
 
-def _exact(scene: "Scene") -> tuple[float, float]:
+def exact_way(scene: "Scene") -> tuple[float, float]:
     """The exact beam's displacement, and by what share half the step changes it. Raises InputError where it is none."""
     assert scene.motion is not None
     finer = replace(scene.motion, steps_per_period=2 * scene.motion.steps_per_period)
@@ -247,13 +246,10 @@ def _unfit(name: str, line: list[WorkRow], work: Work) -> NotCompared | None:
 
 def _cost_at(line: list[WorkRow], error: float) -> Cost:
     """Times at an error on the line through the two neighbours, in logarithms; errors fall along it."""
-    fine = next((i for i, row in enumerate(line) if abs(row.error) <= error), len(line) - 1)
-    a, b = line[max(fine - 1, 0)], line[fine]
-    part = 0.0 if a is b else log(error / abs(a.error)) / log(abs(b.error / a.error))
+    errors = [abs(row.error) for row in line]
 
     def between(name: str) -> float:
-        start, end = getattr(a, name), getattr(b, name)
-        return exp(log(start) + part * log(end / start))
+        return at_error(errors, [getattr(row, name) for row in line], error)
 
     return Cost(run_ms_per_ms=between("run_ms_per_ms"), set_up_ms=between("set_up_ms"))
 

@@ -1,0 +1,94 @@
+"""An earlier bench: a faster machine moves nothing, a slower method is named, and so is another answer."""
+
+import json
+
+import pytest
+from msgspec.structs import replace
+
+from verify.bench.against import moved, read_earlier
+from verify.bench.rows import Row
+from verify.errors import InputError
+
+BASE = Row(
+    set="modes",
+    about="mode 5",
+    method="segments",
+    model="segment",
+    settings={},
+    count=49,
+    error=-7.5e-6,
+    reference="exact",
+    reference_uncertainty=9e-16,
+    warm_s=5e-4,
+    spread_s=3e-5,
+    rounds=9,
+)
+ROWS = (
+    BASE,
+    replace(BASE, method="Hermite elements", model="fem", warm_s=2.1e-3, error=7.3e-6),
+    replace(BASE, method="stock scikit-fem", model="", warm_s=5.3e-3, error=7.3e-6, set_up_s=1e-3),
+    replace(BASE, count=98, warm_s=1.7e-3, error=-4.6e-7),
+    replace(BASE, count=98, method="Hermite elements", model="fem", warm_s=7.9e-3, error=4.6e-7),
+    replace(BASE, method="exact", model="analytic", count=None, warm_s=4e-6, spread_s=1e-7, error=0.0),
+)
+
+
+def texts(new, old=ROWS):
+    return [one.text for one in moved(old, new, "2026-01-02")]
+
+
+def doctored(i, **change):
+    return tuple(replace(row, **change) if k == i else row for k, row in enumerate(ROWS))
+
+
+def test_nothing_moves_where_nothing_changed():
+    (text,) = texts(ROWS)
+    assert text == "against 2026-01-02: of 6 rows no ratio between methods moved beyond its spread, and no error"
+
+
+def test_a_machine_three_times_as_fast_moves_nothing():
+    faster = (
+        replace(r, warm_s=r.warm_s / 3, set_up_s=r.set_up_s and r.set_up_s / 3, spread_s=r.spread_s / 3) for r in ROWS
+    )
+    assert "no ratio" in texts(tuple(faster))[0]
+
+
+@pytest.mark.parametrize("i", [0, 1, 2, 5])
+def test_a_method_that_became_slower_is_named_and_nothing_else(i):
+    (text,) = texts(doctored(i, warm_s=1.8 * ROWS[i].warm_s))
+    assert f"{ROWS[i].method} in modes, mode 5" in text
+    size = 1.8 if ROWS[i].set_up_s is None else (1.8 * 5.3 + 1.0) / 6.3
+    assert f"takes {size:.2f} times what it took" in text
+
+
+def test_a_change_within_the_spread_of_both_is_none():
+    assert "no ratio" in texts(doctored(1, warm_s=1.25 * 2.1e-3, spread_s=0.2 * 2.1e-3))[0]
+    assert "takes 1.25 times" in texts(doctored(1, warm_s=1.25 * 2.1e-3))[0]
+
+
+def test_another_answer_is_named():
+    (text,) = texts(doctored(3, error=-4.7e-7))
+    assert text == "against 2026-01-02: the error of segments in modes, mode 5, N = 98 is -4.7e-07 and was -4.6e-07"
+
+
+def test_two_benches_without_a_row_in_common_are_refused():
+    with pytest.raises(InputError, match="no timed row in common"):
+        moved(ROWS, (replace(BASE, about="mode 7"),), "before")
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"rows": 3}', '{"scene": "paper", "rows": [{"set": "none"}]}', "\x00"])
+def test_a_file_that_is_no_bench_is_refused_by_name(tmp_path, text):
+    path = tmp_path / "old.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match=r"old\.json' is no output of `verify bench --json`"):
+        read_earlier(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_earlier(tmp_path / "none.json")
+
+
+def test_what_json_wrote_is_read_again(tmp_path):
+    import msgspec
+
+    path = tmp_path / "old.json"
+    path.write_text(json.dumps({"scene": "s", "date": "d", "rows": msgspec.to_builtins(ROWS), "more": 1}))
+    assert read_earlier(path).rows == ROWS

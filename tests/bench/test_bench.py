@@ -1,0 +1,461 @@
+"""The bench of real scenes: known errors and orders, references that name themselves, inputs that all move something."""
+
+import json
+from functools import cache
+from types import SimpleNamespace
+
+import msgspec
+import numpy as np
+import pytest
+
+from verify.bench import measuring, peer_set, running
+from verify.bench.against import moved
+from verify.bench.keeping import page
+from verify.bench.running import all_cases, benched
+from verify.bench.study import Bench, BenchStudy, settled
+from verify.cli import status_of
+from verify.errors import InputError
+from verify.judge.workbench import Workbench
+from verify.models.catalogue import MODELS
+from verify.report.html import page as report
+from verify.report.plain import finite, run_as_plain
+from verify.run.plan import plan_scene
+from verify.run.runner import n_steps, run_scene
+from verify.scenes.checked import checked
+from verify.scenes.scene import load_scene, scene_type
+
+QUICK = {"imports": False, "rounds": 3, "peers": False}
+STRIP = {
+    "name": "strip",
+    "beam": {"length": 0.41, "width": 0.013, "thickness": 0.0011, "youngs_modulus": 113e9, "density": 4470.0},
+    "drive": {"frequency_hz": 1730.0, "force": [{"position": 0.011}, {"position": 0.4, "phase_deg": 90.0}]},
+    "slider": {"mass": 2e-4, "mu": 0.2, "slope": 100.0},
+    "motion": {"duration": 1.5e-3, "counts": [40, 80, 160]},
+}
+
+
+def found_of(scene, **asked):
+    return benched(Bench(**{**QUICK, **asked}), scene, Workbench(scene.beam))
+
+
+def strip(**more):
+    return checked(STRIP | more, scene_type())
+
+
+@pytest.fixture(autouse=True, scope="module")
+def one_run_to_a_turn():
+    """What is tested here are no times."""
+    before, measuring.TURN_S = measuring.TURN_S, 0.0
+    yield
+    measuring.TURN_S = before
+
+
+@pytest.fixture(scope="module")
+def paper():
+    """Modes, fields and motions of the paper's beam."""
+    return found_of(load_scene("paper"), counts=(24, 49, 98, 196), modes=(5, 22))
+
+
+@pytest.fixture(scope="module")
+def moving():
+    """A slider and a nonlinear chain."""
+    return found_of(strip(), sets=("slider", "chain"), counts=(30, 60), duration=6e-4)
+
+
+def rows(found, **its):
+    return [row for row in found.rows if all(getattr(row, name) == value for name, value in its.items())]
+
+
+def row(found, **its):
+    (one,) = rows(found, **its)
+    return one
+
+
+# --- What is found -------------------------------------------------------------------------------------------------
+
+
+def test_the_papers_mode_has_the_errors_that_are_known(paper):
+    at = {"set": "modes", "about": "mode 22", "count": 49}
+    assert row(paper, method="segments", **at).error == pytest.approx(-0.00428024133, rel=1e-8)
+    assert row(paper, method="Hermite elements", **at).error == pytest.approx(0.00260015828, rel=1e-8)
+    assert row(paper, method="stock scikit-fem", **at).error == pytest.approx(0.00260015828, rel=1e-6)
+    mean = (row(paper, method=name, **at).error for name in ("segments", "Hermite elements"))
+    assert row(paper, method="mean of both", **at).error == pytest.approx(sum(mean) / 2, rel=1e-9)
+    assert row(paper, method="exact", set="modes", about="mode 22").error == 0.0
+
+
+@pytest.mark.parametrize(
+    ("which", "method", "order", "off"),
+    [
+        ("modes", "segments", 4.0, 0.15),
+        ("modes", "Hermite elements", 4.0, 0.05),
+        ("modes", "mean of both", 6.0, 0.1),
+        ("harmonic", "segments", 4.0, 0.2),
+        ("harmonic", "Hermite elements", 4.0, 0.1),
+        ("transient", "segments", 4.0, 0.2),
+        ("transient", "Hermite elements", 4.0, 0.1),
+    ],
+)
+def test_errors_fall_at_their_order(paper, which, method, order, off):
+    finest = [one for one in rows(paper, set=which, method=method) if one.count == 196]
+    assert finest
+    for one in finest:
+        assert abs(one.order - order) < off
+
+
+def test_integrators_of_the_chain_have_their_orders(moving):
+    at = {"set": "chain", "about": "N = 30"}
+    for method, order, off in (("RK4", 4.0, 0.3), ("kicks, 1", 2.0, 0.3), ("adaptive", 1.0, 0.15)):
+        assert abs(rows(moving, method=method, **at)[-1].order - order) < off
+    kicks = [one.error for one in rows(moving, method="kicks, 2", **at)]
+    assert kicks[0] / kicks[-1] > 16.0**2  # order 2 at the least, over steps that are halved four times
+    departure = row(moving, method="linear flow", **at).error
+    assert kicks[-1] < 1e-2 * departure < 1e-4
+
+
+def test_the_slider_is_that_of_the_work_against_error(moving):
+    """The same runs as `verify table --slider`, and the same reference."""
+    from verify.studies.work_precision import work_of
+
+    work = work_of(strip(), (30, 60))
+    for one in work.rows:
+        method = MODELS[one.model].title
+        ours = row(moving, set="slider", method=method, count=one.count)
+        assert ours.error == pytest.approx(one.error, rel=1e-9)
+        assert ours.reference_uncertainty == pytest.approx(work.step_floor, rel=1e-9)
+
+
+def test_every_row_is_finite_and_names_its_reference(paper, moving):
+    for one in (*paper.rows, *moving.rows):
+        assert not one.left_out
+        assert one.warm_s > 0.0
+        assert one.spread_s >= 0.0
+        assert one.first_s > 0.0
+        assert one.rounds == 3
+        assert one.reference
+        assert 0.0 < one.reference_uncertainty < 0.05
+        assert np.isfinite(one.error)
+    json.dumps(paper.plain(), allow_nan=False)
+
+
+def test_references_are_as_well_known_as_they_say(paper):
+    """Closed forms against 40 digits of mpmath: the uncertainty is a bound, and no idle one."""
+    mpmath = pytest.importorskip("mpmath")
+    beam = load_scene("paper").beam
+    with mpmath.workdps(40):
+        b = {name: mpmath.mpf(getattr(beam, name)) for name in ("youngs_modulus", "density", "thickness", "length")}
+        omega = (
+            (22 * mpmath.pi / b["length"]) ** 2 * b["thickness"] * mpmath.sqrt(b["youngs_modulus"] / b["density"] / 12)
+        )
+        off = abs(float(Workbench(beam).exact_hz(22) / (omega / (2 * mpmath.pi)) - 1))
+    assert off <= rows(paper, set="modes")[0].reference_uncertainty < 1e-14
+
+
+# --- Sentences -----------------------------------------------------------------------------------------------------
+
+
+def test_each_comparison_has_a_sentence_with_its_condition(paper):
+    told = [one for one in paper.sentences if one.methods == ("segments", "Hermite elements")]
+    assert [(one.set, one.about) for one in told] == [
+        ("modes", "mode 5"),
+        ("modes", "mode 22"),
+        ("harmonic", ""),
+        ("transient", ""),
+    ]
+    for one in told:
+        assert one.earned
+        assert "paper, " in one.text
+        assert "medians of 3 rounds of this run on this machine" in one.text
+        assert one.ratio > 0.0
+        assert 0.0 < one.at_error < 0.01
+
+
+def test_a_chain_whose_error_changes_its_sign_earns_nothing():
+    """Gregory's wall: the error of the cantilever's first mode passes zero on the way to its order."""
+    found = found_of(load_scene("steel-cantilever"), modes=(1,), counts=(10, 20, 40, 80))
+    told = next(one for one in found.sentences if one.methods == ("segments", "Hermite elements"))
+    assert not told.earned
+    assert "segments: errors fall not at order 4" in told.text
+    assert {"segments, wall half", "segments, wall welded"} <= {one.method for one in found.rows}
+
+
+def test_a_method_that_answers_wrongly_is_seen(monkeypatch, paper):
+    """One part in ten thousand on the elements' eigenvalues: their rows move, their order is gone, nothing is earned."""
+    model = type(MODELS["fem"])
+    right = model.solve_modes
+
+    def wrong(self, beam, n_modes, count, **settings):
+        modes = right(self, beam, n_modes, count, **settings)
+        return msgspec.structs.replace(modes, frequencies_hz=modes.frequencies_hz * 1.0001)
+
+    monkeypatch.setattr(model, "solve_modes", wrong)
+    found = found_of(load_scene("paper"), sets=("modes",), counts=(24, 49, 98, 196), modes=(5,))
+    told = next(one for one in found.sentences if one.methods == ("segments", "Hermite elements"))
+    assert not told.earned
+    assert "Hermite elements: errors fall not at order 4" in told.text
+    seen = [one.text for one in moved(paper.rows, found.rows, "before") if "the error of" in one.text]
+    assert len(seen) == 8  # four sizes of the elements, and of the mean that they are half of
+    assert all("Hermite elements" in text or "mean of both" in text for text in seen)
+
+
+# --- What is asked -------------------------------------------------------------------------------------------------
+
+
+def test_defaults_are_the_scenes_own():
+    asked = settled(Bench(), load_scene("paper-slider"))
+    assert asked.sets == ("modes", "harmonic", "transient", "slider", "chain")  # its gates ask for chains
+    assert (asked.counts, asked.chains, asked.duration) == ((49, 98, 196, 392), (49,), 1e-3)
+    assert settled(Bench(), load_scene("chain")).sets == ("modes", "harmonic", "transient", "chain")
+    asked = settled(Bench(), load_scene("paper"))
+    assert (asked.modes, asked.counts) == ((1, 5, 22), (10, 20, 49, 98, 196))
+    assert asked.duration == pytest.approx(4.0 / 4276.0)
+    assert settled(Bench(), load_scene("free-free-bar")).sets == ("modes",)
+
+
+def test_sets_that_a_scene_has_not_are_named_with_the_reason():
+    found = found_of(load_scene("steel-cantilever"), sets=("modes", "slider", "harmonic"), counts=(8,), modes=(1,))
+    assert {one.set for one in found.rows} == {"modes"}
+    notes = " / ".join(found.notes)
+    assert "slider is left out: slider: the scene has no [slider], add it" in notes
+    assert "harmonic is left out: harmonic: nothing drives the beam" in notes
+    assert "chain is left out: nothing in the scene asks for the nonlinear chain" in notes
+    assert "the mean of both takes no part: mode.bracket: with wall = 'gregory'" in notes
+
+
+TURNS = {
+    "sets": ("modes",),
+    "counts": (10, 30),
+    "modes": (2,),
+    "duration": 1.4e-3,
+    "x": 0.17,
+    "seconds": 0.2,
+    "rounds": 4,
+    "peers": True,
+    "imports": True,
+    "cold": True,
+}
+
+
+@pytest.mark.parametrize("name", [one.name for one in msgspec.structs.fields(Bench)])
+def test_every_input_moves_something(name, monkeypatch):
+    """What is run or what is found: nothing is dropped in silence."""
+    monkeypatch.setattr(running, "import_costs", lambda sets: [running.ChildCost("import", 0.1)])
+    monkeypatch.setattr(running, "compile_costs", lambda scene, sets: {("harmonic", "segments"): 0.2})
+    plant(monkeypatch)
+    own = {"modes": "modes", "peers": "modes", "duration": "transient", "x": "transient"}
+    base = {"sets": (own.get(name, "harmonic"),), "counts": (10, 20), "modes": (1,), **QUICK}
+    assert told(tuple(base.items())) != told(tuple((base | {name: TURNS[name]}).items()))
+
+
+@cache
+def told(asked):
+    """What a bench of the strip tells, times aside; `asked` are pairs."""
+    found = found_of(strip(), **dict(asked))
+    times = {"warm_s", "spread_s", "set_up_s", "first_s"}
+    plain = [{k: v for k, v in msgspec.to_builtins(one).items() if k not in times} for one in found.rows]
+    return json.dumps([plain, found.notes, found.estimate_s, msgspec.to_builtins(found.costs)])
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"sets": ["mode"]}, "sets"),
+        ({"counts": [20, 20]}, "names one twice"),
+        ({"counts": [1]}, "counts"),
+        ({"modes": []}, "modes"),
+        ({"seconds": 0.0}, "seconds"),
+        ({"duration": -1.0}, "duration"),
+        ({"rounds": 2}, "rounds"),
+        ({"x": 0.41}, "lies off the beam"),
+        ({"speed": 1}, "speed"),
+    ],
+)
+def test_what_is_wrong_is_refused_in_one_sentence(given, why):
+    with pytest.raises(InputError, match=why) as refused:
+        strip(bench=given)
+    assert len(refused.value.sentences) == 1
+
+
+def test_nothing_left_to_measure_is_refused():
+    with pytest.raises(InputError, match=r"nothing is left to measure.*has no \[slider\]"):
+        found_of(load_scene("paper"), sets=("slider",))
+
+
+def test_what_does_not_fit_into_the_time_is_named():
+    found = found_of(load_scene("paper"), sets=("modes",), counts=(20, 400, 3000), modes=(1,), seconds=1.0)
+    left = {one.count for one in found.rows if one.left_out}
+    assert left == {3000}
+    assert found.estimate_s <= 1.0
+    assert all("give more seconds" in one.left_out for one in found.rows if one.left_out)
+
+
+# --- Other engines -------------------------------------------------------------------------------------------------
+
+
+class Ghost:
+    """An engine that moves the chain by our own adaptive steps, made wrong by its step; frequencies of a string."""
+
+    def frequencies(self, case):
+        return np.arange(1.0, case.n) * 100.0
+
+    def prepare(self, case, sled):
+        def run(step, end):
+            if step > 9e-5:
+                return SimpleNamespace(broke="stalled Newton at t = 2 us", times=[])
+            times = np.linspace(end / 50, end, 50)
+            true = np.sin(4e3 * times)
+            wrong = true * (1.0 + (step / 1e-3) ** 2)
+            return SimpleNamespace(
+                times=times, deflection=wrong, distance=wrong, speed=wrong, seconds=1e-3, set_up_s=1e-3, broke=""
+            )
+
+        return run
+
+
+def plant(monkeypatch):
+    """A room of engines with one that is there and one that is not."""
+    room = SimpleNamespace(
+        PEERS={"Ghost": "ghost", "Absent": "absent"},
+        installed=lambda peer: "1.2" if peer == "ghost" else None,
+        adapter=lambda peer: Ghost(),
+    )
+    cases = SimpleNamespace(
+        case_of=lambda beam, n, forces, frequency_hz: SimpleNamespace(n=n), sled_of=lambda beam, slider: slider
+    )
+    monkeypatch.setattr(peer_set, "catalogue", lambda: room)
+    monkeypatch.setattr(peer_set, "given", lambda: cases)
+
+
+def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_is_not_is_named(monkeypatch):
+    plant(monkeypatch)
+    found = found_of(
+        strip(), sets=("modes", "chain", "slider"), counts=(30,), modes=(2,), duration=6e-4, seconds=60.0, peers=True
+    )
+    assert row(found, set="modes", method="Ghost").error == pytest.approx(
+        200.0 / Workbench(strip().beam).exact_hz(2) - 1
+    )
+    chain = rows(found, set="chain", method="Ghost")
+    assert len(chain) == peer_set.RUNGS
+    assert all(one.error > 1.0 for one in chain if not one.left_out)  # it moves something else
+    slider = rows(found, set="slider", method="Ghost")
+    errors = [one.error for one in slider if one.error]
+    assert errors == sorted(errors, reverse=True)
+    assert slider[-1].left_out == "Ghost: its shortest step is its own reference"
+    assert abs(slider[3].order - 2.0) < 0.3
+    ours = rows(found, set="slider", method=peer_set.OURS)
+    assert len(ours) == peer_set.RUNGS
+    assert "Absent is skipped: it is not installed, pip install 'fem-segment-verify[peers]'" in found.notes
+    assert found.versions["Ghost"] == "1.2"
+    assert ("kicks, 2", "Ghost") in {one.methods for one in found.sentences}
+
+
+def test_an_engine_that_breaks_is_said_in_its_row(monkeypatch):
+    plant(monkeypatch)
+    slow = strip(drive=STRIP["drive"] | {"frequency_hz": 640.0})
+    found = found_of(slow, sets=("chain",), counts=(12,), duration=6e-4, seconds=60.0, peers=True)
+    first = rows(found, method="Ghost")[0]
+    assert first.left_out == "Ghost broke: stalled Newton at t = 2 us"
+
+
+def test_without_a_room_of_engines_nothing_is_missed(monkeypatch):
+    monkeypatch.setattr(peer_set, "catalogue", lambda: None)
+    cases, notes = all_cases(
+        Bench(sets=("modes", "slider"), counts=(20,), modes=(1,)), strip(), Workbench(strip().beam)
+    )
+    assert [case.name for case in cases] == ["modes, mode 1", "slider"]
+    assert not any("skipped" in note for note in notes)
+
+
+# --- Where it is told ----------------------------------------------------------------------------------------------
+
+
+def test_a_scene_with_a_bench_has_it_in_its_plan_its_run_and_its_report():
+    scene = strip(bench={"sets": ["modes"], "counts": [10, 20, 40], "modes": [1], **QUICK})
+    (asked,) = [one for one in plan_scene(scene).solves if one.model == "fem" and one.count == 40]
+    assert asked.asked_by[0].startswith("bench (modes at N = 10, 20, 40, about 20 s of work at most)")
+    steps = []
+    result = run_scene(scene, steps.append)
+    assert len([one for one in steps if one.startswith("bench")]) == BenchStudy().n_steps(scene.bench, scene)
+    assert n_steps(scene) >= len(steps) > 0
+    html = report(result, "verify run strip")
+    assert "chart-bench-modes" in html
+    assert "Run time against error" in html
+    assert "segments against Hermite elements" in html
+    plain = finite(run_as_plain(result, None))
+    assert set(plain["bench"]) >= {"scene", "date", "machine", "versions", "costs", "rows", "sentences"}
+
+
+def test_a_page_that_is_kept_names_machine_and_versions_and_no_path(paper, tmp_path):
+    text = page(paper)
+    assert text.startswith("# Run time against error: paper\n")
+    assert paper.date in text
+    assert f"numpy {np.__version__}" in text
+    assert "/tmp" not in text
+    assert "/home" not in text
+    assert text.count("| segments | N = 49 |") == 4
+    flat = " ".join(text.split())
+    assert all(" ".join(fact.split()) in flat for fact in paper.facts())
+    assert all(len(line) <= 120 for line in text.splitlines())
+
+
+def test_charts_have_a_line_for_every_method_and_stand_on_logarithms(paper):
+    (modes, harmonic, transient) = paper.charts()
+    assert [one.id for one in paper.charts()] == ["bench-modes", "bench-harmonic", "bench-transient"]
+    names = {trace["name"] for trace in modes.data if trace.get("showlegend")}
+    assert {"segments", "Hermite elements", "stock scikit-fem", "mean of both"} <= names
+    for chart in (modes, harmonic, transient):
+        assert chart.layout["xaxis"]["type"] == chart.layout["yaxis"]["type"] == "log"
+        for trace in chart.data:
+            assert all(value is None or value > 0.0 for value in (*trace["x"], *trace["y"]))
+
+
+def test_the_command_prints_json_that_it_reads_again(tmp_path, capsys):
+    line = ["bench", "paper", "--sets", "modes", "--counts", "20,30", "--modes", "1", "--set", "bench.imports=false"]
+    line += ["--set", "bench.rounds=3"]
+    assert status_of([*line, "--json"]) == 0
+    old = json.loads(capsys.readouterr().out)
+    assert old["scene"] == "paper"
+    assert {"processor", "cores", "system"} == set(old["machine"])
+    kept = {"set", "method", "model", "settings", "count", "error", "reference", "reference_uncertainty", "order"}
+    kept |= {"warm_s", "spread_s", "set_up_s", "first_s", "compile_s", "rounds", "left_out"}
+    assert all(kept <= set(one) for one in old["rows"])
+    assert all({"set", "text", "earned", "ratio"} <= set(one) for one in old["sentences"])
+    path = tmp_path / "old.json"
+    for one in old["rows"]:
+        if one["method"] == "stock scikit-fem":
+            one["warm_s"] = 40.0 * one["warm_s"]
+    path.write_text(json.dumps(old))
+    assert status_of([*line, "--against", str(path), "--keep", str(tmp_path / "kept")]) == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert f"against {old['date']}: stock scikit-fem in modes, mode 1, N = 20 takes 0.0" in out
+    assert (tmp_path / "kept" / "paper.md").read_text().startswith("# Run time against error: paper")
+    for layout in ("--csv", "--markdown"):
+        assert status_of([*line, layout]) == 0
+        assert "stock scikit-fem" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (["--sets", "mode"], "sets"),
+        (["--counts", "a"], "counts"),
+        (["--seconds", "many"], "seconds"),
+        (["--seconds", "1e-9"], "nothing is left to measure"),
+        (["--against", "none.json"], "cannot be read"),
+        (["--modes", "0"], "modes"),
+    ],
+)
+def test_the_command_refuses_in_one_sentence(words, why, capsys):
+    assert status_of(["bench", "paper", *words]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("verify: ")
+    assert why in said
+    assert said.count("\n") == 1
+
+
+def test_an_earlier_bench_of_another_scene_is_refused(tmp_path, capsys):
+    path = tmp_path / "old.json"
+    path.write_text('{"scene": "chain", "rows": []}')
+    words = ["bench", "paper", "--sets", "modes", "--counts", "8", "--modes", "1", "--set", "bench.imports=false"]
+    assert status_of([*words, "--against", str(path)]) == 2
+    assert "about the scene 'chain', not 'paper'" in capsys.readouterr().err

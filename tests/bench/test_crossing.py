@@ -1,0 +1,77 @@
+"""Run time over error, on lines whose crossing is known beforehand."""
+
+import pytest
+
+from verify.judge.crossing import Point, Stretch, Unearned, at_error, converging, crossing
+
+
+def line(constant, order, seconds, growth, sizes=(1 / 24, 1 / 49, 1 / 98), spread=0.0):
+    """Errors constant * size^order, seconds that grow with 1 / size."""
+    return [Point(h, constant * h**order, seconds * (h * 24) ** -growth, spread) for h in sizes]
+
+
+def stretch(*given, order=4.0, **more):
+    found = converging(line(*given, **more), (order, order), 0.0)
+    assert isinstance(found, Stretch)
+    return found
+
+
+def test_a_cost_between_two_sizes_lies_on_a_straight_line_in_logarithms():
+    assert at_error([1e-2, 1e-4, 1e-5], [2.0, 8.0, 9.0], 1e-3) == pytest.approx(4.0, rel=1e-12)
+    assert at_error([1e-2, 1e-4, 1e-5], [2.0, 8.0, 9.0], 1e-5) == pytest.approx(9.0, rel=1e-12)
+
+
+def test_the_cheaper_one_changes_where_two_power_laws_meet():
+    """Costs a e^(-p/4): 1 e^-0.25 of one, 0.2 e^-0.5 of the other meet at e = 0.2^4."""
+    errors = (1e-1, 1e-2, 1e-3, 1e-4)
+    one, other = (
+        Stretch(tuple(Point(e**0.25, e, a * e**-p) for e in errors), (4.0,) * 3) for a, p in ((1.0, 0.25), (0.2, 0.5))
+    )
+    found = crossing(one, other)
+    assert found.crossings == (pytest.approx(0.2**4, rel=1e-9),)
+    assert found.ratios[0][1] == pytest.approx(0.2 * 1e-4**-0.25, rel=1e-9)
+    assert (found.low, found.high) == (1e-4, 1e-1)
+
+
+def test_nothing_changes_where_the_difference_lies_within_the_spread():
+    one = stretch(1.0, 4.0, 1.0, 1.0, spread=0.6)
+    other = stretch(1.3, 4.0, 0.8, 1.3, spread=0.6)
+    assert crossing(one, other).crossings == ()
+
+
+def test_a_line_that_is_exactly_as_dear_stands_at_one():
+    one = stretch(1.0, 4.0, 1.0, 1.5)
+    assert [ratio for _, ratio in crossing(one, one).ratios] == pytest.approx([1.0] * 3)
+
+
+@pytest.mark.parametrize(
+    ("errors", "why"),
+    [
+        ((1e-2, 1e-3), "2 sizes"),
+        ((1e-2, 3e-3, 2.9e-3), "not at order 4"),
+        ((1e-2, -1e-3, 1e-4), "a change of sign"),
+        ((1e-2, 6e-4, 3e-5, 3e-5), "not at order 4"),
+        ((1e-13, 2e-13, 1e-14), "rounding"),
+        ((0.96, 0.06, 0.0038), "errors up to 96 % are no answers"),
+    ],
+)
+def test_times_stand_for_nothing_where_errors_do_not_fall_at_their_order(errors, why):
+    points = [Point(0.1 / 2**i, error, 1.0) for i, error in enumerate(errors)]
+    found = converging(points, (4.0, 4.0), 1e-12)
+    assert isinstance(found, Unearned)
+    assert why in found.why
+    assert found.remedy
+
+
+def test_coarse_sizes_before_the_order_and_fine_ones_that_are_rounding_are_left_out():
+    errors = (0.9, 1.6e-2, 1e-3, 6.25e-5, 1e-13)
+    points = [Point(0.1 / 2**i, error, 1.0) for i, error in enumerate(errors)]
+    found = converging(points, (4.0, 4.0), 1e-12)
+    assert found.span == (6.25e-5, 1.6e-2)
+    assert found.orders == pytest.approx((4.0, 4.0))
+
+
+def test_methods_that_share_no_error_are_not_compared():
+    found = crossing(stretch(1e-3, 4.0, 1.0, 1.0), stretch(1e3, 4.0, 1.0, 1.0))
+    assert isinstance(found, Unearned)
+    assert "no error in common" in found.why

@@ -1,0 +1,163 @@
+"""Rows from runs whose clock is known: medians, spreads, set-ups, what does not fit, who breaks."""
+
+from dataclasses import dataclass, field
+
+import pytest
+
+from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
+from verify.bench.measuring import fitting, measured
+from verify.bench.sentences import sentences_of
+from verify.errors import InputError
+
+
+@dataclass
+class Clock:
+    """Seconds that runs say they took."""
+
+    now: float = 0.0
+    turns: dict = field(default_factory=dict)
+
+    def __call__(self):
+        return self.now
+
+    def run(self, name, seconds):
+        """The seconds of the next turn; given as a list they go round."""
+        i = self.turns[name] = self.turns.get(name, -1) + 1
+        self.now += seconds[i % len(seconds)]
+
+
+EXACT = 2.5
+
+
+def entry(clock, name, count, *, seconds=(1.0,), answer=None, set_up=0.0, estimate=0.1, orders=(4.0, 4.0), refuses=""):
+    def run():
+        if refuses:
+            raise InputError(refuses)
+        clock.run((name, count), seconds)
+        return Told(EXACT * (1.0 + 7.0 * count**-4.0) if answer is None else answer)
+
+    def prepare():
+        clock.now += set_up
+        return run
+
+    line = Line(name=name, orders=orders)
+    return Entry(line=line, size=1 / count, count=count, estimate_s=estimate, prepare=prepare, sets_up=bool(set_up))
+
+
+def case(*entries, uncertainty=1e-15, **more):
+    def judge():
+        return lambda entry, answer: Judged(answer / EXACT - 1.0, Reference("two and a half", uncertainty))
+
+    given = {"set": "modes", "about": "mode 3", "question": "frequency", "condition": "at once", "pairs": ()}
+    return Case(**given | {"entries": entries, "judge": judge} | more)
+
+
+def test_a_row_holds_the_median_of_its_rounds_and_what_lies_between_their_quartiles():
+    clock = Clock()
+    rounds = [9.0, 9.0, 1.0, 2.0, 3.0, 4.0, 50.0]  # the first two calls are no rounds
+    one = case(entry(clock, "a", 20, seconds=rounds, set_up=0.25), entry(clock, "b", 20, seconds=(0.5,)))
+    (a, b) = (found.row for found in measured(one, {}, 5, 1e9, clock))
+    assert (a.warm_s, a.spread_s, a.set_up_s, a.first_s, a.rounds) == (3.0, 2.0, 0.25, 9.25, 5)
+    assert (b.warm_s, b.spread_s, b.set_up_s) == (0.5, 0.0, None)
+
+
+def test_rounds_end_where_the_time_is_spent_but_not_before_three():
+    clock = Clock()
+    (found,) = measured(case(entry(clock, "a", 20, seconds=(10.0,))), {}, 9, 25.0, clock)
+    assert found.row.rounds == 3
+    (found,) = measured(case(entry(clock, "a", 20, seconds=(10.0,))), {}, 9, 55.0, clock)
+    assert found.row.rounds == 6
+
+
+def test_methods_take_turns():
+    clock, told = Clock(), []
+    original = clock.run
+    clock.run = lambda name, seconds: (told.append(name[0]), original(name, seconds))
+    measured(case(entry(clock, "a", 20), entry(clock, "b", 20)), {}, 3, 1e9, clock)
+    assert told == ["a", "a", "b", "b", "a", "b", "a", "b", "a", "b"]
+
+
+def test_orders_are_observed_from_the_coarser_row():
+    clock = Clock()
+    rows = [f.row for f in measured(case(*(entry(clock, "a", n) for n in (10, 20, 50))), {}, 3, 1e9, clock)]
+    assert [row.order for row in rows] == [None, pytest.approx(4.0, abs=1e-6), pytest.approx(4.0, abs=1e-6)]
+
+
+def test_a_method_whose_result_is_wrong_is_seen():
+    clock = Clock()
+    good, bad = case(entry(clock, "a", 20)), case(entry(clock, "a", 20, answer=EXACT * 1.01))
+    right, wrong = (measured(one, {}, 3, 1e9, clock)[0].row.error for one in (good, bad))
+    assert right == pytest.approx(7.0 / 20**4, rel=1e-9)
+    assert wrong == pytest.approx(0.01, rel=1e-9)
+
+
+def test_a_method_that_refuses_or_breaks_is_named_and_the_others_go_on():
+    clock = Clock()
+    one = case(
+        entry(clock, "a", 20),
+        entry(clock, "b", 20, refuses="b broke: silent reset at t = 1.3 ms"),
+        entry(clock, "c", 20, answer=float("nan")),
+    )
+    a, b, c = (found.row for found in measured(one, {}, 3, 1e9, clock))
+    assert a.rounds == 3
+    assert (b.left_out, b.error, b.warm_s) == ("b broke: silent reset at t = 1.3 ms", None, None)
+    assert "no finite figure" in c.left_out
+
+
+def test_what_does_not_fit_is_left_out_the_largest_first_and_named():
+    clock = Clock()
+    sizes = (20, 40, 80, 160)
+    one = case(*(entry(clock, "a", n, estimate=n / 100) for n in sizes))
+    why, left = fitting([one], 9.0)
+    assert left == pytest.approx(6 * (0.2 + 0.4 + 0.8))
+    rows = [found.row for found in measured(one, why, 3, 1e9, clock)]
+    assert [row.count for row in rows if row.left_out] == [160]
+    assert "about 9.6 s of work" in rows[-1].left_out
+    assert "a, N = 160" in rows[-1].left_out
+    why, left = fitting([one], 1.0)
+    assert (len(why), left) == (4, pytest.approx(0.0, abs=1e-12))
+
+
+def test_a_reference_is_not_solved_where_nothing_is_left_of_its_case():
+    def judge():
+        raise AssertionError
+
+    one = case(entry(Clock(), "a", 20, estimate=1.0), judge=judge, estimate_s=3.0)
+    why, left = fitting([one], 5.0)
+    assert left == 0.0
+    assert measured(one, why, 3, 1e9)[0].row.left_out
+
+
+def compared(a, b, **more):
+    """The sentence of two methods over four sizes, each (seconds at N = 10, growth with N, answers)."""
+    clock = Clock()
+    entries = [
+        entry(clock, name, n, seconds=(seconds * (n / 10) ** growth,), answer=answers and answers(n))
+        for name, (seconds, growth, answers) in (("a", a), ("b", b))
+        for n in (10, 20, 40, 80)
+    ]
+    one = case(*entries, pairs=(("a", "b"),), **more)
+    return sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")[0]
+
+
+def test_a_sentence_names_the_crossing_where_both_converge():
+    """One costs 0.05 s and N, b 0.02 s and N^2 at the same error: b is cheaper up to N = 25, an error of 7 / 25^4."""
+    told = compared((0.05, 1.0, None), (0.02, 2.0, None))
+    assert told.earned
+    assert told.crossing == pytest.approx(7.0 / 25**4, rel=1e-3)
+    assert told.ratio == pytest.approx(0.4 * 8, rel=1e-9)
+    assert "b above, a below" in told.text
+    assert "own-scene, frequency; at once" in told.text
+
+
+def test_a_sentence_is_withheld_where_errors_do_not_converge_and_says_why():
+    told = compared((0.05, 1.0, None), (0.02, 2.0, lambda n: EXACT * (1.0 + 0.03 / n)))
+    assert (told.earned, told.crossing, told.ratio) == (False, None, None)
+    assert "b: errors fall not at order 4 but at 1.00, 1.00, 1.00; give finer ones" in told.text
+
+
+def test_errors_that_the_reference_does_not_know_earn_nothing():
+    assert compared((0.05, 1.0, None), (0.02, 2.0, None), uncertainty=1e-9).earned
+    told = compared((0.05, 1.0, None), (0.02, 2.0, None), uncertainty=2e-5)
+    assert not told.earned
+    assert "rounding" in told.text

@@ -1,0 +1,115 @@
+"""A bench run: cases of every set, what fits into the time, rows, sentences, what processes of their own paid."""
+
+from collections.abc import Callable, Iterator
+from time import process_time
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from verify.bench.costs import compile_costs, import_costs
+from verify.bench.found import BenchFound
+from verify.bench.kind import Case
+from verify.bench.machine import machine, today, versions
+from verify.bench.measuring import Clock, Outcome, fitting, measured
+from verify.bench.peer_set import versions as engine_versions
+from verify.bench.rows import ChildCost, Row
+from verify.bench.sentences import sentences_of
+from verify.bench.study import Bench, Settled, settled, unasked
+from verify.errors import InputError
+from verify.options import BENCH_SETS
+from verify.studies.kind import Progress
+
+if TYPE_CHECKING:
+    from verify.judge.workbench import Workbench
+    from verify.scenes.scene import Scene
+
+
+def cases_of(name: str, scene: "Scene", its: Settled, bench: "Workbench") -> Iterator[Case]:
+    """Of one set. Raises InputError where the scene has not what it takes."""
+    if name == "modes":
+        from verify.bench.mode_set import mode_cases
+
+        return mode_cases(scene, its, bench)
+    if name == "harmonic":
+        from verify.bench.field_set import field_cases
+
+        return field_cases(scene, its)
+    if name == "transient":
+        from verify.bench.transient_set import transient_cases
+
+        return transient_cases(scene, its)
+    if name == "slider":
+        from verify.bench.slider_set import slider_cases
+
+        return slider_cases(scene, its)
+    from verify.bench.chain_set import chain_cases
+
+    return chain_cases(scene, its)
+
+
+def all_cases(
+    asked: Bench, scene: "Scene", bench: "Workbench", said: Callable[[str], None] = lambda step: None
+) -> tuple[list[Case], list[str]]:
+    """(every case, why sets and methods are left out)."""
+    its = settled(asked, scene)
+    notes = [
+        f"{name} is left out: {unasked(name, scene) or 'it is not among sets'}"
+        for name in BENCH_SETS
+        if name not in its.sets
+    ]
+    cases: list[Case] = []
+    for name in its.sets:
+        try:
+            cases += cases_of(name, scene, its, bench)
+        except InputError as error:
+            notes.append(f"{name} is left out: {error}")
+    notes += dict.fromkeys(note for case in cases for note in case.notes)
+    return cases, notes
+
+
+def benched(
+    asked: Bench,
+    scene: "Scene",
+    bench: "Workbench",
+    step: Progress = lambda step: None,
+    clock: Clock = process_time,
+) -> BenchFound:
+    """Everything a [bench] asks for. `step` is told the set about to be run. Raises InputError."""
+    cases, notes = all_cases(asked, scene, bench)
+    left_out, estimate = fitting(cases, asked.seconds)
+    outcomes: list[tuple[Case, list[Outcome]]] = []
+    shown = ""
+    for case in cases:
+        if case.set != shown:
+            step(f"bench, {case.name}")
+            shown = case.set
+        try:
+            outcomes.append((case, measured(case, left_out, asked.rounds, asked.seconds / len(cases), clock)))
+        except InputError as error:
+            notes.append(f"{case.name} is left out: {error}")
+    if not any(one.row.rounds for _, found in outcomes for one in found):
+        raise InputError(f"bench: nothing is left to measure: {'; '.join(notes) or 'give more seconds'}")
+    sets = tuple(dict.fromkeys(case.set for case in cases))
+    if asked.imports:
+        step("bench, imports")
+    imports = import_costs(sets) if asked.imports else []
+    if asked.cold:
+        step("bench, compiling")
+    compiling = compile_costs(scene, sets) if asked.cold else {}
+    return BenchFound(
+        scene=scene.name,
+        date=today(),
+        machine=machine(),
+        versions=versions() | engine_versions(),
+        costs=(*imports, *(ChildCost(f"compile {name}, {one}", s) for (name, one), s in compiling.items())),
+        rows=tuple(_compiled(one.row, compiling) for _, found in outcomes for one in found),
+        sentences=tuple(told for case, found in outcomes for told in sentences_of(case, found, scene.name)),
+        notes=tuple(notes),
+        estimate_s=estimate,
+    )
+
+
+def _compiled(row: Row, compiling: dict[tuple[str, str], float]) -> Row:
+    """The row with what its method's compiling took, where that was timed."""
+    seconds = compiling.get((row.set, row.method))
+    return row if seconds is None or row.left_out else replace(row, compile_s=seconds)

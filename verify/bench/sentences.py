@@ -1,0 +1,141 @@
+"""One sentence for each comparison: where the cheaper method changes, or why nobody can say."""
+
+from collections.abc import Sequence
+from math import log
+
+from verify.bench.kind import Case
+from verify.bench.measuring import Outcome, floors
+from verify.bench.rows import Sentence
+from verify.judge.crossing import ABOVE_FLOOR, Crossing, Point, Stretch, Unearned, at_error, converging, crossing
+
+NEAR = 0.01
+"""Within which a method of parts is set beside the exact solution."""
+
+
+def sentences_of(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
+    """One for each pair of a case's lines, then what is exact beside the rest."""
+    told = [_compared(case, found, scene, *pair) for pair in case.pairs]
+    return told + _exact(case, found, scene)
+
+
+def _compared(case: Case, found: Sequence[Outcome], scene: str, first: str, second: str) -> Sentence:
+    stretches = [_stretch(case, found, name) for name in (first, second)]
+    about = f"{case.name}: {first} against {second}"
+    for name, one in zip((first, second), stretches, strict=True):
+        if isinstance(one, Unearned):
+            text = f"{about}: no time is set against another, {name}: {one.why}; {one.remedy}"
+            return _sentence(case, (first, second), text)
+    a, b = (one for one in stretches if isinstance(one, Stretch))
+    answer = crossing(a, b)
+    if isinstance(answer, Unearned):
+        text = f"{about}: no time is set against another, {answer.why}; {answer.remedy}"
+        return _sentence(case, (first, second), text)
+    parts = (_verdict(first, second, answer), *_wanted(case, answer, a, b), *_alone(found, (first, second), answer))
+    orders = f"observed orders {_span(a.orders)} and {_span(b.orders)}"
+    text = f"{about}: {'; '.join(parts)} ({orders}; {_condition(case, found, scene)})"
+    return _sentence(case, (first, second), text, answer)
+
+
+def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unearned:
+    own = [one for one in found if one.entry.line.name == name]
+    orders = own[0].entry.line.orders
+    if orders is None:
+        return Unearned("nobody knows the order of its errors", "compare its rows")
+    pairs = [(one, one.point) for one in sorted(own, key=lambda o: -o.entry.size)]
+    points: list[Point] = [point for _, point in pairs if point is not None]
+    floor = ABOVE_FLOOR * floors(case, (one.row for one, point in pairs if point is not None))
+    if not points:
+        return Unearned(own[-1].row.left_out or "it has no figure", "see its rows")
+    return converging(points, orders, floor)
+
+
+def _verdict(first: str, second: str, answer: Crossing) -> str:
+    """Which is cheaper, over which errors, by how much."""
+    span = f"at errors from {percent(answer.high)} down to {percent(answer.low)}"
+    (_, fine), (_, coarse) = answer.ratios[0], answer.ratios[-1]
+    if answer.crossings:
+        changes = ", ".join(percent(error) for error in reversed(answer.crossings))
+        above, below = (first if ratio > 1.0 else second for ratio in (coarse, fine))
+        ends = (
+            f"{_slower(first, second, ratio)} at {percent(e)}" for e, ratio in (answer.ratios[0], answer.ratios[-1])
+        )
+        return f"the cheaper one changes at an error of {changes}: {above} above, {below} below; {', '.join(ends)}"
+    sizes = [ratio for _, ratio in answer.ratios]
+    low, high = min(sizes), max(sizes)
+    if max(abs(log(low)), abs(log(high))) <= answer.spread:
+        return f"{span} neither is cheaper beyond the spread of {100 * answer.spread:.0f} %, ratios {_span(sizes)}"
+    if log(low) + log(high) < 0.0:
+        first, second, low, high = second, first, 1.0 / high, 1.0 / low
+    if low < 1.0:
+        most = _slower(first, second, high)
+        return f"{span} the cheaper one, where they differ beyond the spread, is {first}: up to {most}"
+    return f"{span} it takes {_span((low, high))} times as long by {second} as by {first}"
+
+
+def _slower(first: str, second: str, ratio: float) -> str:
+    """'1.62 times as long by elements'."""
+    return f"{max(ratio, 1.0 / ratio):.2f} times as long by {second if ratio > 1.0 else first}"
+
+
+def _span(values: Sequence[float]) -> str:
+    low, high = min(values), max(values)
+    return f"{high:.2f}" if high - low < 0.02 * abs(high) else f"{low:.2f} to {high:.2f}"
+
+
+def _wanted(case: Case, answer: Crossing, a: Stretch, b: Stretch) -> list[str]:
+    """The ratio at errors that somebody asks for, where both reach them."""
+    inside = [error for error in case.wanted if answer.low <= error <= answer.high]
+    return [f"{b.seconds(error) / a.seconds(error):.2f} at {percent(error)}" for error in inside]
+
+
+def _alone(found: Sequence[Outcome], methods: tuple[str, str], answer: Crossing) -> list[str]:
+    """The ratio of the runs without their set-up, at the smallest error that both reach; nothing without a set-up."""
+    seconds = []
+    for name in methods:
+        own = sorted(
+            (o for o in found if o.entry.line.name == name and o.point), key=lambda o: -abs(o.row.error or 0.0)
+        )
+        seconds.append(at_error([abs(o.row.error or 0.0) for o in own], [o.row.warm_s or 0.0 for o in own], answer.low))
+    if not any(o.row.set_up_s for o in found if o.entry.line.name in methods):
+        return []
+    return [f"runs without their set-up {seconds[1] / seconds[0]:.2f} at {percent(answer.low)}"]
+
+
+def _condition(case: Case, found: Sequence[Outcome], scene: str) -> str:
+    rounds = min(one.row.rounds for one in found if one.row.rounds)
+    return f"{scene}, {case.question}; {case.condition}; medians of {rounds} rounds of this run on this machine"
+
+
+def _exact(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
+    """What the exact solution costs beside the cheapest of parts that is within what is asked of it at least."""
+    exact = next((one for one in found if one.entry.line.orders is None and one.row.model == "analytic"), None)
+    near = [one for one in found if one.entry.line.orders and one.row.whole_s and abs(one.row.error or 0.0) <= NEAR]
+    if exact is None or exact.row.whole_s is None or not near:
+        return []
+    least = min(near, key=lambda one: one.row.whole_s or 0.0)
+    own, other, name = exact.row.whole_s, least.row.whole_s or 0.0, exact.entry.line.name
+    text = (
+        f"{case.name}: the exact solution takes {1e3 * own:.3g} ms, the cheapest of parts within {percent(NEAR)}, "
+        f"{least.entry.told}, {1e3 * other:.3g} ms: {_slower(name, least.entry.line.name, other / own)} "
+        f"({_condition(case, found, scene)})"
+    )
+    methods = (name, least.entry.line.name)
+    return [Sentence(set=case.set, about=case.about, methods=methods, text=text, earned=True, ratio=other / own)]
+
+
+def _sentence(case: Case, methods: tuple[str, str], text: str, answer: Crossing | None = None) -> Sentence:
+    return Sentence(
+        set=case.set,
+        about=case.about,
+        methods=methods,
+        text=text,
+        earned=answer is not None,
+        ratio=answer.ratios[0][1] if answer else None,
+        at_error=answer.low if answer else None,
+        crossing=answer.crossings[0] if answer and answer.crossings else None,
+    )
+
+
+def percent(error: float) -> str:
+    """An error in per cent, short."""
+    return f"{100 * error:.2g} %"

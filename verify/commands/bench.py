@@ -1,0 +1,86 @@
+"""Run time against error of every method that a scene gives something to do."""
+
+from pathlib import Path
+
+import click
+
+from verify.commands.shared import json_alone, load, overridden, progress, scene_name
+
+
+@click.command()
+@scene_name
+@overridden
+@click.option("--sets", metavar="LIST", help="Of modes, harmonic, transient, slider, chain. Default: what SCENE asks.")
+@click.option("--counts", metavar="LIST", help="Segments and elements, for instance 24,49,98. Default: the scene's.")
+@click.option("--modes", metavar="LIST", help="Which modes, for instance 1,5,22. Default: the scene's.")
+@click.option("--seconds", metavar="CAP", help="Of work by its estimate: what does not fit is left out. Default: 20.")
+@click.option("--cold", is_flag=True, help="Time compiling too, with nothing kept on disk.")
+@json_alone
+@click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
+@click.option("--markdown", "layout", flag_value="markdown", help="Print a Markdown table.")
+@click.option(
+    "--against",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="An earlier --json: ratios between methods are compared, and what moved is said.",
+)
+@click.option(
+    "--keep",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="FOLDER",
+    help="Write a dated Markdown page of this scene there.",
+)
+def bench(
+    scene: str,
+    overrides: tuple[str, ...],
+    sets: str | None,
+    counts: str | None,
+    modes: str | None,
+    seconds: str | None,
+    cold: bool,
+    as_json: bool,
+    layout: str | None,
+    against: Path | None,
+    keep: Path | None,
+) -> None:
+    """Run time against error: every method, its reference, and one sentence for each comparison.
+
+    Modes by every rule of segments, elements, stock scikit-fem; harmonic fields; motions in time; the slider; the
+    nonlinear chain; other engines where they are installed.
+
+    Example: `verify bench paper --sets modes --counts 25-100:25`
+    """
+    from verify.bench.asking import asked_of, job_of
+
+    asked = load(scene, overrides)
+    given = {"sets": sets, "counts": counts, "modes": modes, "seconds": seconds}
+    request = asked_of(asked, {name: text for name, text in given.items() if text is not None}, cold=cold)
+    earlier = None
+    if against is not None:
+        from verify.bench.against import read_earlier
+
+        earlier = read_earlier(against)
+    if keep is not None:
+        from verify.files import writable_folder
+
+        writable_folder(keep, "--keep")
+    n_steps, run = job_of(asked, request)
+    with progress(n_steps, quiet=as_json or bool(layout)) as step:
+        found = run(step)
+    if earlier is not None:
+        from verify.bench.against import beside
+
+        found = beside(found, earlier)
+    if keep is not None:
+        from verify.bench.keeping import page
+        from verify.files import write_whole
+
+        write_whole(keep / f"{asked.name}.md", page(found), "--keep")
+    if as_json or layout:
+        from verify.report.plain import text_of
+
+        click.echo(text_of(found, layout or "json"), nl=False)
+    else:
+        from verify.report.terminal import print_found
+
+        print_found(found)

@@ -1,0 +1,138 @@
+"""Run time over error: where errors fall at their order, what a method costs at an error, where the cheaper changes.
+
+Sees numbers alone. Between two points of a line a cost is a straight line in logarithms.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import exp, log
+
+import msgspec
+
+ABOVE_FLOOR = 3.0
+"""How many times an error has to exceed what its reference leaves open."""
+ASTRAY = 1.0
+"""How far an observed order may lie from the known one for times to be compared."""
+NO_ANSWER = 0.5
+"""An error from which on a figure is none: what falls from there on falls at no order."""
+LEAST = 3
+"""Points between which an order is seen twice."""
+
+
+class Point(msgspec.Struct, frozen=True):
+    """One method at one size."""
+
+    size: float
+    """A power of which the error is."""
+    error: float
+    """Signed or not."""
+    seconds: float
+    spread: float = 0.0
+    """Of the seconds, relative."""
+
+
+class Stretch(msgspec.Struct, frozen=True):
+    """Points between which errors fall at their order, coarse to fine."""
+
+    points: tuple[Point, ...]
+    orders: tuple[float, ...]
+    """Observed between them."""
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Smallest and largest error."""
+        errors = [abs(p.error) for p in self.points]
+        return min(errors), max(errors)
+
+    @property
+    def spread(self) -> float:
+        """The largest of its points' times, relative."""
+        return max(p.spread for p in self.points)
+
+    def seconds(self, error: float) -> float:
+        """What the method costs at an error within its span."""
+        return at_error([abs(p.error) for p in self.points], [p.seconds for p in self.points], error)
+
+
+class Unearned(msgspec.Struct, frozen=True):
+    """Why times stand for nothing, and what to change."""
+
+    why: str
+    remedy: str
+
+
+class Crossing(msgspec.Struct, frozen=True):
+    """Two methods over the errors that both reach."""
+
+    low: float
+    high: float
+    ratios: tuple[tuple[float, float], ...]
+    """(error, seconds of the second over those of the first), errors ascending."""
+    spread: float
+    """Of the ratios, relative."""
+    crossings: tuple[float, ...]
+    """Errors at which the cheaper one changes, ascending."""
+
+
+def at_error(errors: Sequence[float], values: Sequence[float], error: float) -> float:
+    """A value at an error on the line through its two neighbours, in logarithms; errors fall along it, above 0."""
+    fine = next((i for i, own in enumerate(errors) if own <= error), len(errors) - 1)
+    coarse = max(fine - 1, 0)
+    if coarse == fine:
+        return values[fine]
+    part = log(error / errors[coarse]) / log(errors[fine] / errors[coarse])
+    return exp(log(values[coarse]) + part * log(values[fine] / values[coarse]))
+
+
+def observed(a: Point, b: Point, floor: float) -> float | None:
+    """The order between two points; None where an error is rounding, changes its sign or the sizes are equal."""
+    if a.size == b.size or a.error * b.error <= 0.0 or min(abs(a.error), abs(b.error)) <= floor:
+        return None
+    return log(a.error / b.error) / log(a.size / b.size)
+
+
+def converging(points: Sequence[Point], orders: tuple[float, float], floor: float) -> Stretch | Unearned:
+    """The stretch, up to the finest error above `floor`, whose observed orders lie within ASTRAY of the known ones.
+
+    `points` from coarse to fine; errors up to `floor` are rounding, those from NO_ANSWER on are none. What falls at an
+    order for a while and then does not has no order there.
+    """
+    known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:g} to {orders[1]:g}"
+    above = [p for p in points if floor < abs(p.error) < NO_ANSWER]
+    if len(points) < LEAST:
+        return Unearned(f"{len(points)} sizes show no order", "give three or more")
+    if len(above) < LEAST:
+        low, high = min(abs(p.error) for p in points), max(abs(p.error) for p in points)
+        if low > floor:
+            return Unearned(f"errors up to {100 * high:.2g} % are no answers", "give finer sizes")
+        return Unearned(f"errors down to {low:.1e} are rounding", "give coarser sizes")
+    seen = [observed(a, b, floor) for a, b in pairwise(above)]
+    fit = [order is not None and orders[0] - ASTRAY <= order <= orders[1] + ASTRAY for order in seen]
+    first = max((i + 1 for i, good in enumerate(fit) if not good), default=0)
+    if len(above) - first < LEAST:
+        words = ", ".join("a change of sign" if order is None else f"{order:.2f}" for order in seen)
+        grows = abs(above[-1].error) >= min(abs(p.error) for p in above[:-1])
+        remedy = "leave out the finest, which are no better" if grows else "give finer ones"
+        return Unearned(f"errors fall not at order {known} but at {words}", remedy)
+    return Stretch(tuple(above[first:]), tuple(order for order in seen[first:] if order is not None))
+
+
+def crossing(a: Stretch, b: Stretch) -> Crossing | Unearned:
+    """Which of two is cheaper, over the errors that both reach."""
+    low, high = max(a.span[0], b.span[0]), min(a.span[1], b.span[1])
+    if low >= high:
+        spans = " and ".join(f"{s.span[0]:.1e} to {s.span[1]:.1e}" for s in (a, b))
+        return Unearned(f"both reach no error in common ({spans})", "give sizes that overlap in error")
+    inner = {abs(p.error) for s in (a, b) for p in s.points if low < abs(p.error) < high}
+    ratios = tuple((error, b.seconds(error) / a.seconds(error)) for error in sorted({low, high} | inner))
+    spread = a.spread + b.spread
+    return Crossing(low=low, high=high, ratios=ratios, spread=spread, crossings=_changes(ratios, spread))
+
+
+def _changes(ratios: Sequence[tuple[float, float]], spread: float) -> tuple[float, ...]:
+    """Where ratios pass 1 from beyond the spread on one side to beyond it on the other."""
+    found, sure = [], [(e, log(r)) for e, r in ratios if abs(log(r)) > spread]
+    for (e1, r1), (e2, r2) in pairwise(sure):
+        if r1 * r2 < 0.0:
+            found.append(exp(log(e1) + r1 / (r1 - r2) * log(e2 / e1)))
+    return tuple(found)
