@@ -116,6 +116,8 @@ def _tell_of_unusable() -> None:
 def _cores() -> str:
     """How many processes share independent work (`cores`), unless the environment says."""
     return str(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+
+
 def _tell_of_compiling() -> None:
     """A sentence where kernels had to be compiled and no folder keeps them."""
     if "verify.models.compiling" in sys.modules:
