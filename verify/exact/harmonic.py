@@ -69,10 +69,11 @@ def pinned_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[
     wavenumbers in a column, (n, 1): (x, derivative) -> (n, len(x)).
     """
     scale = 1.0 / (4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3)
-    near = k if np.any(np.imag(k)) else np.real(k)  # real powers take a fifth of complex ones' time
+    damped = k.imag.any() if isinstance(k, np.ndarray) else k.imag != 0.0
+    near = k if damped else k.real  # real powers take a fifth of complex ones' time
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
-        field = np.zeros(np.broadcast_shapes(np.shape(k), np.shape(x)), dtype=complex)
+        field = np.zeros((*np.shape(k)[:-1], len(x)), dtype=complex)
         for force in forces:
             for q, factor in ((1j * k, -1j), (near, -1.0)):
                 field += phasor(force) * scale * factor * _green(q, force.position, beam.length, x, derivative)
