@@ -185,7 +185,7 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
     return best
 
 
-@part()
+@part(forceinline=True)
 def friction(r: float, static: float | None, law: Law) -> float:
     """Friction per mass at relative speed r where it does not depend on sticking; `static` is the law's."""
     if static is None:
@@ -193,7 +193,7 @@ def friction(r: float, static: float | None, law: Law) -> float:
     return float(-law.kinetic * np.sign(r))
 
 
-@part()
+@part(forceinline=True)
 def slip(
     v: float,
     stuck: bool,

@@ -54,7 +54,7 @@ from verify.motion.records import (
 from verify.motion.surface_kernels import climb, find_piece, rotate_half, set_factors, set_local, touch
 
 
-@part()
+@part(forceinline=True)
 def _see(
     row: int,
     time: float,
@@ -119,7 +119,7 @@ def _answer(
     return works
 
 
-@part()
+@part(forceinline=True)
 def _step(
     number: int,
     dt: float,

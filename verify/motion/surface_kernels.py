@@ -76,7 +76,7 @@ def find_piece(edges: Array, x: float, piece: int) -> int:
     return piece if piece < len(edges) - 1 else -1
 
 
-@part()
+@part(forceinline=True)
 def material(local: Array, edges: Array, piece: int, x: float, half: float) -> float:
     """The local coordinate of the material point under x: X = x + (h/2) w'."""
     length = edges[piece + 1] - edges[piece]
@@ -88,7 +88,7 @@ def material(local: Array, edges: Array, piece: int, x: float, half: float) -> f
     return float(xi + half * first / (length * length))
 
 
-@part()
+@part(forceinline=True)
 def touch(local: Array, edges: Array, piece: int, x: float, speed: float, law: Law, seen: Array, row: int) -> None:
     """The surface under x: tangential velocity of its material, and what a slider that follows it feels.
 
