@@ -11,6 +11,7 @@ import traceback
 import warnings
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import process_time
 
 from msgspec import Struct
 from verify.cli import status_of
@@ -20,7 +21,9 @@ LIMIT_S = 40
 LONGEST = 4000
 """Characters of an error stream with one sentence; each further one has 300 more."""
 TIMES = re.compile(r"[-+]?\d[\d.e+-]*\s*(?:ns|µs|us|ms|s|minutes|min)\b")
-TIMED = re.compile(r"(?:seconds|_s$|time|date)")
+TIMED = re.compile(r"(?:seconds|_s$|_ms(?:_|$)|time|date)")
+TELLS_TIMES = ("run", "table", "choose")
+"""Commands whose tables have times below a head alone: of their words for a person no digits are compared."""
 
 
 class TooLongError(BaseException):
@@ -113,8 +116,9 @@ def _streams(line, said):
         if raw := [c for c in text if not c.isprintable() and c not in "\n\t" and not _of_the_file(line, c)]:
             yield f"the terminal is sent {raw[0]!r}"
     if line.words[0] not in ("quantities", "show", "compare") and said.status in (0, 1) and "--json" not in line.words:
-        if told := re.search(r"[^\n]*(?<![\w.])(?:nan|inf)(?!\w)[^\n]*", said.out):
-            yield f"a figure is no number: {told[0][:150]!r}"
+        for told in re.findall(r"[^\n]*(?<![\w.])(?:nan|inf)(?!\w)[^\n]*", said.out):
+            if not told.startswith(("report: ", "gate ", "cannot run: ")):  # which show what was given
+                yield f"a figure is no number: {told[:150]!r}"
 
 
 def _of_the_file(line, character):
@@ -123,12 +127,18 @@ def _of_the_file(line, character):
 
 
 def _data(line, said):
-    if "--json" not in line.words or said.status not in (0, 1) or {"--help", "-h", "--version", "--csv", "--markdown"} & {*line.words}:
+    if said.status not in (0, 1) or not _asks_for_json(line.words):
         return
     try:
         json.loads(said.out, parse_constant=_no_number)
     except ValueError as error:
         yield f"no strict JSON: {error}: {said.out[:80]!r}"
+
+
+def _asks_for_json(words):
+    """Whether --json stands where it is an option, and nothing else is asked for."""
+    values = {words[i + 1] for i, word in enumerate(words[:-1]) if word in ("--reports", "--set", "--from", "--modes", "--to")}
+    return "--json" in {*words} - values and not {"--help", "-h", "--version", "--csv", "--markdown"} & {*words}
 
 
 def _no_number(word):
@@ -150,19 +160,17 @@ def differences(line, first, second):
     """What a second run of the same line says otherwise, but for times."""
     if first.status != second.status:
         yield f"status {first.status}, then {second.status}: {second.err[:200]!r}"
-    elif timeless(first.out) != timeless(second.out):
-        yield f"it says otherwise the second time: {_first_apart(timeless(first.out), timeless(second.out))}"
-    elif timeless(first.err) != timeless(second.err):
-        yield f"it complains otherwise the second time: {_first_apart(timeless(first.err), timeless(second.err))}"
-    elif sorted(first.files) != sorted(second.files):
+        return
+    told = line.words[0] in TELLS_TIMES
+    for one, other in ((first.out, second.out), (first.err, second.err)):
+        if (one := timeless(one, told)) != (other := timeless(other, told)):
+            yield f"it says otherwise the second time: {_first_apart(one, other)}"
+    if sorted(first.files) != sorted(second.files):
         yield f"files {sorted(first.files)}, then {sorted(second.files)}"
 
 
-def timeless(text):
-    """A text without the times in it: of data and columns by their names, of words by their units.
-
-    In a table of models the times stand below a head alone; only its words are compared.
-    """
+def timeless(text, told=False):
+    """A text without the times in it: of data and columns by their names, of words by their units or all digits."""
     try:
         return json.dumps(_without_times(json.loads(text)))
     except ValueError:
@@ -171,12 +179,11 @@ def timeless(text):
     for mark in ("|", ","):
         if TIMED.search(first) and mark in first:
             timed = {i for i, head in enumerate(first.split(mark)) if TIMED.search(head.strip())}
-            return "\n".join(
-                mark.join(cell for i, cell in enumerate(row.split(mark)) if i not in timed) for row in text.splitlines()
-            )
-    if re.search(r"\bms\b", text) and "segments" in text:
-        return " ".join(re.sub(r"[-+\d.e]+", "#", text).replace("─", "").split())
-    return " ".join(TIMES.sub("TIME", text).replace("─", "").split())
+            rows = (row.split(mark) for row in text.splitlines())
+            return "\n".join(mark.join(cell for i, cell in enumerate(row) if i not in timed) for row in rows)
+    plain = TIMES.sub("TIME", text)
+    plain = re.sub(r"[-+]?\d[-+\d.e]*|–", "#", plain) if told else plain
+    return " ".join(plain.replace("─", "").split())
 
 
 def _without_times(data):
@@ -205,7 +212,8 @@ if __name__ == "__main__":
 
     first, last = int(sys.argv[1]), int(sys.argv[2])
     for seed in range(first, last):
-        line = drawn_line(seed)
+        line, begun = drawn_line(seed), process_time()
         said, found = wrong_with(line)
-        record = {"seed": seed, "status": said.status, "command": line.words[0], "err": said.err[:150], "faults": found}
+        took = round(process_time() - begun, 3)
+        record = {"seed": seed, "status": said.status, "command": line.words[0], "took": took, "err": said.err[:150], "faults": found}
         print(json.dumps(record), flush=True)
