@@ -5,7 +5,7 @@ import sys
 from contextlib import suppress
 from errno import EBADF, EDQUOT, EFBIG, EIO, ENOSPC
 from importlib import import_module
-from io import TextIOWrapper
+from io import StringIO, TextIOWrapper
 from typing import Any, NoReturn, TextIO
 
 import click
@@ -71,9 +71,9 @@ def cli() -> None:
     """Say how far a finite-segment model of a vibrating beam can be trusted, and what that costs in run time.
 
     SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
-    Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on,
-    143 terminated. What would take more than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment gives
-    more seconds.
+    Exit status: 0 all well, 1 a gate failed or a plan cannot run, 2 bad input, 130 interrupted, 141 nobody reads on,
+    143 terminated. What would take more than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment
+    gives more seconds.
     """
 
 
@@ -119,9 +119,10 @@ def _complain(*sentences: str) -> None:
 
 def _shown(error: click.ClickException) -> int:
     """What click says of a command line, with nothing in it that a terminal would obey."""
-    error.message = one_line(error.message)
+    said = StringIO()
+    error.show(said)
     try:
-        error.show()
+        click.echo("\n".join(map(one_line, said.getvalue().splitlines())), err=True)
     except OSError:
         _hush(sys.stderr)
     return error.exit_code

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from verify.errors import InputError, shown
 
-
 STALE_S = 600.0
 """Seconds after which a part that nobody went on with is one that a killed run left."""
 

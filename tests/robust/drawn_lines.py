@@ -3,6 +3,7 @@
 from drawn import STRANGE_WORDS, Draw, toml, word
 from drawn_scenes import Drawn
 from msgspec import Struct
+
 from verify.cli import COMMANDS
 from verify.scenes.scene import load_scene, packaged_scenes
 
@@ -30,7 +31,7 @@ def drawn_line(seed):
     draw = Draw(seed)
     line = Line(seed, [], {})
     known = [name for name in COMMANDS if name in DRAWERS]
-    command = draw.choice((*COMMANDS, *("run", "measure", "plan", "table", "compare") * 4))
+    command = draw.choice((*COMMANDS, *("run", "measure", "plan", "table") * 4))
     drawer = DRAWERS[command] if command in known else _refused
     line.words = [command, *map(word, drawer(draw, line))]
     if draw.often(4):
@@ -114,7 +115,16 @@ def _table(draw, line):
 
 def _choose(draw, line):
     error = draw.value(draw.one("1%", "0.1%", "0.01", "50%", "150%"))
-    return ["--mode", draw.value(draw.randint(1, 9)), "--error", error, "--scene", _scene(draw, line), *_rules(draw), *_json(draw)]
+    return [
+        "--mode",
+        draw.value(draw.randint(1, 9)),
+        "--error",
+        error,
+        "--scene",
+        _scene(draw, line),
+        *_rules(draw),
+        *_json(draw),
+    ]
 
 
 def _compare(draw, line):
@@ -122,7 +132,7 @@ def _compare(draw, line):
     line.files["list.csv"] = _frequencies(draw, drawn.hertz)
     words = [draw.value("list.csv"), "--scene", scene, *_json(draw)]
     for name, values in COMPARED.items():
-        if draw.often(25):
+        if draw.often(60 if name == "count" else 25):
             words += [f"--{name}", draw.value(draw.choice(values))]
     if draw.often(20):
         line.files["shapes.csv"] = b"x,1\n0,0\n0.1,0.7\n0.2,1\n" if draw.often(70) else draw.randbytes(30)
@@ -144,9 +154,15 @@ def _frequencies(draw, first):
     mark = draw.one(",", ";", "\t", " ")
     cells = [word(draw.value(float(f"{value:.{draw.one(4, 9)}g}"))) for value in rows]
     lines = [f"{n}{mark}{cell}" for n, cell in enumerate(cells, 1)] if draw.often(50) else cells
-    text = "\n".join([*draw.one([], ["frequency"], [f"mode{mark}f (Hz)"], ["# by hand"]), *lines, *[""] * draw.often(80)])
+    text = "\n".join(
+        [*draw.one([], ["frequency"], [f"mode{mark}f (Hz)"], ["# by hand"]), *lines, *[""] * draw.often(80)]
+    )
     data = text.replace("\n", draw.one("\n", "\r\n")).encode("utf-8", "surrogateescape")
-    return draw.one(data, data, data, data, draw.randbytes(40), text.encode("utf-16", "surrogatepass")) if draw.often(20) else data
+    return (
+        draw.one(data, data, data, data, draw.randbytes(40), text.encode("utf-16", "surrogatepass"))
+        if draw.often(20)
+        else data
+    )
 
 
 def _init(draw, line):
@@ -161,7 +177,9 @@ def _show(draw, line):
 
 
 def _keys(draw, line):
-    return [draw.value(draw.one("beam", "beam.mass", "gate", "gate.expect", "wave", "BEAM", "nothing"))] * draw.often(80) + _json(draw)
+    return [draw.value(draw.one("beam", "beam.mass", "gate", "gate.expect", "wave", "BEAM", "nothing"))] * draw.often(
+        80
+    ) + _json(draw)
 
 
 def _schema(draw, line):

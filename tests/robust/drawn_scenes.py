@@ -3,6 +3,7 @@
 from math import isfinite, pi, sqrt
 
 from drawn import STRANGE_WORDS, toml
+
 from verify.options import (
     ATTACHMENTS,
     JOINTS,
@@ -195,7 +196,9 @@ class Drawn:
             count=(100, draw.randint(2, 25)),
             counts=(80, lambda: sorted(draw.several(lambda: draw.randint(3, 25), 3))),
             samples=(70, lambda: draw.one(2, 11, 60)),
-            **draw.one({"soft_start_periods": (50, draw.one(0.0, 1.0, 30.0))}, {"start": (90, draw.one("rest", "steady"))}),
+            **draw.one(
+                {"soft_start_periods": (50, draw.one(0.0, 1.0, 30.0))}, {"start": (90, draw.one("rest", "steady"))}
+            ),
             modal_damping=(30, lambda: draw.one(0.0, 0.01, 0.7)),
             steps_per_period=(20, lambda: draw.one(2, 16, 64)),
         )
@@ -219,8 +222,14 @@ class Drawn:
             "convergence": (15, lambda: {"modes": draw.several(mode, 3), "counts": sizes(30)} | self.rules()),
             "sensitivity": (10, lambda: draw.table(mode=(100, mode), published_hz=(40, self.hertz * 4.1))),
             "wave": (25 if len(self._forces()) == 2 else 2, self._wave),
-            "readings": (15 if self._forces() and "slider" in self.tables else 1, lambda: self._readings(draw.randint(3, 12))),
-            "axial_inertia": (8 if self._forces() else 1, lambda: {"forces": [0.2], "shown": 0.3, "count": 5, "duration": 0.5 / self.hertz}),
+            "readings": (
+                15 if self._forces() and "slider" in self.tables else 1,
+                lambda: self._readings(draw.randint(3, 12)),
+            ),
+            "axial_inertia": (
+                8 if self._forces() else 1,
+                lambda: {"forces": [0.2], "shown": 0.3, "count": 5, "duration": 0.5 / self.hertz},
+            ),
         }
         return draw.table(**studies)
 
@@ -304,6 +313,8 @@ class Drawn:
 
     def _claim(self, i):
         quantity = self.quantity()
-        value = self.draw.one({"value": "negative"}, {"value": self.hertz, "tolerance": 0.1 * self.hertz}, {"at_least": 0.0})
+        value = self.draw.one(
+            {"value": "negative"}, {"value": self.hertz, "tolerance": 0.1 * self.hertz}, {"at_least": 0.0}
+        )
         arguments = {} if self.draw.often(40) else {"arguments": self.arguments(quantity)}
         return {"id": f"c{i}", "quantity": quantity, "source": "drawn", "read": "stated"} | value | arguments

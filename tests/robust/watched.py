@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 from time import process_time
 
 from msgspec import Struct
+
 from verify.cli import status_of
 
 LIMIT_S = 40
@@ -62,7 +63,7 @@ def _called(words, folder):
             warnings.simplefilter("error")
             signal.setitimer(signal.ITIMER_PROF, LIMIT_S)
             status = status_of(words)
-    except BaseException as error:  # noqa: BLE001 - whatever it is, it is a fault
+    except BaseException as error:
         thrown = f"{type(error).__name__}: {str(error)[:200]} at {_where(error)}"
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
@@ -123,7 +124,9 @@ def _streams(line, said):
 
 def _of_the_file(line, character):
     """Whether `show` prints it as it stands in a file."""
-    return line.words[0] == "show" and any(character.encode("utf-8", "surrogatepass") in one for one in line.files.values())
+    return line.words[0] == "show" and any(
+        character.encode("utf-8", "surrogatepass") in one for one in line.files.values()
+    )
 
 
 def _data(line, said):
@@ -137,7 +140,9 @@ def _data(line, said):
 
 def _asks_for_json(words):
     """Whether --json stands where it is an option, and nothing else is asked for."""
-    values = {words[i + 1] for i, word in enumerate(words[:-1]) if word in ("--reports", "--set", "--from", "--modes", "--to")}
+    values = {
+        words[i + 1] for i, word in enumerate(words[:-1]) if word in ("--reports", "--set", "--from", "--modes", "--to")
+    }
     return "--json" in {*words} - values and not {"--help", "-h", "--version", "--csv", "--markdown"} & {*words}
 
 
@@ -215,5 +220,12 @@ if __name__ == "__main__":
         line, begun = drawn_line(seed), process_time()
         said, found = wrong_with(line)
         took = round(process_time() - begun, 3)
-        record = {"seed": seed, "status": said.status, "command": line.words[0], "took": took, "err": said.err[:150], "faults": found}
+        record = {
+            "seed": seed,
+            "status": said.status,
+            "command": line.words[0],
+            "took": took,
+            "err": said.err[:150],
+            "faults": found,
+        }
         print(json.dumps(record), flush=True)

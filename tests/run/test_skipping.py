@@ -17,9 +17,7 @@ slider = { mass = 1e-4, mu = 0.2, coupling = "COUPLING" }
 
 
 def gate(name, quantity, arguments):
-    return (
-        f'[[gate]]\nid = "{name}"\nquantity = "{quantity}"\narguments = {arguments}\nat_least = -1e9\nwhy = "It is asked."\n'
-    )
+    return f'[[gate]]\nid = "{name}"\nquantity = "{quantity}"\narguments = {arguments}\nat_least = -1e9\nwhy = "It is asked."\n'
 
 
 def figures(model, *modes, count=17):
@@ -31,7 +29,9 @@ def figures(model, *modes, count=17):
 
 KINDS = {
     "closed forms": (
-        BEAM + gate("second", "mode.frequency", '{ model = "analytic", mode = 2 }') + gate("rule", "drive.rule_frequency", "{ mode = 3 }"),
+        BEAM
+        + gate("second", "mode.frequency", '{ model = "analytic", mode = 2 }')
+        + gate("rule", "drive.rule_frequency", "{ mode = 3 }"),
         {},
         {"msgspec", "click"},
         {"elements", "segments", "waves", "chain"},

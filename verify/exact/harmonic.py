@@ -35,12 +35,17 @@ def solve_harmonic(beam: Beam, forces: Forces, frequency_hz: float, theory: str 
     )
 
 
-def _closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> Callable[[Array, int], ComplexArray]:
+def check_closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> None:
+    """Raise InputError for a drive of a uniform beam by Euler-Bernoulli's theory that has no steady field."""
     check_drive(beam, forces, frequency_hz)
     if not beam.loss_factor:
         mode = _nearest_mode(beam, frequency_hz)
         if abs(frequency_hz / (resonance := mode_frequency_hz(beam, mode)) - 1.0) < RESONANCE:
             refuse_resonance("analytic", frequency_hz, mode, resonance)
+
+
+def _closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> Callable[[Array, int], ComplexArray]:
+    check_closed_form(beam, forces, frequency_hz)
     k = wavenumber(beam, frequency_hz)
     slow, pinned = abs(k) * beam.length < 1.0, beam.supports == ("pinned", "pinned")
     solve = slow_shapes if slow else pinned_shapes if pinned else spliced_shapes

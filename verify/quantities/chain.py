@@ -7,6 +7,7 @@ from msgspec import Meta
 from verify import options
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
+from verify.quantities import beforehand
 from verify.quantities.kind import Arguments, Grading, Mode, Quantity, Wall
 from verify.quantities.motion_arguments import Friction, Slope
 
@@ -271,9 +272,7 @@ def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
         motion = replace(motion, soft_start_periods=a.soft_start_periods)
     forces = point_forces(replace(scene, motion=motion), "a slider on the nonlinear chain")
     assert scene.drive is not None
-    time = a.time if a.time is not None or motion is None else motion.duration
-    if time is None:
-        raise InputError("time is missing and the scene has no [motion]: give time in seconds")
+    time = beforehand.ride_time(a, scene)
     steps = motion.steps_per_period if motion else STEPS_PER_PERIOD
     return ride_from_rest(
         scene.beam,
@@ -292,14 +291,6 @@ def _imbalance(run: "ChainRide") -> float:
     """What the slider's books miss over what friction rubs away."""
     assert run.ledger is not None
     return abs(run.ledger.residual) / run.ledger.rubbed
-
-
-def _buildable(a: Arguments, scene: "Scene") -> tuple[()]:
-    """No modes of others. Raises InputError for a beam that is no nonlinear chain."""
-    from verify.chain.system import check_buildable
-
-    check_buildable(scene.beam)
-    return ()
 
 
 CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
@@ -342,7 +333,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         LargeAmplitude,
         "in time",
         _large_amplitude_frequency,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     Quantity(
         "chain.energy_drift",
@@ -351,7 +342,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         FreeMotion,
         "in time",
         _energy_drift,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     Quantity(
         "chain.transient_deflection",
@@ -360,7 +351,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         FromRest,
         "in time",
         _transient_deflection,
-        needs=_buildable,
+        needs=beforehand.pushable,
     ),
     Quantity(
         "chain.axial_departure",
@@ -369,7 +360,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         Departing,
         "in time",
         _axial_departure,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     Quantity(
         "chain.contact_line_error",
@@ -378,10 +369,10 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         ContactLine,
         "equilibrium",
         _contact_line_error,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     *(
-        Quantity(f"chain.slider_{name}", unit, summary, Ridden, "in time", _ridden(figure), needs=_buildable)
+        Quantity(f"chain.slider_{name}", unit, summary, Ridden, "in time", _ridden(figure), needs=beforehand.rideable)
         for name, unit, summary, figure in (
             (
                 "displacement",

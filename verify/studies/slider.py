@@ -39,10 +39,13 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
         return "the scene has no [slider]; its [motion] says how gates and claims in time are run"
 
     def check_run(self, asked: MotionAsk, scene: "Scene") -> None:
-        """Raise InputError for a beam that the exact model, against which errors are, does not move in time."""
+        """Raise InputError for a beam that the exact model does not move in time, or forces that grow for too long."""
         from verify.exact.in_time import check_beam
+        from verify.motion.request import check_growth
 
         check_beam(scene.beam)
+        if scene.drive is not None:
+            check_growth(asked.duration, asked.soft_start / scene.drive.frequency_hz)
 
     def models(self, asked: MotionAsk, scene: "Scene") -> tuple[str, ...]:
         """All that can."""
