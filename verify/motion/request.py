@@ -194,7 +194,7 @@ def _longest(
     return longest
 
 
-def check_growth(duration: float, growing: float) -> None:
+def _check_growth(duration: float, growing: float) -> None:
     """Raise InputError where forces grow for longer, seconds, than they act."""
     if duration - growing < -1e-12 * duration:
         raise InputError(
@@ -210,7 +210,7 @@ def laid_out(duration: float, grown: Sequence[tuple[float, Array]], longest: flo
         raise InputError(
             "envelope: give pieces (seconds, coefficients), each longer than 0 s and of finite coefficients"
         )
-    check_growth(duration, sum(lengths))
+    _check_growth(duration, sum(lengths))
     rest = duration - sum(lengths)
     pieces = list(grown) + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
     shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]

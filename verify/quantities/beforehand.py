@@ -30,16 +30,34 @@ def driven(a: Driven | Sensitivity, scene: "Scene") -> tuple[()]:
     if not isinstance(a, BestFrequency):  # whose search passes over a resonance
         _check_closed_form(case)
     counts = a.counts if isinstance(a, WaveOrder) else (case.count,)
-    for count in counts if case.beam.uniform else ():
+    for count in counts if case.beam.uniform and not isinstance(a, Sensitivity) else ():
         if count is not None:
             MODELS.named(case.model).check_carried(case.beam, count, case.frequency_hz)
-    whole = isinstance(a, InWindow) and not (isinstance(a, AxisRatio) and a.x is not None)
-    if isinstance(a, InWindow) and whole and not (isinstance(a, WaveOrder) and a.of == "deflection"):
-        from verify.waves.measures import check_window, middle_half
+    if isinstance(a, Sensitivity):
+        from verify.waves.operating_point import check_two
 
-        places = [force.position for force in case.forces]
-        check_window(case.beam, places, case.frequency_hz, a.window or middle_half(case.beam))
+        check_two(case)
+    _check_window(a, case)
     return ()
+
+
+def _check_window(a: Driven | Sensitivity, case: "DrivenCase") -> None:
+    """Raise InputError for a window in which waves are not told apart, of a figure that takes one."""
+    if isinstance(a, Sensitivity):
+        given = None
+    elif isinstance(a, InWindow) and not _at_a_place(a):
+        given = a.window
+    else:
+        return
+    from verify.waves.measures import check_window, middle_half
+
+    places = [force.position for force in case.forces]
+    check_window(case.beam, places, case.frequency_hz, given or middle_half(case.beam))
+
+
+def _at_a_place(a: InWindow) -> bool:
+    """Whether the figure is read at one place, without a window."""
+    return (isinstance(a, AxisRatio) and a.x is not None) or (isinstance(a, WaveOrder) and a.of == "deflection")
 
 
 def _check_closed_form(case: "DrivenCase") -> None:
