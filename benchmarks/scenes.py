@@ -3,12 +3,13 @@
     python -m benchmarks.scenes [ROUNDS]
 
 Each run is a process of its own without a report. Cold: an empty folder for what numba compiles; one run. Warm: the
-median of ROUNDS (3) in turns, and the least. Beside them a bare interpreter, and what `verify run` says it took itself.
+median of ROUNDS (3) in turns. Seconds of the processor, which a busy machine does not stretch as it does the clock's;
+beside them the least by the clock.
 """
 
-import json
 import os
 import platform
+import resource
 import subprocess
 import sys
 from datetime import date
@@ -23,24 +24,27 @@ from verify.scenes.scene import packaged_scenes
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba")
 
 
+def spent() -> float:
+    """Processor seconds of all processes that have ended below this one."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def timed(words: list[str], **environment: str) -> tuple[float, float]:
+    """(processor seconds, seconds by the clock) of a process."""
+    before, begun = spent(), perf_counter()
+    subprocess.run(words, env=os.environ | environment, stdout=subprocess.DEVNULL, check=True)
+    return spent() - before, perf_counter() - begun
+
+
 def ran(scene: str, compiled: str) -> tuple[float, float]:
-    """(seconds of the whole process, of the run in it) of a scene that keeps its kernels in a folder."""
-    env = os.environ | {"NUMBA_CACHE_DIR": compiled, "OPENBLAS_NUM_THREADS": "1"}
+    """The same of a scene that keeps its kernels in a folder."""
     words = [sys.executable, "-m", "verify", "run", scene, "--no-report", "--json"]
-    begun = perf_counter()
-    done = subprocess.run(words, env=env, capture_output=True, text=True, check=True)
-    return perf_counter() - begun, json.loads(done.stdout)["seconds"]
+    return timed(words, NUMBA_CACHE_DIR=compiled, OPENBLAS_NUM_THREADS="1")
 
 
-def bare() -> float:
-    """Seconds of an interpreter that does nothing."""
-    begun = perf_counter()
-    subprocess.run([sys.executable, "-c", ""], check=True)
-    return perf_counter() - begun
-
-
-def measured(scenes: tuple[str, ...], rounds: int) -> list[tuple[str, float, float, float, float]]:
-    """(scene, cold, median and least of the warm ones, median of the run inside), seconds."""
+def measured(scenes: tuple[str, ...], rounds: int) -> dict[str, tuple[float, float, float]]:
+    """Processor seconds cold and warm, and the least by the clock, for each scene."""
     cold, warm = {}, {scene: [] for scene in scenes}
     with TemporaryDirectory() as folder:
         for scene in scenes:
@@ -50,10 +54,10 @@ def measured(scenes: tuple[str, ...], rounds: int) -> list[tuple[str, float, flo
         for _ in range(rounds):
             for scene in scenes:
                 warm[scene].append(ran(scene, folder))
-    return [
-        (scene, cold[scene], median(t for t, _ in times), min(t for t, _ in times), median(own for _, own in times))
+    return {
+        scene: (cold[scene], median(cpu for cpu, _ in times), min(clock for _, clock in times))
         for scene, times in warm.items()
-    ]
+    }
 
 
 def processor() -> str:
@@ -67,12 +71,12 @@ def main() -> None:
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     versions = ", ".join(f"{name} {metadata.version(name)}" for name in PACKAGES)
     print(f"{date.today()}: {processor()}, {os.cpu_count()} cores, Python {platform.python_version()}, {versions};")
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
-    print(f"medians of {rounds} in turns; a bare interpreter {1e3 * median(bare() for _ in range(9)):.0f} ms;")
-    print(f"load before the first run {load:.1f}\n")
-    print("| scene | cold, s | warm, s | least, s | of that the run itself, s |")
-    print("|---|---|---|---|---|")
-    for scene, *times in measured(packaged_scenes(), rounds):
+    idle = median(timed([sys.executable, "-c", ""])[0] for _ in range(9))
+    print(
+        f"medians of {rounds} in turns; a bare interpreter takes {1e3 * idle:.0f} ms; load {os.getloadavg()[0]:.1f}.\n"
+    )
+    print("| scene | cold, processor s | warm, processor s | warm, least by the clock, s |\n|---|---|---|---|")
+    for scene, times in measured(packaged_scenes(), rounds).items():
         print(f"| {scene} |", " | ".join(f"{seconds:.2f}" for seconds in times), "|", flush=True)
 
 

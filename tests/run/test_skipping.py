@@ -176,3 +176,13 @@ def test_beside_what_is_timed_a_study_solves_each_size_once(tmp_path):
     assert found.status == 0
     assert found.times("solves") == len(found.told["solves"]) == 4
     assert found.times("eigen-solves") == 4 + found.times("timed")
+
+
+def test_a_plan_of_a_slider_on_a_chain_loads_no_compiler(tmp_path):
+    text = BEAM + DRIVEN + SLIDES.replace("COUPLING", "one-way")
+    gates = gate("rides", "chain.slider_displacement", "{ segments = 9, time = 1e-3, soft_start_periods = 0 }")
+    (tmp_path / "strip.toml").write_text(text + gates)
+    found = counted(tmp_path, "plan", "strip.toml", "--json")
+    assert found.status == 0
+    assert "numba" not in found.libraries
+    assert not found.times("chain motions")

@@ -101,7 +101,7 @@ def steady(a: Steady, scene: "Scene") -> tuple[()]:
 
 def rideable(a: "Ridden", scene: "Scene") -> tuple[()]:
     """Raise InputError for a beam that is no nonlinear chain, a scene without slider, forces or time."""
-    from verify.chain.departure import point_forces
+    from verify.chain.from_rest import point_forces
     from verify.quantities.simulated import slider_of
 
     slider_of(a, scene)
@@ -121,7 +121,7 @@ def ride_time(a: "Ridden", scene: "Scene") -> float:
 
 def pushable(a: "FromRest", scene: "Scene") -> tuple[()]:
     """Raise InputError for a beam that is no nonlinear chain, or a scene without forces from rest."""
-    from verify.chain.departure import point_forces
+    from verify.chain.from_rest import point_forces
 
     point_forces(scene, "chain.transient_deflection")
     return buildable(a, scene)

@@ -208,7 +208,7 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
     from msgspec.structs import replace
 
     from verify.chain import problems as chain_studies
-    from verify.chain.departure import point_forces
+    from verify.chain.from_rest import point_forces
 
     forces = point_forces(scene, "chain.transient_deflection")
     assert scene.drive is not None
@@ -261,7 +261,7 @@ def _ridden(figure: "Callable[[ChainRide], float]") -> "Callable[[Ridden, Scene,
 def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
     from msgspec.structs import replace
 
-    from verify.chain.departure import point_forces
+    from verify.chain.from_rest import point_forces
     from verify.chain.ride import ride_from_rest
     from verify.motion.request import STEPS_PER_PERIOD
     from verify.quantities.simulated import slider_of
