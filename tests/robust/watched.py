@@ -188,7 +188,8 @@ def timeless(text, told=False):
             return "\n".join(mark.join(cell for i, cell in enumerate(row) if i not in timed) for row in rows)
     plain = TIMES.sub("TIME", text)
     plain = re.sub(r"[-+]?\d[-+\d.e]*|–", "#", plain) if told else plain
-    return " ".join(plain.replace("─", "").split())
+    words = plain.replace("─", "").split()
+    return " ".join(sorted(one for one in words if "#" not in one) if told else words)  # widths go with digits
 
 
 def _without_times(data):

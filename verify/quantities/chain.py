@@ -212,7 +212,6 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
 
     forces = point_forces(scene, "chain.transient_deflection")
     assert scene.drive is not None
-    bench.n_unkept_motions += 1
     if a.x > scene.beam.length:
         raise InputError(f"x = {a.x!r} lies off the chain: give up to {scene.beam.length!r} m")
     if a.force is not None:
@@ -230,6 +229,7 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
         tolerance=a.tolerance,
         progress=bench.tell,
     )
+    bench.n_unkept_motions += 1
     return float(motion.deflection([a.x])[0, 0])
 
 
@@ -266,7 +266,6 @@ def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
     from verify.motion.request import STEPS_PER_PERIOD
     from verify.quantities.simulated import slider_of
 
-    bench.n_unkept_motions += 1
     motion, slider = scene.motion, slider_of(a, scene)
     if motion is not None and a.soft_start_periods is not None:
         motion = replace(motion, soft_start_periods=a.soft_start_periods)
@@ -274,7 +273,7 @@ def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
     assert scene.drive is not None
     time = beforehand.ride_time(a, scene)
     steps = motion.steps_per_period if motion else STEPS_PER_PERIOD
-    return ride_from_rest(
+    found = ride_from_rest(
         scene.beam,
         [replace(force, amplitude=a.force) for force in forces] if a.force is not None else forces,
         scene.drive.frequency_hz,
@@ -285,6 +284,8 @@ def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
         links=a.links,
         progress=bench.tell,
     )
+    bench.n_unkept_motions += 1
+    return found
 
 
 def _imbalance(run: "ChainRide") -> float:
