@@ -18,7 +18,7 @@ slider = { mass = 1e-4, mu = 0.2 }
 [[gate]]
 id = "goes"
 quantity = "slider.displacement"
-arguments = { model = "segment", count = 9, time = 2e-3 }
+arguments = { model = "segment", count = 9, time = 0.02 }
 at_most = 1.0
 why = "It steps."
 """
