@@ -3,16 +3,19 @@
 import os
 import sys
 from contextlib import suppress
+from errno import EBADF, EDQUOT, EFBIG, EIO, ENOSPC
 from importlib import import_module
-from io import TextIOWrapper
-from typing import Any, NoReturn
+from io import StringIO, TextIOWrapper
+from typing import Any, NoReturn, TextIO
 
 import click
 
 from verify import __version__
-from verify.errors import InputError
+from verify.errors import InputError, one_line
 
-BAD_INPUT, INTERRUPTED, NO_READER = 2, 130, 141
+BAD_INPUT, INTERRUPTED, NO_READER, TERMINATED = 2, 130, 141, 143
+NO_ROOM = (ENOSPC, EDQUOT, EFBIG, EIO, EBADF)
+"""What a stream says that takes no more."""
 
 
 class ReaderGoneError(Exception):
@@ -71,9 +74,9 @@ def cli() -> None:
     """Say how far a finite-segment model of a vibrating beam can be trusted, and what that costs in run time.
 
     SCENE is the name of a packaged scene (see `verify scenes`) or the path of a TOML file (see `verify init`).
-    Exit status: 0 all well, 1 a gate failed, 2 bad input, 130 interrupted, 141 nobody reads on. What would take more
-    than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment gives more seconds. Readings are shared
-    among all cores; VERIFY_JOBS gives another number of processes.
+    Exit status: 0 all well, 1 a gate failed or a plan cannot run, 2 bad input, 130 interrupted, 141 nobody reads on,
+    143 terminated. What would take more than 20 s is refused with its estimate; VERIFY_PATIENCE in the environment
+    gives more seconds. Readings are shared among all cores; VERIFY_JOBS gives another number of processes.
     """
 
 
@@ -85,23 +88,49 @@ def status_of(argv: list[str] | None = None) -> int:
         _tell_of_unusable()
         _tell_of_compiling()
     except (BrokenPipeError, ReaderGoneError):
-        _hush()
+        _hush(sys.stdout)
         return NO_READER
     except InputError as error:
-        for sentence in error.sentences:
-            click.echo(f"verify: {sentence}", err=True)
+        _complain(*error.sentences)
         return BAD_INPUT
     except click.ClickException as error:
-        error.show()
-        return error.exit_code
+        return _shown(error)
     except (click.Abort, KeyboardInterrupt):
-        click.echo("verify: interrupted; nothing half-written is left", err=True)
+        _complain("interrupted; nothing half-written is left")
         return INTERRUPTED
+    except OSError as error:
+        if error.errno not in NO_ROOM or error.filename is not None:
+            raise
+        _hush(sys.stdout)
+        _complain(f"what is printed cannot be written ({error.strerror}): make room, or send it elsewhere")
+        return BAD_INPUT
     except SystemExit as stop:
         result = stop.code if isinstance(stop.code, int) else BAD_INPUT
+        if result == TERMINATED:
+            _complain("terminated; nothing half-written is left")
         _tell_of_unusable()
         _tell_of_compiling()
     return result if isinstance(result, int) else 0
+
+
+def _complain(*sentences: str) -> None:
+    """Sentences on the error stream, unless it takes no more."""
+    try:
+        for sentence in sentences:
+            click.echo(f"verify: {sentence}", err=True)
+    except OSError:
+        _hush(sys.stderr)
+
+
+def _shown(error: click.ClickException) -> int:
+    """What click says of a command line, with nothing in it that a terminal would obey."""
+    said = StringIO()
+    error.show(said)
+    try:
+        click.echo("\n".join(map(one_line, said.getvalue().splitlines())), err=True)
+    except OSError:
+        _hush(sys.stderr)
+    return error.exit_code
 
 
 def _tell_of_unusable() -> None:
@@ -109,8 +138,7 @@ def _tell_of_unusable() -> None:
     if "verify.registry" in sys.modules:
         from verify.registry import unusable
 
-        for why in unusable():
-            click.echo(f"verify: left out: {why}", err=True)
+        _complain(*(f"left out: {why}" for why in unusable()))
 
 
 def _cores() -> str:
@@ -123,21 +151,22 @@ def _tell_of_compiling() -> None:
     if "verify.models.compiling" in sys.modules:
         from verify.models.compiling import told
 
-        for sentence in told():
-            click.echo(f"verify: {sentence}", err=True)
+        _complain(*told())
 
 
-def _hush() -> None:
-    """Whoever read standard output has gone: leave the interpreter nothing to say about it at its end."""
+def _hush(stream: TextIO) -> None:
+    """Whoever read a stream has gone: leave the interpreter nothing to say about it at its end."""
     with suppress(OSError, ValueError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def main() -> NoReturn:
     """Entry point of the command `verify`, behind `__main__`.
 
     The matrices here are small or sparse: BLAS threads only get in each other's way, so one is the default. What a
-    terminal cannot show is escaped, and what scipy imports for others is not read (`asleep`).
+    terminal cannot show is escaped, and what scipy imports for others is not read (`asleep`). A stream that was closed
+    leads nowhere: else the next file that is opened would get its number, and what is printed. Who is told to end tidies
+    up first.
     """
     from verify.asleep import put_to_sleep
 
@@ -145,7 +174,24 @@ def main() -> NoReturn:
     os.environ.setdefault("VERIFY_JOBS", _cores())
     for library in ("OPENBLAS", "MKL", "OMP"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    for name in ("stdin", "stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), "r" if name == "stdin" else "w"))
+    _end_tidily()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     sys.exit(status_of())
+
+
+def _end_tidily() -> None:
+    """A request to end is an exception like any other, so that nothing half-written is left."""
+    import signal
+
+    def end(number: int, frame: object) -> NoReturn:
+        signal.signal(number, signal.SIG_IGN)
+        sys.exit(TERMINATED)
+
+    for number in {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}:
+        if signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, end)

@@ -89,8 +89,12 @@ def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
 
 def one_line(text: str) -> str:
     """A text of at most SENTENCE printable characters; beginning and end, where field and remedy stand, are kept."""
-    plain = "".join(c if c.isprintable() else repr(c)[1:-1] for c in shortened(text, SENTENCE))
-    return shortened(plain, SENTENCE)
+    return shortened(printable(shortened(text, SENTENCE)), SENTENCE)
+
+
+def printable(text: str) -> str:
+    """A text with what no terminal should be sent escaped: controls, among them those that turn the reading round."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 class _Short(Repr):

@@ -6,6 +6,9 @@ from pathlib import Path
 
 from verify.errors import InputError, shown
 
+STALE_S = 600.0
+"""Seconds after which a part that nobody went on with is one that a killed run left."""
+
 
 def exists(path: Path, field: str) -> bool:
     """Whether there is a file or folder. Raises InputError for what can be no name: too long, or with a null byte."""
@@ -40,14 +43,18 @@ def writable_folder(folder: Path, field: str) -> Path:
 
 
 def write_whole(path: Path, text: str, field: str = "file") -> None:
-    """Write a text file through a neighbour and a rename, so that no reader ever sees half of it."""
+    """Write a text file through a neighbour and a rename, so that no reader ever sees half of it.
+
+    A run that is killed in between leaves its neighbour behind; whoever writes the same file later takes it away.
+    """
     import tempfile
 
     exists(path, field)
     handle = None
     try:
+        _sweep(path)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as stream:
             stream.write(text)
         os.chmod(name, 0o666 & ~_umask())
         os.replace(name, path)
@@ -56,6 +63,18 @@ def write_whole(path: Path, text: str, field: str = "file") -> None:
     finally:
         if handle is not None and os.path.exists(name):
             os.unlink(name)
+
+
+def _sweep(path: Path) -> None:
+    """Take away what killed runs left of this file; what is younger may be another run's, which goes on."""
+    from contextlib import suppress
+    from glob import escape
+    from time import time
+
+    for part in path.parent.glob(f".{escape(path.name)}.*.part"):
+        with suppress(OSError):
+            if time() - part.lstat().st_mtime > STALE_S:
+                part.unlink()
 
 
 def _umask() -> int:

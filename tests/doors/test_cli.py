@@ -192,7 +192,7 @@ def test_a_map_may_be_of_the_exact_beam_and_readings_may_not(verify):
 
 def test_plan_of_a_size_that_does_not_fit_says_so_without_allocating(verify):
     status, out, _ = verify("plan", "paper", "--set", "spectrum.count=10000000000000")
-    assert status == 0
+    assert status == 1
     assert "cannot run: spectrum" in out
 
 

@@ -83,6 +83,6 @@ def test_what_cannot_run_for_one_reason_is_told_in_one_line(capsys):
     from verify.cli import status_of
 
     asked = ["plan", "paper", "--set", "spectrum.count=10000000000000", "--set", "convergence.counts=10000000000000"]
-    assert status_of(asked) == 0
+    assert status_of(asked) == 1
     whys = [told.partition(": ")[2] for told in " ".join(capsys.readouterr().out.split()).split("cannot run: ")[1:]]
     assert len(whys) == len(set(whys)) == 2

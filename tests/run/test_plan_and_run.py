@@ -14,7 +14,8 @@ from verify.report.terminal import print_plan
 from verify.run.asks import asks_of
 from verify.run.plan import plan_scene
 from verify.run.runner import n_steps, run_scene
-from verify.scenes.scene import load_scene, packaged_scenes
+from verify.scenes.checked import checked
+from verify.scenes.scene import load_scene, packaged_scenes, scene_type
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.slider import SliderStudy
 
@@ -142,5 +143,58 @@ def test_a_slider_on_a_beam_that_the_exact_model_does_not_move_is_refused_by_its
     (problem,) = plan_scene(scene).problems
     assert problem.who == "motion"
     with pytest.raises(InputError, match=r"beam\.spring: the exact beam in time takes none") as refused:
+        run_scene(scene)
+    assert problem.why == str(refused.value)
+
+
+STRIP = {"length": 0.61, "width": 0.03, "thickness": 0.002, "youngs_modulus": 71e9, "density": 2710.0}
+DRIVE = {"frequency_hz": 310.0, "force": [{"position": 0.1}, {"position": 0.47, "phase_deg": 90.0}]}
+SLIDER = {"mass": 1e-4, "mu": 0.2}
+
+
+@pytest.mark.parametrize(
+    ("quantity", "arguments", "more", "said"),
+    [
+        ("slider.displacement", {"count": 9}, {}, "time is missing"),
+        ("slider.displacement", {"count": 9, "time": 3e-3}, {}, "the forces grow over 0.0064"),
+        ("motion.deflection", {"model": "analytic", "x": 0.2, "time": 3e-3, "start": "steady"}, {"frequency_hz": 112.27591886485595}, "of mode 3"),
+        ("wave.crest_speed", {}, {"frequency_hz": 112.27591886485595}, "undamped resonance of mode 3 of the analytic model"),
+        ("wave.crest_speed", {"model": "segment", "count": 3}, {}, "lies beyond, give count"),
+        ("wave.reflection", {"window": [0.05, 0.4]}, {}, "leaves the span between two forces"),
+        ("wave.reflection_per_degree", {}, {"force": [{"position": 0.1}]}, "a phase between two forces, the scene has 1"),
+        ("slider.coupling_size", {"of": "normal"}, {"slider": None}, "the scene has no slider"),
+        ("chain.slider_displacement", {"segments": 9}, {}, "time is missing"),
+        ("chain.transient_deflection", {"segments": 9, "x": 0.2, "time": 1e-3}, {"force": []}, "has no drive by forces"),
+    ],
+)  # fmt: skip
+def test_what_a_figure_of_a_driven_beam_is_refused_for_before_anything_is_solved_its_plan_says(
+    quantity, arguments, more, said
+):
+    """Mode 3 of the strip is at 112.27591886485595 Hz, where an undamped beam has no steady field."""
+    gate = {"id": "g", "quantity": quantity, "arguments": arguments, "at_least": 0.0, "why": "w"}
+    slider = {"slider": SLIDER} if more.get("slider", SLIDER) else {}
+    drive = DRIVE | {name: value for name, value in more.items() if name != "slider"}
+    scene = checked({"name": "s", "beam": STRIP, "drive": drive, "gate": [gate]} | slider, scene_type())
+    (problem,) = plan_scene(scene).problems
+    assert said in problem.why
+    run = run_scene(scene)
+    assert run.gates[0].reason == f"cannot be evaluated: {problem.why}"
+    assert (run.n_fields, run.n_motions, run.solves) == (0, 0, ())
+
+
+def test_a_plan_of_what_cannot_run_exits_with_1_and_says_it(capsys, tmp_path, monkeypatch):
+    from verify.cli import status_of
+
+    assert status_of(["plan", "paper"]) == 0
+    assert status_of(["plan", "paper", "--set", "gate.segment-order.quantity=mode.ordr"]) == 1
+    assert "cannot run: gate segment-order" in capsys.readouterr().out
+
+
+def test_a_plan_says_that_the_forces_on_a_slider_s_beam_grow_for_longer_than_they_act():
+    scene = replace(load_scene("paper-slider"), gate=(), claim=(), readings=None)
+    scene = replace(scene, motion=replace(scene.motion, duration=3e-4))
+    (problem,) = plan_scene(scene).problems
+    assert (problem.who, problem.why[:44]) == ("motion", "the forces grow over 0.0004677268475210477 s")
+    with pytest.raises(InputError, match="the forces grow over") as refused:
         run_scene(scene)
     assert problem.why == str(refused.value)

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.chain.dynamics import at_rest
+from verify.chain.from_rest import point_forces
 from verify.chain.problems import Progress, transient, unheard
 from verify.chain.result import ChainMotion
 from verify.chain.splitting import linear_deflection, modal_basis
@@ -69,23 +70,6 @@ class Driven(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def under(self, force: float) -> tuple[PointForce, ...]:
         """The forces with an amplitude in newton."""
         return tuple(replace(one, amplitude=force) for one in self.forces)
-
-
-def point_forces(scene: "Scene", who: str) -> tuple[PointForce, ...]:
-    """The scene's driving forces.
-
-    Raises InputError where it drives nothing, or by displacements, and for a [motion] that a chain from rest, undamped
-    and under forces of full size does not make.
-    """
-    if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
-        raise InputError(f"{who}: the scene has no drive by forces; give it a [drive] of kind force")
-    if scene.motion is not None:
-        for name, rest in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
-            if (value := getattr(scene.motion, name)) not in (rest, None):
-                raise InputError(
-                    f"motion.{name} = {value!r}: {who} is from rest, undamped, under forces of full size; give {rest!r}"
-                )
-    return scene.forces
 
 
 def driven_chain(scene: "Scene", who: str, count: int, duration: float, x: float | None) -> Driven:

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands.shared import json_alone, print_json
+from verify.errors import printable
 
 
 @click.command()
@@ -57,4 +58,4 @@ def schema(section: str | None, path: str | None) -> None:
     from verify.files import write_whole
 
     write_whole(Path(path), text, "--to")
-    click.echo(f"wrote {path}; a scene beside it names it in its first line: #:schema ./{Path(path).name}")
+    click.echo(printable(f"wrote {path}; a scene beside it names it in its first line: #:schema ./{Path(path).name}"))

@@ -2,6 +2,7 @@
 
 import click
 
+from verify.commands.run import GATE_FAILED
 from verify.commands.shared import (
     json_alone,
     load,
@@ -16,7 +17,7 @@ from verify.commands.shared import (
 @overridden
 @json_alone
 def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Print what SCENE will run, what is skipped, and why. Solves nothing.
+    """Print what SCENE will run, what is skipped, and why. Solves nothing; exit 1 where something cannot run.
 
     Example: `verify plan paper`
     """
@@ -31,3 +32,5 @@ def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
         from verify.report.terminal import print_plan
 
         print_plan(planned)
+    if planned.problems:
+        raise SystemExit(GATE_FAILED)

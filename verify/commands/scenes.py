@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from verify.commands.shared import json_alone, load, overridden, print_json, scene_name
-from verify.errors import InputError
+from verify.errors import InputError, printable
 
 
 @click.command()
@@ -47,7 +47,7 @@ def init(path: str, source: str | None, force: bool, as_json: bool) -> None:
     if as_json:
         print_json({"path": path, "next": ["verify", "run", path]})
     else:
-        click.echo(f"wrote {path}; next: verify run {path}")
+        click.echo(printable(f"wrote {path}; next: verify run {path}"))
 
 
 @click.command()

@@ -36,9 +36,14 @@ def solve_harmonic(beam: Beam, forces: Forces, frequency_hz: float, theory: str 
     )
 
 
-def _closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> Callable[[Array, int], ComplexArray]:
+def check_closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> None:
+    """Raise InputError for a drive of a uniform beam by Euler-Bernoulli's theory that has no steady field."""
     check_drive(beam, forces, frequency_hz)
     check_off_resonance(beam, frequency_hz)
+
+
+def _closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) -> Callable[[Array, int], ComplexArray]:
+    check_closed_form(beam, forces, frequency_hz)
     k = wavenumber(beam, frequency_hz)
     slow, pinned = abs(k) * beam.length < 1.0, beam.supports == ("pinned", "pinned")
     solve = slow_shapes if slow else pinned_shapes if pinned else spliced_shapes

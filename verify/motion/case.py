@@ -6,7 +6,7 @@ import msgspec
 from msgspec.structs import asdict
 
 from verify.beam import Beam, PointForce
-from verify.motion.request import STEPS_PER_PERIOD
+from verify.motion.request import STEPS_PER_PERIOD, Driven, Modelled, Started, Watched, requested
 from verify.motion.result import Motion
 from verify.motion.simulate import simulate
 from verify.options import Start
@@ -27,6 +27,16 @@ class MotionCase(msgspec.Struct, frozen=True, kw_only=True):
     start: Start
     soft_start_periods: float
     modal_damping: float | None
+
+    def check(self, *, slider: Slider | None, step: float | None, steps_per_period: int) -> None:
+        """Raise InputError for what `run` refuses before anything is solved."""
+        requested(
+            Driven(self.beam, self.forces, self.frequency_hz, self.duration),
+            Modelled(self.model, self.count, self.modes, self.modal_damping),
+            Started(self.start, self.soft_start_periods, (), None),
+            Watched((), 2, step, steps_per_period, ledger=False),
+            slider,
+        )
 
     def run(
         self,

@@ -194,6 +194,15 @@ def _longest(
     return longest
 
 
+def _check_growth(duration: float, growing: float) -> None:
+    """Raise InputError where forces grow for longer, seconds, than they act."""
+    if duration - growing < -1e-12 * duration:
+        raise InputError(
+            f"the forces grow over {growing!r} s of duration = {duration!r} s: shorten soft_start_periods or "
+            "envelope, or lengthen the duration"
+        )
+
+
 def laid_out(duration: float, grown: Sequence[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
     """Steps of every piece of the envelope and of the constant forces after it, samples shared by length."""
     lengths = [seconds for seconds, _ in grown]
@@ -201,12 +210,8 @@ def laid_out(duration: float, grown: Sequence[tuple[float, Array]], longest: flo
         raise InputError(
             "envelope: give pieces (seconds, coefficients), each longer than 0 s and of finite coefficients"
         )
+    _check_growth(duration, sum(lengths))
     rest = duration - sum(lengths)
-    if grown and rest < -1e-12 * duration:
-        raise InputError(
-            f"the forces grow over {sum(lengths)!r} s of duration = {duration!r} s: shorten soft_start_periods or "
-            "envelope, or lengthen the duration"
-        )
     pieces = list(grown) + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
     shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]
     shares[-1] = max(samples - sum(shares[:-1]), 1)

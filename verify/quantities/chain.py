@@ -7,6 +7,7 @@ from msgspec import Meta
 from verify import options
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
+from verify.quantities import beforehand
 from verify.quantities.kind import Arguments, Grading, Mode, Quantity, Wall
 from verify.quantities.motion_arguments import Friction, Slope
 
@@ -207,11 +208,10 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
     from msgspec.structs import replace
 
     from verify.chain import problems as chain_studies
-    from verify.chain.departure import point_forces
+    from verify.chain.from_rest import point_forces
 
     forces = point_forces(scene, "chain.transient_deflection")
     assert scene.drive is not None
-    bench.n_unkept_motions += 1
     if a.x > scene.beam.length:
         raise InputError(f"x = {a.x!r} lies off the chain: give up to {scene.beam.length!r} m")
     if a.force is not None:
@@ -229,6 +229,7 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
         tolerance=a.tolerance,
         progress=bench.tell,
     )
+    bench.n_unkept_motions += 1
     return float(motion.deflection([a.x])[0, 0])
 
 
@@ -260,22 +261,19 @@ def _ridden(figure: "Callable[[ChainRide], float]") -> "Callable[[Ridden, Scene,
 def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
     from msgspec.structs import replace
 
-    from verify.chain.departure import point_forces
+    from verify.chain.from_rest import point_forces
     from verify.chain.ride import ride_from_rest
     from verify.motion.request import STEPS_PER_PERIOD
     from verify.quantities.simulated import slider_of
 
-    bench.n_unkept_motions += 1
     motion, slider = scene.motion, slider_of(a, scene)
     if motion is not None and a.soft_start_periods is not None:
         motion = replace(motion, soft_start_periods=a.soft_start_periods)
     forces = point_forces(replace(scene, motion=motion), "a slider on the nonlinear chain")
     assert scene.drive is not None
-    time = a.time if a.time is not None or motion is None else motion.duration
-    if time is None:
-        raise InputError("time is missing and the scene has no [motion]: give time in seconds")
+    time = beforehand.ride_time(a, scene)
     steps = motion.steps_per_period if motion else STEPS_PER_PERIOD
-    return ride_from_rest(
+    found = ride_from_rest(
         scene.beam,
         [replace(force, amplitude=a.force) for force in forces] if a.force is not None else forces,
         scene.drive.frequency_hz,
@@ -286,20 +284,14 @@ def _ride(a: Ridden, scene: "Scene", bench: Workbench) -> "ChainRide":
         links=a.links,
         progress=bench.tell,
     )
+    bench.n_unkept_motions += 1
+    return found
 
 
 def _imbalance(run: "ChainRide") -> float:
     """What the slider's books miss over what friction rubs away."""
     assert run.ledger is not None
     return abs(run.ledger.residual) / run.ledger.rubbed
-
-
-def _buildable(a: Arguments, scene: "Scene") -> tuple[()]:
-    """No modes of others. Raises InputError for a beam that is no nonlinear chain."""
-    from verify.chain.system import check_buildable
-
-    check_buildable(scene.beam)
-    return ()
 
 
 CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
@@ -342,7 +334,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         LargeAmplitude,
         "in time",
         _large_amplitude_frequency,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     Quantity(
         "chain.energy_drift",
@@ -351,7 +343,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         FreeMotion,
         "in time",
         _energy_drift,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     Quantity(
         "chain.transient_deflection",
@@ -360,7 +352,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         FromRest,
         "in time",
         _transient_deflection,
-        needs=_buildable,
+        needs=beforehand.pushable,
     ),
     Quantity(
         "chain.axial_departure",
@@ -369,7 +361,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         Departing,
         "in time",
         _axial_departure,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     Quantity(
         "chain.contact_line_error",
@@ -378,10 +370,10 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         ContactLine,
         "equilibrium",
         _contact_line_error,
-        needs=_buildable,
+        needs=beforehand.buildable,
     ),
     *(
-        Quantity(f"chain.slider_{name}", unit, summary, Ridden, "in time", _ridden(figure), needs=_buildable)
+        Quantity(f"chain.slider_{name}", unit, summary, Ridden, "in time", _ridden(figure), needs=beforehand.rideable)
         for name, unit, summary, figure in (
             (
                 "displacement",

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from verify.judge.workbench import Workbench
 from verify.motion.figures import RUN_FIGURES, RunFigure
+from verify.quantities import beforehand
 from verify.quantities.kind import Quantity
 from verify.quantities.motion_arguments import (
     CouplingSize,
@@ -147,9 +148,10 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         OnWave,
         "in time",
         _terminal_speed,
+        needs=beforehand.at_frequency,
     ),
     *(
-        Quantity(name, figure.unit, figure.summary, SliderInTime, "in time", _slider(figure))
+        Quantity(name, figure.unit, figure.summary, SliderInTime, "in time", _slider(figure), needs=beforehand.in_time)
         for name, figure in RUN_FIGURES.items()
     ),
     Quantity(
@@ -159,6 +161,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         SliderOrder,
         "in time",
         _order,
+        needs=beforehand.in_time,
     ),
     Quantity(
         "slider.deflection",
@@ -167,6 +170,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         SliderDeflection,
         "in time",
         _deflection_under,
+        needs=beforehand.in_time,
     ),
     Quantity(
         "slider.coupling_size",
@@ -175,6 +179,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         CouplingSize,
         "harmonic",
         _coupling_size,
+        needs=beforehand.steady,
     ),
     Quantity(
         "slider.loaded_deflection",
@@ -183,6 +188,15 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         LoadedDeflection,
         "harmonic",
         _loaded,
+        needs=beforehand.steady,
     ),
-    Quantity("motion.deflection", "m", "Of the driven beam at a place and time.", DeflectionAt, "in time", _deflection),
+    Quantity(
+        "motion.deflection",
+        "m",
+        "Of the driven beam at a place and time.",
+        DeflectionAt,
+        "in time",
+        _deflection,
+        needs=beforehand.in_time,
+    ),
 )

@@ -66,7 +66,7 @@ def motion_case(a: InTime, scene: "Scene") -> MotionCase:
     time = a.time if a.time is not None else (motion.duration if motion else None)
     if time is None:
         raise InputError("time is missing and the scene has no [motion]: give time in seconds")
-    _check_forced(scene, "motion in time")
+    check_forced(scene, "motion in time")
     start = a.start or (motion.start if motion else "rest")
     soft = a.soft_start_periods
     if soft is None:
@@ -86,10 +86,15 @@ def motion_case(a: InTime, scene: "Scene") -> MotionCase:
     )
 
 
-def _check_forced(scene: "Scene", what: str) -> None:
+def check_forced(scene: "Scene", what: str) -> None:
     """Raise InputError for a drive by displacements where forces are taken."""
     if scene.drive is not None and scene.drive.kind != "force":
         raise InputError(f"drive.kind = {scene.drive.kind!r}: {what} takes imposed forces, give kind = 'force'")
+
+
+def steps_per_period(scene: "Scene") -> int:
+    """At least so many steps of a slider in a period of the drive."""
+    return scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
 
 
 def turned(forces: "Sequence[PointForce]") -> "tuple[PointForce, ...]":
@@ -112,7 +117,7 @@ def with_slider(
     """
     case, slider = motion_case(a, scene), slider_of(a, scene)
     case = replace(case, forces=turned(case.forces)) if back else case
-    steps = scene.motion.steps_per_period if scene.motion else STEPS_PER_PERIOD
+    steps = steps_per_period(scene)
     longest = a.step or 1.0 / (steps * case.frequency_hz)
     samples = ceil(min(case.duration / longest, MOST_SAMPLES)) + 1 if sampled else 2
     key = ("slider", case, slider, a.step, steps, samples, at)
@@ -161,7 +166,7 @@ def without_slider(a: DeflectionAt, scene: "Scene", bench: "Workbench") -> Motio
 
 def _fields(a: Steady, scene: "Scene") -> "tuple[Slider, float, float, HarmonicField, HarmonicField]":
     """(slider, its place, Hz, driven field, field under a unit force at its place). Raises InputError."""
-    _check_forced(scene, "a slider's beam")
+    check_forced(scene, "a slider's beam")
     slider, frequency, model = slider_of(a, scene), drive_frequency(a, scene), MODELS.named(a.model)
     place = slider.start_on(scene.beam)
     drive = model.solve_harmonic(scene.beam, drive_forces(a, scene), frequency, a.count)

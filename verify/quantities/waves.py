@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from verify.judge.workbench import Workbench
+from verify.quantities import beforehand
 from verify.quantities.cases import drive_frequency, driven_beam, driven_case
 from verify.quantities.kind import Quantity
 from verify.quantities.wave_arguments import (
@@ -94,7 +95,15 @@ def _figure(name: str) -> Callable[[InWindow, "Scene", Workbench], float]:
 
 
 WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
-    Quantity("wave.deflection", "m", "Complex deflection, e^{+i omega t}.", At, "harmonic", _deflection),
+    Quantity(
+        "wave.deflection",
+        "m",
+        "Complex deflection, e^{+i omega t}.",
+        At,
+        "harmonic",
+        _deflection,
+        needs=beforehand.driven,
+    ),
     Quantity(
         "wave.standing_wave_ratio",
         "1",
@@ -102,6 +111,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         InWindow,
         "harmonic",
         _figure("standing_wave_ratio"),
+        needs=beforehand.driven,
         superposed="standing_wave_ratio",
     ),
     Quantity(
@@ -111,6 +121,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         InWindow,
         "harmonic",
         _figure("reflection"),
+        needs=beforehand.driven,
         superposed="reflection",
     ),
     Quantity(
@@ -120,6 +131,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         InWindow,
         "harmonic",
         _figure("envelope"),
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.travelling_index",
@@ -128,6 +140,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         InWindow,
         "harmonic",
         _figure("travelling_index"),
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.axis_ratio",
@@ -136,6 +149,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         AxisRatio,
         "harmonic",
         _axis_ratio,
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.signed_area_spread",
@@ -144,6 +158,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         InWindow,
         "harmonic",
         _figure("signed_area_spread"),
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.crest_speed",
@@ -152,6 +167,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         InWindow,
         "harmonic",
         _figure("crest_speed"),
+        needs=beforehand.driven,
         superposed="crest_speed",
     ),
     Quantity(
@@ -161,6 +177,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         InWindow,
         "harmonic",
         _figure("energy_flux"),
+        needs=beforehand.driven,
         superposed="energy_flux",
     ),
     Quantity(
@@ -170,6 +187,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         Power,
         "harmonic",
         _power_imbalance,
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.best_frequency",
@@ -178,6 +196,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         BestFrequency,
         "harmonic",
         _best_frequency,
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.order",
@@ -186,6 +205,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         WaveOrder,
         "harmonic",
         _order,
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.receptance",
@@ -194,6 +214,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         Receptance,
         "harmonic",
         _receptance,
+        needs=beforehand.at_frequency,
     ),
     Quantity(
         "wave.reflection_per_hertz",
@@ -202,6 +223,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         Sensitivity,
         "harmonic",
         _sensitivity("per_hertz"),
+        needs=beforehand.driven,
     ),
     Quantity(
         "wave.reflection_per_degree",
@@ -210,5 +232,6 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         Sensitivity,
         "harmonic",
         _sensitivity("per_degree"),
+        needs=beforehand.driven,
     ),
 )

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console, ConsoleOptions
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.measure import Measurement
+from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from verify.errors import InputError
+from verify.errors import InputError, printable
 from verify.run.gates import shown_expectation
 from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
@@ -36,9 +37,20 @@ class Terminal(Console):
     def __init__(self, **settings: Any) -> None:
         super().__init__(highlight=False, **settings)
 
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
+        """As rich draws it, with what a title or a path would have the terminal obey escaped."""
+        for segment in super().render(renderable, options):
+            plain = segment.control or segment.text == "\n" or segment.text.isprintable()
+            yield segment if plain else _harmless(segment)
+
     def on_broken_pipe(self) -> None:
         """Leave it to the command line, which ends without a word."""
         raise BrokenPipeError
+
+
+def _harmless(segment: Segment) -> Segment:
+    lines = (printable(line) for line in segment.text.split("\n"))
+    return Segment("\n".join(lines), segment.style)
 
 
 def print_run(result: "RunResult", report: Path | None) -> None:
@@ -239,15 +251,15 @@ def print_plan(plan: "Plan") -> None:
     if plan.solves:
         console.print(table)
     if plan.closed_forms:
-        console.print(f"closed forms, for {_who(plan.closed_forms)}")
+        console.print(f"closed forms, for {_who(plan.closed_forms)}", markup=False)
     if plan.assembled:
-        console.print(f"matrices assembled, for {_who(plan.assembled)}")
+        console.print(f"matrices assembled, for {_who(plan.assembled)}", markup=False)
     if plan.harmonic:
-        console.print(f"harmonic fields, for {_who(plan.harmonic)}")
+        console.print(f"harmonic fields, for {_who(plan.harmonic)}", markup=False)
     if plan.compiled:
-        console.print(f"equilibria and modes of the nonlinear chain, for {_who(plan.compiled)}")
+        console.print(f"equilibria and modes of the nonlinear chain, for {_who(plan.compiled)}", markup=False)
     if plan.stepped:
-        console.print(f"motion in time, for {_who(plan.stepped)}")
+        console.print(f"motion in time, for {_who(plan.stepped)}", markup=False)
     for chosen in plan.chosen:
         console.print(f"  {chosen.what}: {chosen.why}", markup=False)
     console.print("[bold]skipped[/]")

@@ -8,7 +8,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
-from verify.quantities.catalogue import QUANTITIES, arguments_of, as_plain, evaluate, in_words, quantity
+from verify.quantities.catalogue import QUANTITIES, arguments_of, as_plain, evaluate, in_words, needs_of, quantity
 from verify.quantities.kind import Figure, Quantity
 from verify.scenes.scene import Complex
 from verify.words import rounded
@@ -110,7 +110,9 @@ def given_band(gate: "Gate") -> Band:
 
 
 def _evaluated(found: Quantity[Any], gate: "Gate", scene: "Scene", bench: "Workbench") -> Figure:
-    return evaluate(found, arguments_of(found, gate.arguments), scene, bench)
+    arguments = arguments_of(found, gate.arguments)
+    needs_of(found, arguments, scene)  # which refuses what a plan knows will fail, before anything is solved for it
+    return evaluate(found, arguments, scene, bench)
 
 
 def expectation(gate: "Gate") -> str:

@@ -53,6 +53,7 @@ def literal(text: str, field: str = "value") -> Any:
     """
     import tomllib
 
+    _check_text(text, field)
     try:
         return _whole(tomllib.loads(f"value = {text}")["value"], field)
     except InputError:
@@ -63,8 +64,15 @@ def literal(text: str, field: str = "value") -> Any:
         return text
 
 
+def _check_text(text: str, field: str) -> None:
+    """Raise InputError for bytes of a command line that are no UTF-8: nothing could write them."""
+    if not text.isascii() and any("\ud800" <= character <= "\udfff" for character in text):
+        raise InputError(f"{field} = {shown(text)} is not text in UTF-8: type it again")
+
+
 def split_assignment(text: str) -> tuple[str, Any]:
     """'key=value' as key and literal. Raises InputError where there is no '='."""
+    _check_text(text, "assignment")
     key, equals, value = text.partition("=")
     if not equals or not key.strip() or not value.strip():
         raise InputError(f"{text!r} is not an assignment: write key=value, for instance mode=22")

@@ -39,10 +39,26 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
         return "the scene has no [slider]; its [motion] says how gates and claims in time are run"
 
     def check_run(self, asked: MotionAsk, scene: "Scene") -> None:
-        """Raise InputError for a beam that the exact model, against which errors are, does not move in time."""
+        """Raise InputError for a beam that the exact model does not move in time, or a run that is not begun."""
         from verify.exact.in_time import check_beam
+        from verify.motion.case import MotionCase
 
         check_beam(scene.beam)
+        if scene.drive is None or scene.slider is None or scene.drive.kind != "force":
+            return
+        case = MotionCase(
+            beam=scene.beam,
+            forces=scene.forces,
+            frequency_hz=scene.drive.frequency_hz,
+            duration=asked.duration,
+            model="segment",
+            count=asked.count,
+            modes=1,
+            start=asked.start,
+            soft_start_periods=asked.soft_start,
+            modal_damping=asked.modal_damping,
+        )
+        case.check(slider=scene.slider, step=None, steps_per_period=asked.steps_per_period)
 
     def models(self, asked: MotionAsk, scene: "Scene") -> tuple[str, ...]:
         """All that can."""

@@ -107,12 +107,17 @@ def driven_point(case: DrivenCase) -> OperatingPoint:
     return land.point(case.frequency_hz, second.phase_deg - first.phase_deg, "as driven")
 
 
-def landscape(case: DrivenCase) -> Landscape:
-    """Over frequency and phase around a case. Raises InputError without two forces."""
+def check_two(case: DrivenCase) -> None:
+    """Raise InputError without two forces."""
     if len(case.forces) != 2:
         raise InputError(
             f"the reflection has a phase between two forces, the scene has {len(case.forces)}: give it two"
         )
+
+
+def landscape(case: DrivenCase) -> Landscape:
+    """Over frequency and phase around a case. Raises InputError without two forces."""
+    check_two(case)
     first, second = case.forces
     return Landscape(
         beam=case.beam,

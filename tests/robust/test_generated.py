@@ -1,0 +1,39 @@
+"""Scenes and command lines that nobody wrote: each is answered, refused in a sentence, or a fault of the suite's.
+
+300 of them by default. `pytest -m hostile` takes 10 000 others, for an hour or two.
+"""
+
+import pytest
+from drawn_lines import drawn_line
+from watched import wrong_with
+
+IN_A_ROW = 30
+MANY = 100
+
+
+def complaints(seeds):
+    """What is wrong, by the number that draws it again: `drawn_line(number)`."""
+    found = {seed: wrong_with(drawn_line(seed))[1] for seed in seeds}
+    return {seed: wrong for seed, wrong in found.items() if wrong}
+
+
+@pytest.mark.parametrize("row", range(10))
+def test_a_drawn_line_is_answered_or_refused_and_the_same_the_second_time(row):
+    assert complaints(range(IN_A_ROW * row, IN_A_ROW * (row + 1))) == {}
+
+
+@pytest.mark.hostile
+@pytest.mark.parametrize("row", range(100))
+def test_ten_thousand_drawn_lines_are_answered_or_refused(row):
+    assert complaints(range(1000 + MANY * row, 1000 + MANY * (row + 1))) == {}
+
+
+def test_what_is_drawn_is_the_same_for_one_number_and_of_every_kind():
+    lines = [drawn_line(seed) for seed in range(600)]
+    assert lines == [drawn_line(seed) for seed in range(600)]
+    commands = {line.words[0] for line in lines}
+    assert {"run", "plan", "measure", "table", "choose", "compare", "init", "show", "keys", "schema"} <= commands
+    scenes = b"".join(data for line in lines for name, data in line.files.items() if name.endswith("toml"))
+    for key in (b"tension", b"foundation", b"rotational", b"rotary_inertia", b"section", b"slider", b"motion",
+                b"timoshenko", b"tube", b"readings", b"axial_inertia", b"wave = ", b"claim", b"nan", b"\\u001b"):  # fmt: skip
+        assert key in scenes, key

@@ -1,0 +1,111 @@
+"""Runs that are killed at any moment: files whole or absent, and the next run does not notice."""
+
+import signal
+import sys
+from random import Random
+from time import sleep
+
+import pytest
+from ended import SCENE, started, whole
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals")
+HOW = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
+SLIDES = """
+name = "slides"
+beam = { length = 0.61, width = 0.03, thickness = 0.002, youngs_modulus = 71e9, density = 2710.0 }
+drive = { frequency_hz = 310.0, force = [{ position = 0.1 }] }
+slider = { mass = 1e-4, mu = 0.2 }
+[[gate]]
+id = "goes"
+quantity = "slider.displacement"
+arguments = { model = "segment", count = 9, time = 0.02 }
+at_most = 1.0
+why = "It steps."
+"""
+"""What compiles, where nothing is compiled yet: killed in the middle of that, the next run has to compile again."""
+
+
+def killed_at_random(folder, seed, scene, longest):
+    """One run ended by one signal after a random time: the process, when it has ended."""
+    draw = Random(seed)
+    process = started(["run", scene], folder, NUMBA_CACHE_DIR=str(folder / "kernels"))
+    sleep(draw.uniform(0.0, longest))
+    process.send_signal(HOW[seed % len(HOW)])
+    return process, process.communicate()
+
+
+def parts_in(folder):
+    """What was begun and not ended."""
+    return {path.name for path in (folder / "reports").glob(".*")}
+
+
+def check_left(folder, process, said, parts):
+    """The status is the signal's or the run's own; there is no half page; parts are left by SIGKILL alone."""
+    how, begins = process.returncode, b"/verify/" not in said[1] and said[1].endswith(b"KeyboardInterrupt\n")
+    assert how in (0, -signal.SIGKILL, 130, 143, -signal.SIGINT, -signal.SIGTERM) or (how == 1 and begins), said
+    assert b"Traceback" not in said[1] or begins  # Python itself, before the suite is asked
+    assert all(whole(page) for page in (folder / "reports").glob("[!.]*"))
+    new = parts_in(folder) - parts
+    assert not new or how == -signal.SIGKILL
+    assert all(name.startswith((".mine.html.", ".slides.html.")) and name.endswith(".part") for name in new)
+
+
+def next_run_is_unharmed(folder, name):
+    process = started(["run", f"{name}.toml"], folder, NUMBA_CACHE_DIR=str(folder / "kernels"))
+    out, err = process.communicate()
+    assert (process.returncode, err) == (0, b"")
+    assert b"all 1 gates passed" in out
+    assert whole(folder / "reports" / f"{name}.html")
+
+
+def rounds(folder, seeds, longest):
+    for name, text in (("mine", SCENE), ("slides", SLIDES)):
+        (folder / f"{name}.toml").write_text(text)
+    for seed in seeds:
+        name = ("mine", "mine", "slides")[seed // 3 % 3] if "slides" in longest else "mine"
+        parts = parts_in(folder)
+        process, said = killed_at_random(folder, seed, f"{name}.toml", longest[name])
+        check_left(folder, process, said, parts)
+        if seed % 9 == 8:
+            next_run_is_unharmed(folder, "mine")
+    next_run_is_unharmed(folder, "mine")
+
+
+def test_a_run_that_is_killed_leaves_no_half_file(tmp_path):
+    rounds(tmp_path, range(6), {"mine": 1.0})
+
+
+@pytest.mark.hostile
+def test_two_hundred_runs_that_are_killed_leave_no_half_file_and_kernels_that_run(tmp_path):
+    rounds(tmp_path, range(200), {"mine": 2.0, "slides": 12.0})
+    next_run_is_unharmed(tmp_path, "slides")
+
+
+def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path, monkeypatch, capsys):
+    """Told between the first and the last byte of the page."""
+    import os
+
+    from verify import cli
+
+    (tmp_path / "mine.toml").write_text(SCENE)
+    monkeypatch.chdir(tmp_path)
+    before = {one: signal.getsignal(one) for one in (signal.SIGTERM, signal.SIGHUP)}
+    seen, true = [], os.replace
+
+    def told(source, target):
+        seen.extend(path.suffix for path in (tmp_path / "reports").iterdir())
+        os.kill(os.getpid(), signal.SIGTERM)
+        true(source, target)
+
+    monkeypatch.setattr(os, "replace", told)
+    try:
+        for one in before:
+            signal.signal(one, signal.SIG_DFL)
+        cli._end_tidily()
+        assert cli.status_of(["run", "mine.toml"]) == cli.TERMINATED
+    finally:
+        for one, handler in before.items():
+            signal.signal(one, handler)
+    assert seen == [".part"]
+    assert list((tmp_path / "reports").iterdir()) == []
+    assert capsys.readouterr().err == "verify: terminated; nothing half-written is left\n"
