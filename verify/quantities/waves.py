@@ -38,8 +38,16 @@ def measured(a: InWindow, scene: "Scene", bench: Workbench) -> "WaveMeasures":
     return measures(field_of(a, scene, bench), a.window)
 
 
-def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
-    return complex(field_of(a, scene, bench).deflection(a.x)[0])
+def _read(derivative: int) -> Callable[[At, "Scene", Workbench], complex]:
+    """A derivative of the field at a place."""
+
+    def evaluate(a: At, scene: "Scene", bench: Workbench) -> complex:
+        from verify.models.places import places
+
+        field = field_of(a, scene, bench)
+        return complex(field.shapes(places("x", a.x, field.beam.length).ravel(), derivative)[0])
+
+    return evaluate
 
 
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
@@ -94,7 +102,23 @@ def _figure(name: str) -> Callable[[InWindow, "Scene", Workbench], float]:
 
 
 WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
-    Quantity("wave.deflection", "m", "Complex deflection, e^{+i omega t}.", At, "harmonic", _deflection),
+    Quantity("wave.deflection", "m", "Complex deflection, e^{+i omega t}.", At, "harmonic", _read(0)),
+    Quantity(
+        "wave.slope",
+        "rad",
+        "Complex slope of the deflection, e^{+i omega t}, as the model has it.",
+        At,
+        "harmonic",
+        _read(1),
+    ),
+    Quantity(
+        "wave.curvature",
+        "1/m",
+        "Complex second derivative of the deflection, as the model has it between its nodes.",
+        At,
+        "harmonic",
+        _read(2),
+    ),
     Quantity(
         "wave.standing_wave_ratio",
         "1",
