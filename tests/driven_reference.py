@@ -28,7 +28,7 @@ def phasor(force):
 
 
 def field(beam, theory, hertz, forces, x):
-    """Deflection, turn of the section and its moment at x, (3,) complex; the moment over EI (1 + i eta) bends."""
+    """Deflection, turn of the section, its moment and its shear force at x, (4,) complex, SI."""
     return sum(phasor(force) * unit_field(beam, theory, hertz, force[0], x) for force in forces)
 
 
@@ -39,19 +39,23 @@ def unit_field(beam, theory, hertz, place, x):
         found = _states(beam, theory, hertz, place, x) * mp.matrix([start[0], start[1], 1])
         length, stiff = mp.mpf(beam.length), mp.mpf(beam.bending_stiffness)
         scale = length**3 / stiff
-        return np.array([complex(found[0] * scale), complex(found[1] * scale / length), complex(found[2] * length)])
+        return np.array(
+            [
+                complex(found[0] * scale),
+                complex(found[1] * scale / length),
+                complex(found[2] * length),
+                complex(found[3]),
+            ]
+        )
 
 
-def imposed(beam, theory, hertz, drives, x):
-    """The same under imposed displacements (position, metres, degrees): forces that hold these, superposed."""
-    places = [drive[0] for drive in drives]
-    receptance = np.array([[unit_field(beam, theory, hertz, b, a)[0] for b in places] for a in places])
-    held = np.linalg.solve(receptance, [phasor(drive) for drive in drives])
-    return sum(f * unit_field(beam, theory, hertz, place, x) for f, place in zip(held, places, strict=True))
+def slip(beam, theory, x, force):
+    """By how much a line is steeper than its section turns, radians, without loss."""
+    return force / piece_at(beam, x).shear_stiffness if theory == "timoshenko" else 0.0
 
 
 def shape(beam, theory, hertz, x):
-    """Deflection and turn of the mode nearest to a frequency, of modal mass 1 kg, positive off the left end, (2,)."""
+    """Deflection and slope of the mode nearest to a frequency, of modal mass 1 kg, positive off the left end, (2,)."""
     beam = replace(beam, loss_factor=0.0)
     hertz = frequency_near(beam, theory, hertz)
     with mp.workdps(DIGITS):
@@ -61,35 +65,42 @@ def shape(beam, theory, hertz, x):
 
         def at(place):
             found = _states(beam, theory, hertz, None, place)[:, :2] * start
-            return float(found[0]), float(found[1]) / beam.length
+            return (
+                float(found[0]),
+                float(found[1]) / beam.length,
+                float(found[3]) * beam.bending_stiffness / beam.length**3,
+            )
 
         mass, left = 0.0, 0.0
-        points, weights = np.polynomial.legendre.leggauss(24)
-        for piece in beam.pieces:
-            for part in range(4):
-                a = left + piece.length * part / 4
-                for z, weight in zip(points, weights, strict=True):
-                    w, turn = at(a + piece.length / 8 * (z + 1))
-                    inertia = 0.0 if theory == "euler-bernoulli" else piece.rotary_inertia
-                    mass += weight * piece.length / 8 * (piece.mass_per_length * w * w + inertia * turn * turn)
-            left += piece.length
+        points, weights = np.polynomial.legendre.leggauss(16)
+        for piece, length in equal(beam, (3,) * (len(cuts(beam)) - 1)):
+            for z, weight in zip(points, weights, strict=True):
+                w, turn, _ = at(left + length / 2 * (z + 1))
+                inertia = 0.0 if theory == "euler-bernoulli" else piece.rotary_inertia
+                mass += weight * length / 2 * (piece.mass_per_length * w * w + inertia * turn * turn)
+            left += length
         for one in beam.mass:
-            w, turn = at(one.position)
+            w, turn, _ = at(one.position)
             mass += one.mass * w * w + one.rotary_inertia * turn * turn
         first = at(1e-3 * beam.length)[0]
-        w, turn = at(x)
-    return np.array([w, turn]) * np.sign(first) / np.sqrt(mass)
+        w, turn, force = at(x)
+    return np.array([w, turn + slip(beam, theory, x, force)]) * np.sign(first) / np.sqrt(mass)
 
 
 # --- Hermite elements -----------------------------------------------------------------------------------------------
 
 
-def equal(beam, counts):
-    """(piece, length) of every part, `counts` of them between what stands on the beam or changes it, in its order."""
-    stops = sorted(
-        {0.0, *(one.position for one in (*beam.mass, *beam.spring)), *np.cumsum([p.length for p in beam.pieces])}
-    )
-    stops[-1] = beam.length
+def cuts(beam, stands=True):
+    """Both ends and what lies between: where sections meet and, `stands`, where something stands on the beam."""
+    bodies = {one.position for one in (*beam.mass, *beam.spring)} if stands else set()
+    stops = sorted({0.0, *bodies, *np.cumsum([p.length for p in beam.pieces])})
+    stops = [a for i, a in enumerate(stops) if i == 0 or a - stops[i - 1] > 1e-9 * beam.length]
+    return [*stops[:-1], beam.length]
+
+
+def equal(beam, counts, cut=True):
+    """(piece, length) of every part, `counts` of them between what changes the beam or, `cut`, stands on it."""
+    stops = cuts(beam, cut)
     parts = []
     for a, b, n in zip(stops[:-1], stops[1:], counts, strict=True):
         ends = np.cumsum([p.length for p in beam.pieces])
@@ -271,8 +282,12 @@ class Links:
 
 # --- What a gate expects -----------------------------------------------------------------------------------------------
 
-COUNTS = {}
-"""(scene, count) -> parts between what stands on the beam or changes it, where there is such a thing."""
+COUNTS = {
+    ("stepped-beam", "fem", 24): (10, 14),
+    ("stepped-beam", "segment", 24): (10, 14),
+    ("instrument-arm", "fem", 24): (9, 15),
+}
+"""(scene, model, count) -> parts between what cuts the beam, where there is such a thing."""
 DERIVATIVES = {"deflection": 0, "slope": 1, "curvature": 2, "receptance": 0}
 
 
@@ -280,8 +295,9 @@ def known(scene, gate):
     """The figure of a gate of a driven field or of a shape, by its arguments."""
     given, what = gate.arguments, gate.quantity.partition(".")[2]
     beam = replace(scene.beam, loss_factor=given.get("loss_factor", scene.beam.loss_factor))
-    parts = given.get("count") and equal(beam, COUNTS.get((scene.name, given["count"]), (given["count"],)))
-    solve = {"analytic": exactly, "fem": by_elements, "segment": by_links}[given.get("model", "analytic")]
+    count, model = given.get("count"), given.get("model", "analytic")
+    parts = count and equal(beam, COUNTS.get((scene.name, model, count), (count,)), cut=model == "fem")
+    solve = {"analytic": exactly, "fem": by_elements, "segment": by_links}[model]
     if gate.quantity.startswith("mode."):
         return solve(beam, parts, given, None, None, given["x"], DERIVATIVES[what])
     hertz = given.get("frequency_hz", scene.drive.frequency_hz)
@@ -307,6 +323,7 @@ def exactly(beam, parts, given, hertz, forces, x, derivative):
 
         return shape(beam, theory, exact_frequency_hz(beam, given["mode"], theory), x)[derivative]
     states = field(beam, theory, hertz, forces, x)
+    states[1] += slip(beam, theory, x, states[3]) / (1 + 1j * beam.loss_factor)
     return states[derivative] / (
         piece_at(beam, x).bending_stiffness * (1 + 1j * beam.loss_factor) if derivative == 2 else 1
     )

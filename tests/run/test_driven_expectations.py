@@ -6,7 +6,15 @@ import pytest
 from verify.scenes.scene import load_scene
 
 FIGURES = ("wave.deflection", "wave.slope", "wave.curvature", "wave.receptance", "mode.deflection", "mode.slope")
-SCENES = ("driven-cantilever",)
+SCENES = (
+    "driven-cantilever",
+    "guided-bar",
+    "free-free-bar",
+    "stepped-beam",
+    "taut-strip",
+    "instrument-arm",
+    "thick-bar",
+)
 KNOWN = [(scene, gate.id) for scene in SCENES for gate in load_scene(scene).gate if gate.quantity in FIGURES]
 
 
