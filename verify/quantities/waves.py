@@ -11,6 +11,7 @@ from verify.quantities.wave_arguments import (
     AxisRatio,
     BestFrequency,
     Driven,
+    Fastest,
     InWindow,
     Power,
     Receptance,
@@ -94,6 +95,12 @@ def _sensitivity(name: str) -> Callable[[Sensitivity, "Scene", Workbench], float
         return float(getattr(driven_point(driven_case(a, scene)), name))
 
     return evaluate
+
+
+def _fastest(a: Fastest, scene: "Scene", bench: Workbench) -> float:
+    from verify.waves.operating_point import fastest_point
+
+    return fastest_point(driven_case(a, scene), a.limit).crest_speed
 
 
 def _figure(name: str) -> Callable[[InWindow, "Scene", Workbench], float]:
@@ -234,5 +241,13 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         Sensitivity,
         "harmonic",
         _sensitivity("per_degree"),
+    ),
+    Quantity(
+        "wave.fastest_crests",
+        "m/s",
+        "Surface speed at the crests where it is largest, near the drive's frequency, with a reflection up to `limit`.",
+        Fastest,
+        "harmonic",
+        _fastest,
     ),
 )
