@@ -16,7 +16,12 @@ SCENES = (
     "instrument-arm",
     "thick-bar",
 )
-ELSEWHERE = ("fastest-crests", "fastest-crests-imposed", "imposed-reflection-per-hertz", "imposed-reflection-per-degree")
+ELSEWHERE = (
+    "fastest-crests",
+    "fastest-crests-imposed",
+    "imposed-reflection-per-hertz",
+    "imposed-reflection-per-degree",
+)
 """Gates of `paper-wave`."""
 KNOWN = [
     (scene, gate.id)
