@@ -5,6 +5,8 @@ matrices, chains rigid links with springs between them, both dense, in metres an
 (position, newton, degrees). Only what a beam is made of comes from the suite.
 """
 
+from types import SimpleNamespace
+
 import mpmath as mp
 import numpy as np
 from carried_reference import GREGORY, hermite
@@ -288,6 +290,8 @@ COUNTS = {
     ("instrument-arm", "fem", 24): (9, 15),
 }
 """(scene, model, count) -> parts between what cuts the beam, where there is such a thing."""
+ON_RESONANCE = ("imposed-on-resonance",)
+"""Gates of displacements at a resonance of the beam under forces."""
 DERIVATIVES = {"deflection": 0, "slope": 1, "curvature": 2, "receptance": 0}
 
 
@@ -308,6 +312,10 @@ def known(scene, gate):
     def at(drives, x, derivative):
         return solve(beam, parts, given, hertz, drives, x, derivative)
 
+    if gate.id in ON_RESONANCE:  # of the beam without what holds it: from both sides
+        hertz = [hertz * (1 + side) for side in (-1e-6, 1e-6)]
+        sides = [{**given, "frequency_hz": one} for one in hertz]
+        return sum(known(scene, SimpleNamespace(id="", quantity=gate.quantity, arguments=one)) for one in sides) / 2
     if given.get("drive", scene.drive.kind) == "displacement":
         places = [force[0] for force in forces]
         receptance = [[at([(b, 1.0, 0.0)], a, 0) for b in places] for a in places]

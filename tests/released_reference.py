@@ -357,9 +357,31 @@ def reflection(scene, given):
     return float(min(sizes) / max(sizes))
 
 
+def fitted_reflection(scene, given):
+    """Of the undamped pinned beam's steady field at evenly spaced places, at the wavenumber that leaves least."""
+    crests, hertz = Crests(scene, given), scene.drive.frequency_hz
+    beam, x = scene.beam, np.linspace(*given["window"], given.get("points", 40))
+    exact = (beam.mass_per_length * (2 * np.pi * hertz) ** 2 / beam.bending_stiffness) ** 0.25
+    w = sum(phasor(f) * crests.green(exact, f[0], x) for f in crests.forces)
+
+    def fit(k):
+        basis = np.exp(np.outer(x - x.mean(), [-1j * k, 1j * k]))
+        waves = np.linalg.lstsq(basis, w, rcond=None)[0]
+        return abs(waves), float(np.linalg.norm(w - basis @ waves))
+
+    grid = np.linspace(0.97, 1.03, 601) * exact
+    near = grid[int(np.argmin([fit(k)[1] for k in grid]))]
+    found = minimize_scalar(
+        lambda k: fit(k)[1] ** 2, bounds=(near * 0.9999, near * 1.0001), method="bounded", options={"xatol": 1e-10}
+    )
+    waves = fit(found.x)[0]
+    return float(waves.min() / waves.max())
+
+
 KNOWN = {
     "motion.deflection": deflection,
     "motion.energy": energy,
+    "motion.reflection": fitted_reflection,
     "motion.released_deflection": released_deflection,
     "motion.released_energy": released_energy,
     "beam.buckling_load": buckling,

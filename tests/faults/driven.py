@@ -2,8 +2,9 @@
 
 import numpy as np
 from faults.modes import roots_of_a_beam_with_one_half_wave_too_many
+from msgspec import structs
 
-from verify.chain import bending
+from verify.chain import bending, splitting
 from verify.elements import linear as fem_beam
 from verify.elements import mesh as element_mesh
 from verify.elements import pencil as element_pencil
@@ -14,9 +15,10 @@ from verify.exact import modes as exact_modes
 from verify.models import eigen, fields
 from verify.motion import energy, forcing, free_vibration, surface
 from verify.segments import buckling as chain_buckling
+from verify.segments import carried as chain_carried
 from verify.segments import linear as segment_model
 from verify.segments import walls as chain_walls
-from verify.waves import imposed, operating_point, unit_waves
+from verify.waves import imposed, operating_point, series, unit_waves
 
 
 def phases_of_the_wrong_sign(patch):
@@ -174,12 +176,36 @@ def wavenumber_of_the_beam_alone(patch):
     patch.setattr(fields, "_running", lambda beam, omega, theory: complex((omega / beam.wave_constant) ** 0.5))
 
 
+def waves_in_time_two_per_cent_short(patch):
+    true = series.fitted_wavenumber
+    patch.setattr(series, "fitted_wavenumber", lambda *given: 1.02 * true(*given))
+
+
+def linear_flow_a_thousandth_more(patch):
+    true = splitting.linear_deflection
+    patch.setattr(splitting, "linear_deflection", lambda *given, **more: 1.001 * true(*given, **more))
+
+
+def turn_of_a_clamps_spring_taken_for_that_of_its_joint(patch):
+    true = chain_carried._added
+
+    def added(beam, chain, *given):
+        return structs.replace(true(beam, chain, *given), joint_inertias=chain.joint_inertias)
+
+    patch.setattr(chain_carried, "_added", added)
+
+
 def gates(text):
     """Their ids, as written."""
     return set(text.split())
 
 
 FAULTS = {
+    "chain": {linear_flow_a_thousandth_more: gates("ten-newton-linear")},
+    "paper-slider": {
+        loads_halved_in_time: gates("coarse-beam-elements coarse-beam-segments"),
+        waves_in_time_two_per_cent_short: gates("reflection-in-time"),
+    },
     "driven-cantilever": {
         phases_of_the_wrong_sign: gates(
             "exact-deflection exact-slope exact-curvature exact-beside-the-tip exact-undamped exact-slow "
@@ -197,7 +223,9 @@ FAULTS = {
             "segments-half-wall beam-exact beam-exact-undamped"
         ),
         receptances_of_a_thousandth_more: gates("exact-receptance elements-receptance segments-receptance"),
-        displacements_held_at_one_place_alone: gates("exact-imposed elements-imposed segments-imposed"),
+        displacements_held_at_one_place_alone: gates(
+            "exact-imposed elements-imposed segments-imposed imposed-on-resonance"
+        ),
         losses_of_bending_twice_as_large: gates(
             "elements-deflection elements-slope elements-curvature elements-imposed links-deflection links-slope "
             "raw-joints segments-deflection segments-slope segments-curvature segments-with-dashpots "
@@ -346,6 +374,7 @@ FAULTS = {
         wavenumber_of_the_beam_alone: gates("taut-reflection"),
     },
     "instrument-arm": {
+        turn_of_a_clamps_spring_taken_for_that_of_its_joint: gates("mended-rayleigh-order mended-timoshenko-order"),
         phases_of_the_wrong_sign: gates(
             "exact-deflection exact-slope exact-curvature exact-slow elements-deflection elements-slope "
             "levers-deflection levers-slope"
@@ -378,7 +407,7 @@ FAULTS = {
         wavenumber_of_the_beam_alone: gates("thick-reflection rayleigh-reflection"),
     },
     "paper-wave": {
-        receptances_of_a_thousandth_more: gates("fastest-crests"),
+        receptances_of_a_thousandth_more: gates("fastest-crests receptance-beside-the-right-end"),
         limit_of_reflection_a_hundredth_looser: gates("fastest-crests fastest-crests-imposed"),
         sensitivities_of_forces_for_those_of_displacements: gates(
             "fastest-crests-imposed imposed-reflection-per-hertz imposed-reflection-per-degree"

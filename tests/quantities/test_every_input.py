@@ -331,6 +331,12 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "fem", "count": 12, "of": "damped"}, stepped("clamped", "pinned")),
         Case({"model": "analytic", "modes": 9, "of": "kinetic"}),
     ],
+    "motion.reflection": [
+        Case(
+            {"model": "segment", "count": 12, "window": [0.2, 0.5], "time": 3.1e-3, "start": "steady", "points": 23},
+            STEADY,
+        ),
+    ],
     "motion.released_deflection": [
         Case({"model": "segment", "count": 12, "x": 0.31, "place": 0.47, "height": 0.002, "speed": 0.3, "time": 7e-3}),
         Case(
@@ -579,10 +585,10 @@ DEAD = [
         "the best phase is sought, of the sign of the one given",
     ),
     Dead("motion.released_*", "drive.* slider.* motion.*", "let go: nothing drives, nothing lies on it"),
-    Dead("motion.energy", "motion.steps_per_period", "closed form in time: no step"),
-    Dead("motion.energy", "slider.*", "the beam alone"),
+    Dead("motion.energy motion.reflection", "motion.steps_per_period", "closed form in time: no step"),
+    Dead("motion.energy motion.reflection", "slider.*", "the beam alone"),
     Dead(
-        "motion.energy motion.released_* wave.slope wave.curvature",
+        "motion.energy motion.reflection motion.released_* wave.slope wave.curvature",
         "beam.extreme_fibre",
         "the neutral line moves whatever the surface does",
     ),

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration
     from verify.scenes.scene import Scene
 
+SAMPLES = 32
+"""Of a motion that waves are measured of, in each period."""
 EXACT_MODES = 400
 """Of the exact beam, unless asked for otherwise."""
 
@@ -60,6 +62,27 @@ class ReleasedEnergy(Released, frozen=True, kw_only=True):
     """What is in it."""
 
     of: Annotated[Literal["kinetic", "elastic"], Meta(description="which part of the energy")]
+
+
+class MeasuredInTime(InTime, frozen=True, kw_only=True):
+    """Waves measured of a motion, from its end back over whole periods."""
+
+    window: Annotated[tuple[float, float], Meta(description="metres, start and end")]
+    points: Annotated[int, Meta(ge=4, le=2000, description="evenly spaced, that are watched")] = 40
+
+
+def _reflection(a: MeasuredInTime, scene: "Scene", bench: Workbench) -> float:
+    import numpy as np
+
+    from verify.models.places import places
+    from verify.quantities.simulated import motion_case
+    from verify.waves.series import measure_series
+
+    case, (start, end) = motion_case(a, scene), a.window
+    x = places("window", np.linspace(start, end, a.points), scene.beam.length)
+    samples = int(SAMPLES * case.duration * case.frequency_hz) + 1
+    run = case.run(at=[float(one) for one in x], samples=samples)
+    return measure_series(scene.beam, x, run.times, run.deflection, case.frequency_hz).reflection
 
 
 def _booked(a: Booked, scene: "Scene", bench: Workbench) -> float:
@@ -125,5 +148,13 @@ ENERGY_QUANTITIES: tuple[Quantity[Any], ...] = (
     ),
     Quantity(
         "motion.released_energy", "J", "Kinetic or elastic energy of such a beam.", ReleasedEnergy, "in time", _energy
+    ),
+    Quantity(
+        "motion.reflection",
+        "1",
+        "Gamma of two waves fitted, wavenumber and all, to the phasors of the driven beam's motion in a window.",
+        MeasuredInTime,
+        "in time",
+        _reflection,
     ),
 )
