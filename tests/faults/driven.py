@@ -182,8 +182,8 @@ def waves_in_time_two_per_cent_short(patch):
 
 
 def linear_flow_a_thousandth_more(patch):
-    true = splitting.linear_deflection
-    patch.setattr(splitting, "linear_deflection", lambda *given, **more: 1.001 * true(*given, **more))
+    true = splitting.linear_states
+    patch.setattr(splitting, "linear_states", lambda *given: 1.001 * true(*given))
 
 
 def turn_of_a_clamps_spring_taken_for_that_of_its_joint(patch):
@@ -201,7 +201,7 @@ def gates(text):
 
 
 FAULTS = {
-    "chain": {linear_flow_a_thousandth_more: gates("ten-newton-linear")},
+    "chain": {linear_flow_a_thousandth_more: gates("small-force-linear")},
     "paper-slider": {
         loads_halved_in_time: gates("coarse-beam-elements coarse-beam-segments"),
         waves_in_time_two_per_cent_short: gates("reflection-in-time"),
