@@ -165,8 +165,8 @@ def main() -> NoReturn:
 
     The matrices here are small or sparse: BLAS threads only get in each other's way, so one is the default. What a
     terminal cannot show is escaped, and what scipy imports for others is not read (`asleep`). A stream that was closed
-    leads nowhere: else the next file that is opened would get its number, and what is printed. Who is told to end tidies
-    up first.
+    leads nowhere: else the next file that is opened would get its number, and what is printed. Who is told to end
+    tidies up first.
     """
     from verify.asleep import put_to_sleep
 

@@ -140,6 +140,8 @@ PLAIN = {
 """A section by its figures alone."""
 THICK = {"theory": "timoshenko", "joints": "tensioned"}
 STILL = {"beam": {"loss_factor": 0.0}}
+ALIKE = {**STILL, "drive": {"force": [FORCES[0], {**FORCES[1], "amplitude": 1.2}]}}
+"""Forces that make a wave which travels nearly alone."""
 AT_ONCE = {**STILL, "motion": {"soft_start_periods": 0.0, "modal_damping": None}}
 SHAKEN = {
     "drive": {"force": [{**force, "amplitude": 90.0 * force["amplitude"]} for force in FORCES]},
@@ -200,6 +202,15 @@ CASES: dict[str, list[Case]] = {
         Case({**FEM, "mode": 2}, on("clamped", "pinned")),
     ],
     "mode.curvature_error": [Case({**SEGMENT, "mode": 2}, on("clamped", "pinned"))],
+    "mode.deflection": [
+        Case({**SEGMENT, "mode": 2, "x": 0.31}, on("clamped", "pinned")),
+        Case({**FEM, "mode": 2, "x": 0.31}, stepped("clamped", "free")),
+        Case({"model": "analytic", "mode": 3, "x": 0.31}, CARRIED),
+    ],
+    "mode.slope": [
+        Case({"model": "analytic", "mode": 3, "x": 0.31, "theory": "timoshenko"}, PLAIN),
+        Case({**SEGMENT, "mode": 2, "x": 0.31}, on("clamped", "free")),
+    ],
     "mode.node_position": [
         Case({"model": "analytic", "mode": 4}, on("clamped", "free")),
         Case({**SEGMENT, "mode": 4}, on("clamped", "free")),
@@ -244,6 +255,15 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "segment", "count": 24, "x": 0.323, "attachment": "lever", "theory": "timoshenko"}, SPRUNG),
         Case({"x": 0.31}, CARRIED),
         Case({"x": 0.31, "theory": "timoshenko"}, PLAIN),
+    ],
+    "wave.slope": [
+        Case({"x": 0.31}),
+        Case({"model": "segment", "count": 24, "x": 0.323}, stepped("clamped", "pinned")),
+    ],
+    "wave.curvature": [Case({"x": 0.31}, CARRIED), Case({"model": "fem", "count": 24, "x": 0.323})],
+    "wave.fastest_crests": [
+        Case({"limit": 0.13, "position": 0.0411}, ALIKE),
+        Case({"model": "segment", "count": 40, "limit": 0.14, "position": 0.0411}, ALIKE),
     ],
     **{f"wave.{name}": [Case({}), Case({"model": "segment", "count": 40, "window": [0.2, 0.5]})] for name in FIELDS},
     "wave.axis_ratio": [Case({"x": 0.33}), Case({"model": "fem", "count": 40, "window": [0.2, 0.5]})],
@@ -312,6 +332,41 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "fem", "count": 12, "x": 0.31}, {"motion": {**STEADY["motion"], "modal_damping": None}}),
         Case({"model": "fem", "count": 12, "x": 0.31}, CARRIED),
     ],
+    "motion.energy": [
+        Case({"model": "segment", "count": 12, "of": "work_in"}),
+        Case({"model": "fem", "count": 12, "of": "damped"}, stepped("clamped", "pinned")),
+        Case({"model": "analytic", "modes": 9, "of": "kinetic"}),
+    ],
+    "motion.reflection": [
+        Case(
+            {"model": "fem", "count": 40, "window": [0.2, 0.5], "points": 23},
+            {"motion": {**STEADY["motion"], "duration": 2.1e-3}, "drive": {"frequency_hz": 2911.0}},
+        )
+    ],
+    "motion.released_deflection": [
+        Case({"model": "segment", "count": 12, "x": 0.31, "place": 0.47, "height": 0.002, "speed": 0.3, "time": 7e-3}),
+        Case(
+            {"model": "fem", "count": 12, "x": 0.31, "place": 0.47, "speed": 0.3, "time": 7e-3},
+            stepped("clamped", "pinned"),
+        ),
+    ],
+    "motion.released_energy": [
+        Case({"modes": 9, "model": "analytic", "place": 0.47, "height": 0.002, "time": 7e-3, "of": "kinetic"})
+    ],
+    "beam.buckling_load": [
+        Case({"model": "analytic"}, on("clamped", "free")),
+        Case({**SEGMENT, "joints": "tensioned", "wall": "half"}, on("clamped", "free")),
+        Case({**FEM}, stepped("clamped", "pinned")),
+        Case({**SEGMENT, "count": 14}, SPRUNG),
+    ],
+    "chain.bent_tip": [
+        Case({"count": 7, "across": 3.1, "along": -0.7, "moment": 0.2}, {"beam": {"supports": ["clamped", "free"]}}),
+        Case(
+            {"count": 7, "across": 3.1, "component": "shortening", "wall": "half"},
+            {"beam": {"section": STEP, "supports": ["clamped", "free"]}},
+        ),
+    ],
+    "chain.bent_energy": [Case({"count": 7, "moment": 0.2, "across": 0.9}, on("clamped", "free"))],
     "chain.cantilever_tip": [
         Case({"load": 2.3, "segments": 5}),
         Case({"load": 2.3, "segments": 5, "component": "shortening"}),
@@ -404,7 +459,8 @@ def heavy(asked):
 
 def by_a_ratio(asked):
     """Whether a motion's modes have a damping ratio in place of the beam's loss factor."""
-    ratios = asked.scene["motion"]["modal_damping"], asked.arguments.get("modal_damping")
+    own = None if asked.quantity.startswith("motion.released") else asked.scene["motion"]["modal_damping"]
+    ratios = own, asked.arguments.get("modal_damping")
     return "modal_damping" in asked.arguments and ratios != (None, None)
 
 
@@ -492,6 +548,66 @@ DEAD = [
         "a shape is geometry",
         lambda a: lone(a) and euler(a),
     ),
+    Dead(
+        "beam.buckling_load",
+        "beam.density beam.mass.*.mass beam.mass.*.rotary_inertia beam.section.*.density beam.*mass_per_length "
+        "beam.loss_factor beam.extreme_fibre drive.* slider.* motion.*",
+        "a load at rest: nothing moves, nothing is lost",
+    ),
+    Dead(
+        "beam.buckling_load",
+        "beam.mass beam.mass.*.position",
+        "the same; but elements end where masses stand",
+        lambda a: a.arguments["model"] != "fem",
+    ),
+    Dead(
+        "beam.buckling_load",
+        "beam.supports.0=guided",
+        "what may move along as a whole bears no less",
+        lambda a: a.scene["beam"]["supports"] == ["clamped", "free"] and bare(a),
+    ),
+    Dead("beam.buckling_load", "beam.tension", "the compression counts, whatever force there is already"),
+    Dead(
+        "beam.buckling_load",
+        "arguments.joints=series arguments.joints=printed",
+        "both forms of Eq. (1) are one where E and I do not change",
+        lambda a: uniform(a) and a.arguments["joints"] != "tensioned",
+    ),
+    Dead(
+        "chain.bent_*",
+        "beam.density beam.*mass_per_length beam.section.*.density beam.loss_factor drive.* slider.* motion.*",
+        "an equilibrium without gravity: nothing moves, nothing is lost",
+    ),
+    Dead("chain.bent_*", "beam.*extreme_fibre", "the neutral line bends whatever the surface does"),
+    Dead(
+        "chain.bent_*",
+        "arguments.joints=series arguments.joints=printed",
+        "both forms of Eq. (1) are one where E and I do not change",
+        uniform,
+    ),
+    Dead("motion.reflection", "motion.duration arguments.time", "a steady motion is the same in every period"),
+    Dead("motion.reflection", "beam.width", "a ratio of one motion: EI and rho A share the width"),
+    Dead("chain.bent_*", "arguments.joints=tensioned", "dead loads: its joints know no axial force"),
+    Dead("motion.released_deflection", "beam.width", "let go, not forced: EI and rho A share the width", lone),
+    Dead(
+        "wave.fastest_crests",
+        "drive.force.*.phase_deg arguments.phase_deg",
+        "the best phase is sought, of the sign of the one given",
+    ),
+    Dead("motion.released_*", "drive.* slider.* motion.*", "let go: nothing drives, nothing lies on it"),
+    Dead("motion.energy motion.reflection", "motion.steps_per_period", "closed form in time: no step"),
+    Dead("motion.energy motion.reflection", "slider.*", "the beam alone"),
+    Dead(
+        "motion.energy motion.reflection motion.released_* wave.slope wave.curvature",
+        "beam.extreme_fibre",
+        "the neutral line moves whatever the surface does",
+    ),
+    Dead(
+        "mode.deflection mode.slope",
+        "beam.youngs_modulus",
+        "a shape of unit modal mass is geometry and mass",
+        lambda a: lone(a) and euler(a),
+    ),
     Dead("mode.dispersion_error", "*", "rounding, whatever the beam and the size: that is what it says"),
     Dead("mode.st*_difference", "*", "rounding, whatever the beam and the size: that is what they say"),
     Dead("mode.* wave.*", "arguments.wall", "no clamped end has a joint", lambda a: unclamped(a) and bare(a)),
@@ -507,9 +623,9 @@ DEAD = [
         "nothing pulls and nothing is thick",
         lambda a: (uniform(a) or a.arguments["joints"] == "series") and not pulled(a) and euler(a),
     ),
-    Dead("mode.* wave.*", "arguments.attachment", "nothing stands on the beam", bare),
+    Dead("mode.* wave.* beam.buckling_load", "arguments.attachment", "nothing stands on the beam", bare),
     Dead(
-        "mode.shape* mode.curvature_error mode.node_position",
+        "mode.shape* mode.curvature_error mode.node_position mode.deflection mode.slope",
         "beam.foundation",
         "a bed under the whole of a uniform beam lifts all omega^2 by k_f/(rho A) and leaves the shapes",
         lambda a: uniform(a) and bare(a) and euler(a),
@@ -576,7 +692,7 @@ DEAD = [
         "beam.length beam.width beam.supports.* beam.loss_factor drive.kind drive.force.* slider.* motion.*",
         "a pure wave on the beam's section under a slider of its own",
     ),
-    Dead("slider.* motion.*", "beam.loss_factor", "a modal ratio is given instead", by_a_ratio),
+    Dead("slider.* motion.[!r]* motion.released_*", "beam.loss_factor", "a modal ratio is given instead", by_a_ratio),
     Dead(
         "slider.* chain.slider_*",
         "slider.coupling=one-way arguments.coupling=one-way",
@@ -680,6 +796,10 @@ OFF: dict[str, Any] = {
     "joint_dashpot": 0.013,
     "preload": 0.0041,
     "speed": 0.0037,
+    "height": 0.0017,
+    "along": -0.31,
+    "across": 1.7,
+    "moment": 0.13,
     "phase_deg": 61.0,
     "soft_start_periods": 0.37,
     "position": 0.083,

@@ -5,14 +5,15 @@ from itertools import chain
 import faults.everything  # noqa: F401
 import pytest
 from faults import chain as of_the_chain
-from faults import modes, motion, stress, waves
+from faults import driven, modes, motion, stress, waves
 
 from verify.quantities.catalogue import QUANTITIES
 from verify.run.gates import judge
 from verify.run.runner import workbench_for
 from verify.scenes.scene import load_scene, packaged_scenes
 
-FAMILIES = (modes.FAULTS, waves.FAULTS, of_the_chain.FAULTS, motion.FAULTS, stress.FAULTS)
+AT_A_PLACE = ("wave.deflection", "wave.slope", "wave.curvature")
+FAMILIES = (modes.FAULTS, waves.FAULTS, of_the_chain.FAULTS, motion.FAULTS, driven.FAULTS, stress.FAULTS)
 FAULTS = {
     scene: dict(chain.from_iterable(family.get(scene, {}).items() for family in FAMILIES))
     for scene in packaged_scenes()
@@ -62,7 +63,7 @@ def test_every_wave_gate_says_its_damping_and_its_window():
             if given.get(name)
         ]
         damping = ", ".join(dampings).replace("e-0", "e-") + " N m s" * ("joint_dashpot" in given) + ", "
-        at_a_point = gate.quantity in ("wave.deflection", "wave.receptance") or given.get("of") == "deflection"
+        at_a_point = gate.quantity in (*AT_A_PLACE, "wave.receptance") or given.get("of") == "deflection"
         window = "[{} m, {} m]".format(*given["window"]) if "window" in given else "[L/4, 3L/4]"
         x = given.get("x", 0.25)
         place = ("at L/2" if x == 0.25 else f"at {x} m") if at_a_point else window

@@ -239,3 +239,13 @@ def test_how_a_chain_is_solved_is_known_beforehand(attachment, joints, theory, t
     settings = {"theory": theory, "attachment": attachment, "joints": joints}
     found = solve_modes(beam, 3, count, **settings)
     assert MODELS["segment"].method(beam, 3, count, **settings) == found.method
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize(("end", "hold"), [(0, 0.3), (1, 20.0)])
+def test_mended_joints_before_an_elastic_clamp_keep_order_four(theory, end, hold):
+    """Only the joint's own turn mends its links' inertia, not that of the spring behind it: order 1 otherwise."""
+    clamp = PointSpring(position=(0.0, L)[end], rotational=hold * EI / L)
+    beam = replace(THICK, supports=(("pinned", "free"), ("free", "pinned"))[end], spring=(clamp,))
+    assert order(beam, 1, (80, 160), theory, joints="tensioned") == pytest.approx(4.0, abs=0.12)
+    assert abs(errors(beam, 1, (160,), theory, joints="tensioned")[0]) < 1e-9

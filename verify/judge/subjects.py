@@ -78,6 +78,12 @@ class Exact(Model):
 
         return time_basis(beam, modes)
 
+    def buckling_load(self, beam: "Beam", count: int | None, **settings: Any) -> float:
+        """By the characteristic equation at rest."""
+        from verify.exact.buckling import buckling_load
+
+        return buckling_load(beam)
+
 
 class Discrete(Model):
     """A model of parts whose verbs are the functions of a module, and whose dispersion is known."""
@@ -176,7 +182,15 @@ class Segments(Discrete):
     method_settings = ("joints", "theory", "attachment")
     modal_settings = ("wall", "joints", "grading", "theory", "attachment")
     field_settings = ("modal_damping", "joint_dashpot", "load", "reading", "wall", "joints", "theory", "attachment")
+    buckling_settings = ("wall", "joints", "grading", "attachment")
     lines = ("spline", "raw")
+
+    def buckling_load(self, beam: "Beam", count: int | None, **settings: Any) -> float:
+        """Of its joints under the links' turns."""
+        from verify.segments.buckling import buckling_load
+
+        assert count is not None
+        return buckling_load(beam, count, **settings)
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:
         """4 on equal links between pinned, guided, free and Gregory's ends; less by each rule that is of a lower one.
@@ -223,9 +237,17 @@ class Elements(Discrete):
     bounds = "above"
     modal_settings = ("grading", "theory")
     field_settings = ("modal_damping", "theory")
+    buckling_settings = ("grading",)
     unknowns_per_part = 2
     size_settings = method_settings = ("theory",)
     library = "scikit-fem"
+
+    def buckling_load(self, beam: "Beam", count: int | None, **settings: Any) -> float:
+        """Of the mesh."""
+        from verify.elements.linear import buckling_load
+
+        assert count is not None
+        return buckling_load(beam, count, **settings)
 
     def order(self, beam: "Beam", **settings: Any) -> int | None:
         """4: nodes stand on the steps."""

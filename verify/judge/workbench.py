@@ -290,6 +290,17 @@ class Workbench:
         found = modes.curvatures()[self.paired_index(model, count, mode, settings)]
         return compare.shape_error(exact, found, compare.node_weights(modes.curvature_points))
 
+    def shape_at(
+        self, model: str, count: int | None, mode: int, x: "Array", derivative: int, settings: Settings = ()
+    ) -> float:
+        """A derivative of a mass-normalised shape at x, (1,), metres on the beam. Raises InputError."""
+        from verify.exact import modes as analytic_modes
+
+        if count is None:
+            return float(analytic_modes.mode_shape(self.beam, mode, x, derivative, theory_of(settings))[0])
+        modes = self.modes(model, count, mode, settings)
+        return float(modes.shapes(x, derivative)[self.paired_index(model, count, mode, settings), 0])
+
     def node_positions(self, model: str, count: int | None, mode: int, settings: Settings = ()) -> "Array":
         """Where a mode stands still between the ends, (n_nodes,), metres, ascending. Raises InputError."""
         from verify.exact import modes as analytic_modes

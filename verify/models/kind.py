@@ -41,6 +41,8 @@ class Model:
     """Keywords of its `solve_modes`: of wall, joints, grading."""
     field_settings: tuple[str, ...] = ()
     """Keywords of its `solve_harmonic`: of modal_damping, joint_dashpot, load, reading."""
+    buckling_settings: tuple[str, ...] = ()
+    """Keywords of its `buckling_load`: of wall, joints, grading, attachment."""
     lines: tuple[str, ...] = ("spline",)
     """Contact lines that a slider may run on."""
     unknowns_per_part: int = 1
@@ -118,6 +120,10 @@ class Model:
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """Its free modes for motion in time; an endless model keeps the first `modes`. Raises InputError."""
         raise self._has_no("time_basis", "motion in time")
+
+    def buckling_load(self, beam: "Beam", count: int | None, **settings: Any) -> float:
+        """The compression at which it buckles first, newton. Raises InputError."""
+        raise self._has_no("buckling_load", "buckling load")
 
     def wavenumber(self, beam: "Beam", count: int, frequency_hz: float) -> complex:
         """At which waves run in it, 1/m; that of the beam itself unless a model knows its own. Raises InputError.

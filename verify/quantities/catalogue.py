@@ -14,9 +14,11 @@ from verify.errors import InputError, shown
 from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Workbench
 from verify.quantities.chain import CHAIN_QUANTITIES
+from verify.quantities.energies import ENERGY_QUANTITIES
 from verify.quantities.kind import A, Arguments, Figure, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
 from verify.quantities.motion import MOTION_QUANTITIES
+from verify.quantities.statics import STATIC_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
 from verify.registry import Registry
 from verify.scenes.checked import checked
@@ -29,7 +31,14 @@ if TYPE_CHECKING:
 QUANTITIES: Registry[Quantity[Any]] = Registry(
     "quantity",
     "verify.quantities",
-    own=(*MODE_QUANTITIES, *WAVE_QUANTITIES, *MOTION_QUANTITIES, *CHAIN_QUANTITIES),
+    own=(
+        *MODE_QUANTITIES,
+        *WAVE_QUANTITIES,
+        *MOTION_QUANTITIES,
+        *ENERGY_QUANTITIES,
+        *CHAIN_QUANTITIES,
+        *STATIC_QUANTITIES,
+    ),
     homes={"stress.share": "verify.stress.quantity:SHARE"},
 )
 

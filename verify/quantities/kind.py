@@ -141,6 +141,19 @@ class NodeAt(Divided, frozen=True, kw_only=True):
         self.check_settings(self.model)
 
 
+class ShapeOf(Divided, frozen=True, kw_only=True):
+    """One shape of one model at one place."""
+
+    model: ModesModel
+    mode: Mode
+    x: Annotated[float, Meta(description="metres from the left end")]
+    count: Size | None = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+        self.check_settings(self.model)
+
+
 class OverSizes(Divided, frozen=True, kw_only=True):
     """One mode of one model over several sizes."""
 

@@ -1,5 +1,6 @@
 """Named figures of modes: frequencies, shapes, their errors and orders, bounds; and of the paper's drive rule."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from verify.errors import InputError
@@ -19,6 +20,7 @@ from verify.quantities.kind import (
     OverSizes,
     Quantity,
     ShapeAt,
+    ShapeOf,
     ShapesOverSizes,
     StockMode,
     ToError,
@@ -41,7 +43,7 @@ def _solved(
     return tuple(Need(m.name, count, n_modes, for_model(m.name, settings)) for m in models)
 
 
-def _at_size(a: AtSize | DiscreteAtSize | NodeAt, scene: "Scene") -> tuple[Need, ...]:
+def _at_size(a: AtSize | DiscreteAtSize | NodeAt | ShapeOf, scene: "Scene") -> tuple[Need, ...]:
     return _solved(a.model, a.count, a.mode, a.settings, scene.beam)
 
 
@@ -145,6 +147,18 @@ def _node_position(a: NodeAt, scene: "Scene", bench: Workbench) -> float:
     return float(positions[a.node - 1])
 
 
+def _shape(derivative: int) -> Callable[[ShapeOf, "Scene", Workbench], float]:
+    """A derivative of a mass-normalised shape at a place."""
+
+    def evaluate(a: ShapeOf, scene: "Scene", bench: Workbench) -> float:
+        from verify.models.places import places
+
+        at = places("x", a.x, scene.beam.length).ravel()
+        return bench.shape_at(a.model, a.count, a.mode, at, derivative, a.settings)
+
+    return evaluate
+
+
 def _beside_stock(a: StockMode, scene: "Scene") -> tuple[Need, ...]:
     from verify.elements.stock import check_stock
 
@@ -227,6 +241,24 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         DiscreteAtSize,
         "modes",
         lambda a, s, bench: bench.curvature_error(a.model, a.count, a.mode, a.settings),
+        needs=_at_size,
+    ),
+    Quantity(
+        "mode.deflection",
+        "1/sqrt(kg)",
+        "Deflection of a mode of modal mass 1 kg at a place, positive where the beam first moves off its left end.",
+        ShapeOf,
+        "modes",
+        _shape(0),
+        needs=_at_size,
+    ),
+    Quantity(
+        "mode.slope",
+        "1/(m sqrt(kg))",
+        "Slope of that deflection at a place.",
+        ShapeOf,
+        "modes",
+        _shape(1),
         needs=_at_size,
     ),
     Quantity(

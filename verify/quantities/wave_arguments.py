@@ -160,3 +160,9 @@ class Sensitivity(DriveArguments, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
+
+
+class Fastest(Sensitivity, frozen=True, kw_only=True):
+    """Where crests run fastest under a limit on the reflection."""
+
+    limit: Annotated[Relative, Meta(gt=0, lt=1, description="largest reflection")] = 0.1

@@ -12,6 +12,7 @@ from verify.quantities.wave_arguments import (
     AxisRatio,
     BestFrequency,
     Driven,
+    Fastest,
     InWindow,
     Power,
     Receptance,
@@ -39,8 +40,16 @@ def measured(a: InWindow, scene: "Scene", bench: Workbench) -> "WaveMeasures":
     return measures(field_of(a, scene, bench), a.window)
 
 
-def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
-    return complex(field_of(a, scene, bench).deflection(a.x)[0])
+def _read(derivative: int) -> Callable[[At, "Scene", Workbench], complex]:
+    """A derivative of the field at a place."""
+
+    def evaluate(a: At, scene: "Scene", bench: Workbench) -> complex:
+        from verify.models.places import places
+
+        field = field_of(a, scene, bench)
+        return complex(field.shapes(places("x", a.x, field.beam.length).ravel(), derivative)[0])
+
+    return evaluate
 
 
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
@@ -89,6 +98,12 @@ def _sensitivity(name: str) -> Callable[[Sensitivity, "Scene", Workbench], float
     return evaluate
 
 
+def _fastest(a: Fastest, scene: "Scene", bench: Workbench) -> float:
+    from verify.waves.operating_point import fastest_point
+
+    return fastest_point(driven_case(a, scene), a.limit).crest_speed
+
+
 def _figure(name: str) -> Callable[[InWindow, "Scene", Workbench], float]:
     """One attribute of the measures."""
     return lambda a, scene, bench: float(getattr(measured(a, scene, bench), name))
@@ -101,7 +116,25 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Complex deflection, e^{+i omega t}.",
         At,
         "harmonic",
-        _deflection,
+        _read(0),
+        needs=beforehand.driven,
+    ),
+    Quantity(
+        "wave.slope",
+        "rad",
+        "Complex slope of the deflection, e^{+i omega t}, as the model has it.",
+        At,
+        "harmonic",
+        _read(1),
+        needs=beforehand.driven,
+    ),
+    Quantity(
+        "wave.curvature",
+        "1/m",
+        "Complex second derivative of the deflection, as the model has it between its nodes.",
+        At,
+        "harmonic",
+        _read(2),
         needs=beforehand.driven,
     ),
     Quantity(
@@ -232,6 +265,15 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         Sensitivity,
         "harmonic",
         _sensitivity("per_degree"),
+        needs=beforehand.driven,
+    ),
+    Quantity(
+        "wave.fastest_crests",
+        "m/s",
+        "Surface speed at the crests where it is largest, near the drive's frequency, with a reflection up to `limit`.",
+        Fastest,
+        "harmonic",
+        _fastest,
         needs=beforehand.driven,
     ),
 )

@@ -177,11 +177,16 @@ def _added(beam: Beam, chain: Chain, tension: float, attachment: str, elastic: t
     beyond = [0.0 if inertia or not spring else 1.0 / spring for inertia, spring in zip(inertias, springs, strict=True)]
     compliances = chain.compliances.copy()
     compliances[[0, -1]] += beyond
+    taken = chain.joint_inertias
+    if taken is not None:  # of the turn of an end's joint, without that of the spring behind it
+        own = np.divide(chain.compliances, compliances, out=np.ones(len(taken)), where=np.isfinite(compliances))
+        taken = taken * own**2
     at_ends = [body for end in ends for body in end]
     standing = [replace(b, rotary_inertia=0.0, rotational=0.0) if b in at_ends else b for b in bodies]
     return replace(
         chain,
         compliances=compliances,
+        joint_inertias=taken,
         tension=tension,
         foundation=beam.foundation * unit**4 / stiffness,
         bodies=tuple(standing),

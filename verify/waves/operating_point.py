@@ -141,8 +141,7 @@ def operating_points(case: DrivenCase, limit: float = 0.1) -> tuple[tuple[Operat
     not exist. Raises InputError for a case without two forces.
     """
     land = landscape(case)
-    phase = case.forces[1].phase_deg - case.forces[0].phase_deg
-    frequencies = np.linspace(0.985, 1.015, 121) * case.frequency_hz
+    phase, frequencies = _around(case)
     points, problems = [], []
     for find in (land.quiet_point, lambda f, p: land.fast_point(f, p, limit)):
         try:
@@ -150,6 +149,18 @@ def operating_points(case: DrivenCase, limit: float = 0.1) -> tuple[tuple[Operat
         except InputError as error:
             problems.append(error)
     return tuple(points), tuple(problems)
+
+
+def fastest_point(case: DrivenCase, limit: float) -> OperatingPoint:
+    """The second of these points. Raises InputError where it does not exist."""
+    land = landscape(case)
+    phase, frequencies = _around(case)
+    return land.fast_point(frequencies, phase, limit)
+
+
+def _around(case: DrivenCase) -> tuple[float, Array]:
+    """(phase between both forces in degrees, frequencies that are searched) of a case of two forces."""
+    return case.forces[1].phase_deg - case.forces[0].phase_deg, np.linspace(0.985, 1.015, 121) * case.frequency_hz
 
 
 def fastest(land: Landscape, frequencies: Array, phase_deg: float, limit: float) -> tuple[float, float]:
