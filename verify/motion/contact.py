@@ -24,7 +24,7 @@ def law_of(slider: Slider, beam: Beam) -> Law:
     return Law(
         kinetic=float(slider.mu * pressing),
         static=float(static * pressing) if slider.law == "coulomb" else None,
-        slope=float(slider.slope),
+        slope=None if slider.law == "coulomb" else float(slider.slope),
         mass=float(slider.mass),
         half=float(beam.surface_distance),
         gravity=float(slider.gravity),

@@ -186,10 +186,26 @@ def _first_zero(r: float, slowing: float, rate: float, dt: float) -> float:
 
 
 @part(forceinline=True)
+def _grip(r: float, slope: float | None) -> float:
+    """Share of full friction under Eq. (3). Numba drops a branch for what is None, and only then: hence twice."""
+    if slope is None:
+        return 0.0
+    return float(np.tanh(slope * r))
+
+
+@part(forceinline=True)
+def _tanh_slip(r: float, a: float, b: float, slope: float | None, dt: float) -> float:
+    """`tanh_speed_change` where the law has a slope."""
+    if slope is None:
+        return 0.0
+    return tanh_speed_change(r, a, b, slope, dt)
+
+
+@part(forceinline=True)
 def friction(r: float, static: float | None, law: Law) -> float:
     """Friction per mass at relative speed r where it does not depend on sticking; `static` is the law's."""
     if static is None:
-        return float(-law.kinetic * np.tanh(law.slope * r))
+        return -law.kinetic * _grip(r, law.slope)
     return float(-law.kinetic * np.sign(r))
 
 
@@ -220,7 +236,7 @@ def slip(
     took[STICKING], took[N_EVENTS] = 0.0, 0.0
     if static is None:
         mean, rise = (s0 + 4.0 * sm + s1) / 6.0, s1 - s0
-        took[CHANGE] = tanh_speed_change(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
+        took[CHANGE] = _tanh_slip(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
         return float(took[CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
     r, used = 0.0 if stuck else v - s0, 0.0
@@ -263,9 +279,11 @@ def advance(dt: float, rate: float, motion: Array, law: Law, seen: Array, took: 
 
 @part()
 def _tanh_on_belt(
-    dt: float, kinetic: float, slope: float, belt: float, stiffness: float, pull: float, state: Array
+    dt: float, kinetic: float, slope: float | None, belt: float, stiffness: float, pull: float, state: Array
 ) -> None:
     """A step of a spring-held slider under Eq. (3): the spring's mean force, friction solved exactly."""
+    if slope is None:
+        return
     x, v = state[0], state[1]
     start = pull - stiffness * x
     rate = start - kinetic * np.tanh(slope * (v - belt))

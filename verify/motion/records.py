@@ -50,8 +50,8 @@ class Law(NamedTuple):
     """mu N / m, m/s^2."""
     static: float | None
     """The same at rest, of Coulomb's law with true sticking; None: tanh, Eq. (3), and no other law is compiled."""
-    slope: float
-    """K of Eq. (3), s/m."""
+    slope: float | None
+    """K of Eq. (3), s/m; None: Coulomb's law, and no other law is compiled."""
     mass: float
     half: float
     """Half the thickness: the lever of the surface about the mid-line, metres."""

@@ -26,7 +26,7 @@ def _law(coulomb: bool, kinetic: float, static: float, slope: float) -> Law:
     return Law(
         kinetic=float(kinetic),
         static=float(static) if coulomb else None,
-        slope=float(slope),
+        slope=None if coulomb else float(slope),
         mass=1.0,
         half=0.0,
         gravity=GRAVITY,

@@ -32,7 +32,7 @@ def _law(static: float | None) -> Law:
     return Law(
         kinetic=0.0,
         static=static,
-        slope=0.0,
+        slope=0.0 if static is None else None,
         mass=1.0,
         half=0.0,
         gravity=0.0,
