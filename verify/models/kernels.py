@@ -37,7 +37,8 @@ class _PartLibrary(JITCodeLibrary):
         """Link."""
         self._raise_if_finalized()  # type: ignore[no-untyped-call]
         for library in dict.fromkeys(self._linking_libraries):
-            self._reload_init.update(library._reload_init)
+            if hasattr(self, "_reload_init"):  # numba from 0.62 on
+                self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         self._finalized = True
 
@@ -63,7 +64,11 @@ class _PartCompiler(Compiler):
         super().__init__(typingctx, targetctx, into, *given)  # type: ignore[no-untyped-call]
 
 
-PART = {**ALWAYS, "_nrt": False, "no_cpython_wrapper": True, "pipeline_class": _PartCompiler}
+INNER = ("_raise_if_finalized", "_ensure_finalized", "_get_module_for_linking")
+"""What a part's library is made of: numba's own names, which a later numba may not have."""
+LINKED = all(hasattr(JITCodeLibrary, name) for name in INNER)
+"""Whether parts are only linked; else they are compiled as numba does, which takes longer and gives the same."""
+PART = {**ALWAYS, "_nrt": False, "no_cpython_wrapper": True} | ({"pipeline_class": _PartCompiler} if LINKED else {})
 
 
 def _refuse(*given: Any, **more: Any) -> NoReturn:
@@ -75,6 +80,8 @@ def part(**options: Any) -> Callable[[Function], Function]:
 
     def compile_one(function: Function) -> Function:
         found = njit(**{**PART, **options})(function)
+        if not LINKED:
+            return found  # type: ignore[no-any-return]
         found._compile_for_args = _refuse
         found.add_overload = lambda made: found.overloads.__setitem__(tuple(made.signature.args), made)
         return found  # type: ignore[no-any-return]
