@@ -25,7 +25,7 @@ ELSEWHERE = (
 """Gates of `paper-wave`."""
 KNOWN = [
     (scene, gate.id)
-    for scene in (*SCENES, "paper-wave")
+    for scene in (*SCENES, "paper-wave", "paper-slider")
     for gate in load_scene(scene).gate
     if gate.id in ELSEWHERE or (scene in SCENES and gate.quantity in (*AT_A_PLACE, *released_reference.KNOWN))
 ]
