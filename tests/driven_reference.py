@@ -290,6 +290,8 @@ COUNTS = {
     ("instrument-arm", "fem", 24): (9, 15),
 }
 """(scene, model, count) -> parts between what cuts the beam, where there is such a thing."""
+FIGURES = ("wave.deflection", "wave.slope", "wave.curvature", "wave.receptance", "mode.deflection", "mode.slope")
+"""Quantities that are known here."""
 ON_RESONANCE = ("imposed-on-resonance",)
 """Gates of displacements at a resonance of the beam under forces."""
 DERIVATIVES = {"deflection": 0, "slope": 1, "curvature": 2, "receptance": 0}
