@@ -442,3 +442,21 @@ def test_damping_that_a_model_cannot_represent_is_refused(titanium_strip):
     clamped = replace(titanium_strip, supports=("clamped", "free"))
     with pytest.raises(InputError, match="couple the modes"):
         segment_model.solve_harmonic(clamped, FORCES, 100.0, 20, modal_damping=0.01, joint_dashpot=0.1)
+
+
+def test_rigid_links_read_at_both_ends_of_the_beam_turn_as_the_end_links_do(titanium_strip):
+    beam = replace(titanium_strip, supports=("free", "pinned"), loss_factor=0.013)
+    nodes = np.linspace(0.0, 0.73, 14)
+    links, raw = (
+        segment_model.solve_harmonic(beam, FORCES, 411.0, 13, load="lever", reading=reading)
+        for reading in ("links", "raw")
+    )
+    joints = raw.deflection(nodes)
+    turns = np.diff(joints) / (0.73 / 13)
+    close(links.slope([0.0, 0.73]), turns[[0, -1]], 1e-12)
+    close(
+        links.slope([nodes[5], 0.41 * nodes[5] + 0.59 * nodes[6]]),
+        np.array([0.5 * (turns[4] + turns[5]), turns[5]]),
+        1e-12,
+    )
+    close(links.deflection(nodes), joints, 1e-12)
