@@ -290,6 +290,8 @@ COUNTS = {
     ("instrument-arm", "fem", 24): (9, 15),
 }
 """(scene, model, count) -> parts between what cuts the beam, where there is such a thing."""
+FIGURES = ("wave.deflection", "wave.slope", "wave.curvature", "wave.receptance", "mode.deflection", "mode.slope")
+"""Quantities that are known here."""
 ON_RESONANCE = ("imposed-on-resonance",)
 """Gates of displacements at a resonance of the beam under forces."""
 DERIVATIVES = {"deflection": 0, "slope": 1, "curvature": 2, "receptance": 0}
@@ -312,7 +314,9 @@ def known(scene, gate):
     def at(drives, x, derivative):
         return solve(beam, parts, given, hertz, drives, x, derivative)
 
-    if gate.id in ON_RESONANCE:  # of the beam without what holds it: from both sides
+    if (
+        scene.name == "driven-cantilever" and gate.id in ON_RESONANCE
+    ):  # of the beam without what holds it: from both sides
         hertz = [hertz * (1 + side) for side in (-1e-6, 1e-6)]
         sides = [{**given, "frequency_hz": one} for one in hertz]
         return sum(known(scene, SimpleNamespace(id="", quantity=gate.quantity, arguments=one)) for one in sides) / 2

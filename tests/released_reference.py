@@ -325,6 +325,8 @@ def per_hertz(scene, given):
 
 def per_degree(scene, given):
     crests, drive = Crests(scene, given), scene.drive.frequency_hz
+    if "frequency_hz" in given:
+        return per_degree_on_resonance(scene, given)
     here = crests.one(drive, crests.phase)[0]
     return sum(abs(crests.one(drive, crests.phase + s)[0] - here) for s in (-0.5, 0.5))
 
@@ -378,6 +380,25 @@ def fitted_reflection(scene, given):
     return float(waves.min() / waves.max())
 
 
+def axis_ratio(scene, given):
+    """Of the ellipse of a surface point: shorter over longer axis of Re((u, w) e^{i omega t}), signed as it turns."""
+    beam = replace(scene.beam, loss_factor=given.get("loss_factor", 0.0))
+    hertz, forces = scene.drive.frequency_hz, [(f.position, f.amplitude, f.phase_deg) for f in scene.forces]
+    w, turn, *_ = field(beam, "euler-bernoulli", hertz, forces, given["x"])
+    across = -beam.thickness / 2 * turn
+    axes = np.array([[across.real, across.imag], [w.real, w.imag]])
+    longer, shorter = np.linalg.svd(axes, compute_uv=False)
+    return float(shorter / longer * np.sign(np.linalg.det(axes)))
+
+
+def per_degree_on_resonance(scene, given):
+    """From both sides of a frequency at which the beam without its actuators resonates, held at them it does not."""
+    crests, phase = Crests(scene, given), scene.forces[1].phase_deg
+    sides = given["frequency_hz"] * (1 + np.array([-1e-6, 1e-6]))
+    here, up, down = (np.mean([crests.one(f, phase + turn)[0] for f in sides]) for turn in (0.0, 0.5, -0.5))
+    return float(abs(up - here) + abs(down - here))
+
+
 KNOWN = {
     "motion.deflection": deflection,
     "motion.energy": energy,
@@ -388,6 +409,7 @@ KNOWN = {
     "chain.bent_tip": bent_tip,
     "chain.bent_energy": bent_energy,
     "wave.fastest_crests": fastest_crests,
+    "wave.axis_ratio": axis_ratio,
     "wave.reflection": reflection,
     "wave.reflection_per_hertz": per_hertz,
     "wave.reflection_per_degree": per_degree,

@@ -1,10 +1,13 @@
 """The chain's named figures: what they take, what they refuse, and the orders behind their gates."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from chain_reference import elastica_tip, woinowsky_krieger
 from msgspec.structs import replace
 
+from verify.chain import departure
 from verify.errors import InputError
 from verify.quantities.catalogue import arguments_of, evaluate, quantity
 from verify.run.gates import judge
@@ -291,3 +294,10 @@ def test_a_long_figure_tells_how_far_it_is():
     assert len(heard) > 2
     assert heard == sorted(heard)
     assert 0.0 < heard[0] < heard[-1] <= 1.0
+
+
+def test_a_stretching_chain_that_breaks_off_gives_no_departure(monkeypatch):
+    broken = SimpleNamespace(finished=False, statistics=SimpleNamespace(stopped="diverged at 0.3 ms"))
+    monkeypatch.setattr(departure, "simulate_elastic", lambda *given, **more: broken)
+    with pytest.raises(InputError, match=r"chain under 7.3 N diverged at 0.3 ms: give a smaller force"):
+        figure("axial_departure", segments=5, force=7.3, inertia="elastic")

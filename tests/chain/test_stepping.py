@@ -265,6 +265,16 @@ def test_fixed_steps_converge_with_order_four():
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)
 
 
+def test_kicked_motion_is_the_same_at_times_of_any_spacing():
+    """Several of them within one step as well: what is kept is the flow from the step's start."""
+    system = driven(12, 60.0)
+    basis = modal_basis(system)
+    even = np.linspace(1e-5, 2e-4, 77)
+    some = even[[0, 2, 3, 11, 30, 31, 45, 76]]
+    every, few = (simulate_modal(basis, at_rest(system), t, step=1.3e-5).deflection([0.2]) for t in (even, some))
+    assert few == pytest.approx(every[[0, 2, 3, 11, 30, 31, 45, 76]], rel=1e-10, abs=1e-13)
+
+
 @pytest.mark.parametrize(("kicks", "amplitude"), [(1, 60.0), (2, 60.0), (3, 60.0)])
 def test_kicks_are_of_order_two_and_two_kicks_far_better_than_one(kicks, amplitude):
     system, times = driven(20, amplitude), np.linspace(1e-5, 6e-4, 60)

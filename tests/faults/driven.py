@@ -208,7 +208,7 @@ FAULTS = {
     },
     "driven-cantilever": {
         phases_of_the_wrong_sign: gates(
-            "exact-deflection exact-slope exact-curvature exact-beside-the-tip exact-undamped exact-slow "
+            "exact-deflection exact-slope exact-curvature exact-beside-the-tip exact-undamped exact-slow surface-ellipse surface-ellipse-turning-back "
             "exact-slow-slope exact-slow-curvature exact-fast exact-imposed elements-deflection elements-slope "
             "elements-curvature elements-by-a-ratio elements-undamped elements-imposed links-deflection "
             "links-slope raw-joints segments-deflection segments-slope segments-curvature segments-with-dashpots "
@@ -410,7 +410,7 @@ FAULTS = {
         receptances_of_a_thousandth_more: gates("fastest-crests receptance-beside-the-right-end"),
         limit_of_reflection_a_hundredth_looser: gates("fastest-crests fastest-crests-imposed"),
         sensitivities_of_forces_for_those_of_displacements: gates(
-            "fastest-crests-imposed imposed-reflection-per-hertz imposed-reflection-per-degree"
+            "imposed-on-resonance fastest-crests-imposed imposed-reflection-per-hertz imposed-reflection-per-degree"
         ),
     },
 }

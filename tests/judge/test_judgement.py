@@ -114,3 +114,8 @@ def test_a_shape_that_rests_at_every_node_has_no_error():
     """Mode 2 of a pinned beam in one part: 0/0, said in a sentence."""
     with pytest.raises(NoFigureError, match="at rest at every node"):
         compare.shape_error(np.zeros(2), np.array([1e-9, 2e-9]), np.array([0.3, 0.3]))
+
+
+def test_all_nodes_of_a_high_mode_are_found_each_where_it_is():
+    found = compare.zeros(lambda x: np.sin(61 * np.pi * x / 0.73), 0.73, 61)
+    assert found == pytest.approx(0.73 * np.arange(1, 61) / 61, abs=1e-13)

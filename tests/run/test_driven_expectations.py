@@ -6,7 +6,6 @@ import released_reference
 
 from verify.scenes.scene import load_scene
 
-AT_A_PLACE = ("wave.deflection", "wave.slope", "wave.curvature", "wave.receptance", "mode.deflection", "mode.slope")
 SCENES = (
     "driven-cantilever",
     "guided-bar",
@@ -25,9 +24,10 @@ ELSEWHERE = (
 """Gates of `paper-wave`."""
 KNOWN = [
     (scene, gate.id)
-    for scene in (*SCENES, "paper-wave")
+    for scene in (*SCENES, "paper-wave", "paper-slider")
     for gate in load_scene(scene).gate
-    if gate.id in ELSEWHERE or (scene in SCENES and gate.quantity in (*AT_A_PLACE, *released_reference.KNOWN))
+    if gate.id in ELSEWHERE
+    or (scene in SCENES and gate.quantity in (*driven_reference.FIGURES, *released_reference.KNOWN))
 ]
 
 
@@ -37,7 +37,7 @@ def test_a_figure_comes_out_of_states_elements_and_links_written_out(scene, gate
     loaded = load_scene(scene)
     found = next(one for one in loaded.gate if one.id == gate)
     expected = found.expect if isinstance(found.expect, float | int) else complex(found.expect.re, found.expect.im)
-    if found.quantity in AT_A_PLACE:
+    if found.quantity in driven_reference.FIGURES:
         figure = driven_reference.known(loaded, found)
     else:
         figure = released_reference.KNOWN[found.quantity](loaded, found.arguments)

@@ -167,3 +167,15 @@ def test_what_no_chain_can_do_is_refused_in_a_sentence(change, settings, message
 def test_modal_damping_beside_a_loss_that_springs_do_not_share_is_refused():
     with pytest.raises(InputError, match=r"loss_factor = .* and modal_damping = .* together"):
         solve_harmonic(replace(FULL, loss_factor=0.1), (PointForce(position=AT),), 40.0, 20, modal_damping=0.01)
+
+
+def test_links_whose_joints_hardly_slip_stand_where_those_that_do_not_slip_stand():
+    """Anywhere on a link: its middle, and its turn times the way from there."""
+    plain = Beam(length=0.73, bending_stiffness=3.7, mass_per_length=0.31, rotary_inertia=1e-13, shear_stiffness=1e12)
+    beam = replace(plain, supports=("clamped", "free"), loss_factor=0.017)
+    force, x = PointForce(position=0.3113, amplitude=1.7), np.array([0.0, 0.0713, 0.3113, 0.5519, 0.73])
+    slipping, rigid = (
+        solve_harmonic(beam, force, 41.0, 11, theory=theory, load="lever", reading="links").deflection(x)
+        for theory in ("timoshenko", "euler-bernoulli")
+    )
+    assert abs(slipping - rigid).max() < 1e-6 * abs(rigid).max()

@@ -14,7 +14,7 @@ from verify.errors import InputError, ResonanceError
 from verify.exact import closed_forms
 from verify.exact import modes as analytic_modes
 from verify.exact.harmonic import pinned_shapes, slow_shapes, spliced_shapes
-from verify.models.fields import wavenumber
+from verify.models.fields import phasor, wavenumber
 from verify.options import SUPPORTS
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain
@@ -331,8 +331,10 @@ def test_a_resonance_under_forces_is_none_of_the_beam_held_at_its_actuators(tita
     with pytest.raises(ResonanceError, match="mode 9"):
         held(model, titanium_strip, f, "force")
     here = held(model, titanium_strip, f)
-    sides = [held(model, titanium_strip, f * (1 + s * 1e-6)).deflection(X) for s in (1, -1)]
-    close(here.deflection(X), 0.5 * (sides[0] + sides[1]), 1e-8)
+    beside = [held(model, titanium_strip, f * (1 + s * 1e-6)) for s in (1, -1)]
+    close(here.deflection(X), 0.5 * sum(field.deflection(X) for field in beside), 1e-8)
+    forces, *others = (np.array([phasor(force) for force in field.forces]) for field in (here, *beside))
+    close(forces, 0.5 * sum(others), 1e-6)  # what holds it there
     assert here.deflection([force.position for force in FORCES]) == pytest.approx(
         [0.7, 1.3 * np.exp(1j * np.deg2rad(63.0))], rel=1e-8
     )
@@ -372,6 +374,21 @@ def test_a_resonance_of_the_held_beam_is_refused(titanium_strip, model):
     assert np.isnan(several[0]).all()
     single = held(model, titanium_strip, 333.0).deflection(X)
     close(0.7 * several[1, 0] + 1.3 * np.exp(1j * np.deg2rad(63.0)) * several[1, 1], single, 1e-8)
+
+
+@pytest.mark.parametrize("model", ["analytic", *SOLVERS])
+def test_a_map_of_displacements_passes_a_resonance_under_forces(titanium_strip, model):
+    """Unit displacements at a frequency where unit forces have no answer: the mean of both sides."""
+    module = {"analytic": analytic_modes, "segment": segment_model, "fem": fem_beam}[model]
+    given, places = () if model == "analytic" else (24,), np.array([0.083, 0.611])
+    f = float(module.solve_modes(titanium_strip, 9, *given).frequencies_hz[8])
+
+    def units(frequencies, x):
+        return module.unit_responses(titanium_strip, places, frequencies, x, *given)
+
+    assert np.isnan(units(np.array([f]), X)).all()
+    here, *sides = held_units(units, places, titanium_strip, f * np.array([1.0, 1.0 + 1e-6, 1.0 - 1e-6]), X)
+    close(here, 0.5 * (sides[0] + sides[1]), 1e-7)
 
 
 def test_one_displacement_alone_is_held_too_and_refused_on_a_support(titanium_strip):
@@ -425,3 +442,21 @@ def test_damping_that_a_model_cannot_represent_is_refused(titanium_strip):
     clamped = replace(titanium_strip, supports=("clamped", "free"))
     with pytest.raises(InputError, match="couple the modes"):
         segment_model.solve_harmonic(clamped, FORCES, 100.0, 20, modal_damping=0.01, joint_dashpot=0.1)
+
+
+def test_rigid_links_read_at_both_ends_of_the_beam_turn_as_the_end_links_do(titanium_strip):
+    beam = replace(titanium_strip, supports=("free", "pinned"), loss_factor=0.013)
+    nodes = np.linspace(0.0, 0.73, 14)
+    links, raw = (
+        segment_model.solve_harmonic(beam, FORCES, 411.0, 13, load="lever", reading=reading)
+        for reading in ("links", "raw")
+    )
+    joints = raw.deflection(nodes)
+    turns = np.diff(joints) / (0.73 / 13)
+    close(links.slope([0.0, 0.73]), turns[[0, -1]], 1e-12)
+    close(
+        links.slope([nodes[5], 0.41 * nodes[5] + 0.59 * nodes[6]]),
+        np.array([0.5 * (turns[4] + turns[5]), turns[5]]),
+        1e-12,
+    )
+    close(links.deflection(nodes), joints, 1e-12)
