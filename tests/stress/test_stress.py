@@ -61,7 +61,7 @@ def always_assembled(patch):
 
 
 def heavy_masses_unseen(patch):
-    patch.setattr(eigen, "_is_heavy", lambda pencil: False)
+    patch.setattr(eigen, "is_heavy", lambda pencil: False)
 
 
 def a_frequency_wrong_in_its_twelfth_digit(patch):

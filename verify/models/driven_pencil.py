@@ -8,9 +8,10 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, forced_response, modal_basis, resonance_distance
+from verify.models.eigen import forced_response, modal_basis, resonance_distance
 from verify.models.fields import RESONANCE, refuse_resonance
 from verify.models.modes import Modes
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 
 
 def damped_response(
