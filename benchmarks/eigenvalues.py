@@ -17,7 +17,7 @@ from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
 from verify.judge.extended_precision import eigenvalue_error
-from verify.models import eigen, pencil
+from verify.models import pencil
 from verify.segments import linear as segment_model
 
 SUPPORTS = (("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "free"), ("free", "free"))
