@@ -17,7 +17,7 @@ from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
 from verify.judge.extended_precision import eigenvalue_error
-from verify.models import eigen
+from verify.models import pencil
 from verify.segments import linear as segment_model
 
 SUPPORTS = (("pinned", "pinned"), ("clamped", "clamped"), ("clamped", "free"), ("free", "free"))
@@ -25,7 +25,7 @@ MODELS = {"segment": segment_model, "fem": fem_beam}
 MODES = (1, 2, 7, 23, 50)
 
 
-def pencil_of(model: str, beam: Beam, count: int) -> eigen.FactoredPencil:
+def pencil_of(model: str, beam: Beam, count: int) -> pencil.FactoredPencil:
     """The factored pencil that a model solves."""
     if model == "segment":
         return segment_model.chain_pencil(segment_model.build_chain(beam, count))
@@ -48,7 +48,7 @@ def row(beam: Beam, model: str, count: int) -> str:
     module = MODELS[model]
     modes = module.solve_modes(beam, 50, count)
     bounds = [eigenvalue_error(beam, model, count, n, float(modes.frequencies_hz[n - 1])) for n in MODES]
-    matrix, _ = eigen.mixed_matrix(pencil_of(model, beam, count))
+    matrix, _ = pencil.mixed_matrix(pencil_of(model, beam, count))
     solve, factor = times(
         lambda: module.solve_modes(beam, 50, count), lambda: splu(matrix), rounds=7 if count <= 10_000 else 2
     )

@@ -11,7 +11,7 @@ WORK = {
     "solves": {("judge/workbench.py", "_solve")},
     "timed": {("timing.py", "_seconds")},
     "eigen-solves": {("models/eigen.py", "lowest")},
-    "factorisations": {("models/eigen.py", "factorised"), ("models/banded.py", "solve")},
+    "factorisations": {("models/pencil.py", "factorised"), ("models/banded.py", "solve")},
     "exact roots": {("exact/modes.py", "exact_frequency_hz")},
     "fields": {(f"{room}.py", "solve_harmonic") for room in ("elements/linear", "segments/linear", "exact/harmonic")},
     "time bases": {(f"{room}/in_time.py", "time_basis") for room in ("elements", "segments", "exact")},

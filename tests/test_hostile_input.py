@@ -266,6 +266,7 @@ def test_a_solve_that_would_take_too_long_is_refused_with_its_time(verify):
 def test_an_estimate_of_time_grows_with_unknowns_and_modes_and_lies_above_what_was_measured():
     assert eigen.solve_seconds(100_000, 22) > 0.84  # segments; 2.4 s for the 200 000 unknowns of Hermite elements
     assert eigen.solve_seconds(200_000, 22) > 2.4
+    assert eigen.solve_seconds(2_000_000, 5) > 38.0  # a million elements
     assert eigen.solve_seconds(2000, 1000) > 4.6  # dense
     assert eigen.solve_seconds(200_000, 22) < 10.0
     assert eigen.solve_seconds(200_000, 44) > 1.3 * eigen.solve_seconds(200_000, 22)

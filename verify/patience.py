@@ -32,9 +32,14 @@ def _words(seconds: float) -> str:
 
 def _limit() -> float:
     """Seconds. Raises InputError where the variable is no number above 0."""
+    return own_limit() or PATIENCE_S
+
+
+def own_limit() -> float | None:
+    """The seconds that the environment says; None where it says none. Raises InputError for no number above 0."""
     given = os.environ.get(VARIABLE, "")
     if not given:
-        return PATIENCE_S
+        return None
     try:
         seconds = float(given)
     except ValueError:

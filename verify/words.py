@@ -40,9 +40,9 @@ def number(value: float, digits: int) -> str:
     return f"{value:.{digits}g}" if isfinite(value) else "–" if isnan(value) else "infinity"
 
 
-def work_in_words(solves: int, fields: int, motions: int) -> str:
-    """What a run solved, by kind; kinds of which there is nothing are left out."""
-    kinds = {"modal solves": solves, "driven fields": fields, "motions in time": motions}
+def work_in_words(solves: int, fields: int, motions: int, others: dict[str, int] | None = None) -> str:
+    """What a run solved, by kind, `others` by their names; kinds of which there is nothing are left out."""
+    kinds = {"modal solves": solves, "driven fields": fields, "motions in time": motions} | (others or {})
     return ", ".join(f"{n} {name}" for name, n in kinds.items() if n) or "closed forms only"
 
 

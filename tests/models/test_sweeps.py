@@ -98,6 +98,16 @@ def test_a_sweep_takes_the_settings_of_a_single_field(model, settings):
         assert swept == pytest.approx(single, rel=0.0, abs=1e-12 * abs(single).max())
 
 
+@pytest.mark.parametrize("model", ["segment", "fem"])
+@pytest.mark.parametrize("graded", [True, False])
+def test_a_sweep_of_unlike_parts_and_of_a_heavy_mass_is_its_single_fields(model, graded):
+    beam = replace(BEAM, supports=("clamped", "free"), loss_factor=0.013)
+    heavy = replace(beam, mass=(PointMass(position=0.47, mass=2e7 * beam.mass_per_length * beam.length),))
+    settings = {"grading": 0.001} if graded else {}
+    for swept, single in compared(model, beam if graded else heavy, WIDE[::3], **settings):
+        assert swept == pytest.approx(single, rel=0.0, abs=1e-12 * abs(single).max())
+
+
 @pytest.mark.parametrize("model", SIZED)
 def test_few_frequencies_are_solved_as_single_fields_are(model):
     for swept, single in compared(model, BEAM, np.array([4011.0, 127.0])):

@@ -7,11 +7,14 @@ from math import inf, pi, sqrt
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from verify import beam
 from verify.cli import status_of
 from verify.errors import InputError
 from verify.models import driven_pencil, eigen
+from verify.run.runner import run_scene
+from verify.scenes.scene import load_scene
 from verify.segments import linear as segment_linear
 from verify.stress.catalogue import row, rows
 from verify.stress.charts import takes_over
@@ -19,6 +22,7 @@ from verify.stress.decimals import PI, asinh, cantilever_root, cos, exp, sin, si
 from verify.stress.extended import Divided, hermite, links, relative_error
 from verify.stress.figures import StressFound, told
 from verify.stress.kind import Floor, Growth, Refusal, exponent
+from verify.words import work_in_words
 
 KEYS = {"id", "promise", "measured", "held"}
 
@@ -61,7 +65,7 @@ def always_assembled(patch):
 
 
 def heavy_masses_unseen(patch):
-    patch.setattr(eigen, "_is_heavy", lambda pencil: False)
+    patch.setattr(eigen, "is_heavy", lambda pencil: False)
 
 
 def a_frequency_wrong_in_its_twelfth_digit(patch):
@@ -261,6 +265,25 @@ def test_rows_can_be_listed_and_left_out_by_name(capsys):
     for layout in ("--csv", "--markdown"):
         assert status_of(["stress", "taut", layout, "--no-report"]) == 0
         assert "margin" in capsys.readouterr().out.splitlines()[0]
+
+
+def test_each_row_is_told_once_measured_and_not_beside_json(capsys):
+    assert status_of(["stress", "taut", "short-waves", "--no-report"]) == 0
+    assert [line.split()[-1] for line in capsys.readouterr().err.splitlines()] == ["taut", "short-waves"]
+    assert status_of(["stress", "taut", "--json", "--no-report"]) == 0
+    assert not capsys.readouterr().err
+
+
+def test_rows_that_take_more_than_is_waited_for_are_left_out_by_name(capsys, monkeypatch):
+    monkeypatch.setenv("VERIFY_PATIENCE", "30")
+    assert status_of(["stress", "taut", "elements-million", "--json", "--no-report"]) == 0
+    assert json.loads(capsys.readouterr().out)["left_out"] == ["elements-million"]
+
+
+def test_a_run_says_how_many_rows_it_solved():
+    scene = load_scene("stress", ('stress.rows=["taut", "short-waves"]',))
+    result = run_scene(replace(scene, gate=()))
+    assert work_in_words(0, 0, 0, result.others) == "2 rows solved on beams of their own"
 
 
 def test_an_interrupt_keeps_what_was_measured(capsys, monkeypatch):

@@ -17,7 +17,13 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("ids", nargs=-1, metavar="[ID]...")
 @click.option("--list", "listed", is_flag=True, help="Name every row and run none.")
-@click.option("--seconds", "cap", type=float, metavar="CAP", help="Leave out, by name, rows that take longer.")
+@click.option(
+    "--seconds",
+    "cap",
+    type=float,
+    metavar="CAP",
+    help="Leave out, by name, rows that take longer. Default: VERIFY_PATIENCE where it is set.",
+)
 @click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
 @click.option("--markdown", "layout", flag_value="markdown", help="Print a Markdown table.")
 @click.option(
@@ -39,11 +45,13 @@ def stress(
     Each row is told as soon as it is measured, and Ctrl-C keeps what was. Example: `verify stress tip-mass taut`
     """
     from verify.files import writable_folder
+    from verify.patience import own_limit
     from verify.stress.figures import chosen, told
     from verify.stress.figures import stress as measured
 
     if cap is not None and not cap > 0.0:
         raise InputError(f"--seconds {cap!r}: give seconds above 0")
+    cap = own_limit() if cap is None else cap
     rows = chosen(ids, quick=False)
     if listed:
         for row in rows:
@@ -51,10 +59,13 @@ def stress(
         return
     target = None if no_report else writable_folder(Path(folder), "reports") / "stress-table.html"
     found: list[Outcome | str] = []
-    broken_off = False
-    with progress(len(rows), quiet=as_json or bool(layout)) as step:
+    broken_off, quiet = False, as_json or bool(layout)
+    with progress(len(rows), quiet=quiet) as step:
         try:
-            found.extend(measured(rows, step, cap=cap))  # what came before an interrupt stays
+            for one in measured(rows, step, cap=cap):  # what came before an interrupt stays
+                found.append(one)
+                if not (quiet or isinstance(one, str)):
+                    click.echo(_measured(one), err=True)
         except KeyboardInterrupt:
             broken_off = True
     _show(result := told(found), as_json, layout, None if broken_off else target)
@@ -62,6 +73,11 @@ def stress(
         raise KeyboardInterrupt
     if not result.held:
         raise SystemExit(GATE_FAILED)
+
+
+def _measured(one: "Outcome") -> str:
+    """A row as soon as it is measured."""
+    return f"{'held' if one.held else 'NOT HELD':8} {one.seconds:6.1f} s  {one.id}"
 
 
 def _show(found: "StressFound", as_json: bool, layout: str | None, target: Path | None) -> None:
@@ -88,10 +104,18 @@ def _write(found: "StressFound", target: Path) -> None:
     from verify.report.html import write_report
     from verify.run.runner import RunResult
     from verify.scenes.scene import load_scene
+    from verify.stress.figures import PUSHED
 
     seconds = sum(one.seconds for one in found.outcomes)
     scene = load_scene("stress")
     result = RunResult(
-        scene=scene, gates=(), found={"stress": found}, solves=(), n_fields=0, n_motions=0, seconds=seconds
+        scene=scene,
+        gates=(),
+        found={"stress": found},
+        solves=(),
+        n_fields=0,
+        n_motions=0,
+        seconds=seconds,
+        others={PUSHED: len(found.outcomes)},
     )
     write_report(result, target, command=" ".join(["verify", *sys.argv[1:]]))

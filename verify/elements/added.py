@@ -15,7 +15,7 @@ from verify.beam import Beam
 from verify.elements.curvatures import axial_weights, curvature_matrix, element_curvatures
 from verify.elements.mesh import Elements, mass_matrix, moving_matrix, slope_matrix
 from verify.models.arrays import Array
-from verify.models.eigen import FactoredPencil
+from verify.models.pencil import FactoredPencil
 
 SAME_PLACE = 1e-9
 """Of a mean element: what stands so near to a node stands on it."""

@@ -36,7 +36,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.compression import buckling_ratio
 from verify.models.driven_pencil import check_dense
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Theory
 
 
@@ -53,10 +53,8 @@ def element_pencil(elements: Elements) -> FactoredPencil:
 
 
 def _pencil(elements: Elements) -> FactoredPencil:
-    from skfem import condense
-
     lengths, free = elements.lengths, elements.free
-    mass = condense(inertia_matrix(elements), I=free, expand=False).tocsc()
+    mass = inertia_matrix(elements)[free][:, free].tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
     own = curvature_matrix if elements.theory != "timoshenko" else shear_strain_matrix

@@ -18,7 +18,7 @@ from verify.elements.mesh import build_elements
 from verify.elements.pencil import damped_stiffness, element_pencil
 from verify.models.arrays import Array
 from verify.models.driven_pencil import name_resonance
-from verify.models.eigen import FactoredPencil
+from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import (
     FIELD,

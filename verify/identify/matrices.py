@@ -14,7 +14,8 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, lowest
+from verify.models.eigen import lowest
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 
 WALL_JOINTS = {"half": 0.5, "full": 1.0, "rigid": 0.0}
 """Compliance of the joint at a clamped wall, l/EI: 2EI/l, EI/l, and a first link that the wall holds fast."""

@@ -153,6 +153,8 @@ class Workbench:
         """Harmonic fields over frequencies, likewise."""
         self.motions: dict[Any, Motion] = {}
         """Simulations by everything that makes them."""
+        self.others: dict[str, int] = {}
+        """Work of other kinds that was done for figures, on other beams, by name in the plural."""
         self.n_unkept_motions = 0
         """How many were done besides, of the nonlinear chain."""
 

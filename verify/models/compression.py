@@ -4,7 +4,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.models.arrays import Array
-from verify.models.eigen import FactoredPencil, factorised, mixed_matrix
+from verify.models.pencil import FactoredPencil, factorised, mixed_matrix
 
 
 def buckling_ratio(pencil: FactoredPencil) -> float:

@@ -8,9 +8,10 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil, forced_response, modal_basis, resonance_distance
+from verify.models.eigen import forced_response, has_unlike_parts, modal_basis, resonance_distance
 from verify.models.fields import RESONANCE, refuse_resonance
 from verify.models.modes import Modes
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 
 
 def damped_response(
@@ -68,8 +69,10 @@ def receptance_basis(pencil: FactoredPencil) -> tuple[Array, Array]:
 
 
 def takes_all_modes(pencil: FactoredPencil) -> bool:
-    """Whether all modes of a pencil are soon found, and sharp enough to be summed."""
-    return pencil.n <= DENSE_UNKNOWNS and not pencil.uneven
+    """Whether all modes of a pencil are soon found, and sharp enough to be summed: not those of unlike parts."""
+    if pencil.bases:
+        return True
+    return pencil.n <= DENSE_UNKNOWNS and not pencil.uneven and not has_unlike_parts(pencil)
 
 
 def check_dense(pencil: FactoredPencil, what: str) -> None:

@@ -1,18 +1,22 @@
-"""Vectors of many parts made better than the factors that found them. Called by `eigen` for its sparse solver."""
+"""Vectors made better than what found them: of many parts, under a heavy mass, and all modes of a small pencil."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from verify.errors import InputError
 from verify.models.arrays import Array, Indices
+from verify.models.pencil import FactoredPencil, factored_quotient, factorised
 
-if TYPE_CHECKING:
-    from verify.models.eigen import FactoredPencil
+_HEAVY = 1e6
+"""Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
+_SAME = 0.9
+"""Cosine of two vectors that are one mode."""
+_HOMING = 3
+"""Steps to a mode that is nearly known, each the cube of the one before."""
 
 
-def polished(
-    pencil: "FactoredPencil", factor: Any, vectors: Array, free: Indices, motions: Array
-) -> tuple[Array, Array]:
+def polished(pencil: FactoredPencil, factor: Any, vectors: Array, free: Indices, motions: Array) -> tuple[Array, Array]:
     """A step of inverse iteration whose solution is refined once, (n, k), and its strains, (m, k).
 
     The residual is by differences of differences. The strains are those of the mixed solution: digits of the last
@@ -44,3 +48,53 @@ def polished(
         carried[:, k] = mass @ better[:, k]
         strains[:, k] = (found[:n_strains] / pencil.stiffness - strains[:, :k] @ lower) / size
     return better, strains
+
+
+def is_heavy(pencil: FactoredPencil) -> bool:
+    """Whether something on the beam weighs far more than the parts of it."""
+    masses = pencil.mass_matrix().diagonal()
+    most = masses.max() / _HEAVY
+    # a median costs more than the rest of this, and no mass that is heavy for it is light beside the least
+    return bool(most > masses.min() and most > np.median(masses))
+
+
+def homed(pencil: FactoredPencil, vectors: Array) -> Array:
+    """Vectors by Rayleigh quotient iteration on the mixed matrix, (n, k); one that would leave its mode stays.
+
+    B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
+    """
+    from scipy.sparse import block_array, csc_array, diags_array
+
+    mass, strain = csc_array(pencil.mass_matrix()), csc_array(pencil.strain_matrix())
+    springs, n_strains = diags_array(-1.0 / pencil.stiffness), len(pencil.stiffness)
+    homed = vectors.copy()
+    for k in range(vectors.shape[1]):
+        vector = vectors[:, [k]]
+        for _ in range(_HOMING):
+            value, vector = factored_quotient(pencil, vector)
+            right = np.concatenate([np.zeros(n_strains), (mass @ vector)[:, 0]])
+            try:
+                mixed = block_array([[springs, strain], [strain.T, -value[0] * mass]], format="csc")
+                vector = factorised(mixed).solve(right)[n_strains:, None]
+            except InputError:  # singular to the last digit: it is the mode
+                break
+        _, vector = factored_quotient(pencil, vector)
+        if abs(vector[:, 0] @ (mass @ homed[:, k])) > _SAME * np.sqrt(homed[:, k] @ (mass @ homed[:, k])):
+            homed[:, k] = vector[:, 0]
+    return homed
+
+
+def sharpened(pencil: FactoredPencil, values: Array, vectors: Array) -> tuple[Array, Array]:
+    """All pairs with what low vectors have of high ones taken out, once (Ogita and Aishima, 2018, Algorithm 1).
+
+    V^T K V from the strains is as exact for low modes as for high ones, which no assembled K is.
+    """
+    strains = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(vectors)
+    lack = np.eye(pencil.n) - vectors.T @ (pencil.mass_matrix() @ vectors)
+    gaps = values - values[:, None]
+    apart = abs(gaps) > 1e-9 * (values + values[:, None])
+    mixed = (strains.T @ strains + values * lack) / np.where(apart, gaps, 1.0)
+    vectors = vectors + vectors @ np.where(apart, mixed, 0.5 * lack)
+    elastic = factored_quotient(pencil, vectors[:, pencil.rigid_modes :])
+    first = slice(pencil.rigid_modes)
+    return np.append(values[first], elastic[0]), np.hstack([vectors[:, first], elastic[1]])

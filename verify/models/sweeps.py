@@ -14,15 +14,9 @@ from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
-from verify.models.eigen import (
-    DENSE_UNKNOWNS,
-    FactoredPencil,
-    factored_quotient,
-    forced_response,
-    lowest,
-    resonance_distance,
-)
+from verify.models.eigen import forced_response, lowest, resonance_distance
 from verify.models.fields import RESONANCE, HarmonicField, check_forces
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, factored_quotient
 from verify.models.places import Forces, Numbers, in_a_row, places
 
 MOST_VALUES = 50_000_000

@@ -74,7 +74,7 @@ def page(result: "RunResult", command: str, work: str = "") -> str:
     charts = [chart for found in result.found.values() for chart in found.charts()]
     return templates.get_template("page.html.j2").render(
         result=result,
-        work=work or work_in_words(len(result.solves), result.n_fields, result.n_motions),
+        work=work or work_in_words(len(result.solves), result.n_fields, result.n_motions, result.others),
         judged=len(result.gates) - len(result.set_aside),
         charts=charts,
         sections=list(sections_of(result)),

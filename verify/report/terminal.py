@@ -65,7 +65,7 @@ def print_run(result: "RunResult", report: Path | None) -> None:
         console.print(Text(f"not applicable: {in_a_row('gate', names)}, {reason}"))
     for found in result.found.values():
         _print_found(console, found, every_table=False)
-    work = work_in_words(len(result.solves), result.n_fields, result.n_motions)
+    work = work_in_words(len(result.solves), result.n_fields, result.n_motions, result.others)
     console.print(f"{_verdict(result)} in {seconds_in_words(result.seconds)}: {work}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True, markup=False)

@@ -30,6 +30,8 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     n_motions: int
     """How many simulations in time gates and studies did."""
     seconds: float
+    others: dict[str, int] = msgspec.field(default_factory=dict)
+    """Work of kinds that no workbench solves, by name."""
 
     @property
     def passed(self) -> bool:
@@ -80,6 +82,7 @@ def run_scene(
         n_fields=bench.n_fields,
         n_motions=bench.n_motions + sum(one.motions() for one in found.values()),
         seconds=perf_counter() - start,
+        others=bench.others,
     )
 
 

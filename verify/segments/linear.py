@@ -13,9 +13,10 @@ from verify.errors import InputError, near_name
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
 from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import Eigenpairs, FactoredPencil, check_size, forced_response, lowest, method_name
+from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
+from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 from verify.models.theory import check_theory
 from verify.options import (

@@ -15,7 +15,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Attachment, Joints, Theory, Wall
 from verify.segments.walls import wall_factors, welded_halves
 

@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 
 from verify.models.arrays import Array, ComplexArray
-from verify.models.eigen import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.segments.attached import rows_at
 from verify.segments.links import Body, Chain
 

@@ -10,7 +10,7 @@ from verify.beam import Beam
 from verify.checks import check_whole, several
 from verify.models.arrays import Array, ComplexArray
 from verify.models.driven_pencil import name_resonance
-from verify.models.eigen import FactoredPencil
+from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import (
     FIELD,

@@ -1,0 +1,122 @@
+"""A pencil of B^T diag(d) B against M kept as its factors: its quotient to rounding, and what is factorised of it.
+
+An assembled K = B^T diag(d) B drowns its low eigenvalues in the rounding of its high ones, like n^4 eps for a
+beam. Here K stays factored: whatever finds the vectors, each eigenvalue is read from
+sum d (B v)^2 / (v^T M v) with B applied as differences of differences, each nearly exact.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from verify.errors import InputError
+from verify.models.arrays import Array, Indices
+
+DENSE_UNKNOWNS = 250
+"""Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
+LARGE = 50_000
+"""Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
+square would be 1e-9 of the eigenvalues of a million parts."""
+
+
+class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """K = B^T diag(d) B and M over n unknowns, in units of order one (element length, stiffness and mass 1)."""
+
+    n: int
+    """Unknowns."""
+    rigid: Array
+    """(n, r), r independent motions without strain; their zero eigenvalues are left out."""
+    strain: Callable[[Array], Array]
+    """v (n, k) -> B v (m, k), by differences of differences."""
+    stiffness: Array
+    """d, (m,), positive but for what an axial force takes (`uneven` then)."""
+    strain_matrix: Callable[[], Any]
+    """() -> B as a sparse array (m, n); asked for only where a factorisation needs it."""
+    mass_matrix: Callable[[], Any]
+    """() -> M as a sparse array (n, n) above DENSE_UNKNOWNS, dense up to it."""
+    masses: Callable[[Array], Array] | None = None
+    """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
+    below: float = 0.0
+    """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
+    bands: list[Any] = msgspec.field(default_factory=list)
+    """The band of the driven pencil, None where it is not narrow, once it was asked for."""
+    bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
+    """All modes of it, once they were asked for (`driven_pencil.receptance_basis`)."""
+    uneven: bool = False
+    """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
+
+    @property
+    def rigid_modes(self) -> int:
+        """R, how many motions have no strain."""
+        return int(self.rigid.shape[1])
+
+
+def factored_quotient(pencil: FactoredPencil, vectors: Array, strains: Array | None = None) -> tuple[Array, Array]:
+    """Rayleigh quotients sum d (B v)^2 / v^T M v, (k,), and the vectors scaled to v^T M v = 1, (n, k).
+
+    `strains` (m, k) are B v where they are known better than the vectors' own digits tell.
+    """
+    strains = pencil.strain(vectors) if strains is None else strains
+    masses = pencil.masses(vectors) if pencil.masses else weighed_squares(vectors, pencil.mass_matrix())
+    if len(vectors) < LARGE:
+        values = np.einsum("i,ij,ij->j", pencil.stiffness, strains, strains) / masses
+    else:
+        values = _in_pairs(pencil.stiffness[:, None] * strains**2) / masses
+    return values, vectors / np.sqrt(masses)
+
+
+def weighed_squares(vectors: Array, matrix: Any) -> Array:
+    """V^T M v of every column, (k,)."""
+    carried = matrix @ vectors
+    if len(vectors) < LARGE:
+        return np.asarray(np.einsum("ij,ij->j", vectors, carried))
+    return _in_pairs(vectors * carried)
+
+
+def _in_pairs(products: Array) -> Array:
+    """Sums of columns, (k,), pairwise: a million terms one after another leave 1e-12 of their sum."""
+    return np.asarray(np.ascontiguousarray(products.T).sum(axis=1))
+
+
+def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
+    """([[-1/d, B], [B^T, 0]] as a sparse array, the unknowns in it): K with its strains kept as unknowns.
+
+    Where all eigenvalues lie above some value, K less M times that. Where motions are rigid, as many unknowns are
+    grounded as make the matrix regular.
+    """
+    from scipy.sparse import block_array, csc_array, diags_array
+
+    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), _grounds(pencil.rigid))
+    strain = pencil.strain_matrix()[:, free]
+    # None, not stored zeros: they would cost three times the solve
+    inertia = -pencil.below * csc_array(pencil.mass_matrix()) if pencil.below else None
+    return block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, inertia]], format="csc"), free
+
+
+def _grounds(rigid: Array) -> list[int]:
+    """Unknowns that, held, leave no rigid motion: the largest entry of each motion, the earlier ones taken out."""
+    motions, grounds = rigid.copy(), []
+    for j in range(motions.shape[1]):
+        ground = int(abs(motions[:, j]).argmax())
+        grounds.append(ground)
+        motions[:, j + 1 :] -= np.outer(motions[:, j] / motions[ground, j], motions[ground, j + 1 :])
+    return grounds
+
+
+def factorised(matrix: Any) -> Any:
+    """The sparse LU factors of a matrix. Raises InputError where memory does not suffice or the matrix is singular."""
+    from scipy.sparse.linalg import splu
+
+    try:
+        return splu(matrix)
+    except (MemoryError, RuntimeError) as error:
+        if "singular" in str(error):
+            raise InputError("the system is singular to rounding: choose another frequency_hz or count") from None
+        raise too_large(matrix.shape[0]) from None
+
+
+def too_large(n_unknowns: int) -> InputError:
+    """What is raised where memory does not suffice."""
+    return InputError(f"count: {n_unknowns} unknowns do not fit into memory, lower it")
