@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 FIRST_STEP, FIRST_IMPLICIT, BELOW_LIMIT = 1.0 / 12.0, 1.0 / 100.0, 0.99
 """Of the drive's period, the longest step, and of one without a limit, which order 2 makes long soon; of that limit."""
-RUNGS = 8
-"""Steps of an engine, each half of the one before."""
+RUNGS, MORE = 7, 1
+"""Steps of an engine, each half of the one before; and so many more at order 2."""
 STEP_LINK_S, STEP_LINKS_S, START_S = 6e-6, 1e-7, 0.1
 """From above: of a step by links, and by links squared where matrices are dense; of a model made."""
 START_LINKS_S, MODES_S = 6e-6, 6e-8
@@ -84,7 +84,7 @@ def ladder(name: str, engine: PeerAdapter, links: Links, sled: Sled | None, end:
     least = first_steps(1.0 / links.frequency, end, explicit_limit(links), implicit=implicit)
     set_up = START_S + START_LINKS_S * links.n**2
     each = STEP_LINK_S * links.n + (0.0 if implicit else STEP_LINKS_S * links.n**2)
-    for steps in (least * 2**k for k in range(RUNGS)):
+    for steps in (least * 2**k for k in range(RUNGS + MORE * implicit)):
         run = partial(_run, name, engine, links, sled, end, steps)
         part = max(round(PART_S / each), 1)
         yield Entry(

@@ -67,9 +67,9 @@ def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[st
         whole, run = within(points, wanted), within(alone, wanted)
         if whole is None or run is None:
             least = min((abs(p.error) for p in points), default=None)
-            why = "it has no figure" if least is None else f"its least error is {least:.1e}"
-            left = next((o.row.left_out for o in found if o.entry.line.name == name and o.row.left_out), "")
-            return f"at {percent(wanted)} nothing is said, {name}: {why}{f' ({left})' if left else ''}"
+            why = "has no figure" if least is None else f"comes to {percent(least)}"
+            left = sum(bool(o.row.left_out) for o in found if o.entry.line.name == name)
+            return f"at {percent(wanted)} nothing is said, {name} {why}" + (f", {left} steps left out" if left else "")
         seconds.append((whole, run))
     (a, b), (c, d) = seconds
     return c / a, d / b
