@@ -16,7 +16,6 @@ from verify.peers.breaking import Break, pushed
 from verify.peers.case import Case as Links
 from verify.peers.case import Sled, case_of, clocks, since
 from verify.peers.catalogue import PEERS, PeerAdapter, adapter, installed, missing
-from verify.peers.ladder import LEAST_SAMPLES
 from verify.peers.references import explicit_limit
 
 if TYPE_CHECKING:
@@ -31,6 +30,8 @@ STEP_LINK_S, STEP_LINKS_S, START_S = 6e-6, 1e-7, 0.1
 """From above: of a step by links, and by links squared where matrices are dense; of a model made."""
 START_LINKS_S, MODES_S = 6e-6, 6e-8
 """From above: of a model by links squared, of all modes by links cubed."""
+LEAST_SAMPLES = 40
+"""Of a run, from which on they tell an error."""
 PART_S = 0.5
 """Of a longer run, what rounds repeat."""
 

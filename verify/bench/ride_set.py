@@ -162,7 +162,7 @@ def _judge(known: dict[str, Callable[[], Known]]) -> Callable[[Entry, Any], Judg
 
 def _exact(ride: Callable[..., references.Ride], departure: float) -> Known:
     """A slider on the exact linear chain."""
-    fine, coarse = ride(), ride(steps=references.RIDE_STEPS // 2)
+    fine, coarse = (ride(steps=references.RIDE_STEPS // k) for k in (1, 2))
     left = _apart((coarse.times, coarse.distance, coarse.speed), fine.at)
     name = "a slider on the exact linear chain, and how far the nonlinear one departs"
     return fine.at, Reference(name, max(left, departure)), 0.0
