@@ -108,6 +108,7 @@ def _own(scene: "Scene", its: Settled, slider: "Slider", count: int) -> Iterator
             count=count,
             estimate_s=START_S + OWN_STEP_S * steps,
             prepare=partial(partial, _ride, scene, its, slider, count, steps, least),
+            afresh=True,
             settings={"step": its.duration / steps},
         )
 
