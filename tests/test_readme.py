@@ -26,7 +26,7 @@ NUMBER = re.compile(r"([+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?)\s*(%|Hz|mm|nm|cm/s|µm|
 
 UNTESTED = {
     "run time of elements over segments at one error of the displacement": "wall time, by the command",
-    "MuJoCo 4.0.0 over this suite": "wall time beside another engine, by the benchmark",
+    "MuJoCo 4.0.0 over this suite": "run time beside another engine, by its bench",
     "rounding in modes 1 and 50 of 10 000 segments or elements": "asserted by the test that the row names",
     "stock scikit-fem, its own Hermite element": "asserted by the test that the row names",
     "which of the paper's six facts hold at 30 N": "asserted by the tests that the row names",

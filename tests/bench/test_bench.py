@@ -1,14 +1,16 @@
 """The bench of real scenes: known errors and orders, references that name themselves, inputs that all move something."""
 
 import json
+import sys
 from functools import cache
-from types import SimpleNamespace
+from importlib.machinery import ModuleSpec
+from types import ModuleType
 
 import msgspec
 import numpy as np
 import pytest
 
-from verify.bench import measuring, peer_set, running
+from verify.bench import measuring, peer_set, ride_set, running
 from verify.bench.against import moved
 from verify.bench.keeping import page
 from verify.bench.running import all_cases, benched
@@ -17,6 +19,11 @@ from verify.cli import status_of
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
+from verify.peers import case as peer_case
+from verify.peers import catalogue, references
+from verify.peers.breaking import Break
+from verify.peers.case import PeerRun
+from verify.peers.catalogue import PEERS, Peer
 from verify.report.html import page as report
 from verify.report.plain import finite, run_as_plain
 from verify.run.plan import plan_scene
@@ -231,18 +238,18 @@ TURNS = {
     "seconds": 0.2,
     "rounds": 4,
     "peers": True,
+    "push": True,
     "imports": True,
     "cold": True,
 }
 
 
 @pytest.mark.parametrize("name", [one.name for one in msgspec.structs.fields(Bench)])
-def test_every_input_moves_something(name, monkeypatch):
+def test_every_input_moves_something(name, monkeypatch, ghost):
     """What is run or what is found: nothing is dropped in silence."""
     monkeypatch.setattr(running, "import_costs", lambda sets: [running.ChildCost("import", 0.1)])
     monkeypatch.setattr(running, "compile_costs", lambda scene, sets: {("harmonic", "segments"): 0.2})
-    plant(monkeypatch)
-    own = {"modes": "modes", "peers": "modes", "duration": "transient", "x": "transient"}
+    own = {"modes": "modes", "peers": "modes", "push": "modes", "duration": "transient", "x": "transient"}
     base = {"sets": (own.get(name, "harmonic"),), "counts": (10, 20), "modes": (1,), **QUICK}
     assert told(tuple(base.items())) != told(tuple((base | {name: TURNS[name]}).items()))
 
@@ -293,77 +300,174 @@ def test_what_does_not_fit_into_the_time_is_named():
 
 
 class Ghost:
-    """An engine that moves the chain by our own adaptive steps, made wrong by its step; frequencies of a string."""
+    """An engine that moves chain and slider exactly but for what its step makes of it, order 2."""
 
     def frequencies(self, case):
         return np.arange(1.0, case.n) * 100.0
 
-    def prepare(self, case, sled):
+    def prepare(self, case, sled=None):
         def run(step, end):
-            if step > 9e-5:
-                return SimpleNamespace(broke="stalled Newton at t = 2 us", times=[])
-            times = np.linspace(end / 50, end, 50)
-            true = np.sin(4e3 * times)
-            wrong = true * (1.0 + (step / 1e-3) ** 2)
-            return SimpleNamespace(
-                times=times, deflection=wrong, distance=wrong, speed=wrong, seconds=1e-3, set_up_s=1e-3, broke=""
+            steps, step = peer_case.count(step, end)
+            times, off = np.linspace(end / 50, end, 50), 1.0 + (step / COARSE) ** 2
+            slid = (np.zeros(0), np.zeros(0)) if sled is None else exact_ride(case, sled, end).at(times)
+            return PeerRun(
+                times=times,
+                deflection=off * references.deflection(case, times),
+                distance=off * slid[0],
+                speed=off * slid[1],
+                seconds=2e-3,
+                set_up_s=1e-3,
+                steps=steps,
+                broke="stalled Newton at t = 2 us" if step > 1.1e-5 else "",
             )
 
         return run
 
 
-def plant(monkeypatch):
-    """A room of engines with one that is there and one that is not."""
-    room = SimpleNamespace(
-        PEERS={"Ghost": "ghost", "Absent": "absent"},
-        installed=lambda peer: "1.2" if peer == "ghost" else None,
-        adapter=lambda peer: Ghost(),
-    )
-    cases = SimpleNamespace(
-        case_of=lambda beam, n, forces, frequency_hz: SimpleNamespace(n=n), sled_of=lambda beam, slider: slider
-    )
-    monkeypatch.setattr(peer_set, "catalogue", lambda: room)
-    monkeypatch.setattr(peer_set, "given", lambda: cases)
+RIDE_STEPS = 1500
+COARSE = 1e-4
+"""A step that makes everything twice as large."""
+GHOST = Peer(name="Ghost", package="ghost-engine", module="ghost_engine", home="ghost_engine:Ghost", implicit=True)
 
 
-def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_is_not_is_named(monkeypatch):
-    plant(monkeypatch)
+@cache
+def exact_ride(case, sled, end):
+    return references.ride(case, sled, end, RIDE_STEPS)
+
+
+@pytest.fixture
+def ghost(monkeypatch):
+    """An engine that is there beside three that are not."""
+    module = ModuleType("ghost_engine")
+    module.__spec__, module.Ghost = ModuleSpec("ghost_engine", None), Ghost
+    monkeypatch.setitem(sys.modules, "ghost_engine", module)
+    monkeypatch.setattr(catalogue, "installed", lambda peer: "1.2" if peer.name == "Ghost" else None)
+    monkeypatch.setattr(peer_set, "installed", catalogue.installed)
+    monkeypatch.setattr(references, "RIDE_STEPS", RIDE_STEPS)
+    with PEERS.registered(GHOST):
+        yield
+
+
+def gently(**drive):
+    """The strip under forces so small that the nonlinear chain is the linear one."""
+    force = [one | {"amplitude": 1e-2} for one in STRIP["drive"]["force"]]
+    return strip(drive=STRIP["drive"] | {"force": force} | drive)
+
+
+def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_is_not_is_named(ghost):
     found = found_of(
-        strip(), sets=("modes", "chain", "slider"), counts=(30,), modes=(2,), duration=6e-4, seconds=60.0, peers=True
+        gently(), sets=("modes", "chain", "slider"), counts=(30,), modes=(2,), duration=6e-4, seconds=90.0, peers=True
     )
     assert row(found, set="modes", method="Ghost").error == pytest.approx(
         200.0 / Workbench(strip().beam).exact_hz(2) - 1
     )
-    chain = rows(found, set="chain", method="Ghost")
-    assert len(chain) == peer_set.RUNGS
-    assert all(one.error > 1.0 for one in chain if not one.left_out)  # it moves something else
-    slider = rows(found, set="slider", method="Ghost")
-    errors = [one.error for one in slider if one.error]
-    assert errors == sorted(errors, reverse=True)
-    assert slider[-1].left_out == "Ghost: its shortest step is its own reference"
-    assert abs(slider[3].order - 2.0) < 0.3
-    ours = rows(found, set="slider", method=peer_set.OURS)
-    assert len(ours) == peer_set.RUNGS
-    assert "Absent is skipped: it is not installed, pip install 'fem-segment-verify[peers]'" in found.notes
+    for which in ("chain", "slider"):
+        own = rows(found, set=which, method="Ghost")
+        assert len(own) == peer_set.RUNGS + peer_set.MORE
+        for one in own:
+            assert one.error == pytest.approx((one.settings["step"] / COARSE) ** 2, rel=0.03, abs=1e-6)
+    assert "MuJoCo is not installed: pip install 'fem-segment-verify[peers]', or go without it" in found.notes
     assert found.versions["Ghost"] == "1.2"
-    assert ("kicks, 2", "Ghost") in {one.methods for one in found.sentences}
+    races = {one.methods: one for one in found.sentences if "Ghost" in one.methods and one.set != "modes"}
+    assert set(races) == {("kicks, 2", "Ghost"), ("RK4", "Ghost"), (ride_set.OURS, "Ghost")}
+    for methods, one in races.items():
+        assert one.earned
+        assert "at 0.1 % Ghost takes " in one.text
+        if methods[0] == "RK4":
+            assert one.at_error == 1e-3
+            assert "at 0.001 % nothing is said, RK4 comes to 0.00" in one.text
+        else:
+            assert one.at_error == 1e-5
+            assert "at 0.001 % Ghost takes " in one.text
 
 
-def test_an_engine_that_breaks_is_said_in_its_row(monkeypatch):
-    plant(monkeypatch)
-    slow = strip(drive=STRIP["drive"] | {"frequency_hz": 640.0})
+def test_an_engine_is_held_against_a_slider_on_the_exact_chain_as_well_as_that_is_known(ghost):
+    """A hundredth of a newton departs by a hundredth of a hundredth of what a tenth does: the square of the force."""
+    its = settled(Bench(counts=(30,), duration=6e-4), gently())
+    small, large = (ride_set.departs(scene, its, 30) for scene in (gently(), strip()))
+    assert large / small == pytest.approx(1e4, rel=0.05)
+    assert small < ride_set.SMALL < large
+    found = found_of(gently(), sets=("slider",), counts=(30,), duration=6e-4, seconds=90.0, peers=True)
+    own = rows(found, set="slider", method="Ghost")
+    assert {one.reference for one in own} == {
+        "a slider on the exact linear chain, and how far the nonlinear one departs"
+    }
+    assert all(one.reference_uncertainty == pytest.approx(small, rel=1e-6) for one in own)
+
+
+def test_an_engine_under_larger_forces_is_held_against_its_own_shortest_step(ghost):
+    found = found_of(strip(), sets=("slider",), counts=(30,), duration=6e-4, seconds=90.0, peers=True)
+    own = rows(found, set="slider", method="Ghost")
+    assert own[-1].left_out == "Ghost: its shortest step is its own reference"
+    assert all(one.error > 0.0 for one in own[:-1])
+    assert own[3].order == pytest.approx(2.0, abs=0.05)
+
+
+def test_our_own_slider_takes_the_steps_that_are_told(ghost):
+    """Also where samples lie nearer than a step: its error falls at its order from the longest step on."""
+    from verify.motion.simulate import simulate
+
+    scene = gently()
+    found = found_of(scene, sets=("slider",), counts=(30,), duration=6e-4, seconds=90.0, peers=True)
+    ours = rows(found, set="slider", method=ride_set.OURS)
+    steps = [round(6e-4 / one.settings["step"]) for one in ours]
+    assert steps == [steps[0] * 2**k for k in range(len(ours))]
+    seen = [one.order for one in ours if one.order is not None]
+    assert len(seen) >= 4
+    assert all(1.5 < order < 4.8 for order in seen)
+    forces, end = scene.forces, 6e-4
+    slider = msgspec.structs.replace(scene.slider, coupling="one-way")
+    finest = {"count": 30, "slider": slider, "ledger": False, "samples": steps[0] + 1}
+    one, true = (
+        simulate(scene.beam, forces, 1730.0, end, step=end / n * (1 + 1e-9), **finest)
+        for n in (steps[1], steps[0] * 2 ** (len(ours) + 1))
+    )
+    assert one.statistics.steps == steps[1]
+    off = [
+        np.sqrt(np.mean((a - b) ** 2) / np.mean(b**2))
+        for a, b in ((one.travelled, true.travelled), (one.speed, true.speed))
+    ]
+    assert ours[1].error == pytest.approx(max(off), rel=1e-6)
+
+
+def test_an_engine_that_breaks_is_said_in_its_row(ghost):
+    slow = gently(frequency_hz=640.0)
     found = found_of(slow, sets=("chain",), counts=(12,), duration=6e-4, seconds=60.0, peers=True)
     first = rows(found, method="Ghost")[0]
     assert first.left_out == "Ghost broke: stalled Newton at t = 2 us"
 
 
-def test_without_a_room_of_engines_nothing_is_missed(monkeypatch):
-    monkeypatch.setattr(peer_set, "catalogue", lambda: None)
+def test_an_engine_that_is_pushed_says_what_it_did_or_that_nobody_knows(ghost, monkeypatch):
+    asked = {"sets": ("modes",), "counts": (30,), "modes": (1,), "peers": False, "push": True}
+    found = found_of(gently(), **asked)
+    assert found.pushed == ()
+    assert any(
+        note.startswith("Ghost is not pushed: peer = 'Ghost': how it breaks is known of") for note in found.notes
+    )
+    done = Break(
+        engine="Ghost", links=30, pushed="hard", did="it went home", until=1e-4, asked=2e-4, steps=3, seconds=0.1
+    )
+    monkeypatch.setattr(peer_set, "pushed", lambda name, case, end: done)
+    found = found_of(gently(), **asked)
+    assert found.pushed == (done,)
+    (table,) = [one for one in found.tables() if one.title == "Other engines pushed until they break"]
+    assert table.rows == (("Ghost", 30, "hard", "it went home", 3, 0.1),)
+    assert "it went home" in page(found)
+
+
+def test_a_part_of_a_run_tells_the_time_of_the_whole():
+    """A tenth of the steps after 1 s of set-up: 3 s measured are 1 s and ten times 2 s."""
+    assert measuring._of_the_whole(3.0, 1.0 / 3.0, 0.1) == pytest.approx((21.0, 1.0 / 21.0))
+    assert measuring._of_the_whole(3.0, None, 0.5) == (6.0, None)
+
+
+def test_without_engines_nothing_but_their_names_is_told(monkeypatch):
+    monkeypatch.setattr(peer_set, "missing", lambda peer: f"{peer.name} is away")
     cases, notes = all_cases(
         Bench(sets=("modes", "slider"), counts=(20,), modes=(1,)), strip(), Workbench(strip().beam)
     )
-    assert [case.name for case in cases] == ["modes, mode 1", "slider"]
-    assert not any("skipped" in note for note in notes)
+    assert [case.name for case in cases if case.entries] == ["modes, mode 1", "slider"]
+    assert notes[-3:] == [f"{name} is away" for name in ("Exudyn", "MuJoCo", "Pinocchio")]
 
 
 # --- Where it is told ----------------------------------------------------------------------------------------------

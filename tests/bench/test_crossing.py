@@ -2,7 +2,7 @@
 
 import pytest
 
-from verify.judge.crossing import Point, Stretch, Unearned, at_error, converging, crossing
+from verify.judge.crossing import Point, Stretch, Unearned, at_error, converging, crossing, within
 
 
 def line(constant, order, seconds, growth, sizes=(1 / 24, 1 / 49, 1 / 98), spread=0.0):
@@ -75,3 +75,14 @@ def test_methods_that_share_no_error_are_not_compared():
     found = crossing(stretch(1e-3, 4.0, 1.0, 1.0), stretch(1e3, 4.0, 1.0, 1.0))
     assert isinstance(found, Unearned)
     assert "no error in common" in found.why
+
+
+def test_the_time_at_an_error_is_that_of_the_coarsest_size_from_which_on_all_are_within_it():
+    points = [Point(0.1 / 2**i, error, float(2**i)) for i, error in enumerate((0.8, 1e-2, -1e-4, 1e-6))]
+    assert within(points, 2e-2) == 2.0  # before it stands no answer
+    assert within(points, 1e-3) == pytest.approx(2.0 * 2.0**0.5, rel=1e-12)
+    assert within(points, 1e-4) == pytest.approx(4.0, rel=1e-12)
+    assert within(points[2:], 1e-2) == 4.0  # as coarse as it goes: nothing is foretold
+    assert within(points, 1e-7) is None
+    assert within([], 1e-3) is None
+    assert within([points[2], points[1]], 1e-3) is None  # it was within for a while

@@ -1,5 +1,6 @@
 """A chain that is symmetric in nothing, and a slider on it."""
 
+import numpy as np
 import pytest
 
 from verify.beam import PointForce
@@ -24,3 +25,23 @@ def asymmetric_case(titanium_strip):
 def sled(titanium_strip):
     slider = Slider(mass=2.3e-3, mu=0.31, slope=3e3, position=0.297, speed=1.7e-4, coupling="one-way")
     return sled_of(titanium_strip, slider)
+
+
+def relative_rms(values, exact):
+    """Rms of a difference over the rms of what is exact."""
+    return float(np.sqrt(np.mean((values - exact) ** 2) / np.mean(exact**2)))
+
+
+def deflection_error(run, exact):
+    """Of mid-span over the samples that a run kept, which broke nowhere."""
+    assert not run.broke
+    assert len(run.times) >= 40
+    return relative_rms(run.deflection, exact(run.times))
+
+
+def ride_error(run, exact):
+    """The larger of those of a slider's distance and of its speed."""
+    assert not run.broke
+    assert len(run.times) >= 40
+    pairs = zip((run.distance, run.speed), exact(run.times), strict=True)
+    return max(relative_rms(found, true) for found, true in pairs)

@@ -6,14 +6,13 @@ import msgspec
 import numpy as np
 import pytest
 
-from tests.peers.conftest import FREQUENCY
+from tests.peers.conftest import FREQUENCY, deflection_error, ride_error
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.peers import references
 from verify.peers.breaking import pushed
 from verify.peers.case import case_of
 from verify.peers.catalogue import PEERS, adapter, installed
-from verify.peers.ladder import deflection_error, ride_error
 
 MODULES = {"Exudyn": "exudyn", "MuJoCo": "mujoco", "Pinocchio": "pinocchio"}
 STEPS = {"Exudyn": 4e-6, "MuJoCo": 4e-5, "Pinocchio": 4e-5}

@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
-def asked_of(scene: "Scene", given: Mapping[str, str], *, cold: bool = False) -> Bench:
+def asked_of(scene: "Scene", given: Mapping[str, str], *, cold: bool = False, push: bool = False) -> Bench:
     """The scene's [bench], or its defaults, with what was typed instead. Raises InputError."""
     plain: dict[str, Any] = msgspec.to_builtins(BenchStudy().asked(scene) or Bench())
     plain |= {name: _typed(name, text) for name, text in given.items()}
-    return checked(plain | ({"cold": True} if cold else {}), Bench, "bench")
+    flags = {name: True for name, said in (("cold", cold), ("push", push)) if said}
+    return checked(plain | flags, Bench, "bench")
 
 
 def _typed(name: str, text: str) -> Any:

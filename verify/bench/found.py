@@ -6,6 +6,7 @@ from typing import Any
 import msgspec
 
 from verify.bench.rows import ChildCost, Row, Sentence, plain_row
+from verify.peers.breaking import Break
 from verify.studies.told import Chart, Column, Found, Table
 from verify.words import told_once
 
@@ -20,6 +21,8 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
     costs: tuple[ChildCost, ...]
     rows: tuple[Row, ...]
     sentences: tuple[Sentence, ...]
+    pushed: tuple[Break, ...] = ()
+    """What other engines did beyond what they bear."""
     notes: tuple[str, ...] = ()
     """Sets and methods that take no part, each with the reason."""
     estimate_s: float = 0.0
@@ -32,12 +35,18 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
         return tuple(one.text for one in (*self.moved, *self.sentences))
 
     def tables(self) -> tuple[Table, ...]:
-        """One for each case, and what processes of their own paid."""
-        return (*(_case_table(rows) for rows in self.by_case()), *self._costs_table())
+        """One for each case, what broke, and what processes of their own paid."""
+        return (*(_case_table(rows) for rows in self.by_case()), *self._pushed_table(), *self._costs_table())
 
     def by_case(self) -> list[tuple[Row, ...]]:
         """The rows of each case."""
         return [tuple(rows) for _, rows in groupby(self.rows, key=lambda row: row.line[:2])]
+
+    def _pushed_table(self) -> tuple[Table, ...]:
+        if not self.pushed:
+            return ()
+        rows = tuple((b.engine, b.links, b.pushed, b.did or "did not break", b.steps, b.seconds) for b in self.pushed)
+        return (Table(title="Other engines pushed until they break", columns=PUSHED, rows=rows, folded=True),)
 
     def _costs_table(self) -> tuple[Table, ...]:
         machine = ", ".join((*self.machine.values(), *(f"{name} {v}" for name, v in self.versions.items())))
@@ -72,6 +81,15 @@ COLUMNS = (
     Column("spread", "duration", wide=True),
     Column("set-up", "duration"),
     Column("first call", "duration", wide=True),
+)
+
+PUSHED = (
+    Column("engine", left=True),
+    Column("N"),
+    Column("by", left=True),
+    Column("what it did", left=True),
+    Column("good steps"),
+    Column("took", "duration"),
 )
 
 

@@ -20,6 +20,8 @@ class Told(msgspec.Struct, frozen=True, eq=False):
     """Seconds of modes and tables that this run made anew."""
     warm_s: float | None = None
     """Seconds of the rest."""
+    share: float = 1.0
+    """Of the rest, that this run went: a long one is timed by its first part."""
 
     @property
     def set_up_share(self) -> float | None:
@@ -73,10 +75,18 @@ class Entry(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Whether that is work worth telling."""
     runs_first: bool = False
     """Whether making it takes a run as well, which is no part of its cost."""
+    part: Callable[[], Run] | None = None
+    """What rounds repeat in its place where a run is long: its first part."""
+    part_s: float = 0.0
+    """Of one such part with its set-up, from above."""
     afresh: bool = False
     """Whether every run finds nothing that one before it has kept: its time is that from the beam on."""
     settings: dict[str, Setting] = {}
     """Its step or tolerance."""
+
+    def work_s(self, repeats: int) -> float:
+        """Of a run and of repeated ones, from above."""
+        return self.estimate_s + repeats * (self.part_s if self.part else self.estimate_s)
 
     @property
     def told(self) -> str:
@@ -98,6 +108,8 @@ class Case(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     entries: tuple[Entry, ...]
     pairs: tuple[tuple[str, str], ...]
     """Lines that a sentence compares, by name."""
+    races: tuple[tuple[str, str], ...] = ()
+    """Lines that a sentence compares at the errors `wanted` alone, each at its own longest step."""
     judge: Callable[[], Callable[[Entry, Any], Judged]]
     """The reference, solved now; then (entry, answer) -> how far off. Both raise InputError."""
     estimate_s: float = 0.0
@@ -105,7 +117,7 @@ class Case(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     floor: float = 0.0
     """Below which an error is rounding, beside what the reference leaves open."""
     wanted: tuple[float, ...] = ()
-    """Errors at which a sentence names the ratio besides."""
+    """Errors at which sentences name the ratio."""
     notes: tuple[str, ...] = ()
     """Methods that take no part, each with the reason."""
 

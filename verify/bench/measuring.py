@@ -61,7 +61,7 @@ def fitting(cases: Sequence[Case], seconds: float) -> tuple[dict[int, str], floa
 
     The largest go first, until the rest fits; the reference of a case goes with its last entry.
     """
-    taken = {id(entry): (LEAST_ROUNDS + ONCE) * entry.estimate_s for case in cases for entry in case.entries}
+    taken = {id(entry): entry.work_s(LEAST_ROUNDS + ONCE - 1) for case in cases for entry in case.entries}
     named = {id(entry): entry for case in cases for entry in case.entries}
     total = sum(taken.values()) + sum(case.estimate_s for case in cases)
     why: dict[int, str] = {}
@@ -110,7 +110,7 @@ def _first(entry: Entry, error: Callable[[Entry, object], Judged], clock: Clock)
     if not judged.error < float("inf") or judged.error != judged.error:
         raise InputError(f"{entry.told} gives no finite figure")
     begun = clock()
-    run = entry.prepare()
+    run = (entry.part or entry.prepare)()
     set_up = clock() - begun
     _, took = _timed(entry, run, clock)
     set_up = max(set_up - took, 0.0) if entry.runs_first else set_up
@@ -163,7 +163,16 @@ def _turn(one: _Ready, clock: Clock) -> tuple[float, float | None]:
         told = [one.run() for _ in range(one.repeats)]
         seconds = (clock() - begun) / one.repeats
     shares = [t.set_up_share for t in told if t.set_up_share is not None]
-    return seconds, median(shares) if shares else None
+    return _of_the_whole(seconds, median(shares) if shares else None, told[0].share)
+
+
+def _of_the_whole(seconds: float, set_up: float | None, part: float) -> tuple[float, float | None]:
+    """(seconds, the share of its set-up) of a whole run, from those of its first part."""
+    if part == 1.0:
+        return seconds, set_up
+    made = (set_up or 0.0) * seconds
+    whole = made + (seconds - made) / part
+    return whole, made / whole if set_up is not None else None
 
 
 def _row(

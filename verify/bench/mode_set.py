@@ -48,7 +48,10 @@ def mode_cases(scene: "Scene", its: Settled, bench: Workbench) -> Iterator[Case]
             question="frequency",
             condition="a warm solve from beam to modes",
             entries=tuple(entries),
-            pairs=_pairs({entry.line.name: None for entry in entries}, [one.title for one in variants]),
+            pairs=(
+                *_pairs({entry.line.name: None for entry in entries}, [one.title for one in variants]),
+                *((bounding()[0].title, name) for name in dict.fromkeys(entry.line.name for entry in theirs)),
+            ),
             judge=_judge(bench, mode),
             floor=ORDER_FLOOR,
             notes=(*refused, *why_not, *absent),

@@ -11,12 +11,14 @@ from verify.bench.found import BenchFound
 from verify.bench.kind import Case
 from verify.bench.machine import machine, today, versions
 from verify.bench.measuring import Clock, Outcome, fitting, measured
+from verify.bench.peer_set import breaks
 from verify.bench.peer_set import versions as engine_versions
 from verify.bench.rows import ChildCost, Row
 from verify.bench.sentences import sentences_of
 from verify.bench.study import Bench, Settled, settled, unasked
 from verify.errors import InputError
 from verify.options import BENCH_SETS
+from verify.peers.breaking import Break
 from verify.studies.kind import Progress
 
 if TYPE_CHECKING:
@@ -89,6 +91,11 @@ def benched(
             notes.append(f"{case.name} is left out: {error}")
     if not any(one.row.rounds for _, found in outcomes for one in found):
         raise InputError(f"bench: nothing is left to measure: {'; '.join(notes) or 'give more seconds'}")
+    pushed: tuple[Break, ...] = ()
+    if asked.push:
+        step("bench, other engines pushed")
+        pushed, refused = breaks(scene, settled(asked, scene))
+        notes += refused
     sets = tuple(dict.fromkeys(case.set for case in cases))
     if asked.imports:
         step("bench, imports")
@@ -104,6 +111,7 @@ def benched(
         costs=(*imports, *(ChildCost(f"compile {name}, {one}", s) for (name, one), s in compiling.items())),
         rows=tuple(_compiled(one.row, compiling) for _, found in outcomes for one in found),
         sentences=tuple(told for case, found in outcomes for told in sentences_of(case, found, scene.name)),
+        pushed=pushed,
         notes=tuple(notes),
         estimate_s=estimate,
     )

@@ -3,10 +3,22 @@
 from collections.abc import Sequence
 from math import log
 
+from msgspec.structs import replace
+
 from verify.bench.kind import Case
 from verify.bench.measuring import Outcome, floors
 from verify.bench.rows import Sentence
-from verify.judge.crossing import ABOVE_FLOOR, Crossing, Point, Stretch, Unearned, at_error, converging, crossing
+from verify.judge.crossing import (
+    ABOVE_FLOOR,
+    Crossing,
+    Point,
+    Stretch,
+    Unearned,
+    at_error,
+    converging,
+    crossing,
+    within,
+)
 
 NEAR = 0.01
 """Within which a method of parts is set beside the exact solution."""
@@ -15,7 +27,52 @@ NEAR = 0.01
 def sentences_of(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
     """One for each pair of a case's lines, then what is exact beside the rest."""
     told = [_compared(case, found, scene, *pair) for pair in case.pairs]
+    told += [_raced(case, found, scene, *pair) for pair in case.races]
     return told + _exact(case, found, scene)
+
+
+def _raced(case: Case, found: Sequence[Outcome], scene: str, first: str, second: str) -> Sentence:
+    """How much longer the second takes at every wanted error, each at its own longest step."""
+    told = {wanted: _race(case, found, wanted, (first, second)) for wanted in case.wanted}
+    ratios = {wanted: answer for wanted, answer in told.items() if isinstance(answer, tuple)}
+    parts = [
+        answer
+        if isinstance(answer, str)
+        else f"at {percent(wanted)} {second} takes {answer[0]:.3g} times as long as {first}, "
+        f"without their set-up {answer[1]:.3g} times"
+        for wanted, answer in told.items()
+    ]
+    finest = min(ratios, default=None)
+    return Sentence(
+        set=case.set,
+        about=case.about,
+        methods=(first, second),
+        text=f"{case.name}: {'; '.join(parts)} (each at its own longest step; {_condition(case, found, scene)})",
+        earned=bool(ratios),
+        ratio=ratios[finest][0] if finest is not None else None,
+        at_error=finest,
+    )
+
+
+def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[str, str]) -> tuple[float, float] | str:
+    """Ratios of (whole runs, runs without their set-up) at an error; why there are none."""
+    seconds: list[tuple[float, float]] = []
+    for name in methods:
+        own = sorted((o for o in found if o.entry.line.name == name and o.point), key=lambda o: -o.entry.size)
+        floor = ABOVE_FLOOR * floors(case, (o.row for o in own))
+        if own and wanted < floor:
+            return f"at {percent(wanted)} nothing is said, what {name} is held against is known to {floor:.1e} alone"
+        points = [p for o in own if (p := o.point)]
+        alone = [replace(p, seconds=o.row.warm_s or 0.0) for p, o in zip(points, own, strict=True)]
+        whole, run = within(points, wanted), within(alone, wanted)
+        if whole is None or run is None:
+            least = min((abs(p.error) for p in points), default=None)
+            why = "has no figure" if least is None else f"comes to {percent(least)}"
+            left = sum(bool(o.row.left_out) for o in found if o.entry.line.name == name)
+            return f"at {percent(wanted)} nothing is said, {name} {why}" + (f", {left} steps left out" if left else "")
+        seconds.append((whole, run))
+    (a, b), (c, d) = seconds
+    return c / a, d / b
 
 
 def _compared(case: Case, found: Sequence[Outcome], scene: str, first: str, second: str) -> Sentence:
@@ -102,7 +159,7 @@ def _alone(found: Sequence[Outcome], methods: tuple[str, str], answer: Crossing)
 
 
 def _condition(case: Case, found: Sequence[Outcome], scene: str) -> str:
-    rounds = min(one.row.rounds for one in found if one.row.rounds)
+    rounds = min((one.row.rounds for one in found if one.row.rounds), default=0)
     return f"{scene}, {case.question}; {case.condition}; medians of {rounds} rounds of this run on this machine"
 
 

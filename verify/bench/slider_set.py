@@ -39,9 +39,9 @@ def slider_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
         judge=lambda: _judge(scene),
     )
     if its.peers:
-        from verify.bench.peer_set import slider_cases as theirs
+        from verify.bench.ride_set import ride_cases
 
-        yield from theirs(scene, its)
+        yield from ride_cases(scene, its)
 
 
 def _entry(scene: "Scene", model: Model, count: int) -> Entry:

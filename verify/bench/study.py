@@ -47,6 +47,8 @@ class Bench(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """In which all methods take turns, at most."""
     peers: bool = True
     """Whether other engines take part, where they are installed."""
+    push: bool = False
+    """Whether other engines are pushed until they break, at each number of links: up to a minute each."""
     imports: bool = True
     """Whether imports are timed, in processes of their own."""
     cold: bool = False
@@ -143,8 +145,8 @@ class BenchStudy(Study[Bench, "BenchFound"]):
         return f"{', '.join(its.sets)} at N = {sizes}, about {asked.seconds:g} s of work at most"
 
     def n_steps(self, asked: Bench, scene: "Scene") -> int:
-        """One for each set, and for the processes of their own."""
-        return len(settled(asked, scene).sets) + int(asked.imports) + int(asked.cold)
+        """One for each set, for the processes of their own, and for pushing."""
+        return len(settled(asked, scene).sets) + int(asked.imports) + int(asked.cold) + int(asked.push)
 
     def run(
         self, asked: Bench, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

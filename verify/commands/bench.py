@@ -15,6 +15,7 @@ from verify.commands.shared import json_alone, load, overridden, progress, scene
 @click.option("--modes", metavar="LIST", help="Which modes, for instance 1,5,22. Default: the scene's.")
 @click.option("--seconds", metavar="CAP", help="Of work by its estimate: what does not fit is left out. Default: 20.")
 @click.option("--cold", is_flag=True, help="Time compiling too, with nothing kept on disk.")
+@click.option("--push", is_flag=True, help="Push other engines until they break, and say what they did.")
 @json_alone
 @click.option("--csv", "layout", flag_value="csv", help="Print comma-separated values.")
 @click.option("--markdown", "layout", flag_value="markdown", help="Print a Markdown table.")
@@ -38,6 +39,7 @@ def bench(
     modes: str | None,
     seconds: str | None,
     cold: bool,
+    push: bool,
     as_json: bool,
     layout: str | None,
     against: Path | None,
@@ -54,7 +56,7 @@ def bench(
 
     asked = load(scene, overrides)
     given = {"sets": sets, "counts": counts, "modes": modes, "seconds": seconds}
-    request = asked_of(asked, {name: text for name, text in given.items() if text is not None}, cold=cold)
+    request = asked_of(asked, {name: text for name, text in given.items() if text is not None}, cold=cold, push=push)
     earlier = None
     if against is not None:
         from verify.bench.against import read_earlier

@@ -84,6 +84,22 @@ def at_error(errors: Sequence[float], values: Sequence[float], error: float) -> 
     return exp(log(values[coarse]) + part * log(values[fine] / values[coarse]))
 
 
+def within(points: Sequence[Point], wanted: float) -> float | None:
+    """Seconds at the coarsest size from which on all errors are within a wanted one; None where there is none.
+
+    `points` from coarse to fine. Between sizes by the line through the two on either side; nothing is foretold beyond
+    them, so that a method whose coarsest size is good enough takes the time of that.
+    """
+    errors = [abs(p.error) for p in points]
+    first = max((i + 1 for i, error in enumerate(errors) if error > wanted), default=0)
+    if first == len(points):
+        return None
+    if not first or errors[first - 1] >= NO_ANSWER or not errors[first]:
+        return points[first].seconds
+    pair = slice(first - 1, first + 1)
+    return at_error(errors[pair], [p.seconds for p in points[pair]], wanted)
+
+
 def observed(a: Point, b: Point, floor: float) -> float | None:
     """The order between two points; None where an error is rounding, changes its sign or the sizes are equal."""
     if a.size == b.size or a.error * b.error <= 0.0 or min(abs(a.error), abs(b.error)) <= floor:

@@ -12,14 +12,13 @@ OVER = 1.2
 """Of the explicit limit of the step."""
 IMPLICIT_STEP, PULL = 2e-5, 1e5
 """Seconds, and by how much forces grow, where an engine has no such limit."""
-IMPLICIT = ("Exudyn",)
-"""Which have none."""
 
 
 class Break(Value, frozen=True, kw_only=True):
     """What one engine did."""
 
     engine: str
+    links: int
     pushed: str
     """By what."""
     did: str
@@ -42,7 +41,7 @@ def pushed(name: str, case: Case, end: float) -> Break:
     peer = PEERS.named(name)
     if name not in PEERS.built_in:
         raise InputError(f"peer = {name!r}: how it breaks is known of {', '.join(PEERS.built_in)} alone")
-    if name in IMPLICIT:
+    if peer.implicit:
         pulled = tuple(msgspec.structs.replace(one, amplitude=PULL * one.amplitude) for one in case.forces)
         case, step = msgspec.structs.replace(case, forces=pulled), IMPLICIT_STEP
         by = f"forces of {max(abs(force.amplitude) for force in pulled):.3g} N in steps of {1e6 * step:.3g} us"
@@ -52,6 +51,7 @@ def pushed(name: str, case: Case, end: float) -> Break:
     run = adapter(peer).prepare(case, None)(step, end)
     return Break(
         engine=name,
+        links=case.n,
         pushed=by,
         did=run.broke,
         until=float(run.times[-1]) if len(run.times) else 0.0,

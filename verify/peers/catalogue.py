@@ -35,6 +35,8 @@ class Peer(Value, frozen=True, kw_only=True):
     """As Python imports it."""
     home: str
     """'module:class' of its adapter, which is made without arguments."""
+    implicit: bool = False
+    """Whether its steps have no limit of stability."""
 
 
 def _wrong(peer: object) -> str:
@@ -46,7 +48,7 @@ PEERS: Registry[Peer] = Registry(
     "peer",
     "verify.peers",
     own=(
-        Peer(name="Exudyn", package="exudyn", module="exudyn", home="verify.peers.exudyn:Exudyn"),
+        Peer(name="Exudyn", package="exudyn", module="exudyn", home="verify.peers.exudyn:Exudyn", implicit=True),
         Peer(name="MuJoCo", package="mujoco", module="mujoco", home="verify.peers.mujoco:Mujoco"),
         Peer(name="Pinocchio", package="pin", module="pinocchio", home="verify.peers.pinocchio:Pinocchio"),
     ),
