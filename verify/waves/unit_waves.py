@@ -189,6 +189,19 @@ def superposed(
     NaN where there is none, counted by `gaps`. Raises InputError where the model or the window is none.
     """
     waves = drive.waves(frequencies, gaps, len(second))
+    return figures_of(drive, waves, names, frequencies, first, second, gaps)
+
+
+def figures_of(
+    drive: UnitDrive,
+    waves: UnitWaves,
+    names: tuple[str, ...],
+    frequencies: Array,
+    first: complex,
+    second: ComplexArray,
+    gaps: Gaps,
+) -> list[Array]:
+    """The same of waves that are known; `second` is (p,), or (m, p) at the frequencies that have them."""
     f, k = frequencies[waves.known, None], waves.k[:, None]
     forward, backward = (w[:, 0, None] * first + w[:, 1, None] * second for w in (waves.forward, waves.backward))
     unit = [unit_response(drive.beam, float(g)) if drive.kind == "force" else 1.0 for g in f[:, 0]]
@@ -199,7 +212,7 @@ def superposed(
         forward[still] = 1.0  # anything: it has no figure
     found = []
     for name in names:
-        values = np.full((len(frequencies), len(second)), np.nan)
+        values = np.full((len(frequencies), second.shape[-1]), np.nan)
         figure = FIGURES[name](Medium(drive.beam, drive.theory), 2.0 * np.pi * f, k, forward, backward)
         values[waves.known] = np.where(still, np.nan, figure)
         found.append(values)
