@@ -1,7 +1,7 @@
 """The phase between two drives at which crests run fastest, in closed form, at many frequencies at once.
 
 Two drives a phase phi apart, z = e^{i phi}, make waves of amplitudes A+ = a + b z and A- = c + d z. Their squares are
-first harmonics of phi, |a + b z|^2 = |a|^2 + |b|^2 + 2 Re(conj(a) b z), so that all that is asked for has a closed form:
+first harmonics of phi, |a + b z|^2 = |a|^2 + |b|^2 + 2 Re(conj(a) b z), so that each thing asked for has a closed form:
 
 - the reflection is at its limit l where |A+|^2 = l^2 |A-|^2 or the reverse: two angles of a first harmonic each;
 - the crest speed goes as D / sqrt(S), D = |A+|^2 - |A-|^2, S = |A+|^2 + |A-|^2; it is stationary where
@@ -31,7 +31,7 @@ class FirstHarmonic(msgspec.Struct, frozen=True, eq=False):
     """(n,)."""
 
     def less(self, factor: float, other: "FirstHarmonic") -> "FirstHarmonic":
-        """This less so many times the other."""
+        """It less so many times the other."""
         return FirstHarmonic(self.mean - factor * other.mean, self.turn - factor * other.turn)
 
     def zeros(self) -> Array:

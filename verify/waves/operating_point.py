@@ -71,7 +71,7 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
         )
 
     def fastest_phases(self, frequencies: Array, ends: tuple[float, float], limit: float) -> tuple[Array, Array]:
-        """(phases, sizes of the crest speed there) of the fastest crests that keep a limit on the reflection, (n,) each.
+        """(phases, sizes of the crest speed there) of the fastest crests that keep a limit on the reflection, (n,).
 
         Phases in radians between both ends; the speed is 0 where none keeps it. Raises NoFigureError where no
         frequency has a figure.
@@ -81,7 +81,9 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
         waves = drive.waves(frequencies, gaps)
         amplitudes = np.array([first, second])
         phases = np.zeros((len(frequencies), TRIED))
-        phases[waves.known] = tried = phases_to_try(waves.forward * amplitudes, waves.backward * amplitudes, limit, ends)
+        phases[waves.known] = tried = phases_to_try(
+            waves.forward * amplitudes, waves.backward * amplitudes, limit, ends
+        )
         turned = np.asarray(second * np.exp(1j * tried))
         reflection, speed = figures_of(drive, waves, figures, frequencies, complex(first), turned, gaps)
         gaps.reasons(len(frequencies))

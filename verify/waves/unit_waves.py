@@ -17,6 +17,7 @@ from verify.waves.measures import (
     STANDING,
     STILL,
     amplitudes_of,
+    check_halves,
     check_window,
     crest_speed,
     energy_flux,
@@ -89,20 +90,21 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
                 f"more than {MOST_READINGS:.0e}: give fewer steps, or a narrower window"
             )
         fields = self._responses(frequencies, rule.x)
+        steady = [bool(np.isfinite(field).all()) for field in fields]
         k = np.full(len(frequencies), np.nan, dtype=complex)
         for i, frequency in enumerate(frequencies):
             try:
-                k[i] = self._wavenumber(float(frequency), fields[i])
+                k[i] = self._wavenumber(float(frequency), steady[i])
             except NoFigureError as error:
                 gaps.add(error, points)
         known = np.isfinite(k)
         waves = amplitudes_of(rule, k[known], fields[known], 0.5 * sum(self.window))
         return UnitWaves(known, k[known], waves[:, 0], waves[:, 1])
 
-    def _wavenumber(self, frequency: float, field: ComplexArray) -> complex:
-        """The model's own. Raises NoFigureError where the frequency has none, or no field."""
-        check_window(self.beam, list(self.places), frequency, self.window)
-        if not np.isfinite(field).all():
+    def _wavenumber(self, frequency: float, steady: bool) -> complex:
+        """The model's own. Raises NoFigureError where the frequency has none, or no steady field."""
+        check_halves(self.beam, frequency, self.window)
+        if not steady:
             raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
         known = self.theory == EULER and not (self.beam.tension or self.beam.foundation or self.beam.section)
         if self.count is None or not known:
