@@ -1,7 +1,7 @@
 """Means and extremes of a figure over an interval, free of the grid that they were found on."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 
 import msgspec
 import numpy as np
@@ -29,12 +29,18 @@ def _legendre() -> tuple[Array, Array]:
     return 0.5 * (points + 1.0), 0.5 * weights
 
 
+@lru_cache(maxsize=64)
 def rule_over(interval: tuple[float, float], parts: int) -> Rule:
-    """Gauss-Legendre quadrature of an interval in equal parts, exact to rounding where each holds a period or less."""
+    """Gauss-Legendre quadrature of an interval in equal parts, exact to rounding where each holds a period or less.
+
+    Kept, so that its arrays are for reading alone.
+    """
     points, weights = _legendre()
     edges = np.linspace(interval[0], interval[1], parts + 1)
-    x = edges[:-1, None] + np.diff(edges)[:, None] * points
-    return Rule(x.ravel(), np.tile(weights / parts, parts))
+    x = (edges[:-1, None] + np.diff(edges)[:, None] * points).ravel()
+    each = np.tile(weights / parts, parts)
+    x.flags.writeable = each.flags.writeable = False
+    return Rule(x, each)
 
 
 def mean_over(figure: Callable[[Array], Array], interval: tuple[float, float], parts: int) -> float:
