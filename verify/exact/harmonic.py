@@ -7,11 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, refuse_resonance, wavenumber
+from verify.models.arrays import Array, ComplexArray, Indices
+from verify.models.fields import (
+    RESONANCE,
+    HarmonicField,
+    check_drive,
+    check_forces,
+    phasor,
+    refuse_resonance,
+    wavenumber,
+)
 from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 
 
@@ -48,6 +56,39 @@ def _closed_form(beam: Beam, forces: Sequence[PointForce], frequency_hz: float) 
     slow, pinned = abs(k) * beam.length < 1.0, beam.supports == ("pinned", "pinned")
     solve = slow_shapes if slow else pinned_shapes if pinned else spliced_shapes
     return solve(beam, forces, k)
+
+
+def uniform_shapes(
+    beam: Beam, forces: Sequence[PointForce], frequencies: Array
+) -> Callable[[Array, int], ComplexArray]:
+    """A uniform beam's field at each of many frequencies, (x, derivative) -> (n, len(x)); short waves all at once."""
+    waves = np.array([wavenumber(beam, float(frequency)) for frequency in frequencies])
+    fast = abs(waves) * beam.length >= 1.0
+    solve = pinned_shapes if beam.supports == ("pinned", "pinned") else spliced_shapes
+    parts: list[tuple[Indices, Callable[[Array, int], ComplexArray]]] = []
+    if fast.any():
+        parts.append((np.flatnonzero(fast), solve(beam, forces, waves[fast, None])))
+    parts += [(np.array([i]), slow_shapes(beam, forces, complex(waves[i]))) for i in np.flatnonzero(~fast)]
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        found = np.empty((len(frequencies), len(x)), dtype=complex)
+        for which, some in parts:
+            found[which] = some(x, derivative)
+        return found
+
+    return shapes
+
+
+def resonant(beam: Beam, frequencies: Array) -> Indices:
+    """Which of many frequencies lie on a resonance of a uniform undamped beam, as `check_off_resonance` has it."""
+    if beam.loss_factor:
+        return np.zeros(0, dtype=int)
+    turns = np.sqrt(2.0 * pi * frequencies / beam.wave_constant) * beam.length / pi
+    numbers = np.unique(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
+    resonances = np.array([mode_frequency_hz(beam, int(n)) for n in numbers])
+    above = np.clip(np.searchsorted(resonances, frequencies), 0, len(resonances) - 1)
+    around = np.stack([np.maximum(above - 1, 0), above], axis=1)
+    return np.flatnonzero(abs(frequencies[:, None] / resonances[around] - 1.0).min(axis=1) < RESONANCE)
 
 
 def check_off_resonance(beam: Beam, frequency_hz: float, field: str = "frequency_hz") -> None:
@@ -220,8 +261,12 @@ def unit_responses(
             with suppress(ResonanceError):
                 responses[i] = general_responses(beam, positions.tolist(), float(frequency), x, theory)
         return responses
-    for i, j in np.ndindex(*responses.shape[:2]):
-        with suppress(ResonanceError):
-            force = PointForce(position=float(positions[j]))
-            responses[i, j] = solve_harmonic(beam, [force], float(frequencies_hz[i])).deflection(x)
+    forces = [PointForce(position=float(position)) for position in positions]
+    check_forces(beam, forces)
+    for frequency in frequencies_hz:
+        check_frequency("frequency_hz", float(frequency), beam)
+    steady = np.full(len(frequencies_hz), True)
+    steady[resonant(beam, frequencies_hz)] = False
+    for j, force in enumerate(forces):
+        responses[steady, j] = uniform_shapes(beam, [force], frequencies_hz[steady])(x, 0)
     return responses

@@ -8,11 +8,10 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.checks import check_whole, several
 from verify.errors import InputError
-from verify.exact.closed_forms import frequency_hz, wavenumber_length
-from verify.exact.harmonic import check_off_resonance, pinned_shapes, solve_harmonic, spliced_shapes
+from verify.exact.closed_forms import wavenumber_length
+from verify.exact.harmonic import check_off_resonance, resonant, solve_harmonic, uniform_shapes
 from verify.exact.modes import exact_frequency_hz
-from verify.models.arrays import Array, ComplexArray, Indices
-from verify.models.fields import RESONANCE, wavenumber
+from verify.models.arrays import Array, ComplexArray
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import FIELD, HarmonicSweep, check_held, of_each, swept_frequencies
 
@@ -44,24 +43,12 @@ def sweep_harmonic(beam: Beam, forces: Forces, frequencies_hz: Numbers, theory: 
 def _shapes(
     beam: Beam, forces: tuple[PointForce, ...], frequencies: Array, theory: str
 ) -> Callable[[Array, int], ComplexArray]:
-    """(x, derivative) -> (n, len(x)): at once where waves are short enough, else one by one."""
-    waves = np.array([wavenumber(beam, float(f)) for f in frequencies]) if theory == EULER and beam.uniform else None
-    fast = np.full(len(frequencies), False) if waves is None else abs(waves) * beam.length >= 1.0
-    parts: list[tuple[Indices, Callable[[Array, int], ComplexArray]]] = []
-    if waves is not None and fast.any():
+    """(x, derivative) -> (n, len(x)): of a uniform beam at once, of others one by one."""
+    if theory == EULER and beam.uniform:
         _refuse_resonances(beam, frequencies)
-        solve = pinned_shapes if beam.supports == ("pinned", "pinned") else spliced_shapes
-        parts.append((np.flatnonzero(fast), solve(beam, forces, waves[fast, None])))
-    slow = np.flatnonzero(~fast).tolist()
-    parts += [(np.array([i]), _one(beam, forces, float(frequencies[i]), i, theory)) for i in slow]
-
-    def shapes(x: Array, derivative: int) -> ComplexArray:
-        found = np.empty((len(frequencies), len(x)), dtype=complex)
-        for which, some in parts:
-            found[which] = some(x, derivative)
-        return found
-
-    return shapes
+        return uniform_shapes(beam, forces, frequencies)
+    each = [_one(beam, forces, float(frequency), i, theory) for i, frequency in enumerate(frequencies)]
+    return lambda x, derivative: np.array([shapes(x, derivative) for shapes in each])
 
 
 def _one(
@@ -76,20 +63,8 @@ def _one(
 
 def _refuse_resonances(beam: Beam, frequencies: Array) -> None:
     """Raise ResonanceError for the first frequency on an undamped resonance of a uniform beam, by index."""
-    if beam.loss_factor:
-        return
-    turns = np.sqrt(2.0 * pi * frequencies / beam.wave_constant) * beam.length / pi
-    numbers = np.unique(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
-    resonances = np.array([frequency_hz(beam, int(n)) for n in numbers])
-    nearest = abs(frequencies[:, None] / resonances[_beside(resonances, frequencies)] - 1.0).min(axis=1)
-    for index in np.flatnonzero(nearest < 2.0 * RESONANCE):
+    for index in resonant(beam, frequencies):
         check_off_resonance(beam, float(frequencies[index]), f"{FIELD}[{index}]")
-
-
-def _beside(ascending: Array, values: Array) -> Array:
-    """Indices of the two that lie around each value, (n, 2)."""
-    above = np.clip(np.searchsorted(ascending, values), 0, len(ascending) - 1)
-    return np.stack([np.maximum(above - 1, 0), above], axis=1)
 
 
 @as_typed

@@ -1,12 +1,12 @@
 """Means and extremes of a figure over an interval, free of the grid that they were found on."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 
 import msgspec
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Indices
 
 GAUSS = 12
 """Points of the quadrature in each part of an interval."""
@@ -29,12 +29,18 @@ def _legendre() -> tuple[Array, Array]:
     return 0.5 * (points + 1.0), 0.5 * weights
 
 
+@lru_cache(maxsize=64)
 def rule_over(interval: tuple[float, float], parts: int) -> Rule:
-    """Gauss-Legendre quadrature of an interval in equal parts, exact to rounding where each holds a period or less."""
+    """Gauss-Legendre quadrature of an interval in equal parts, exact to rounding where each holds a period or less.
+
+    Kept, so that its arrays are for reading alone.
+    """
     points, weights = _legendre()
     edges = np.linspace(interval[0], interval[1], parts + 1)
-    x = edges[:-1, None] + np.diff(edges)[:, None] * points
-    return Rule(x.ravel(), np.tile(weights / parts, parts))
+    x = (edges[:-1, None] + np.diff(edges)[:, None] * points).ravel()
+    each = np.tile(weights / parts, parts)
+    x.flags.writeable = each.flags.writeable = False
+    return Rule(x, each)
 
 
 def mean_over(figure: Callable[[Array], Array], interval: tuple[float, float], parts: int) -> float:
@@ -65,18 +71,20 @@ def extremes(figure: Callable[[Array], Array], x: Array) -> tuple[float, float]:
     Every hill is looked at more closely, not the highest of the points alone.
     """
     values = figure(x)
-    return -_largest(lambda at: -figure(at), x, -values), _largest(figure, x, values)
-
-
-def _largest(figure: Callable[[Array], Array], x: Array, values: Array) -> float:
-    padded = np.concatenate([[-np.inf], values, [-np.inf]])
-    tops = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]))
-    tops = tops[np.argsort(values[tops])[-_HILLS:]]
-    low, high = x[np.maximum(tops - 1, 0)], x[np.minimum(tops + 1, len(x) - 1)]
+    tops, bottoms = _tops(values), _tops(-values)
+    hills, signs = np.concatenate([tops, bottoms]), np.repeat([1.0, -1.0], [len(tops), len(bottoms)])[:, None]
+    low, high, rows = x[np.maximum(hills - 1, 0)], x[np.minimum(hills + 1, len(x) - 1)], np.arange(len(hills))
     steps = np.linspace(0.0, 1.0, _ZOOM)
     for _ in range(_DEPTH):
         at = low[:, None] + (high - low)[:, None] * steps
-        best = figure(at.ravel()).reshape(at.shape).argmax(axis=1)
-        rows = np.arange(len(at))
+        best = (signs * figure(at.ravel()).reshape(at.shape)).argmax(axis=1)
         low, high = at[rows, np.maximum(best - 1, 0)], at[rows, np.minimum(best + 1, _ZOOM - 1)]
-    return max(float(values.max()), float(figure(0.5 * (low + high)).max()))
+    found = np.concatenate([values, figure(0.5 * (low + high))])
+    return float(found.min()), float(found.max())
+
+
+def _tops(values: Array) -> Indices:
+    """Where the highest hills are, ends included, (n,) of `_HILLS` at most."""
+    padded = np.concatenate([[-np.inf], values, [-np.inf]])
+    tops = np.flatnonzero((values >= padded[:-2]) & (values >= padded[2:]))
+    return tops[np.argsort(values[tops])[-_HILLS:]]

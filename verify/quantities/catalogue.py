@@ -5,6 +5,7 @@ imports numpy until a figure that needs it is asked for.
 """
 
 from collections import Counter
+from functools import cache
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
@@ -50,20 +51,26 @@ def quantity(name: str) -> Quantity[Any]:
 
 def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     """Arguments checked against the quantity's types; one number stands for a list of one. Raises InputError."""
-    fields = msgspec.structs.fields(found.arguments)
-    kinds = {f.name: f.type for f in fields}
+    kinds, lists, registries = _fields_of(found.arguments)
     data = {k: as_meant(v, kinds.get(k), k) for k, v in _one_name(given, set(kinds)).items()}
-    data = {k: [v] if _is_list(kinds.get(k)) and not isinstance(v, list) else v for k, v in data.items()}
-    for field in fields:
-        if (among := among_of(field.type)) and isinstance(name := data.get(field.name), str):
-            among.check(name, field.name)
+    data = {k: [v] if k in lists and not isinstance(v, list) else v for k, v in data.items()}
+    for field, among in registries.items():
+        if isinstance(name := data.get(field), str):
+            among.check(name, field)
     return checked(data, found.arguments)
+
+
+@cache
+def _fields_of(kind: type[Arguments]) -> tuple[dict[str, Any], frozenset[str], dict[str, Any]]:
+    """(type of each argument, those that are lists, what those are checked among that name something)."""
+    kinds = {field.name: field.type for field in msgspec.structs.fields(kind)}
+    lists = frozenset(name for name, of in kinds.items() if _is_list(of))
+    return kinds, lists, {name: among for name, of in kinds.items() if (among := among_of(of))}
 
 
 def models_named(arguments: Arguments) -> tuple[str, ...]:
     """The models that arguments name, whatever the argument is called."""
-    fields = msgspec.structs.fields(arguments)
-    return tuple(str(getattr(arguments, field.name)) for field in fields if among_of(field.type))
+    return tuple(str(getattr(arguments, name)) for name in _fields_of(type(arguments))[2])
 
 
 def _is_list(kind: Any) -> bool:

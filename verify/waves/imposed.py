@@ -135,12 +135,12 @@ def held_units(units: Units, places: Array, beam: Beam, frequencies_hz: Array, x
     if len(poles):
         around = [(weight, frequencies_hz[poles] * (1.0 + steps * STEP)) for steps, weight in _AROUND]
         found[poles] = sum(weight * _solved_units(units, places, f, x)[0] for weight, f in around)
-    suspects = [
-        i
-        for i, f in enumerate(frequencies_hz)
-        if i not in poles and _least(receptance[i]) < _SUSPECT * unit_response(beam, float(f))
-    ]
-    if suspects:
+    small = _SUSPECT * np.array([unit_response(beam, float(f)) for f in frequencies_hz])
+    least = np.full(len(frequencies_hz), np.inf)
+    known = np.isfinite(receptance).all(axis=(1, 2))
+    least[known] = _least(receptance[known])
+    suspects = np.flatnonzero(least < small)
+    if len(suspects):
         beside = units(frequencies_hz[suspects] * (1.0 + STEP), places)
         for i, other in zip(suspects, beside, strict=True):
             try:
@@ -155,7 +155,7 @@ def _solved_units(units: Units, places: Array, frequencies_hz: Array, x: Array) 
     fields = units(frequencies_hz, np.concatenate([x, places]))
     receptance = fields[:, :, len(x) :]
     solved = np.full((len(frequencies_hz), len(places), len(x)), np.nan, dtype=complex)
-    for i, matrix in enumerate(receptance):
-        if np.isfinite(matrix).all() and _least(matrix) > 0.0:
-            solved[i] = np.linalg.solve(matrix, fields[i, :, : len(x)])
+    known = np.flatnonzero(np.isfinite(receptance).all(axis=(1, 2)))
+    known = known[_least(receptance[known]) > 0.0]
+    solved[known] = np.linalg.solve(receptance[known], fields[known, :, : len(x)])
     return solved, receptance

@@ -194,13 +194,18 @@ def measures_of(
     """
     window = float(x[0]), float(x[-1])
 
+    turn = medium.turn(omega)
+
     def ellipses(at: Array) -> tuple[Array, Array, Array]:
-        return ellipse(surface_motion(medium.beam, slope(at), medium.turn(omega)), deflection(at))
+        return ellipse(surface_motion(medium.beam, slope(at), turn), deflection(at))
+
+    def areas(at: Array) -> Array:
+        return signed_area(surface_motion(medium.beam, slope(at), turn), deflection(at))
 
     whole, halves = whole_halves(window, waves.wavenumber.real)
     rule = rule_over(whole, 2 * halves)
     least, largest = extremes(lambda at: np.abs(deflection(at)), fine)
-    low, high = extremes(lambda at: ellipses(at)[2], fine)
+    low, high = extremes(areas, fine)
     ratio, tilt, area = ellipses(x)
     return WaveMeasures(
         window=window,
@@ -212,8 +217,8 @@ def measures_of(
         axis_ratio=ratio,
         tilt_deg=tilt,
         signed_area=area,
-        signed_area_range=(low, mean_over(lambda at: ellipses(at)[2], window, 2 * halves), high),
-        ideal_axis_ratio=waves.wavenumber.real * medium.beam.surface_distance * medium.turn(omega),
+        signed_area_range=(low, mean_over(areas, window, 2 * halves), high),
+        ideal_axis_ratio=waves.wavenumber.real * medium.beam.surface_distance * turn,
         crest_speed=float(crest_speed(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
         energy_flux=float(energy_flux(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
     )
@@ -237,6 +242,11 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
     chi = 0.5 * np.arcsin(np.clip(sine, -1.0, 1.0))
     tilt = 0.5 * np.rad2deg(np.arctan2(product.real, difference))
     return np.tan(chi), tilt, product.imag
+
+
+def signed_area(across: ComplexArray, up: ComplexArray) -> Array:
+    """The last of these, S3 alone."""
+    return np.asarray(2.0 * (across.real * up.imag - across.imag * up.real))
 
 
 def crest_speed(medium: Medium, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
@@ -371,6 +381,12 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
             f"window = {list(window)} leaves the span between two forces (they act at {places} m): "
             "two waves alone live there, choose a window inside it"
         )
+    check_halves(beam, frequency_hz, window)
+
+
+def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -> None:
+    """Raise WindowError for a window of a beam that holds too few or too many half wavelengths of a frequency."""
+    start, end = window
     k = wavenumber(beam, frequency_hz)
     if beam.foundation and beam.mass_per_length * (2.0 * np.pi * frequency_hz) ** 2 <= beam.foundation:
         least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))

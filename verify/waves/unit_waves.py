@@ -17,6 +17,7 @@ from verify.waves.measures import (
     STANDING,
     STILL,
     amplitudes_of,
+    check_halves,
     check_window,
     crest_speed,
     energy_flux,
@@ -89,20 +90,21 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
                 f"more than {MOST_READINGS:.0e}: give fewer steps, or a narrower window"
             )
         fields = self._responses(frequencies, rule.x)
+        steady = [bool(np.isfinite(field).all()) for field in fields]
         k = np.full(len(frequencies), np.nan, dtype=complex)
         for i, frequency in enumerate(frequencies):
             try:
-                k[i] = self._wavenumber(float(frequency), fields[i])
+                k[i] = self._wavenumber(float(frequency), steady[i])
             except NoFigureError as error:
                 gaps.add(error, points)
         known = np.isfinite(k)
         waves = amplitudes_of(rule, k[known], fields[known], 0.5 * sum(self.window))
         return UnitWaves(known, k[known], waves[:, 0], waves[:, 1])
 
-    def _wavenumber(self, frequency: float, field: ComplexArray) -> complex:
-        """The model's own. Raises NoFigureError where the frequency has none, or no field."""
-        check_window(self.beam, list(self.places), frequency, self.window)
-        if not np.isfinite(field).all():
+    def _wavenumber(self, frequency: float, steady: bool) -> complex:
+        """The model's own. Raises NoFigureError where the frequency has none, or no steady field."""
+        check_halves(self.beam, frequency, self.window)
+        if not steady:
             raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
         known = self.theory == EULER and not (self.beam.tension or self.beam.foundation or self.beam.section)
         if self.count is None or not known:
@@ -189,6 +191,19 @@ def superposed(
     NaN where there is none, counted by `gaps`. Raises InputError where the model or the window is none.
     """
     waves = drive.waves(frequencies, gaps, len(second))
+    return figures_of(drive, waves, names, frequencies, first, second, gaps)
+
+
+def figures_of(
+    drive: UnitDrive,
+    waves: UnitWaves,
+    names: tuple[str, ...],
+    frequencies: Array,
+    first: complex,
+    second: ComplexArray,
+    gaps: Gaps,
+) -> list[Array]:
+    """The same of waves that are known; `second` is (p,), or (m, p) at the frequencies that have them."""
     f, k = frequencies[waves.known, None], waves.k[:, None]
     forward, backward = (w[:, 0, None] * first + w[:, 1, None] * second for w in (waves.forward, waves.backward))
     unit = [unit_response(drive.beam, float(g)) if drive.kind == "force" else 1.0 for g in f[:, 0]]
@@ -199,7 +214,7 @@ def superposed(
         forward[still] = 1.0  # anything: it has no figure
     found = []
     for name in names:
-        values = np.full((len(frequencies), len(second)), np.nan)
+        values = np.full((len(frequencies), second.shape[-1]), np.nan)
         figure = FIGURES[name](Medium(drive.beam, drive.theory), 2.0 * np.pi * f, k, forward, backward)
         values[waves.known] = np.where(still, np.nan, figure)
         found.append(values)
