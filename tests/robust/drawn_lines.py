@@ -195,6 +195,25 @@ def _scenes(draw, line):
     return [*[draw.strange()] * draw.often(30), *_json(draw)]
 
 
+def _bench(draw, line):
+    """Modes alone and a second of them: the rest takes what a case has no time for."""
+    counts = ["--counts", draw.value(draw.one("4,9", "7", "5-20:5"))] * draw.often(90)
+    modes = ["--modes", draw.value(draw.one("1", "2,3", "99"))] * draw.often(60)
+    layout = draw.one("--json", "--json", "--csv", "--markdown")
+    return [_scene(draw, line, 10), "--sets", "modes", "--seconds", "0.2", *counts, *modes, layout]
+
+
+def _stress(draw, line):
+    """Rows that take milliseconds, and words that are no rows."""
+    if draw.often(20):
+        return ["--list", *_json(draw)]
+    rows = draw.several(lambda: draw.value(draw.choice(QUICK_ROWS)), 2) or [QUICK_ROWS[0]]
+    return [*rows, "--no-report", *_layout(draw)]
+
+
+QUICK_ROWS = ("modulus", "density", "at-resonance-exact-beam", "beyond-buckling", "rolled-up", "nothing")
+
+
 def _refused(draw, line):
     """A command that does more than a case has time for: words that it has to refuse before it begins."""
     return [*draw.several(draw.strange, 2), "--nonsense", *_json(draw)]
@@ -203,4 +222,5 @@ def _refused(draw, line):
 DRAWERS = {
     "run": _run, "plan": _plan, "measure": _measure, "table": _table, "choose": _choose, "compare": _compare,
     "init": _init, "show": _show, "keys": _keys, "schema": _schema, "quantities": _quantities, "scenes": _scenes,
+    "bench": _bench, "stress": _stress,
 }  # fmt: skip

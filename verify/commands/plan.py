@@ -17,7 +17,9 @@ from verify.commands.shared import (
 @overridden
 @json_alone
 def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Print what SCENE will run, what is skipped, and why. Solves nothing; exit 1 where something cannot run.
+    """Print what SCENE will run, what is skipped, and why; exit 1 where something cannot run.
+
+    It solves nothing, but for two exact fields under a slider, by which it says how the slider is coupled.
 
     Example: `verify plan paper`
     """
