@@ -145,7 +145,7 @@ def _dense_vectors(pencil: FactoredPencil, n_modes: int, root: Array, mass: Arra
     Through numpy, which one small problem takes a third of scipy's start for. It has no triangular solve: L^-1 is
     taken once, of a mass matrix that is well conditioned where parts are alike.
     """
-    inverse = _inverted(np.linalg.cholesky(mass))
+    inverse = _inverted(np.asarray(np.linalg.cholesky(mass), dtype=float))
     half = root @ inverse.T
     _, vectors = np.linalg.eigh(half.T @ half)
     return np.asarray(inverse.T @ vectors[:, pencil.rigid_modes : pencil.rigid_modes + n_modes])
@@ -154,7 +154,7 @@ def _dense_vectors(pencil: FactoredPencil, n_modes: int, root: Array, mass: Arra
 def _inverted(lower: Array) -> Array:
     """The inverse of a lower triangle (n, n) by halves, in half the time or less of one that knows of no triangle."""
     if len(lower) <= _WHOLE:
-        return np.linalg.inv(lower)
+        return np.asarray(np.linalg.inv(lower), dtype=float)
     half, found = len(lower) // 2, np.zeros_like(lower)
     first = found[:half, :half] = _inverted(lower[:half, :half])
     second = found[half:, half:] = _inverted(lower[half:, half:])
