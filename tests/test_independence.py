@@ -273,15 +273,6 @@ SHARED = [
         lambda: np.sqrt(link_omega2(22 * np.pi / 49)) / (22 * np.pi / 49) ** 2 - 1,
     ),
     Shared(
-        "models.polishing",
-        "values of all modes half a thousandth too large once sharpened",
-        ("models.eigen.sharpened",),
-        after(lambda pairs: (1.0005 * pairs[0], pairs[1])),
-        "paper-wave",
-        ("loss-on-elements",),
-        lambda: modal_sum(0.2137, DRIVES, 0.01),
-    ),
-    Shared(
         "models.eigen",
         "a driven pencil at a slightly higher frequency",
         ("models.driven_pencil.forced_response",),
@@ -702,4 +693,5 @@ def test_every_module_that_two_models_stand_on_is_in_the_table():
         "models.time_basis",
     }
     without = {"errors", "field_docs", *REFUSALS, *NAMES_ALONE, "models.compression"}
+    without.add("models.polishing")  # judged in 50 digits: the rows tip-mass of the stress table, tests/faults
     assert shared - without <= {row.module for row in SHARED}
