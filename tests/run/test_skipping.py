@@ -186,3 +186,12 @@ def test_a_plan_of_a_slider_on_a_chain_loads_no_compiler(tmp_path):
     assert found.status == 0
     assert "numba" not in found.libraries
     assert not found.times("chain motions")
+
+
+def test_the_papers_wave_is_judged_without_an_optimiser_and_its_meshes_are_made_once(tmp_path):
+    found = counted(tmp_path, "run", "paper-wave", "--no-report", "--json")
+    assert found.status == 0
+    assert not {name for name in found.modules if name.startswith(("scipy.optimize", "scipy.interpolate"))}
+    assert found.libraries & LIBRARIES == {"msgspec", "click", "numpy", "scipy", "skfem"}
+    made = [times for file, name, times in found.calls if file.endswith("elements/element.py") and name == "line_basis"]
+    assert made == [5]

@@ -132,12 +132,11 @@ def _green(q: Any, source: float, length: float, x: Array, derivative: int) -> C
     """A derivative of e^{-q(b-a)} S(a) S(L-b) / S(L) by x, which is a or b: each one turns a sign in S, (len(x),)."""
     turned = -1.0 if derivative % 2 == 0 else 1.0
     left = x <= source
-    a, b = np.minimum(x, source), np.maximum(x, source)
-    from_left, from_right = np.exp(-2 * q * a), np.exp(-2 * q * (length - b))
-    start = 1.0 + np.where(left, turned, -1.0) * from_left
-    end = 1.0 + np.where(left, -1.0, turned) * from_right
+    before, behind, whole = (1.0 - np.exp(-2 * q * part) for part in (source, length - source, length))
+    moving = 1.0 + turned * np.exp(-2 * q * np.where(left, x, length - x))
+    start, end = np.where(left, moving, before), np.where(left, behind, moving)
     sign = np.where(left, 1.0, -1.0) ** derivative
-    return np.asarray(q**derivative * sign * np.exp(-q * (b - a)) * start * end / (1.0 - np.exp(-2 * q * length)))
+    return np.asarray(q**derivative * sign * np.exp(-q * abs(x - source)) * start * end / whole)
 
 
 _NO_INERTIA = 1e-280

@@ -90,8 +90,10 @@ def refuse_near_resonance(
     solve_modes: Callable[[Beam, int, int], Modes],
     count: int,
 ) -> None:
-    """Raise InputError where an undamped pencil is driven at one of its own frequencies."""
-    if abs(resonance_distance(pencil, omega2)) <= 2.0 * RESONANCE:
+    """Raise InputError where an undamped pencil is driven at one of its own frequencies, which kept modes tell."""
+    values = pencil.bases[0][0] if pencil.bases else None
+    distance = resonance_distance(pencil, omega2) if values is None else abs(values / omega2 - 1.0).min()
+    if abs(distance) <= 2.0 * RESONANCE:
         name_resonance(model, beam, pencil, frequency_hz, solve_modes, count)
 
 

@@ -49,7 +49,8 @@ def _check_window(a: Driven | Sensitivity, case: "DrivenCase") -> None:
         given = a.window
     else:
         return
-    from verify.waves.measures import check_window, middle_half
+    from verify.waves.measures import middle_half
+    from verify.waves.window import check_window
 
     places = [force.position for force in case.forces]
     check_window(case.beam, places, case.frequency_hz, given or middle_half(case.beam))

@@ -77,7 +77,8 @@ class WaveStudy(Study[Wave, "WaveFound"]):
 
     def check_run(self, asked: Wave, scene: "Scene") -> None:
         """Raise InputError for a beam without waves, forces inside the window, a wave too long or short for it."""
-        from verify.waves.measures import check_window, middle_half
+        from verify.waves.measures import middle_half
+        from verify.waves.window import check_window
 
         assert scene.drive is not None
         MODELS["analytic"].check(scene.beam, 1, 0)

@@ -9,7 +9,8 @@ from verify.studies.charting import LOG, Figure, axes, model_line, plain_line, s
 from verify.studies.told import Chart
 
 if TYPE_CHECKING:
-    from verify.studies.wave_figures import Ellipse, Operation, WaveFound
+    from verify.studies.wave_figures import Ellipse, WaveFound
+    from verify.waves.driven import Operation
     from verify.waves.operating_point import OperatingPoint
 
 _ELLIPSE, _POINT = "#2f80ed", "#e8760c"

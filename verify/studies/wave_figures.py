@@ -17,7 +17,16 @@ from verify.studies.kind import Progress
 from verify.studies.told import Chart, Column, Found, Table
 from verify.studies.wave import MAP_STEPS, around
 from verify.waves.case import DrivenCase
-from verify.waves.driven import SEARCH_SPAN, SEARCHED, check_fields, driven, measures, quietest_drive
+from verify.waves.driven import (
+    SEARCH_SPAN,
+    SEARCHED,
+    Operation,
+    check_fields,
+    driven,
+    measures,
+    operation,
+    quietest_drive,
+)
 from verify.waves.measures import surface_motion
 from verify.waves.operating_point import OperatingPoint, edge_note, operating_points
 from verify.words import cell
@@ -27,17 +36,6 @@ if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
     from verify.studies.wave import Wave
-
-
-class Operation(msgspec.Struct, frozen=True, kw_only=True):
-    """The wave at one frequency."""
-
-    frequency_hz: float
-    standing_wave_ratio: float
-    axis_ratio: float
-    """Signed mean over the whole half wavelengths in the window's middle."""
-    crest_speed: float
-    """m/s for the scene's forces."""
 
 
 class MotorRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -211,24 +209,14 @@ def case_on(scene: "Scene", model: str, count: int | None) -> DrivenCase:
 def motor_row(scene: "Scene", bench: "Workbench", model: str, count: int | None) -> MotorRow:
     """The motor's figures of one model at one size."""
     case = case_on(scene, model, count)
-    drive = _operation(case, bench)
+    drive = operation(driven(case, bench))
     try:
         found = quietest_drive(case, SEARCH_SPAN, None, bench)
     except InputError as error:
         return MotorRow(model=model, count=count, drive=drive, best=None, note=str(error))
     note = edge_note("the reflection still falls", found.x) if found.at_edge else ""
-    best = _operation(replace(case, frequency_hz=found.x), bench)
+    best = operation(driven(replace(case, frequency_hz=found.x), bench))
     return MotorRow(model=model, count=count, drive=drive, best=best, note=note)
-
-
-def _operation(case: DrivenCase, bench: "Workbench") -> Operation:
-    found = measures(driven(case, bench), None)
-    return Operation(
-        frequency_hz=case.frequency_hz,
-        standing_wave_ratio=found.standing_wave_ratio,
-        axis_ratio=found.mean_axis_ratio,
-        crest_speed=found.crest_speed,
-    )
 
 
 def models_of_waves(beam: Beam) -> list[str]:

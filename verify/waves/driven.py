@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+import msgspec
 import numpy as np
 from msgspec.structs import replace
 
@@ -23,17 +24,33 @@ from verify.waves.measures import (
     WaveMeasures,
     amplitudes_of,
     check_moving,
-    check_window,
+    crest_speed,
+    mean_axis_ratio,
     measure,
+    medium_of,
     middle_half,
     two_waves,
     window_rule,
 )
+from verify.waves.window import check_window
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
 
 Window: TypeAlias = tuple[float, float]
+
+
+class Operation(msgspec.Struct, frozen=True, kw_only=True):
+    """The wave at one frequency: what a motor is judged by."""
+
+    frequency_hz: float
+    standing_wave_ratio: float
+    axis_ratio: float
+    """Signed mean over the whole half wavelengths in the window's middle."""
+    crest_speed: float
+    """m/s for the scene's forces."""
+
+
 SEARCHED = 70
 """Driven fields behind a best frequency: a grid of 41, the rest by Brent's method."""
 SEARCH_SPAN = 0.015
@@ -79,6 +96,18 @@ def check_fields(beam: Beam, name: str, counts: Sequence[int | None], times: int
 def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMeasures:
     """Measures in a window, the middle half unless given, with the model's own wavenumber stated. Raises InputError."""
     return measure(field, window or middle_half(field.beam), own_wavenumber(field))
+
+
+def operation(field: HarmonicField, window: Window | None = None) -> Operation:
+    """These four of a field, as `measures` has them beside much else. Raises InputError."""
+    window, medium = window or middle_half(field.beam), medium_of(field)
+    waves = two_waves(field, window, own_wavenumber(field))
+    return Operation(
+        frequency_hz=field.frequency_hz,
+        standing_wave_ratio=waves.standing_wave_ratio,
+        axis_ratio=mean_axis_ratio(medium, field.omega, window, field.deflection, field.slope, waves),
+        crest_speed=float(crest_speed(medium, field.omega, waves.wavenumber, waves.forward, waves.backward)),
+    )
 
 
 def own_wavenumber(field: HarmonicField) -> complex:
@@ -193,8 +222,8 @@ def wave_order(
         field = driven(one, bench)
         if of == "deflection":
             return complex(field.deflection(0.5 * sum(places))[0])
-        found = measures(field, places)
-        return complex(found.standing_wave_ratio if of == "standing_wave_ratio" else found.mean_axis_ratio)
+        found = operation(field, places)
+        return complex(found.standing_wave_ratio if of == "standing_wave_ratio" else found.axis_ratio)
 
     exact = figure(replace(case, model="analytic", count=None, settings=()))
     return observed_order(counts, [abs(relative_error(figure(replace(case, count=n)), exact)) for n in counts])

@@ -11,14 +11,15 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from verify.beam import Beam
-from verify.errors import InputError, StandingError, WindowError, ZeroFieldError, shown
+from verify.errors import InputError, StandingError, ZeroFieldError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import HarmonicField, phasor, unit_response, wavenumber
+from verify.models.fields import HarmonicField, phasor, unit_response
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
 from verify.models.places import real_array
 from verify.models.search import least_over
 from verify.waves.medium import Medium
+from verify.waves.window import check_window
 
 STANDING = 1e-12
 """A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
@@ -26,8 +27,6 @@ SHARPNESS = 24
 """Points for each half wavelength of the window, to draw from and to look for extremes around."""
 HILLS_OF_A_PART = 8
 """Points in each segment or element where a discrete field's extremes are looked for: it ripples at their length."""
-MOST_HALVES = 10_000
-"""Half wavelengths of the longest window: its points are held at once."""
 STILL = 1e-13
 """A deflection this small beside the forces' own size is rounding: nothing moves."""
 REACH = 0.04
@@ -196,9 +195,6 @@ def measures_of(
 
     turn = medium.turn(omega)
 
-    def ellipses(at: Array) -> tuple[Array, Array, Array]:
-        return ellipse(surface_motion(medium.beam, slope(at), turn), deflection(at))
-
     def areas(at: Array) -> Array:
         return signed_area(surface_motion(medium.beam, slope(at), turn), deflection(at))
 
@@ -206,13 +202,13 @@ def measures_of(
     rule = rule_over(whole, 2 * halves)
     least, largest = extremes(lambda at: np.abs(deflection(at)), fine)
     low, high = extremes(areas, fine)
-    ratio, tilt, area = ellipses(x)
+    ratio, tilt, area = ellipse(surface_motion(medium.beam, slope(x), turn), deflection(x))
     return WaveMeasures(
         window=window,
         waves=waves,
         envelope=(largest - least) / (largest + least),
         travelling_index=travelling_index(deflection(rule.x), rule.weights),
-        mean_axis_ratio=mean_over(lambda at: ellipses(at)[0], whole, 2 * halves),
+        mean_axis_ratio=mean_axis_ratio(medium, omega, window, deflection, slope, waves),
         x=x,
         axis_ratio=ratio,
         tilt_deg=tilt,
@@ -222,6 +218,19 @@ def measures_of(
         crest_speed=float(crest_speed(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
         energy_flux=float(energy_flux(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
     )
+
+
+def mean_axis_ratio(
+    medium: Medium, omega: float, window: tuple[float, float], deflection: Along, slope: Along, waves: TwoWaves
+) -> float:
+    """The mean of `axis_ratio` over the whole half wavelengths of a window."""
+    whole, halves = whole_halves(window, waves.wavenumber.real)
+    turn = medium.turn(omega)
+
+    def ratio(at: Array) -> Array:
+        return ellipse(surface_motion(medium.beam, slope(at), turn), deflection(at))[0]
+
+    return mean_over(ratio, whole, 2 * halves)
 
 
 def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0) -> ComplexArray:
@@ -337,68 +346,3 @@ def sample_points(window: tuple[float, float], k: float) -> Array:
 def window_rule(window: tuple[float, float], k: float) -> Rule:
     """Where and with what weight a field is fitted: a quadrature, so that the fit is one over the whole window."""
     return rule_over(window, max(int(np.ceil(2.0 * (window[1] - window[0]) * k / np.pi)), 1))
-
-
-def _own_section(beam: Beam, start: float, end: float) -> bool:
-    """Whether a stretch of a beam, from and to metres, has the beam's own section alone."""
-    own, slack, left = beam.own, 1e-9 * beam.length, 0.0
-    for piece in beam.pieces:
-        right = left + piece.length
-        alike = (piece.bending_stiffness, piece.mass_per_length) == (own.bending_stiffness, own.mass_per_length)
-        if not alike and left < end - slack and right > start + slack:
-            return False
-        left = right
-    return True
-
-
-def check_window(beam: Beam, places: list[float], frequency_hz: float, window: tuple[float, float]) -> None:
-    """Raise for a window off the span between two neighbouring forces (at `places`) or too short to measure.
-
-    InputError where it is no window of the beam at all, WindowError where it does not suit forces or frequency.
-    """
-    try:
-        start, end = (float(end) for end in window)
-    except (TypeError, ValueError):
-        raise InputError(f"window = {shown(window)}: give start and end in metres, such as [0.1, 0.3]") from None
-    window = start, end
-    if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= beam.length):
-        raise InputError(f"window = {list(window)}: give start and end, ascending, between 0 and {beam.length!r} m")
-    attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
-    if standing := [p for p in attached if start < p < end]:
-        raise WindowError(
-            f"window = {list(window)} holds a mass or a spring at {standing} m: two waves alone live beside it, "
-            "choose a window without one"
-        )
-    if not _own_section(beam, start, end):
-        raise WindowError(
-            f"window = {list(window)} holds a beam.section other than the beam's own: waves of one length run along "
-            "one section, choose a window on the beam's own"
-        )
-    places = sorted(places)
-    inside = [p for p in places if start < p < end]
-    if inside or (len(places) > 1 and not places[0] <= start < end <= places[-1]):
-        raise WindowError(
-            f"window = {list(window)} leaves the span between two forces (they act at {places} m): "
-            "two waves alone live there, choose a window inside it"
-        )
-    check_halves(beam, frequency_hz, window)
-
-
-def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -> None:
-    """Raise WindowError for a window of a beam that holds too few or too many half wavelengths of a frequency."""
-    start, end = window
-    k = wavenumber(beam, frequency_hz)
-    if beam.foundation and beam.mass_per_length * (2.0 * np.pi * frequency_hz) ** 2 <= beam.foundation:
-        least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
-        raise WindowError(
-            f"frequency_hz = {frequency_hz:g}: no wave runs below {least:.6g} Hz on beam.foundation = "
-            f"{beam.foundation:g} N/m^2, raise it or soften the ground"
-        )
-    half = float(np.pi / k.real)
-    if end - start < half:
-        raise WindowError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
-    if end - start > MOST_HALVES * half:
-        raise WindowError(
-            f"window = {list(window)} spans {(end - start) / half:.2g} half wavelengths of {half:.4g} m, more than "
-            f"{MOST_HALVES}: narrow it or lower frequency_hz"
-        )

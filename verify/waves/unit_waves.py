@@ -17,14 +17,13 @@ from verify.waves.measures import (
     STANDING,
     STILL,
     amplitudes_of,
-    check_halves,
-    check_window,
     crest_speed,
     energy_flux,
     window_rule,
     zero_field,
 )
 from verify.waves.medium import Medium
+from verify.waves.window import check_halves, check_window
 
 EULER = "euler-bernoulli"
 MOST_READINGS = 50_000_000

@@ -1,0 +1,75 @@
+"""Whether a window of a beam suits what drives it: two waves of one length alone, enough of them, not too many."""
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.errors import InputError, WindowError, shown
+from verify.models.fields import wavenumber
+
+MOST_HALVES = 10_000
+"""Half wavelengths of the longest window: its points are held at once."""
+
+
+def _own_section(beam: Beam, start: float, end: float) -> bool:
+    """Whether a stretch of a beam, from and to metres, has the beam's own section alone."""
+    own, slack, left = beam.own, 1e-9 * beam.length, 0.0
+    for piece in beam.pieces:
+        right = left + piece.length
+        alike = (piece.bending_stiffness, piece.mass_per_length) == (own.bending_stiffness, own.mass_per_length)
+        if not alike and left < end - slack and right > start + slack:
+            return False
+        left = right
+    return True
+
+
+def check_window(beam: Beam, places: list[float], frequency_hz: float, window: tuple[float, float]) -> None:
+    """Raise for a window off the span between two neighbouring forces (at `places`) or too short to measure.
+
+    InputError where it is no window of the beam at all, WindowError where it does not suit forces or frequency.
+    """
+    try:
+        start, end = (float(end) for end in window)
+    except (TypeError, ValueError):
+        raise InputError(f"window = {shown(window)}: give start and end in metres, such as [0.1, 0.3]") from None
+    window = start, end
+    if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= beam.length):
+        raise InputError(f"window = {list(window)}: give start and end, ascending, between 0 and {beam.length!r} m")
+    attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
+    if standing := [p for p in attached if start < p < end]:
+        raise WindowError(
+            f"window = {list(window)} holds a mass or a spring at {standing} m: two waves alone live beside it, "
+            "choose a window without one"
+        )
+    if not _own_section(beam, start, end):
+        raise WindowError(
+            f"window = {list(window)} holds a beam.section other than the beam's own: waves of one length run along "
+            "one section, choose a window on the beam's own"
+        )
+    places = sorted(places)
+    inside = [p for p in places if start < p < end]
+    if inside or (len(places) > 1 and not places[0] <= start < end <= places[-1]):
+        raise WindowError(
+            f"window = {list(window)} leaves the span between two forces (they act at {places} m): "
+            "two waves alone live there, choose a window inside it"
+        )
+    check_halves(beam, frequency_hz, window)
+
+
+def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -> None:
+    """Raise WindowError for a window of a beam that holds too few or too many half wavelengths of a frequency."""
+    start, end = window
+    k = wavenumber(beam, frequency_hz)
+    if beam.foundation and beam.mass_per_length * (2.0 * np.pi * frequency_hz) ** 2 <= beam.foundation:
+        least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
+        raise WindowError(
+            f"frequency_hz = {frequency_hz:g}: no wave runs below {least:.6g} Hz on beam.foundation = "
+            f"{beam.foundation:g} N/m^2, raise it or soften the ground"
+        )
+    half = float(np.pi / k.real)
+    if end - start < half:
+        raise WindowError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
+    if end - start > MOST_HALVES * half:
+        raise WindowError(
+            f"window = {list(window)} spans {(end - start) / half:.2g} half wavelengths of {half:.4g} m, more than "
+            f"{MOST_HALVES}: narrow it or lower frequency_hz"
+        )
