@@ -216,7 +216,7 @@ def test_defaults_are_the_scenes_own():
     asked = settled(Bench(), load_scene("paper"))
     assert (asked.modes, asked.counts) == ((1, 5, 22), (10, 20, 49, 98, 196))
     assert asked.duration == pytest.approx(4.0 / 4276.0)
-    assert settled(Bench(), load_scene("free-free-bar")).sets == ("modes",)
+    assert settled(Bench(), load_scene("steel-cantilever")).sets == ("modes",)
 
 
 def test_sets_that_a_scene_has_not_are_named_with_the_reason():

@@ -45,9 +45,9 @@ def displacements_held_at_one_place_alone(patch):
 
 def losses_of_bending_twice_as_large(patch):
     """Of every model: what the real part says twice."""
-    true_fem, true_chain = fem_beam.damped_stiffness, segment_model._damped
+    true_fem, true_chain = fem_beam.damped_stiffness, segment_model.damped
     patch.setattr(fem_beam, "damped_stiffness", lambda *given: (s := true_fem(*given)) + 1j * s.imag)
-    patch.setattr(segment_model, "_damped", lambda *given: (s := true_chain(*given)) + 1j * s.imag)
+    patch.setattr(segment_model, "damped", lambda *given: (s := true_chain(*given)) + 1j * s.imag)
 
 
 def ratios_of_a_tenth_more(patch):

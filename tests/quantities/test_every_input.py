@@ -495,7 +495,6 @@ DEAD = [
         "name title description gate spectrum.* convergence.* sensitivity.* wave.* axial_inertia.*",
         "what a scene asks for beside the figure",
     ),
-    Dead("*", "stress.*", "a table that a scene asks for beside the figure"),
     Dead("stress.share", "beam.* drive.* slider.* motion.*", "rows stand on beams of their own"),
     Dead("*", "claim readings.*", "a published claim and what is tried of it move no figure"),
     Dead("*", "motion.count motion.counts motion.samples", "sizes and samples of the scene's own study"),
@@ -1122,6 +1121,6 @@ def test_every_entry_of_the_table_speaks_of_some_input_of_some_case():
 
 def test_the_base_has_every_part_that_a_scene_can_have():
     """A new part of scenes is turned as well, or this says so."""
-    assert set(BASE) | {"title", "description", "axial_inertia", "readings", "bench"} == {
+    assert set(BASE) | {"title", "description", "axial_inertia", "readings", "bench", "stress"} == {
         f.name for f in msgspec.structs.fields(scene_type())
     }

@@ -44,8 +44,8 @@ def test_a_full_disk_behind_what_is_printed_is_one_sentence(folder, words):
 
 
 def test_a_full_disk_behind_a_report_is_one_sentence_and_leaves_nothing(folder):
-    """A limit of 64 KiB for files: the report has 5 MB."""
-    status, out, err = shell(f"ulimit -f 64; $V {' '.join(SMALL)} | cat", folder)
+    """A limit of 4 KiB for files, which a page exceeds."""
+    status, out, err = shell(f"ulimit -f 4; $V {' '.join(SMALL)} | cat", folder)
     assert (status, out) == (0, "")  # of cat
     assert err == "verify: reports = 'reports/mine.html' cannot be written (File too large)\n"
     assert list((folder / "reports").iterdir()) == []

@@ -86,6 +86,14 @@ def solve_seconds(n_unknowns: int, n_modes: int) -> float:
     return n_unknowns * (1.5e-5 + 9e-7 * n_modes)
 
 
+def field_seconds(n_unknowns: int) -> float:
+    """An estimate from above of the time a driven field takes with its reading.
+
+    Measured of narrow bands: 2.6e-6 s for each unknown and half a millisecond.
+    """
+    return 1e-3 + 8e-6 * n_unknowns
+
+
 def _memory_bytes() -> int:
     """Physical memory of this machine."""
     import os

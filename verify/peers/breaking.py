@@ -18,7 +18,9 @@ class Break(Value, frozen=True, kw_only=True):
     """What one engine did."""
 
     engine: str
+    """Its name."""
     links: int
+    """Of the chain."""
     pushed: str
     """By what."""
     did: str

@@ -21,6 +21,7 @@ class Case(Value, frozen=True, kw_only=True):
     """A chain of n equal rigid links, pinned at x = 0 and on a roller at its end, driven from rest. SI."""
 
     n: int
+    """How many links."""
     link: float
     """Length of a link, metres."""
     mass: float

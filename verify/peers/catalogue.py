@@ -29,6 +29,7 @@ class Peer(Value, frozen=True, kw_only=True):
     """An engine and where its adapter lives."""
 
     name: str
+    """As tables call it."""
     package: str
     """As pip knows it."""
     module: str

@@ -13,7 +13,7 @@ from verify.errors import InputError, ResonanceError
 from verify.judge.compare import observed_order, relative_error
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.models.eigen import solve_seconds
+from verify.models.eigen import field_seconds
 from verify.models.fields import HarmonicField, phasor
 from verify.models.search import Least, least_over
 from verify.models.sweeps import HarmonicSweep
@@ -89,7 +89,7 @@ def check_fields(beam: Beam, name: str, counts: Sequence[int | None], times: int
     if not sizes:
         return
     model = MODELS.named(name)
-    seconds = times * sum(solve_seconds(model.unknowns(beam, count), 1) for count in sizes)
+    seconds = times * sum(field_seconds(model.unknowns(beam, count)) for count in sizes)
     check_work("count", max(sizes), seconds, f"lower it, {times * len(sizes)} driven fields are asked for")
 
 

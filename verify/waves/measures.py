@@ -345,4 +345,6 @@ def sample_points(window: tuple[float, float], k: float) -> Array:
 
 def window_rule(window: tuple[float, float], k: float) -> Rule:
     """Where and with what weight a field is fitted: a quadrature, so that the fit is one over the whole window."""
-    return rule_over(window, max(int(np.ceil(2.0 * (window[1] - window[0]) * k / np.pi)), 1))
+    return rule_over(
+        (float(window[0]), float(window[1])), max(int(np.ceil(2.0 * (window[1] - window[0]) * k / np.pi)), 1)
+    )
