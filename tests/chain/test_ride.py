@@ -2,6 +2,7 @@
 
 import dataclasses
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from verify import segment_model
 from verify.beam import PointForce
 from verify.chain.dynamics import at_rest, linearise
 from verify.chain.problems import contact_line_error
-from verify.chain.ride import _surface, check_rideable, coupling_on_chain, half_steps, ride, ride_from_rest
+from verify.chain.ride import _of_rigid, _surface, check_rideable, coupling_on_chain, half_steps, ride, ride_from_rest
 from verify.chain.splitting import modal_basis, simulate_linear
 from verify.chain.stepping import simulate as simulate_chain
 from verify.chain.system import Rotation, build_system, straight_chain
@@ -245,3 +246,16 @@ def test_the_straight_chain_has_the_frequencies_of_the_nonlinear_one_at_rest(tit
     system = build_system(beam, 14, wall="third-order", grading=1.7)
     values = lowest(chain_pencil(straight_chain(system)), 5).values
     assert np.sqrt(values) == pytest.approx(linearise(system, at_rest(system)).frequencies()[:5], rel=1e-9)
+
+
+def test_the_middle_of_a_rigid_link_goes_along_x_as_its_place_changes():
+    """Of three unequal links: the rate of the sum of l cos(theta) up to half the link, by a complex step."""
+    lengths, angles, rates = np.array([0.11, 0.07, 0.16]), np.array([0.31, -0.52, 0.83]), np.array([2.3, -4.1, 1.7])
+    motion = SimpleNamespace(
+        directions=lambda: angles[None], rates=rates[None], system=SimpleNamespace(lengths=lengths)
+    )
+    turned = angles + 1e-30j * np.cumsum(rates)
+    for piece in range(3):
+        shares = np.where(np.arange(3) < piece, 1.0, np.where(np.arange(3) == piece, 0.5, 0.0))
+        speed = (shares * lengths * np.cos(turned)).sum().imag / 1e-30
+        assert _of_rigid(motion, piece)[2][0] == pytest.approx(speed, rel=1e-13)

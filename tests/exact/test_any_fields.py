@@ -13,6 +13,7 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.exact import modes as analytic_modes
 from verify.exact.driven import general_field
+from verify.exact.in_time import _edges
 from verify.section import Section
 
 BAR = Beam(
@@ -182,3 +183,19 @@ def test_what_cannot_be_driven_is_refused():
         analytic_modes.solve_harmonic(BAR, [], 100.0)
     with pytest.raises(InputError, match="frequency_hz"):
         analytic_modes.solve_harmonic(BAR, FORCES, float("nan"))
+
+
+def test_cells_of_a_quadrature_hold_two_fifths_of_a_wavenumber_and_end_where_sections_do():
+    """0.4 of a radian of the wave of each section, on a beam that is not a metre long; not far finer either."""
+    fourth = (47.3 / 0.61) ** 4
+    edges = _edges(BAR, fourth)
+    assert edges[0] == 0.0
+    assert edges[-1] == BAR.length
+    for place in (0.2, 0.29, 0.37):
+        assert np.abs(edges - place).min() < 1e-15
+    thin = 0.031 / 0.019  # rho A / EI goes with h^-2
+    for start, end, ratio in ((0.0, 0.2, 1.0), (0.2, 0.29, thin**2), (0.29, 0.37, thin**2), (0.37, 0.61, 113.0 / 70.0)):
+        cells = np.diff(edges[(edges > start - 1e-9) & (edges < end + 1e-9)])
+        turn = cells * (fourth * ratio) ** 0.25
+        assert turn.max() < 0.4
+        assert turn.min() > 0.25
