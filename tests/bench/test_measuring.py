@@ -40,8 +40,15 @@ def entry(clock, name, count, *, seconds=(1.0,), answer=None, set_up=0.0, estima
         clock.now += set_up
         return run
 
-    line = Line(name=name, orders=orders)
-    return Entry(line=line, size=1 / count, count=count, estimate_s=estimate, prepare=prepare, sets_up=bool(set_up))
+    line = Line(name=name, orders=orders, model="" if orders else "analytic")
+    return Entry(
+        line=line,
+        size=1 / count if count else 0.0,
+        count=count,
+        estimate_s=estimate,
+        prepare=prepare,
+        sets_up=bool(set_up),
+    )
 
 
 def case(*entries, uncertainty=1e-15, **more):
@@ -154,6 +161,22 @@ def test_a_sentence_is_withheld_where_errors_do_not_converge_and_says_why():
     told = compared((0.05, 1.0, None), (0.02, 2.0, lambda n: EXACT * (1.0 + 0.03 / n)))
     assert (told.earned, told.crossing, told.ratio) == (False, None, None)
     assert "b: errors fall not at order 4 but at 1.00, 1.00, 1.00; give finer ones" in told.text
+
+
+def test_no_sentence_is_made_of_a_time_that_the_clock_does_not_resolve():
+    told = compared((0.05, 1.0, None), (0.0, 1.0, None))
+    assert not told.earned
+    assert "b: its time is below the resolution of the clock" in told.text
+    for seconds, n_told in ((0.4, 1), (0.0, 0)):
+        clock = Clock()
+        exact = entry(clock, "exact", None, seconds=(seconds,), answer=EXACT, orders=None)
+        parts = [entry(clock, "a", n, seconds=(0.1,)) for n in (10, 20)]
+        one = case(*parts, exact)
+        assert len(sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")) == n_told
+        one = case(*(entry(clock, name, n, seconds=(0.1 if name == "a" else seconds,)) for name in "ab" for n in (10, 20)),
+                   races=(("a", "b"),), wanted=(1e-3,))  # fmt: skip
+        (raced,) = sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")
+        assert raced.earned == bool(n_told)
 
 
 def test_errors_that_the_reference_does_not_know_earn_nothing():

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.exact import modes as analytic_modes
+from verify.exact.modes import mode_shape, mode_shapes
 from verify.exact.shapes import general_shapes
 from verify.section import Section
 
@@ -176,3 +177,25 @@ def test_two_strips_that_nearly_mirror_each_other_have_shapes_of_their_own():
         assert here == pytest.approx(parity * there, abs=1e-5 * abs(here).max())
     pair = analytic_modes.mode_shapes(beam, 5, np.concatenate([x, 0.7 - x]))[3:]
     assert pair[0, :9] @ pair[1, :9] == pytest.approx(-(pair[0, 9:] @ pair[1, 9:]), rel=1e-4)
+
+
+def test_shapes_of_many_modes_are_those_of_each_carried_once_for_all_derivatives(monkeypatch):
+    """A slider's window asks for four derivatives of hundreds of modes at the same three places."""
+    from verify.exact import shapes
+    from verify.exact.spans import carried
+
+    calls = []
+    monkeypatch.setattr(shapes, "carried", lambda *given: calls.append(len(given[0])) or carried(*given))
+    section = (Section(length=0.27), Section(length=0.44, width=0.021, thickness=0.0017))
+    beam = Beam(
+        length=0.71, width=0.013, thickness=0.0011, youngs_modulus=113e9, density=4470.0, section=section,
+        supports=("clamped", "pinned"), mass=(PointMass(position=0.31, mass=0.004),),
+    )  # fmt: skip
+    places = np.array([0.1, 0.27, 0.53])
+    together = [mode_shapes(beam, 23, places, derivative) for derivative in range(4)]
+    assert calls == [23 * 3]
+    for derivative, found in enumerate(together):
+        each = np.array([mode_shape(beam, mode, places, derivative) for mode in range(1, 24)])
+        assert np.max(abs(found - each)) <= 1e-13 * np.max(abs(each))
+    monkeypatch.setattr(shapes, "_TOGETHER", 7)  # in groups of two modes
+    assert np.array_equal(mode_shapes(beam, 23, places, 2), together[2])

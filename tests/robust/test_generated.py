@@ -5,7 +5,7 @@
 
 import pytest
 from drawn_lines import drawn_line
-from watched import wrong_with
+from watched import timeless, wrong_with
 
 IN_A_ROW = 30
 MANY = 100
@@ -37,3 +37,13 @@ def test_what_is_drawn_is_the_same_for_one_number_and_of_every_kind():
     for key in (b"tension", b"foundation", b"rotational", b"rotary_inertia", b"section", b"slider", b"motion",
                 b"timoshenko", b"tube", b"readings", b"axial_inertia", b"wave = ", b"claim", b"nan", b"\\u001b"):  # fmt: skip
         assert key in scenes, key
+
+
+def test_columns_of_times_are_left_out_of_what_is_compared_and_no_others():
+    """In quoted cells too, and the last column or not."""
+    told = 'method,warm_s,error,rounds\n"links, lever",{},0.25,{}\n'
+    assert timeless(told.format(0.004, 9)) == timeless(told.format(0.008, 4))
+    assert timeless(told.format(0.004, 9)) != timeless(told.replace("0.25", "0.26").format(0.004, 9))
+    ruled = "| method | warm_s | error |\n| links, lever | {} | 0.25 |\n"
+    assert timeless(ruled.format(0.004)) == timeless(ruled.format(0.008))
+    assert timeless(ruled.format(0.004)) != timeless(ruled.replace("lever", "pin").format(0.004))

@@ -1,6 +1,7 @@
 """Command lines run where nothing is lost: what they said, what they left behind, and what is wrong with that."""
 
 import contextlib
+import csv
 import io
 import json
 import os
@@ -22,7 +23,8 @@ LIMIT_S = 40
 LONGEST = 4000
 """Characters of an error stream with one sentence; each further one has 300 more."""
 TIMES = re.compile(r"[-+]?\d[\d.e+-]*\s*(?:ns|µs|us|ms|s|minutes|min)\b")
-TIMED = re.compile(r"(?:seconds|_s$|_ms(?:_|$)|time|date)")
+TIMED = re.compile(r"(?:seconds|_s$|_ms(?:_|$)|time|date|^sentences$|^rounds$)")
+"""Names of what times go into; the sentences of a bench are all about them, its rounds end with them."""
 TELLS_TIMES = ("run", "table", "choose")
 """Commands whose tables have times below a head alone: of their words for a person no digits are compared."""
 
@@ -182,9 +184,10 @@ def timeless(text, told=False):
         pass
     first = text.partition("\n")[0]
     for mark in ("|", ","):
-        if TIMED.search(first) and mark in first:
-            timed = {i for i, head in enumerate(first.split(mark)) if TIMED.search(head.strip())}
-            rows = (row.split(mark) for row in text.splitlines())
+        timed = {i for i, head in enumerate(first.split(mark)) if TIMED.search(head.strip())}
+        if timed and mark in first:
+            quoting = csv.QUOTE_MINIMAL if mark == "," else csv.QUOTE_NONE
+            rows = csv.reader(io.StringIO(text, newline=""), delimiter=mark, quoting=quoting)
             return "\n".join(mark.join(cell for i, cell in enumerate(row) if i not in timed) for row in rows)
     plain = TIMES.sub("TIME", text)
     plain = re.sub(r"[-+]?\d[-+\d.e]*|–", "#", plain) if told else plain

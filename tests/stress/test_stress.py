@@ -258,6 +258,10 @@ def test_the_table_fits_a_terminal_and_its_report_is_written(capsys, monkeypatch
 def test_rows_can_be_listed_and_left_out_by_name(capsys):
     assert status_of(["stress", "--list"]) == 0
     assert len(capsys.readouterr().out.splitlines()) == len(rows())
+    assert status_of(["stress", "taut", "rolled-up", "--list", "--json"]) == 0
+    taut, rolled = json.loads(capsys.readouterr().out)
+    assert (taut["id"], taut["title"], taut["promise"]) == ("taut", row("taut").title, row("taut").promise)
+    assert rolled["promise"] == row("rolled-up").run().promise
     assert status_of(["stress", "taut", "elements-million", "--seconds", "9", "--no-report"]) == 0
     assert "left out, for they take longer than --seconds gives: elements-million" in " ".join(
         capsys.readouterr().out.split()

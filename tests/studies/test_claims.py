@@ -16,12 +16,14 @@ from verify.report.html import page
 from verify.run.plan import plan_scene
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
+from verify.section import Section
 from verify.studies.claims import found_words
 from verify.studies.work_precision import (
     Comparison,
     NotCompared,
     Work,
     WorkRow,
+    _check_rounds,
     answer_in_words,
     at_equal_error,
     work_of,
@@ -309,6 +311,19 @@ def test_nothing_is_compared_where_errors_do_not_fall_at_their_order(segment, fe
     assert why in found.why
     assert found.remedy.startswith("give ")
     assert "times as long" not in answer_in_words(found)
+
+
+def test_the_way_over_a_stepped_exact_beam_is_estimated_before_it_is_begun():
+    """Half mu g t^2 past cells of 0.4 wavenumbers, in each of which 400 modes are read; a uniform beam's are closed."""
+    words = ("motion.duration=1.3", "slider.mu=0.31", "motion.counts=[4,7]", "drive.frequency_hz=173.0")
+    plain = load_scene("paper-slider", words)
+    _check_rounds(plain, plain.motion.counts)
+    half = Section(length=0.5 * plain.beam.length)
+    stepped = replace(plain.bare, beam=replace(plain.beam, section=(half, replace(half, density=3100.0))))
+    with pytest.raises(InputError, match=r"^motion.duration = 1.3 would take about .*: shorten it"):
+        _check_rounds(stepped, plain.motion.counts)
+    short = replace(stepped, motion=replace(stepped.motion, duration=0.13))
+    _check_rounds(short, plain.motion.counts)
 
 
 def test_two_sizes_show_no_order():

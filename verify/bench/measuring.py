@@ -172,7 +172,7 @@ def _of_the_whole(seconds: float, set_up: float | None, part: float) -> tuple[fl
         return seconds, set_up
     made = (set_up or 0.0) * seconds
     whole = made + (seconds - made) / part
-    return whole, made / whole if set_up is not None else None
+    return whole, made / whole if set_up is not None and whole > 0.0 else None
 
 
 def _row(

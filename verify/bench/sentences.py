@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from verify.bench.kind import Case
 from verify.bench.measuring import Outcome, floors
-from verify.bench.rows import Sentence
+from verify.bench.rows import Row, Sentence
 from verify.judge.crossing import (
     ABOVE_FLOOR,
     Crossing,
@@ -20,6 +20,7 @@ from verify.judge.crossing import (
     within,
 )
 
+UNTIMED = "its time is below the resolution of the clock"
 NEAR = 0.01
 """Within which a method of parts is set beside the exact solution."""
 
@@ -58,12 +59,15 @@ def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[st
     """Ratios of (whole runs, runs without their set-up) at an error; why there are none."""
     seconds: list[tuple[float, float]] = []
     for name in methods:
-        own = sorted((o for o in found if o.entry.line.name == name and o.point), key=lambda o: -o.entry.size)
+        ran = sorted((o for o in found if o.entry.line.name == name), key=lambda o: -o.entry.size)
+        own = [o for o in ran if o.point]
         floor = ABOVE_FLOOR * floors(case, (o.row for o in own))
         if own and wanted < floor:
             return f"at {percent(wanted)} nothing is said, what {name} is held against is known to {floor:.1e} alone"
         points = [p for o in own if (p := o.point)]
         alone = [replace(p, seconds=o.row.warm_s or 0.0) for p, o in zip(points, own, strict=True)]
+        if any(_untimed(o.row) or (o.point and not o.row.warm_s) for o in ran):
+            return f"at {percent(wanted)} nothing is said, {name}: {UNTIMED}"
         whole, run = within(points, wanted), within(alone, wanted)
         if whole is None or run is None:
             least = min((abs(p.error) for p in points), default=None)
@@ -73,6 +77,11 @@ def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[st
         seconds.append((whole, run))
     (a, b), (c, d) = seconds
     return c / a, d / b
+
+
+def _untimed(row: Row) -> bool:
+    """Whether a row ran and a coarse clock saw no time pass."""
+    return row.whole_s == 0.0
 
 
 def _compared(case: Case, found: Sequence[Outcome], scene: str, first: str, second: str) -> Sentence:
@@ -101,6 +110,8 @@ def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unear
     pairs = [(one, one.point) for one in sorted(own, key=lambda o: -o.entry.size)]
     points: list[Point] = [point for _, point in pairs if point is not None]
     floor = ABOVE_FLOOR * floors(case, (one.row for one, point in pairs if point is not None))
+    if any(_untimed(one.row) for one in own):
+        return Unearned(UNTIMED, "give larger sizes")
     if not points:
         return Unearned(own[-1].row.left_out or "it has no figure", "see its rows")
     return converging(points, orders, floor)
@@ -147,11 +158,13 @@ def _wanted(case: Case, answer: Crossing, a: Stretch, b: Stretch) -> list[str]:
 
 def _alone(found: Sequence[Outcome], methods: tuple[str, str], answer: Crossing) -> list[str]:
     """The ratio of the runs without their set-up, at the smallest error that both reach; nothing without a set-up."""
-    seconds = []
+    seconds: list[float] = []
     for name in methods:
         own = sorted(
             (o for o in found if o.entry.line.name == name and o.point), key=lambda o: -abs(o.row.error or 0.0)
         )
+        if not all(o.row.warm_s for o in own):
+            return []
         seconds.append(at_error([abs(o.row.error or 0.0) for o in own], [o.row.warm_s or 0.0 for o in own], answer.low))
     if not any(o.row.set_up_s for o in found if o.entry.line.name in methods):
         return []
@@ -167,7 +180,7 @@ def _exact(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
     """What the exact solution costs beside the cheapest of parts that is within what is asked of it at least."""
     exact = next((one for one in found if one.entry.line.orders is None and one.row.model == "analytic"), None)
     near = [one for one in found if one.entry.line.orders and one.row.whole_s and abs(one.row.error or 0.0) <= NEAR]
-    if exact is None or exact.row.whole_s is None or not near:
+    if exact is None or not exact.row.whole_s or not near:
         return []
     least = min(near, key=lambda one: one.row.whole_s or 0.0)
     own, other, name = exact.row.whole_s, least.row.whole_s or 0.0, exact.entry.line.name

@@ -1,5 +1,6 @@
 """The stress table: promises pushed until they break."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.stress.figures import StressFound
-    from verify.stress.kind import Outcome
+    from verify.stress.kind import Outcome, Row
 
 
 @click.command()
@@ -54,8 +55,7 @@ def stress(
     cap = own_limit() if cap is None else cap
     rows = chosen(ids, quick=False)
     if listed:
-        for row in rows:
-            click.echo(f"{row.id:34} {row.title}")
+        _show_rows(rows, as_json)
         return
     target = None if no_report else writable_folder(Path(folder), "reports") / "stress-table.html"
     found: list[Outcome | str] = []
@@ -73,6 +73,15 @@ def stress(
         raise KeyboardInterrupt
     if not result.held:
         raise SystemExit(GATE_FAILED)
+
+
+def _show_rows(rows: "Sequence[Row]", as_json: bool) -> None:
+    """Rows that are not run."""
+    if as_json:
+        print_json([{"id": row.id, "title": row.title, "promise": row.promised} for row in rows])
+        return
+    for row in rows:
+        click.echo(f"{row.id:34} {row.title}")
 
 
 def _measured(one: "Outcome") -> str:

@@ -11,9 +11,11 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.exact.lineup import Lineup, line_up
 from verify.exact.roots import wavenumber_length
-from verify.exact.spans import Spans, solver, spans_of
+from verify.exact.spans import Spans, carried, solver, spans_of
 from verify.models.arrays import Array, ComplexArray
 
+_TOGETHER = 4096
+"""Modes times places that are carried at once."""
 _POINTS = 12
 """Of Gauss's rule on every span."""
 _PAIR = 1e-9
@@ -40,13 +42,34 @@ def general_shapes(beam: Beam, modes: Sequence[int], x: Array, derivative: int, 
     Positive where the beam first moves off its left end. From the right where a derivative jumps.
     """
     xi = np.minimum(np.asarray(x, dtype=float) / beam.length, 1.0)
-    rows = []
+    found = np.empty((len(modes), len(xi)))
+    together = max(_TOGETHER // max(len(xi), 1), 1)
+    for first in range(0, len(modes), together):
+        some = tuple(modes[first : first + together])
+        rates, states = _carried(beam, some, xi.tobytes(), theory)
+        for _ in range(derivative):
+            states = np.asarray(rates @ states)
+        found[first : first + together] = states[:, 0, 0].reshape(len(some), len(xi))
+    return np.asarray(found * ((beam.mass_per_length * beam.length) ** -0.5 / beam.length**derivative))
+
+
+@lru_cache(maxsize=16)
+def _carried(beam: Beam, modes: tuple[int, ...], xi: bytes, theory: str) -> tuple[Array, Array]:
+    """Rates (modes * places, 4, 4) and states (.., 4, 1) of some modes at the same places, which they are carried to.
+
+    At once, and kept for the next derivative there: a window of a slider asks for four of hundreds of modes. Shapes
+    have no loss, so that both are real.
+    """
+    places, rates, distances, states = np.frombuffer(xi), [], [], []
     for mode in modes:
-        found = _mode(beam, mode, theory)
-        span, states = found.spans.states(found.states, xi)
-        rows.append(np.real(found.spans.derivative(span, states, derivative)[:, 0]))
-    size = (beam.mass_per_length * beam.length) ** -0.5 / beam.length**derivative
-    return np.asarray(np.array(rows).reshape(len(rows), len(xi)) * size)
+        its = _mode(beam, mode, theory)
+        span = its.spans.span(places)
+        rates.append(its.spans.rates[its.spans.stretch[span]])
+        distances.append(places - its.spans.ends[span])
+        states.append(its.states[span])
+    rate = np.ascontiguousarray(np.concatenate(rates).real)
+    begin = np.ascontiguousarray(np.concatenate(states).real)
+    return rate, carried(rate, np.concatenate(distances), begin)
 
 
 @lru_cache(maxsize=500)

@@ -8,6 +8,7 @@ both ends of the beam (multiple shooting: Ascher, Mattheij and Russell, Numerica
 
 from collections.abc import Callable
 from math import ceil
+from typing import TypeVar
 
 import msgspec
 import numpy as np
@@ -15,6 +16,8 @@ import numpy as np
 from verify.errors import InputError
 from verify.exact.lineup import HELD, Lineup
 from verify.models.arrays import Array, ComplexArray, Indices
+
+Carried = TypeVar("Carried", Array, ComplexArray)
 
 _REACH = 1.5
 """Wavenumber times length of a span, at most."""
@@ -41,10 +44,15 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     stretch: Indices
     """(n,), to which stretch of the line each belongs."""
 
+    def span(self, x: Array) -> Indices:
+        """In which each x lies, of the beam's length; the right one of two."""
+        return np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.stretch) - 1)
+
     def states(self, at_ends: ComplexArray, x: Array) -> tuple[Indices, ComplexArray]:
         """(span, states (len(x), 4, k)) at x, of the beam's length, from those right of each end, (n + 1, 4, k)."""
-        span = np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.stretch) - 1)
-        return span, carried(self.rates[self.stretch[span]], x - self.ends[span], at_ends[span])
+        span = self.span(x)
+        begin: ComplexArray = at_ends[span]
+        return span, carried(self.rates[self.stretch[span]], x - self.ends[span], begin)
 
     def within(self, fractions: Array) -> ComplexArray:
         """What carries a state to fractions of its span, (n, len(fractions), 4, 4): alike in all spans of a stretch."""
@@ -52,7 +60,8 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         lengths = np.diff(self.ends[np.append(0, np.cumsum(counts))]) / counts
         distances = (lengths[:, None] * fractions).ravel()
         rates = np.repeat(self.rates, len(fractions), axis=0)
-        found = carried(rates, distances, np.broadcast_to(np.eye(4, dtype=complex), rates.shape))
+        units: ComplexArray = np.broadcast_to(np.eye(4, dtype=complex), rates.shape)
+        found = carried(rates, distances, units)
         return np.asarray(found.reshape(len(counts), len(fractions), 4, 4)[self.stretch])
 
     def derivative(self, span: Indices, states: ComplexArray, order: int) -> ComplexArray:
@@ -63,14 +72,14 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return np.asarray(states[:, 0])
 
 
-def carried(rates: ComplexArray, distances: Array, states: ComplexArray) -> ComplexArray:
+def carried(rates: Carried, distances: Array, states: Carried) -> Carried:
     """e^(rate distance) state, (m, 4, k), by its power series."""
     term = total = np.broadcast_to(states, (len(rates), *states.shape[1:]))
     steps = rates * distances[:, None, None]
     for n in range(1, _TERMS):
         term = steps @ term / n
         total = total + term
-    return np.asarray(total)
+    return total
 
 
 def spans_of(line: Lineup, omega2: float, loss_factor: float = 0.0) -> Spans:

@@ -87,6 +87,11 @@ class Row(msgspec.Struct, frozen=True, kw_only=True, eq=False):
         """Measure it. Never raises for what it measures."""
         raise NotImplementedError
 
+    @property
+    def promised(self) -> float | str:
+        """The figure or the words."""
+        raise NotImplementedError
+
     def _outcome(
         self,
         began: float,
@@ -146,6 +151,11 @@ class Floor(Row, frozen=True, kw_only=True, eq=False):
     """Raises InputError where the value is refused."""
     beyond: tuple[float, ...] = ()
     """Values past the promise, to find where it breaks or is refused."""
+
+    @property
+    def promised(self) -> float:
+        """The largest error."""
+        return self.promise
 
     def run(self) -> Outcome:
         """The worst error where it is promised, and the value at which it leaves the promise."""
@@ -207,6 +217,11 @@ class Refusal(Row, frozen=True, kw_only=True, eq=False):
     taken: tuple[float, ...] = ()
     """Values that are not refused."""
 
+    @property
+    def promised(self) -> str:
+        """What the sentence says."""
+        return f"InputError names {' and '.join(self.names)}"
+
     def run(self) -> Outcome:
         """The last sentence, or why the promise is not held."""
         began, said, reason, broken = perf_counter(), "", "", None
@@ -220,8 +235,7 @@ class Refusal(Row, frozen=True, kw_only=True, eq=False):
                 reason, broken = f"refused at {value:g} {self.along}, where it is promised: {found}", value
         beside = self._beside()
         worst = max((found for _, found in beside), default=None)
-        promise = f"InputError names {' and '.join(self.names)}"
-        return self._outcome(began, promise, said or None, reason, (), broken, worst, beside)
+        return self._outcome(began, self.promised, said or None, reason, (), broken, worst, beside)
 
     def _refused(self, value: float) -> tuple[str, str]:
         """(the sentence or '', what is wrong with it)."""
@@ -246,6 +260,11 @@ class Growth(Row, frozen=True, kw_only=True, eq=False):
     """The unit of the cost."""
     rounds: int = 1
     """In which all sizes take turns; the least of each is kept."""
+
+    @property
+    def promised(self) -> float:
+        """The largest exponent."""
+        return self.promise
 
     def run(self) -> Outcome:
         """The exponent over all sizes."""
