@@ -95,7 +95,7 @@ def test_after_a_warm_up_no_packaged_scene_compiles(tmp_path):
     assert made == {"motion", "chain"}
     assert len(told["folders"]) == 2
     assert all(folder.startswith(str(tmp_path)) for folder in told["folders"])
-    named = ("moving-load", "paper-slider", "chain", "steel-cantilever")  # the others load no compiler
+    named = ("moving-load", "paper-slider", "chain", "steel-cantilever")  # of the rest only stress, long, loads numba
     scenes = f"from verify.run.runner import run_scene\nfor one in {named}: run_scene(one)"
     assert compiled_by(scenes, tmp_path) == []
     again = child("from verify.cli import status_of; raise SystemExit(status_of(['warm-up']))", tmp_path)
