@@ -565,22 +565,45 @@ def calls_of(tree, name):
     return [n for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == name]
 
 
+PATIENCE = {"check_work": None, "patient": {"stress.sizes"}, "own_limit": {"commands.stress"}}
+"""What is taken of `patience`, by whom where few may: its refusals; a `with` in which minutes are waited for, which the
+stress table opens around whole solves; and the seconds that the environment says, the cap of that table's command."""
+
+
 def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
-    """Nothing comes out of `patience` but a refusal: one name is taken from it, and every call of it stands alone."""
+    """Nothing comes out of `patience` but a refusal: every call of it stands alone, and a wait binds no name.
+
+    What `own_limit` gives goes to a command alone, and no model stands on a command or on the stress table.
+    """
     assert imported("patience", set()) == {"patience", "errors"}
     takers = set()
     for path in Path(verify.__file__).parent.rglob("*.py"):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and node.module == "verify.patience":
-                assert [(alias.name, alias.asname) for alias in node.names] == [("check_work", None)], path.stem
-                takers.add(".".join(path.relative_to(Path(verify.__file__).parent).with_suffix("").parts))
+                taker = ".".join(path.relative_to(Path(verify.__file__).parent).with_suffix("").parts)
+                for alias in node.names:
+                    assert alias.asname is None, taker
+                    assert alias.name in PATIENCE, taker
+                    assert taker in (PATIENCE[alias.name] or {taker}), alias.name
+                takers.add(taker)
             assert not (isinstance(node, ast.Import) and any(a.name == "verify.patience" for a in node.names)), (
                 path.stem
             )
         alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
         assert all(call in alone for call in calls_of(tree, "check_work")), path.stem
-    assert "models.eigen" in takers
+        unbound = [
+            item.context_expr
+            for node in ast.walk(tree)
+            if isinstance(node, ast.With)
+            for item in node.items
+            if item.optional_vars is None
+        ]
+        assert all(call in unbound for call in calls_of(tree, "patient")), path.stem
+    assert takers >= {"models.eigen", "stress.sizes", "commands.stress"}
+    faces = ("exact.modes", "exact.in_time", "elements.linear", "elements.in_time", "segments.linear")
+    behind = set().union(*(imported(face, set()) for face in (*faces, "segments.in_time")))
+    assert not {name for name in behind if name.startswith(("stress", "commands"))}
 
 
 def test_numbers_are_checked_and_nothing_comes_of_it_but_a_refusal():

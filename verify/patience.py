@@ -1,6 +1,8 @@
 """Work estimated before it is begun: what would take too long without a word is refused."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from verify.errors import InputError
 
@@ -21,6 +23,19 @@ def check_work(field: str, value: object, seconds: float, remedy: str) -> None:
         f"{field} = {value!r} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
         f"{remedy}, or set {VARIABLE} to more seconds"
     )
+
+
+@contextmanager
+def patient(seconds: float) -> Iterator[None]:
+    """Wait for that much work in the meantime, whatever the environment says."""
+    before = os.environ.get(VARIABLE)
+    os.environ[VARIABLE] = f"{seconds!r}"
+    try:
+        yield
+    finally:
+        del os.environ[VARIABLE]
+        if before is not None:
+            os.environ[VARIABLE] = before
 
 
 def _words(seconds: float) -> str:

@@ -44,7 +44,8 @@ def _tableau(rows: list[list[float]], c: list[float], weights: list[float], orde
     a = np.zeros((len(c) + 1, len(c)))
     for i, row in enumerate(rows, start=1):
         a[i, : len(row)] = row
-    return Tableau(a, np.array(c), np.array(weights, dtype=float), order)
+    # a whole number would be a type of its own to numba, which compiles for types
+    return Tableau(a, np.array(c, dtype=float), np.array(weights, dtype=float), float(order))
 
 
 RK4 = _tableau([[0.5], [0, 0.5], [0, 0, 1], [1 / 6, 1 / 3, 1 / 3, 1 / 6]], [0, 0.5, 0.5, 1], [], 4)

@@ -40,16 +40,20 @@ def measured(a: InWindow, scene: "Scene", bench: Workbench) -> "WaveMeasures":
     return measures(field_of(a, scene, bench), a.window)
 
 
-def _read(derivative: int) -> Callable[[At, "Scene", Workbench], complex]:
-    """A derivative of the field at a place."""
+def _deflection(a: At, scene: "Scene", bench: Workbench) -> complex:
+    return complex(field_of(a, scene, bench).deflection(a.x)[0])
 
-    def evaluate(a: At, scene: "Scene", bench: Workbench) -> complex:
-        from verify.models.places import places
 
-        field = field_of(a, scene, bench)
-        return complex(field.shapes(places("x", a.x, field.beam.length).ravel(), derivative)[0])
+def _slope(a: At, scene: "Scene", bench: Workbench) -> complex:
+    return complex(field_of(a, scene, bench).slope(a.x)[0])
 
-    return evaluate
+
+def _curvature(a: At, scene: "Scene", bench: Workbench) -> complex:
+    """Of the field's own shapes: no verb of the field reads it."""
+    from verify.models.places import places
+
+    field = field_of(a, scene, bench)
+    return complex(field.shapes(places("x", a.x, field.beam.length).ravel(), 2)[0])
 
 
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
@@ -116,7 +120,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Complex deflection, e^{+i omega t}.",
         At,
         "harmonic",
-        _read(0),
+        _deflection,
         needs=beforehand.driven,
     ),
     Quantity(
@@ -125,7 +129,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Complex slope of the deflection, e^{+i omega t}, as the model has it.",
         At,
         "harmonic",
-        _read(1),
+        _slope,
         needs=beforehand.driven,
     ),
     Quantity(
@@ -134,7 +138,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Complex second derivative of the deflection, as the model has it between its nodes.",
         At,
         "harmonic",
-        _read(2),
+        _curvature,
         needs=beforehand.driven,
     ),
     Quantity(

@@ -1,7 +1,5 @@
 """How many parts, how many modes."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from decimal import Decimal, localcontext
 from math import pi
 
@@ -10,6 +8,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.models.catalogue import MODELS
+from verify.patience import patient
 from verify.stress.beams import STRIP, held
 from verify.stress.decimals import PI as _PI
 from verify.stress.decimals import cantilever_root, cos, exp, relative, sin
@@ -48,28 +47,11 @@ def assembled_error(model: str) -> Figure:
     return error
 
 
-@contextmanager
-def _patient() -> Iterator[None]:
-    """Work of minutes is waited for."""
-    import os
-
-    from verify.patience import VARIABLE
-
-    before = os.environ.get(VARIABLE)
-    os.environ[VARIABLE] = "3600"
-    try:
-        yield
-    finally:
-        del os.environ[VARIABLE]
-        if before is not None:
-            os.environ[VARIABLE] = before
-
-
 def patient_error(model: str) -> Figure:
     """`dispersion_error` of sizes that take more than is waited for."""
 
     def error(n: float) -> float:
-        with _patient():
+        with patient(3600.0):
             return dispersion_error(model)(n)
 
     return error
