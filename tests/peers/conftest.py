@@ -1,19 +1,10 @@
 """A chain that is symmetric in nothing, and a slider on it."""
 
-import numpy as np
 import pytest
+from peer_cases import FORCES, FREQUENCY
 
-from verify.beam import PointForce
 from verify.peers.case import case_of, sled_of
 from verify.slider import Slider
-
-FORCES = (
-    PointForce(position=0.0731, amplitude=0.013, phase_deg=-37.0),
-    PointForce(position=0.5219, amplitude=0.021, phase_deg=71.0),
-    PointForce(position=0.0797, amplitude=0.005, phase_deg=160.0),
-)
-"""The first and the last on one link of 13, not on joints."""
-FREQUENCY = 1234.5
 
 
 @pytest.fixture
@@ -25,23 +16,3 @@ def asymmetric_case(titanium_strip):
 def sled(titanium_strip):
     slider = Slider(mass=2.3e-3, mu=0.31, slope=3e3, position=0.297, speed=1.7e-4, coupling="one-way")
     return sled_of(titanium_strip, slider)
-
-
-def relative_rms(values, exact):
-    """Rms of a difference over the rms of what is exact."""
-    return float(np.sqrt(np.mean((values - exact) ** 2) / np.mean(exact**2)))
-
-
-def deflection_error(run, exact):
-    """Of mid-span over the samples that a run kept, which broke nowhere."""
-    assert not run.broke
-    assert len(run.times) >= 40
-    return relative_rms(run.deflection, exact(run.times))
-
-
-def ride_error(run, exact):
-    """The larger of those of a slider's distance and of its speed."""
-    assert not run.broke
-    assert len(run.times) >= 40
-    pairs = zip((run.distance, run.speed), exact(run.times), strict=True)
-    return max(relative_rms(found, true) for found, true in pairs)

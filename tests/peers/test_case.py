@@ -4,7 +4,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from tests.peers.conftest import FORCES, FREQUENCY
+from peer_cases import FORCES, FREQUENCY
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.peers.case import case_of, sled_of, surface_speed

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from tests.peers.conftest import FREQUENCY, deflection_error, ride_error
+from peer_cases import FREQUENCY, deflection_error, ride_error
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.peers import references

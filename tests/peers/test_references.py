@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import eigh
 
-from tests.peers.conftest import FORCES, FREQUENCY
+from peer_cases import FORCES, FREQUENCY
 from verify import segment_model
 from verify.beam import PointForce
 from verify.chain.dynamics import at_rest
