@@ -3,8 +3,8 @@
 import msgspec
 import numpy as np
 import pytest
-
 from peer_cases import FORCES, FREQUENCY
+
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.peers.case import case_of, sled_of, surface_speed

@@ -5,8 +5,8 @@ import importlib
 import msgspec
 import numpy as np
 import pytest
-
 from peer_cases import FREQUENCY, deflection_error, ride_error
+
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.peers import references

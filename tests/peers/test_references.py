@@ -3,11 +3,11 @@
 import msgspec
 import numpy as np
 import pytest
+from peer_cases import FORCES, FREQUENCY
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import eigh
 
-from peer_cases import FORCES, FREQUENCY
 from verify import segment_model
 from verify.beam import PointForce
 from verify.chain.dynamics import at_rest

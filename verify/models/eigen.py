@@ -91,7 +91,7 @@ def field_seconds(n_unknowns: int) -> float:
 
     Measured of narrow bands: 2.6e-6 s for each unknown and a quarter of a millisecond.
     """
-    return 3e-4 + 6e-6 * n_unknowns
+    return 2.5e-4 + 3e-6 * n_unknowns
 
 
 def _memory_bytes() -> int:
