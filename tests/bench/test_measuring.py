@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+import msgspec
 import pytest
 
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
@@ -123,6 +124,16 @@ def test_what_does_not_fit_is_left_out_the_largest_first_and_named():
     assert "a, N = 160" in rows[-1].left_out
     why, left = fitting([one], 1.0)
     assert (len(why), left) == (4, pytest.approx(0.0, abs=1e-12))
+
+
+def test_a_case_whose_reference_alone_takes_too_long_does_not_push_another_out():
+    clock = Clock()
+    cheap = case(entry(clock, "a", 20, estimate=0.5))
+    dear = msgspec.structs.replace(case(entry(clock, "b", 20, estimate=0.1)), estimate_s=300.0)
+    why, left = fitting([cheap, dear], 30.0)
+    assert list(why) == [id(dear.entries[0])]
+    assert left == pytest.approx(6 * 0.5 + cheap.estimate_s)
+    assert "with its reference, which takes 3e+02" in why[id(dear.entries[0])]
 
 
 def test_a_reference_is_not_solved_where_nothing_is_left_of_its_case():

@@ -59,28 +59,23 @@ class _Ready(msgspec.Struct, frozen=True, eq=False):
 def fitting(cases: Sequence[Case], seconds: float) -> tuple[dict[int, str], float]:
     """(why an entry is left out, by its identity; seconds that the rest is estimated to take).
 
-    The largest go first, until the rest fits; the reference of a case goes with its last entry.
+    The least go first, as long as they fit; the reference of a case is paid with the first entry that is taken of it.
     """
-    taken = {id(entry): entry.work_s(LEAST_ROUNDS + ONCE - 1) for case in cases for entry in case.entries}
-    named = {id(entry): entry for case in cases for entry in case.entries}
-    total = sum(taken.values()) + sum(case.estimate_s for case in cases)
+    work = [(entry.work_s(LEAST_ROUNDS + ONCE - 1), entry, case) for case in cases for entry in case.entries]
+    total, begun = 0.0, set[int]()
     why: dict[int, str] = {}
-    for key in sorted(taken, key=lambda one: -taken[one]):
-        if total <= seconds:
-            break
-        total -= taken[key]
-        why[key] = (
-            f"about {taken[key]:.2g} s of work (estimated from above), more than is left of the {seconds:g} s: "
-            f"give more seconds, or leave {named[key].told} out"
+    for taken, entry, case in sorted(work, key=lambda one: one[0]):
+        cost = taken + case.estimate_s * (id(case) not in begun)
+        if total + cost <= seconds:
+            total += cost
+            begun.add(id(case))
+            continue
+        reference = f" with its reference, which takes {case.estimate_s:.2g}," if cost > taken else ","
+        why[id(entry)] = (
+            f"about {cost:.2g} s of work (estimated from above){reference} more than is left of the {seconds:g} s: "
+            f"give more seconds, or leave {entry.told} out"
         )
-        total -= sum(case.estimate_s for case in cases if _last(case, key, why))
     return why, total
-
-
-def _last(case: Case, key: int, why: dict[int, str]) -> bool:
-    """Whether an entry that was just left out was the last of its case."""
-    own = [id(entry) for entry in case.entries]
-    return key in own and all(one in why for one in own)
 
 
 def measured(
