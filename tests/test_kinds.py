@@ -25,8 +25,9 @@ from verify.registry import Registry, may_be_declared, unusable
 from verify.report.html import page
 from verify.run.plan import plan_scene
 from verify.studies.catalogue import STUDIES
+from verify.studies.chart import Axis, Bars, Chart
 from verify.studies.kind import Study
-from verify.studies.told import Chart, Column, Found, Table
+from verify.studies.told import Column, Found, Table
 
 SCENE = """
 name = "toy"
@@ -118,8 +119,8 @@ class HeavinessFound(Found, frozen=True, eq=False, kw_only=True):
         return (Table(columns=(Column("beam", left=True), Column("N", ".3f")), rows=(("this one", self.newton),)),)
 
     def charts(self):
-        bar = {"type": "bar", "x": ["beam"], "y": [self.newton]}
-        return (Chart("heaviness", "Weight", "Of the beam.", [bar], {}),)
+        bar = Bars(names=("beam",), values=(self.newton,), colours=("#2f80ed",))
+        return (Chart(id="heaviness", title="Weight", caption="Of the beam.", x=Axis("N"), y=Axis(""), bars=bar),)
 
 
 class HeavinessStudy(Study[Heaviness, HeavinessFound]):
@@ -167,7 +168,7 @@ def test_json_terminal_and_page_tell_of_them(scene, capsys):
     assert status_of(["run", str(scene), "--no-report"]) == 0
     assert "the beam weighs 4.565 N" in capsys.readouterr().out
     shown = page(run_scene(scene), "verify run toy.toml")
-    assert 'id="chart-heaviness"' in shown
+    assert 'id="heaviness"' in shown
     assert "How heavy" in shown
     assert Sine.title in shown
 

@@ -482,7 +482,7 @@ def test_a_scene_with_a_bench_has_it_in_its_plan_its_run_and_its_report():
     assert len([one for one in steps if one.startswith("bench")]) == BenchStudy().n_steps(scene.bench, scene)
     assert n_steps(scene) >= len(steps) > 0
     html = report(result, "verify run strip")
-    assert "chart-bench-modes" in html
+    assert "bench-modes" in html
     assert "Run time against error" in html
     assert "segments against Hermite elements" in html
     plain = finite(run_as_plain(result, None))
@@ -505,12 +505,13 @@ def test_a_page_that_is_kept_names_machine_and_versions_and_no_path(paper, tmp_p
 def test_charts_have_a_line_for_every_method_and_stand_on_logarithms(paper):
     (modes, harmonic, transient) = paper.charts()
     assert [one.id for one in paper.charts()] == ["bench-modes", "bench-harmonic", "bench-transient"]
-    names = {trace["name"] for trace in modes.data if trace.get("showlegend")}
+    names = {line.name for line in modes.lines if line.keyed}
     assert {"segments", "Hermite elements", "stock scikit-fem", "mean of both"} <= names
     for chart in (modes, harmonic, transient):
-        assert chart.layout["xaxis"]["type"] == chart.layout["yaxis"]["type"] == "log"
-        for trace in chart.data:
-            assert all(value is None or value > 0.0 for value in (*trace["x"], *trace["y"]))
+        assert chart.x.log
+        assert chart.y.log
+        for line in chart.lines:
+            assert all(value is None or value > 0.0 for value in (*line.x, *line.y))
 
 
 def test_the_command_prints_json_that_it_reads_again(tmp_path, capsys):

@@ -432,7 +432,7 @@ def test_a_report_is_written_where_one_is_asked_for(verify, tmp_path):
     assert status == 0
     assert "report: here/compare-steel-cantilever.html" in out
     assert "follows the 2EI/l rule" in page
-    assert 'id="chart-compare"' in page
+    assert 'id="compare"' in page
     assert "candidates solved in" in page
 
 

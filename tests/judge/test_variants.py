@@ -96,7 +96,7 @@ def test_guides_of_a_stepped_chain_have_its_order(tmp_path):
     from verify.run.runner import run_scene
 
     charts = {chart.id: chart for chart in run_scene(load_scene("stepped-beam")).found["convergence"].charts()}
-    guides = {trace["name"] for trace in charts["convergence"].data if trace["name"].startswith("slope")}
+    guides = {line.name for line in charts["convergence"].lines if line.guide}
     assert guides == {"slope 2", "slope 4"}
 
 
@@ -105,9 +105,9 @@ def test_a_report_of_a_clamped_beam_overlays_all_walls():
 
     found = run_scene(load_scene("steel-cantilever")).found["convergence"]
     (chart,) = [chart for chart in found.charts() if chart.id == "rules"]
-    names = [trace["name"] for trace in chart.data]
+    names = [line.name for line in chart.lines]
     assert names == ["segments", *(f"segments, wall {w}" for w in ("half", "welded", "third-order", "five-joint"))]
-    gregory, half = (dict(zip(trace["x"], trace["y"], strict=True)) for trace in chart.data[:2])
+    gregory, half = (dict(zip(line.x, line.y, strict=True)) for line in chart.lines[:2])
     assert half[80] > 100 * gregory[80]
 
 

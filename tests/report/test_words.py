@@ -37,7 +37,9 @@ def words_of_the_report():
         }
         docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
         for node in ast.walk(tree):
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in specs | docstrings:
+            if not (isinstance(node, ast.Constant) and isinstance(node.value, str)) or id(node) in specs | docstrings:
+                continue
+            if "<" not in node.value and '="' not in node.value and re.search("[a-z]{2}", node.value):  # no picture
                 yield path.name, node.value
     template = (package / "report" / "page.html.j2").read_text("utf-8")
     for cut in (r"<style>.*?</style>", r"<script>.*?</script>", r"\{\{.*?\}\}", r"\{%.*?%\}", r"<[^>]*>"):

@@ -152,7 +152,7 @@ def test_report_terminal_and_json_carry_claims_and_readings(result, capsys):
     for words in ("fails", "+52 % off", "Collard et al., Section III", "ABCDEF", "ABCF", "-1.5303"):
         assert words in text, words
         assert words in shown, words
-    assert 'id="chart-slider-readings"' in text
+    assert 'id="slider-readings"' in text
     plain = json.loads(json.dumps(finite(run_as_plain(result, None))))
     assert [claim["holds"] for claim in plain["claims"]] == [True, False, True, False, False, True]
     last = plain["readings"]["groups"][-1]

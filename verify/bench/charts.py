@@ -1,12 +1,12 @@
 """Charts of a bench: for each set run time over error, a line for each method, time falling to the right."""
 
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
-from verify.studies.charting import DASHES, GREY, LOG, MEAN_COLOUR, PALETTE, SYMBOLS, Figure, axes, line
-from verify.studies.told import Chart
+from verify.studies.chart import Axis, Chart, Line
+from verify.studies.charting import DASHES, MEAN_COLOUR, PALETTE, SYMBOLS, key, line
 
 if TYPE_CHECKING:
     from verify.bench.found import BenchFound
@@ -29,49 +29,47 @@ def bench_charts(found: "BenchFound") -> tuple[Chart, ...]:
 
 def _chart(name: str, rows: "list[Row]", found: "BenchFound") -> Chart:
     methods, abouts = list(dict.fromkeys(r.method for r in rows)), list(dict.fromkeys(r.about for r in rows))
-    data: list[Figure] = []
+    lines: list[Line] = []
     for about in abouts:
         for method in methods:
             own = [row for row in rows if (row.about, row.method) == (about, method) and row.error and row.whole_s]
             if own:
-                data.append(_trace(own, methods.index(method), abouts.index(about), named=not _named(data, method)))
+                lines.append(_drawn(own, methods.index(method), abouts.index(about), named=not _named(lines, method)))
     several = len(abouts) > 1
-    keys = [line(about, GREY, [None], [None], **_style(i)) for i, about in enumerate(abouts)] if several else []
+    keys = [key(about, **_style(i)) for i, about in enumerate(abouts)] if several else []
     return Chart(
         id=f"bench-{name}",
         title=f"{TITLES[name]}: run time against error",
         caption="Set-up and run together, medians of interleaved rounds of "
         f"{found.date} on {found.machine['processor']}. Errors fall to the right, lower is faster; point at one "
         "for its size, step or tolerance.",
-        data=[*data, *keys],
-        layout=axes(
-            "size of the error, %",
-            "run time, ms",
-            xaxis=LOG | {"autorange": "reversed"},
-            yaxis=LOG | {"exponentformat": "none"},
-        ),
+        x=Axis("size of the error, %", log=True, backwards=True),
+        y=Axis("run time, ms", log=True),
+        lines=(*lines, *keys),
     )
 
 
-def _named(data: list[Figure], method: str) -> bool:
-    return any(trace["legendgroup"] == method for trace in data)
+def _named(lines: list[Line], method: str) -> bool:
+    return any(one.group == method for one in lines)
 
 
-def _style(i: int) -> Figure:
-    return {"line": {"dash": DASHES[i % len(DASHES)]}, "marker": {"symbol": SYMBOLS[i % len(SYMBOLS)]}}
+def _style(i: int) -> dict[str, Any]:
+    return {"dash": DASHES[i % len(DASHES)], "marker": SYMBOLS[i % len(SYMBOLS)]}
 
 
-def _trace(rows: "list[Row]", i: int, about: int, *, named: bool) -> Figure:
+def _drawn(rows: "list[Row]", i: int, about: int, *, named: bool) -> Line:
     first = rows[0]
     by_error = sorted(rows, key=lambda row: -abs(row.error or 0.0))
-    own = line(
+    return line(
         first.method,
         _colour(first, i),
         [100.0 * abs(row.error or 0.0) for row in by_error],
         [1e3 * (row.whole_s or 0.0) for row in by_error],
+        said=tuple(_told(row) for row in by_error),
+        keyed=named,
+        group=first.method,
         **_style(about),
     )
-    return own | {"text": [_told(row) for row in by_error], "showlegend": named, "legendgroup": first.method}
 
 
 def _colour(row: "Row", i: int) -> str:

@@ -7,7 +7,8 @@ import msgspec
 
 from verify.bench.rows import ChildCost, Row, Sentence, plain_row
 from verify.peers.breaking import Break
-from verify.studies.told import Chart, Column, Found, Table
+from verify.studies.chart import Chart
+from verify.studies.told import Column, Found, Table
 from verify.words import told_once
 
 
@@ -29,6 +30,10 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
     """Seconds that the work was estimated to take, from above."""
     moved: tuple[Sentence, ...] = ()
     """Against an earlier run: what moved."""
+
+    def in_short(self) -> str:
+        """The first comparison that was earned."""
+        return next((one.text for one in self.sentences if one.earned), "")
 
     def facts(self) -> tuple[str, ...]:
         """What moved against an earlier run, where there is one; then a sentence for each comparison."""

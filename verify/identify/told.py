@@ -9,8 +9,9 @@ from verify.identify.fitting import FLOOR, TOLERANCE, Fit, Identified
 from verify.identify.pairing import Found as Remark
 from verify.identify.sizing import Enough
 from verify.run.gates import Band, GateResult
-from verify.studies.charting import GREY, axes, line, percent
-from verify.studies.told import Chart, Column, Found, Table
+from verify.studies.chart import Axis, Chart
+from verify.studies.charting import GREY, line, percent, plain_line
+from verify.studies.told import Column, Found, Table
 from verify.words import percent as in_percent
 
 _YOURS, _BEST, _NEXT = "#d6427a", "#2f80ed", "#e8760c"
@@ -130,6 +131,10 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         times = f", {self.found.odds:.2g} times as much" if self.found.best.residual > FLOOR else ""
         return f"next, with {_left(following)}{times}, comes {following.candidate.words}{_sized(following)}"
 
+    def in_short(self) -> str:
+        """The answer."""
+        return self.answer
+
     def facts(self) -> tuple[str, ...]:
         """The answer."""
         return (self.answer, self._largest())
@@ -191,21 +196,26 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         """Errors over the mode: yours, of the best candidate, of the next."""
         modes = [row.mode for row in self.rows]
         best = [row.best_hz / row.exact_hz - 1.0 for row in self.rows]
-        data = [
-            line("yours", _YOURS, modes, percent([row.error for row in self.rows]), mode="markers"),
-            line(self.found.best.candidate.words, _BEST, modes, percent(best), mode="lines"),
+        lines = [
+            plain_line("exact", GREY, modes, [0.0] * len(modes)),
+            line("yours", _YOURS, modes, percent([row.error for row in self.rows]), joined=False),
+            plain_line(self.found.best.candidate.words, _BEST, modes, percent(best)),
         ]
         following = self.found.next
         if following is not None:
             by_mode = {int(m) + 1: float(d) for m, d in zip(following.pairs.modes, following.differences, strict=True)}
             errors = [(1.0 + row.error) / (1.0 + by_mode[row.mode]) - 1.0 for row in self.rows]
-            dashed = {"line": {"dash": "dash"}}
-            data.append(line(following.candidate.words, _NEXT, modes, percent(errors), mode="lines", **dashed))
-        data.append(line("exact", GREY, modes, [0.0] * len(modes), mode="lines"))
-        layout = axes("mode number", "frequency error, %")
-        layout["legend"] = {"orientation": "h", "y": -0.2}
-        caption = f"Points: yours, against the exact beam ({self.theory}). Lines: the candidates."
-        return (Chart("compare", "Your frequencies beside the nearest candidates", caption, data, layout),)
+            lines.append(plain_line(following.candidate.words, _NEXT, modes, percent(errors), dash="dash"))
+        return (
+            Chart(
+                id="compare",
+                title="Your frequencies beside the nearest candidates",
+                caption=f"Points: yours, against the exact beam ({self.theory}). Lines: the candidates.",
+                x=Axis("mode number"),
+                y=Axis("frequency error, %"),
+                lines=tuple(lines),
+            ),
+        )
 
     def plain(self) -> dict[str, Any]:
         """For JSON."""

@@ -159,6 +159,11 @@ def _chosen(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
     return tuple(Choice(*pair) for pair in chosen)
 
 
+def skipped_by(scene: "Scene") -> tuple[Choice, ...]:
+    """What a scene leaves out, with the reason."""
+    return _skipped(scene, asks_of(scene))
+
+
 def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
     """What this scene leaves out, with the reason."""
     work, left = kinds_of_work(asks), []

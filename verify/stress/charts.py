@@ -1,12 +1,12 @@
-"""Charts of the stress table as plain plotly figure data."""
+"""Charts of the stress table."""
 
 from collections.abc import Iterable
 from math import exp, inf, isfinite, log, pi
 from typing import TYPE_CHECKING
 
 from verify.stress.kind import Outcome, Points, exponent
-from verify.studies.charting import GREY, LOG, MEAN_COLOUR, PALETTE, Figure, axes, line
-from verify.studies.told import Chart
+from verify.studies.chart import Axis, Bars, Chart, Line, Mark
+from verify.studies.charting import GREY, MEAN_COLOUR, PALETTE, line, plain_line
 
 if TYPE_CHECKING:
     from verify.stress.figures import StressFound
@@ -52,89 +52,53 @@ def _below(rows: Iterable[Outcome]) -> float:
 
 
 def _errors(sizes: dict[str, Outcome], by_id: dict[str, Outcome]) -> Chart:
-    data: list[Figure] = []
-    shapes: list[Figure] = []
-    notes: list[Figure] = []
+    lines: list[Line] = []
+    marks: list[Mark] = []
     for parts, one in sizes.items():
         colour = _COLOURS[parts]
         more = by_id.get(f"{parts}-million")
         ours = sorted({*one.points, *(more.points if more else ())})
         textbook = sorted({*one.beside_points, *(more.beside_points if more else ())})
-        data.append(line(f"{parts}, factored", colour, *zip(*_drawn(tuple(ours)), strict=True)))
-        data.append(
-            line(
-                f"{parts}, assembled and eigsh",
-                colour,
-                *zip(*_drawn(tuple(textbook)), strict=True),
-                line={"dash": "dash"},
-                marker={"symbol": "x"},
-            )
-        )
+        lines.append(line(f"{parts}, factored", colour, *zip(*_drawn(tuple(ours)), strict=True)))
+        lines.append(_textbook(f"{parts}, assembled and eigsh", colour, _drawn(tuple(textbook))))
         if (edge := takes_over(tuple(textbook))) is not None:
-            shapes.append(
-                {
-                    "type": "line",
-                    "x0": edge,
-                    "x1": edge,
-                    "yref": "paper",
-                    "y0": 0,
-                    "y1": 1,
-                    "line": {"color": colour, "width": 1.5, "dash": "dot"},
-                }
-            )
-            notes.append(
-                {
-                    "x": log(edge, 10),
-                    "y": 1.0 if parts == "segments" else 0.93,
-                    "yref": "paper",
-                    "text": f"{parts}: {edge:.0f}",
-                    "showarrow": False,
-                    "xanchor": "left",
-                    "yanchor": "top",
-                    "xshift": 4,
-                    "font": {"color": colour},
-                }
-            )
+            marks.append(Mark(edge, f"{parts}: {edge:.0f}", colour))
     n = sorted({n for one in sizes.values() for n, _ in one.points})
-    data.append(
-        line("left by the division, mode 1", GREY, n, [(pi / k) ** 4 / 1440.0 for k in n], line={"width": 3})
-        | {"mode": "lines"}
-    )
-    layout = axes("parts", "relative error of a frequency", xaxis=LOG, yaxis=LOG)
+    left = plain_line("left by the division, mode 1", GREY, n, [(pi / k) ** 4 / 1440.0 for k in n], width=3.0)
     return Chart(
-        "stress-errors",
-        "Rounding over size",
-        "Worst of modes 1 to 5 of a pinned strip against the discrete dispersion in closed form. Dotted: where the "
-        "rounding of assembled matrices takes over from what the division itself leaves of mode 1 (grey). Kept "
+        id="stress-errors",
+        title="Rounding over size",
+        caption="Worst of modes 1 to 5 of a pinned strip against the discrete dispersion in closed form. Dotted: where "
+        "the rounding of assembled matrices takes over from what the division itself leaves of mode 1 (grey). Kept "
         f"factored, it does where both are below {_below(sizes.values()):.0e}.",
-        data,
-        layout | {"shapes": shapes, "annotations": notes},
+        x=Axis("parts", log=True),
+        y=Axis("relative error of a frequency", log=True),
+        lines=(left, *lines),
+        marks=tuple(marks),
     )
+
+
+def _textbook(name: str, colour: str, points: Points) -> Line:
+    return line(name, colour, *zip(*points, strict=True), marker="cross", dash="dash")
 
 
 def _costs(unit: str, rows: list[Outcome]) -> Chart:
-    data: list[Figure] = []
+    lines: list[Line] = []
     for i, one in enumerate(rows):
         colour = PALETTE[i % len(PALETTE)]
-        data.append(line(f"{one.id}: N^{exponent(one.points):.2f}", colour, *zip(*one.points, strict=True)))
+        lines.append(line(f"{one.id}: N^{exponent(one.points):.2f}", colour, *zip(*one.points, strict=True)))
         if one.beside_points:
-            data.append(
-                line(
-                    f"{one.textbook}: N^{exponent(one.beside_points):.2f}",
-                    colour,
-                    *zip(*one.beside_points, strict=True),
-                    line={"dash": "dash"},
-                    marker={"symbol": "x"},
-                )
-            )
+            name = f"{one.textbook}: N^{exponent(one.beside_points):.2f}"
+            lines.append(_textbook(name, colour, one.beside_points))
     what = "Memory" if unit == "MB" else "Time"
     return Chart(
-        f"stress-{what.lower()}",
-        f"{what} over size",
-        "With the exponents of least squares over all sizes. Dashed: the textbook's way."
+        id=f"stress-{what.lower()}",
+        title=f"{what} over size",
+        caption="With the exponents of least squares over all sizes. Dashed: the textbook's way."
         + (" Processor seconds, the least of several rounds." if what == "Time" else " Of a process of its own."),
-        data,
-        axes("parts", f"{what.lower()}, {unit}", xaxis=LOG, yaxis=LOG),
+        x=Axis("parts", log=True),
+        y=Axis(f"{what.lower()}, {unit}", log=True),
+        lines=tuple(lines),
     )
 
 
@@ -145,20 +109,17 @@ SHOWN = 14
 def _shares(ranked: list[Outcome]) -> Chart:
     """The rows with the thinnest margins, the thinnest on top."""
     shown = [one for one in ranked if one.share not in (0.0, inf)][:SHOWN][::-1]
-    bars: Figure = {
-        "type": "bar",
-        "orientation": "h",
-        "y": [one.id for one in shown],
-        "x": [one.share for one in shown],
-        "marker": {"color": [MEAN_COLOUR if one.held else PALETTE[1] for one in shown]},
-        "showlegend": False,
-    }
-    layout = axes("measured over promised", "", xaxis=LOG, yaxis={"automargin": True})
-    edge = {"type": "line", "x0": 1, "x1": 1, "yref": "paper", "y0": 0, "y1": 1, "line": {"color": GREY, "width": 2}}
     return Chart(
-        "stress-shares",
-        "The worst rows",
-        "How much of its promise each uses; left of the line at 1 is held. Refusals have no size and are not here.",
-        [bars],
-        layout | {"shapes": [edge]},
+        id="stress-shares",
+        title="The worst rows",
+        caption="How much of its promise each uses; left of the line at 1 is held. Refusals have no size and are not "
+        "here.",
+        x=Axis("measured over promised", log=True),
+        y=Axis(""),
+        bars=Bars(
+            tuple(one.id for one in shown),
+            tuple(one.share for one in shown),
+            tuple(MEAN_COLOUR if one.held else PALETTE[1] for one in shown),
+        ),
+        marks=(Mark(1.0, "", GREY),),
     )

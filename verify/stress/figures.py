@@ -8,7 +8,8 @@ import msgspec
 
 from verify.stress.catalogue import row, rows
 from verify.stress.kind import Outcome, Row, exponent
-from verify.studies.told import Chart, Column, Found, Table
+from verify.studies.chart import Chart
+from verify.studies.told import Column, Found, Table
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -41,6 +42,11 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
         from verify.stress.charts import stress_charts
 
         return stress_charts(self)
+
+    def in_short(self) -> str:
+        """How many promises are held."""
+        n, held = len(self.outcomes), sum(one.held for one in self.outcomes)
+        return f"{held} of {n} promises are held where they were pushed."
 
     def facts(self) -> tuple[str, ...]:
         """How many are held, which come closest, what is not held."""

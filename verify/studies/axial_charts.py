@@ -1,10 +1,11 @@
-"""Charts of a chain's axial inertia as plain plotly figure data."""
+"""Charts of a chain's axial inertia."""
 
 from typing import TYPE_CHECKING
 
 from verify.motion.validity import NONLINEAR
-from verify.studies.charting import GREY, LOG, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, Figure, axes, thinned
-from verify.studies.told import Chart, Column, Table
+from verify.studies.chart import Axis, Chart
+from verify.studies.charting import BROAD, GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, line, plain_line, thinned
+from verify.studies.told import Column, Table
 
 if TYPE_CHECKING:
     from verify.studies.axial_figures import AxialFound
@@ -34,63 +35,50 @@ def axial_charts(study: "AxialFound") -> tuple[Chart, ...]:
 
 def _lines(study: "AxialFound") -> Chart:
     times = [1e3 * t for t in thinned(study.times)]
-    data: list[Figure] = [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": NAMES[model],
-            "x": times,
-            "y": [1e6 * w for w in thinned(line)],
-            "line": {
-                "color": _COLOURS[model],
-                "width": 4 if model == "exact" else 1.6,
-                "dash": "dot" if model in ("transverse", "elastic") else "solid",
-            },
-        }
-        for model, line in study.lines.items()
-    ]
     return Chart(
-        "axial-models",
-        f"Deflection at x = {study.x:g} m under {study.shown:g} N, N = {study.count}",
-        "From rest, undamped. Chains without axial inertia, or with links that stretch, lie on the linear chain; what "
-        "separates it from the exact field is the division into links, not the nonlinearity.",
-        data,
-        axes("time, ms", "deflection, µm"),
+        id="axial-models",
+        title=f"Deflection at x = {study.x:g} m under {study.shown:g} N, N = {study.count}",
+        caption="From rest, undamped. Chains without axial inertia, or with links that stretch, lie on the linear "
+        "chain; what separates it from the exact field is the division into links, not the nonlinearity.",
+        x=Axis("time, ms"),
+        y=Axis("deflection, µm"),
+        lines=tuple(
+            plain_line(
+                NAMES[model],
+                _COLOURS[model],
+                times,
+                [1e6 * w for w in thinned(values)],
+                width=BROAD if model == "exact" else 1.6,
+                dash="dot" if model in ("transverse", "elastic") else "solid",
+            )
+            for model, values in study.lines.items()
+        ),
     )
 
 
 def _departures(study: "AxialFound") -> Chart:
     rows = sorted(study.rows, key=lambda row: row.force)
     forces = [row.force for row in rows]
-    data: list[Figure] = [
-        {
-            "type": "scatter",
-            "mode": "lines+markers",
-            "name": f"{NAMES[links]}, {word}",
-            "x": forces,
-            "y": [getattr(getattr(row, links), of) for row in rows],
-            "line": {"color": _COLOURS[links], "dash": "solid" if of == "at_end" else "dash"},
-        }
+    size = plain_line("(kL)² ⟨θ²⟩", GREY, forces, [row.size for row in rows], width=BROAD)
+    lines = [
+        line(
+            f"{NAMES[links]}, {word}",
+            _COLOURS[links],
+            forces,
+            [getattr(getattr(row, links), of) for row in rows],
+            dash="solid" if of == "at_end" else "dash",
+        )
         for links in ("full", "transverse", "elastic")
         for of, word in (("at_end", "at the end"), ("rms", "rms"))
     ]
-    data.append(
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": "(kL)² ⟨θ²⟩",
-            "x": forces,
-            "y": [row.size for row in rows],
-            "line": {"color": GREY, "width": 4},
-        }
-    )
     return Chart(
-        "axial-departures",
-        f"Departure from the linear chain at x = {study.x:g} m over the force, N = {study.count}",
-        "Over the linear chain's rms deflection: at the end of the run, and as rms over the run. Grey: the number that "
-        f"decides between linear and nonlinear, felt from {NONLINEAR:g} on.",
-        data,
-        axes("force, N", "departure, relative", xaxis=LOG | {"exponentformat": "none"}, yaxis=LOG),
+        id="axial-departures",
+        title=f"Departure from the linear chain at x = {study.x:g} m over the force, N = {study.count}",
+        caption="Over the linear chain's rms deflection: at the end of the run, and as rms over the run. Grey: the "
+        f"number that decides between linear and nonlinear, felt from {NONLINEAR:g} on.",
+        x=Axis("force, N", log=True),
+        y=Axis("departure, relative", log=True),
+        lines=(size, *lines),
     )
 
 

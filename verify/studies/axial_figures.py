@@ -31,8 +31,10 @@ from verify.models.catalogue import MODELS
 from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size, field_size
 from verify.studies.axial_inertia import STEPPED, AxialInertia
+from verify.studies.chart import Chart
 from verify.studies.kind import Progress
-from verify.studies.told import Chart, Found, Table
+from verify.studies.told import Found, Table
+from verify.words import percent
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -81,6 +83,19 @@ class AxialFound(Found, frozen=True, eq=False, kw_only=True):
     duration: float
     x: float
     """Metres from the left end: the place read."""
+
+    def in_short(self) -> str:
+        """Up to which force the linear chain will do."""
+        linear = [row.force for row in self.rows if row.linear]
+        beyond = [row for row in self.rows if not row.linear]
+        upto = (
+            f"Up to {max(linear):g} N the linear chain stands for the chain of rigid links"
+            if linear
+            else ("At none of these forces the linear chain stands for the chain of rigid links")
+        )
+        first = min(beyond, key=lambda row: row.force, default=None)
+        apart = f"; at {first.force:g} N they lie {percent(first.full.at_end, sign=False)} apart" if first else ""
+        return f"{upto}{apart} (N = {self.count}, x = {self.x:g} m, after {1e3 * self.duration:g} ms)."
 
     def facts(self) -> tuple[str, ...]:
         """A sentence for each force."""

@@ -1,74 +1,59 @@
-"""What charts are made of: axes, lines, colours that mean the same in every chart. Plain plotly data."""
+"""What charts are made of: axes, lines, colours that mean the same in every chart."""
 
 from collections.abc import Iterable, Sequence
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from verify.models.catalogue import MODELS
+from verify.studies.chart import Axis, Dash, Line, Marker, Numbers
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
 
-Figure = dict[str, Any]
-
 GREY = "#8a8f98"
 MEAN_COLOUR, RAYLEIGH, TIMOSHENKO = "#2a9d5c", "#9b6bdf", "#d6427a"
-DASHES = ("solid", "dash", "dot", "dashdot", "longdash")
-PALETTE = ("#2a9d5c", "#d6427a", "#9b6bdf", "#c79a00", "#00a3a3", "#7a5c3e", "#5c6773")
+DASHES: tuple[Dash, ...] = ("solid", "dash", "dot", "dashdot", "longdash")
+PALETTE = ("#2a9d5c", "#d6427a", "#9b6bdf", "#b38a00", "#00a3a3", "#9a7450", "#6f7d8c")
 """Of lines that are told from each other by nothing else."""
-SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x")
-LOG: Figure = {"type": "log", "exponentformat": "power"}
+SYMBOLS: tuple[Marker, ...] = ("circle", "square", "diamond", "triangle", "cross")
+BROAD = 4.0
+"""Of a line that others lie on."""
 
 
-def axes(x: str, y: str, **more: Any) -> Figure:
-    """A layout with titled axes and settings for either."""
-    layout: Figure = {"xaxis": {"title": {"text": x}}, "yaxis": {"title": {"text": y}}}
-    for axis, settings in more.items():
-        layout[axis] |= settings
-    return layout
+def numbers(values: "Iterable[float | None] | Array") -> Numbers:
+    """Plain numbers, None where there is none or one that is not finite."""
+    return tuple(None if v is None or not isfinite(v) else float(v) for v in values)
 
 
-def line(name: str, colour: str, x: Iterable[Any], y: Iterable[Any], **more: Any) -> Figure:
+def line(name: str, colour: str, x: Iterable[Any], y: Iterable[Any], *, marker: Marker = "circle", **more: Any) -> Line:
     """A line with its points."""
-    trace: Figure = {
-        "type": "scatter",
-        "mode": "lines+markers",
-        "name": name,
-        "x": list(x),
-        "y": list(y),
-        "line": {"color": colour},
-        "marker": {"color": colour, "size": 6},
-    }
-    of_line = trace["line"] | more.pop("line", {})
-    of_marker = trace["marker"] | more.pop("marker", {})
-    return trace | more | {"line": of_line, "marker": of_marker}
+    return Line(name=name, colour=colour, x=numbers(x), y=numbers(y), marker=marker, **more)
 
 
-def plain_line(name: str, colour: str, x: Sequence[float], y: Sequence[float], width: float = 1.6) -> Figure:
+def plain_line(name: str, colour: str, x: Iterable[Any], y: Iterable[Any], **more: Any) -> Line:
     """A line without points."""
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": name,
-        "x": x,
-        "y": y,
-        "line": {"color": colour, "width": width},
-    }
+    return line(name, colour, x, y, marker="", **more)
 
 
-def model_line(model: str, x: Iterable[Any], y: Iterable[Any], **more: Any) -> Figure:
+def model_line(model: str, x: Iterable[Any], y: Iterable[Any], **more: Any) -> Line:
     """The line of a model, in its colour."""
-    return line(MODELS[model].title or MODELS[model].parts, MODELS[model].colour, x, y, **more)
+    own = {"name": MODELS[model].title or MODELS[model].parts, "colour": MODELS[model].colour} | more
+    return line(x=x, y=y, **own)
 
 
-def percent(values: Iterable[float | None], *, size: bool = False) -> list[float | None]:
+def key(name: str, **style: Any) -> Line:
+    """An entry of the legend alone, which explains what a dash or a marker means."""
+    return Line(name=name, colour=GREY, x=(), y=(), **style)
+
+
+def percent(values: Iterable[float | None], *, size: bool = False) -> Numbers:
     """In per cent; `size` without the sign."""
-    return [None if v is None else 100.0 * (abs(v) if size else v) for v in values]
+    return tuple(None if v is None else 100.0 * (abs(v) if size else v) for v in values)
 
 
-def sizes_axis(counts: Iterable[int]) -> Figure:
+def sizes_axis(title: str, counts: Iterable[int]) -> Axis:
     """A logarithmic axis with a tick at every size that was solved."""
-    found = sorted(set(counts))
-    return {"type": "log", "tickvals": found, "ticktext": [str(n) for n in found]}
+    return Axis(title, log=True, ticks=tuple(sorted(set(counts))))
 
 
 def thinned(values: "Sequence[float] | Array", most: int = 1000) -> list[float]:

@@ -58,6 +58,11 @@ class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
 
     claims: tuple[ClaimResult, ...]
 
+    def in_short(self) -> str:
+        """How many hold, of those that could be evaluated."""
+        held, known = sum(c.holds is True for c in self.claims), sum(c.holds is not None for c in self.claims)
+        return f"Of {known} published figures {held} hold under the conditions told below." if known else ""
+
     def tables(self) -> tuple[Table, ...]:
         """A short one for the terminal, a wide one for the page."""
         return (*self._short(), self._wide())
@@ -122,7 +127,8 @@ def _page_cells(claim: ClaimResult) -> tuple[str | bool | None, ...]:
 class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
     """Those about the slider's run are found on the runs of its study, others as `verify measure` finds them."""
 
-    name, title = "claims", "Published claims"
+    name, title = "claims", "What the source says, and what is found"
+    of_source = True
     listed = False
     nothing = ()
 

@@ -13,8 +13,9 @@ from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
 from verify.options import THEORIES
 from verify.patience import check_work
+from verify.studies.chart import Chart
 from verify.studies.kind import Progress
-from verify.studies.told import Chart, Column, Found, Table
+from verify.studies.told import Column, Found, Table
 from verify.timing import interleaved_medians
 from verify.words import theory_name
 

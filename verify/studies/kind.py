@@ -39,6 +39,8 @@ class Study(Generic[Asked, Out]):
     """Whether it runs the scene's slider."""
     listed: ClassVar[bool] = True
     """Whether a plan lists it; not one whose figures a plan lists one by one."""
+    of_source: ClassVar[bool] = False
+    """Whether it holds what somebody published beside what is found: on the page that comes first."""
     nothing: ClassVar[Any] = None
     """In JSON where the scene does not ask for it."""
 

@@ -1,10 +1,10 @@
-"""The readings of a slider as plain plotly figure data."""
+"""The readings of a slider as a chart."""
 
 from typing import TYPE_CHECKING
 
-from verify.studies.charting import GREY, LOG, Figure, axes
+from verify.studies.chart import Axis, Chart, Line
+from verify.studies.charting import GREY, numbers, plain_line
 from verify.studies.reading_words import met_words, start_words
-from verify.studies.told import Chart
 
 if TYPE_CHECKING:
     from verify.studies.reading_figures import Reading, ReadingsFound
@@ -22,32 +22,25 @@ def reading_charts(study: "ReadingsFound") -> tuple[Chart, ...]:
         how = one.condition
         start = "steady" if how.start == "steady" else start_words(how.soft_start_periods)
         ways.setdefault((how.kinematics, "nonlinear chain" if how.nonlinear else start), []).append(one)
-    data = [
+    lines = [
         _way(name, readings, _COLOURS[i % len(_COLOURS)], BESIDE ** (i - 0.5 * (len(ways) - 1)))
         for i, (name, readings) in enumerate(ways.items())
     ]
     claimed = {abs(c.number): c.id for c in study.claims if c.quantity == "slider.mean_speed" and c.number}
     forces = [max(one.condition.forces) for one in study.readings]
+    ends = (min(forces), max(forces))
     for value, name in claimed.items():
-        data.append(
-            {
-                "type": "scatter",
-                "mode": "lines",
-                "name": f"claimed: {name}",
-                "x": [min(forces), max(forces)],
-                "y": [100 * value] * 2,
-                "line": {"color": GREY, "width": 2, "dash": "dash"},
-            }
-        )
+        lines.append(plain_line(f"claimed: {name}", GREY, ends, [100 * value] * 2, width=2.0, dash="dash"))
     return (
         Chart(
-            "slider-readings",
-            f"Readings of the slider: size of the mean speed over the force, {_model(study)}",
-            "Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods over "
-            "which the forces grow), drawn a little beside its force. Points of a colour above one another differ in "
-            "place, mu and K. On hover: the claims that hold, by letter.",
-            data,
-            axes("force, N", "size of the mean speed, cm/s", xaxis=LOG | {"exponentformat": "none"}, yaxis=LOG),
+            id="slider-readings",
+            title=f"Readings of the slider: size of the mean speed over the force, {_model(study)}",
+            caption="Full: towards -x, open: towards +x. A colour is one kinematics and one start (soft: the periods "
+            "over which the forces grow), drawn a little beside its force. Points of a colour above one another differ "
+            "in place, mu and K. Under the cursor: the claims that hold, by letter.",
+            x=Axis("force, N", log=True),
+            y=Axis("size of the mean speed, cm/s", log=True),
+            lines=tuple(lines),
         ),
     )
 
@@ -56,24 +49,19 @@ def _model(study: "ReadingsFound") -> str:
     return study.readings[0].condition.model_words
 
 
-def _way(name: tuple[str, str], readings: "list[Reading]", colour: str, beside: float) -> Figure:
+def _way(name: tuple[str, str], readings: "list[Reading]", colour: str, beside: float) -> Line:
     """One colour, drawn at its forces times `beside`."""
     ended = [one for one in readings if one.speed]
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "name": f"{name[0]}, {name[1]}",
-        "x": [beside * max(one.condition.forces) for one in ended],
-        "y": [100 * abs(one.speed or 0.0) for one in ended],
-        "text": [_hover(one) for one in ended],
-        "hoverinfo": "text",
-        "marker": {
-            "color": colour,
-            "size": 7,
-            "line": {"color": colour, "width": 1.5},
-            "symbol": ["circle" if (one.speed or 0.0) < 0 else "circle-open" for one in ended],
-        },
-    }
+    return Line(
+        name=f"{name[0]}, {name[1]}",
+        x=numbers(beside * max(one.condition.forces) for one in ended),
+        y=numbers(100 * abs(one.speed or 0.0) for one in ended),
+        colour=colour,
+        marker="circle",
+        joined=False,
+        hollow=tuple((one.speed or 0.0) >= 0 for one in ended),
+        said=tuple(_hover(one) for one in ended),
+    )
 
 
 def _hover(reading: "Reading") -> str:

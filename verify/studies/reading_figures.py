@@ -12,11 +12,12 @@ from verify.errors import InputError
 from verify.motion.figures import CHAIN, Condition
 from verify.scenes.claims import Claim, asks_for_turned
 from verify.studies.chain_rides import Chains
+from verify.studies.chart import Chart
 from verify.studies.conditions import condition_of
 from verify.studies.kind import Progress
 from verify.studies.readings import ReadingsAsk
 from verify.studies.slider_figures import every_step, figures_of, reversed_scene
-from verify.studies.told import Chart, Found, Table
+from verify.studies.told import Found, Table
 from verify.studies.work_precision import run_once
 
 if TYPE_CHECKING:

@@ -200,6 +200,7 @@ class ReadingsStudy(Study[ReadingsAsk, "ReadingsFound"]):
     name, section, work = "readings", ReadingsAsk, "in time"
     slides = True
     title = "Which reading of the claims fits"
+    of_source = True
 
     def check_on(self, asked: ReadingsAsk, scene: "Scene") -> None:
         """Raise InputError where the scene has nothing to read, or where the search would take too long."""

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 from msgspec import structs
 
 from verify.exact.modes import exact_frequency_hz
-from verify.studies.told import Chart, Found
+from verify.studies.chart import Chart
+from verify.studies.told import Found
 
 if TYPE_CHECKING:
     from verify.beam import Beam

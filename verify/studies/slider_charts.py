@@ -1,10 +1,10 @@
-"""Charts of the slider as plain plotly figure data."""
+"""Charts of the slider."""
 
 from typing import TYPE_CHECKING
 
 from verify.models.catalogue import MODELS
-from verify.studies.charting import GREY, LOG, Figure, axes, model_line, plain_line, thinned
-from verify.studies.told import Chart
+from verify.studies.chart import Axis, Chart, Line
+from verify.studies.charting import BROAD, GREY, model_line, plain_line, thinned
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,38 +37,40 @@ def _set_up(study: "SliderFound") -> str:
     return f"the set-up before the loop is not counted: {' and '.join(spans)}"
 
 
-def _lines(study: "SliderFound", read: "Callable[[Motion], Array]", scale: float) -> list[Figure]:
+def _lines(study: "SliderFound", read: "Callable[[Motion], Array]", scale: float) -> tuple[Line, ...]:
     """One line for every model, those without parts broad and first."""
     order = sorted(study.runs, key=lambda name: MODELS[name].sized)
-    return [
+    return tuple(
         plain_line(
             MODELS[name].title,
             MODELS[name].colour,
             [1e3 * t for t in thinned(study.runs[name].times)],
             [scale * v for v in thinned(read(study.runs[name]))],
-            1.6 if MODELS[name].sized else 4,
+            width=1.6 if MODELS[name].sized else BROAD,
         )
         for name in order
-    ]
+    )
 
 
 def _trajectory(study: "SliderFound") -> Chart:
     return Chart(
-        "slider-trajectory",
-        f"Way of the slider, N = {study.count}",
-        f"Distance from the start, along +x: {_how(study)}.",
-        _lines(study, lambda run: run.travelled, 1e9),
-        axes("time, ms", "distance, nm"),
+        id="slider-trajectory",
+        title=f"Way of the slider, N = {study.count}",
+        caption=f"Distance from the start, along +x: {_how(study)}.",
+        x=Axis("time, ms"),
+        y=Axis("distance, nm"),
+        lines=_lines(study, lambda run: run.travelled, 1e9),
     )
 
 
 def _force(study: "SliderFound") -> Chart:
     return Chart(
-        "slider-force",
-        f"Tangential force on the slider, N = {study.count}",
-        f"Friction saturates at ±mu N as soon as the surface moves faster than 1/K: {_how(study)}.",
-        _lines(study, lambda run: run.friction, 1e3),
-        axes("time, ms", "force, mN"),
+        id="slider-force",
+        title=f"Tangential force on the slider, N = {study.count}",
+        caption=f"Friction saturates at ±mu N as soon as the surface moves faster than 1/K: {_how(study)}.",
+        x=Axis("time, ms"),
+        y=Axis("force, mN"),
+        lines=_lines(study, lambda run: run.friction, 1e3),
     )
 
 
@@ -76,33 +78,30 @@ def _speeds(study: "SliderFound") -> Chart:
     run = study.subject
     times = [1e3 * t for t in thinned(run.times)]
     speeds = (("surface under the slider", run.surface_speed, GREY), ("slider", run.speed, SLIDER))
-    data = [plain_line(name, colour, times, [1e3 * v for v in thinned(values)]) for name, values, colour in speeds]
     return Chart(
-        "slider-speeds",
-        "Speed of the slider and of the surface under it, segments",
-        f"The surface swings both ways; what is left over of a period is the drift: {_how(study)}.",
-        data,
-        axes("time, ms", "speed, mm/s"),
+        id="slider-speeds",
+        title="Speed of the slider and of the surface under it, segments",
+        caption=f"The surface swings both ways; what is left over of a period is the drift: {_how(study)}.",
+        x=Axis("time, ms"),
+        y=Axis("speed, mm/s"),
+        lines=tuple(
+            plain_line(name, colour, times, [1e3 * v for v in thinned(values)]) for name, values, colour in speeds
+        ),
     )
 
 
 def _work(study: "SliderFound") -> Chart:
-    data: list[Figure] = []
+    lines = []
     for model in dict.fromkeys(row.model for row in study.work.rows):
         rows = [row for row in study.work.rows if row.model == model]
-        trace = model_line(model, [abs(r.error) for r in rows], [r.run_ms_per_ms for r in rows])
-        data.append(
-            trace | {"mode": "lines+markers+text", "text": [str(r.count) for r in rows], "textposition": "top center"}
-        )
+        sizes = tuple(str(r.count) for r in rows)
+        errors = [abs(r.error) for r in rows]
+        lines.append(model_line(model, errors, [r.run_ms_per_ms for r in rows], beside=sizes))
     return Chart(
-        "slider-work",
-        "Run time against the error of the slider's displacement",
-        f"The same contact code on all; sizes beside the points. Lower left is better; {_set_up(study)}.",
-        data,
-        axes(
-            "error of the displacement against the exact beam",
-            "wall ms per simulated ms",
-            xaxis=LOG,
-            yaxis=LOG | {"exponentformat": "none"},
-        ),
+        id="slider-work",
+        title="Run time against the error of the slider's displacement",
+        caption=f"The same contact code on all; sizes beside the points. Lower left is better; {_set_up(study)}.",
+        x=Axis("error of the displacement against the exact beam", log=True),
+        y=Axis("wall ms per simulated ms", log=True),
+        lines=tuple(lines),
     )

@@ -9,9 +9,10 @@ from verify.models.catalogue import bounding, discrete
 from verify.motion.figures import RUN_FIGURES, Condition
 from verify.motion.result import Motion, Ride
 from verify.scenes.claims import asks_for_turned
+from verify.studies.chart import Chart
 from verify.studies.conditions import condition_of
 from verify.studies.kind import Progress
-from verify.studies.told import Chart, Found, Table
+from verify.studies.told import Found, Table
 from verify.studies.work_precision import (
     Comparison,
     NotCompared,
@@ -64,6 +65,11 @@ class SliderFound(Found, frozen=True, eq=False, kw_only=True):
     def condition(self) -> Condition:
         """How that was run."""
         return self.conditions[bounding()[0].name]
+
+    def in_short(self) -> str:
+        """What was found first, with its condition."""
+        first = next(iter(self.findings), None)
+        return f"{first.what[:1].upper()}{first.what[1:]}: {first.found}." if first else ""
 
     def facts(self) -> tuple[str, ...]:
         """What was found, how far it can be believed, and what it costs."""

@@ -7,7 +7,8 @@ from verify.errors import InputError
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench, comparable, is_bracketed
 from verify.options import THEORIES
-from verify.studies.told import Chart, Found
+from verify.studies.chart import Chart
+from verify.studies.told import Found
 from verify.words import percent, theory_name
 
 if TYPE_CHECKING:
@@ -37,6 +38,18 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
         from verify.studies.mode_charts import spectrum_charts
 
         return spectrum_charts(self)
+
+    def in_short(self) -> str:
+        """Errors of the last mode beside what the thickest theory says that this one leaves out."""
+        pairs = [(one.title, self.errors[one.label][-1]) for one in self.variants]
+        found = [f"{self.count} {title} are {percent(value)} off" for title, value in pairs if value is not None]
+        if not found:
+            return ""
+        left = {name: values[-1] for name, values in self.theories.items() if self.theory == theory_name(THEORIES[0])}
+        beyond = [
+            f"; the theory itself leaves out {percent(value)} ({theory_name(name)})" for name, value in left.items()
+        ]
+        return f"At mode {self.modes[-1]}, against exact {self.theory}, {' and '.join(found)}{''.join(beyond[-1:])}."
 
     def facts(self) -> tuple[str, ...]:
         """The last mode's errors, those of theories against Euler-Bernoulli."""

@@ -1,10 +1,11 @@
-"""How what a study finds is told: tables, charts and facts as plain values."""
+"""How what a study finds is told: tables, charts, facts and an answer as plain values."""
 
 from typing import Any, Literal
 
 import msgspec
 
 from verify.errors import InputError
+from verify.studies.chart import Chart
 
 PERCENTS = ("percent", "size", "bare percent", "bare size")
 """Forms that write a relative figure in per cent."""
@@ -48,16 +49,6 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
                 raise InputError(f"a table has a row of {len(row)} cells under {len(self.columns)} columns: match them")
 
 
-class Chart(msgspec.Struct, frozen=True):
-    """One chart of the page as plain plotly data, so that building it costs little and needs no import."""
-
-    id: str
-    title: str
-    caption: str
-    data: list[dict[str, Any]]
-    layout: dict[str, Any]
-
-
 class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """What a study found. It tells itself; terminal, page, CSV, Markdown and JSON show what it tells."""
 
@@ -68,6 +59,10 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def charts(self) -> tuple[Chart, ...]:
         """Charts for the page."""
         return ()
+
+    def in_short(self) -> str:
+        """The one sentence that a reader takes home, with its condition; empty where there is none."""
+        return ""
 
     def facts(self) -> tuple[str, ...]:
         """Sentences, each with the condition under which it holds."""

@@ -1,12 +1,13 @@
-"""Charts of the driven beam as plain plotly figure data."""
+"""Charts of the driven beam."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.models.catalogue import MODELS
-from verify.studies.charting import LOG, Figure, axes, model_line, plain_line, sizes_axis
-from verify.studies.told import Chart
+from verify.studies.chart import Axis, Chart, Line, Map, Marker
+from verify.studies.charting import BROAD, model_line, numbers, plain_line, sizes_axis
 
 if TYPE_CHECKING:
     from verify.studies.wave_figures import Ellipse, WaveFound
@@ -29,19 +30,21 @@ def _damping(study: "WaveFound") -> str:
 
 def _envelopes(study: "WaveFound") -> Chart:
     x = [1e3 * v for v in study.x]
+    broad_first = sorted(study.envelopes.items(), key=lambda item: MODELS[item[0]].sized)
     return Chart(
-        "wave-envelopes",
-        f"Envelope of the wave, N = {study.count}",
-        _damping(study) + "A pure travelling wave has a flat envelope; ripples are reflection. Near the ends the "
-        "standing wave of each actuator remains.",
-        [_envelope(model, x, [1e6 * v for v in values]) for model, values in study.envelopes.items()],
-        axes("x, mm", "amplitude, µm"),
+        id="wave-envelopes",
+        title=f"Envelope of the wave, N = {study.count}",
+        caption=_damping(study) + "A pure travelling wave has a flat envelope; ripples are reflection. Near the ends "
+        "the standing wave of each actuator remains.",
+        x=Axis("x, mm"),
+        y=Axis("amplitude, µm"),
+        lines=tuple(_envelope(model, x, [1e6 * v for v in values]) for model, values in broad_first),
     )
 
 
-def _envelope(name: str, x: list[float], y: list[float]) -> Figure:
+def _envelope(name: str, x: list[float], y: list[float]) -> Line:
     model = MODELS[name]
-    return plain_line(model.title, model.colour, x, y, 1.6 if model.sized else 4)
+    return plain_line(model.title, model.colour, x, y, width=1.6 if model.sized else BROAD)
 
 
 def _ellipses(study: "WaveFound") -> Chart:
@@ -50,79 +53,68 @@ def _ellipses(study: "WaveFound") -> Chart:
     up = max(max(map(abs, e.up)) for e in study.ellipses)
     gap = (study.ellipses[1].x - study.ellipses[0].x) * 1e3
     magnified = 0.42 * gap / (1e3 * across)
-    data = [trace for e in study.ellipses for trace in _path(e, magnified)]
     ratio = across / up
     return Chart(
-        "wave-ellipses",
-        "Surface ellipses along the beam, exact field",
-        f"Drawn to scale they are slivers ({ratio:.3f} as wide as high): motion along the beam is magnified "
+        id="wave-ellipses",
+        title="Surface ellipses along the beam, exact field",
+        caption=f"Drawn to scale they are slivers ({ratio:.3f} as wide as high): motion along the beam is magnified "
         f"{magnified:.2g} times, across it the axis has its own scale. Dots: where each point is at t = 0.",
-        data,
-        axes("x, mm", "up, µm"),
+        x=Axis("x, mm"),
+        y=Axis("up, µm"),
+        lines=tuple(one for e in study.ellipses for one in _path(e, magnified)),
     )
 
 
-def _path(one: "Ellipse", magnified: float) -> list[Figure]:
+def _path(one: "Ellipse", magnified: float) -> tuple[Line, Line]:
     """The path of a surface point, and where it is at t = 0."""
     x = [1e3 * (one.x + magnified * v) for v in one.across]
     y = [1e6 * v for v in one.up]
-    path: Figure = {
-        "type": "scatter",
-        "mode": "lines",
-        "x": x,
-        "y": y,
-        "showlegend": False,
-        "hoverinfo": "skip",
-        "line": {"color": _ELLIPSE},
-    }
-    start = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": x[:1],
-        "y": y[:1],
-        "showlegend": False,
-        "name": f"x = {1e3 * one.x:.1f} mm",
-        "marker": {"color": _POINT, "size": 6},
-    }
-    return [path, start]
+    path = plain_line("path", _ELLIPSE, x, y, keyed=False, guide=True)
+    said = (f"x = {1e3 * one.x:.1f} mm",)
+    start = Line(
+        name="at t = 0",
+        colour=_POINT,
+        x=numbers(x[:1]),
+        y=numbers(y[:1]),
+        marker="circle",
+        joined=False,
+        keyed=False,
+        said=said,
+    )
+    return path, start
 
 
-def _marked(point: "OperatingPoint", symbol: str) -> Figure:
+def _marked(point: "OperatingPoint", symbol: Marker) -> Line:
     """An operating point on the map."""
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "name": f"{point.what}: {point.frequency_hz:.1f} Hz, {point.phase_deg:.1f}°",
-        "x": [point.frequency_hz],
-        "y": [point.phase_deg],
-        "marker": {"symbol": symbol, "size": 13, "color": "#ff5a36", "line": {"color": "#ffffff", "width": 1.5}},
-    }
+    return Line(
+        name=f"{point.what}: {point.frequency_hz:.1f} Hz, {point.phase_deg:.1f}°",
+        x=(point.frequency_hz,),
+        y=(point.phase_deg,),
+        colour="#ff5a36",
+        marker=symbol,
+        size=11.0,
+        joined=False,
+    )
 
 
 def _map(study: "WaveFound") -> Chart:
     found = study.map
     name = found.quantity.removeprefix("wave.").replace("_", " ").capitalize()
     values = np.clip(found.values.T, None, CLIPPED) if found.quantity == "wave.standing_wave_ratio" else found.values.T
-    rounded = [[None if not np.isfinite(v) else float(f"{v:.4g}") for v in row] for row in values]
-    data: list[Figure] = [
-        {
-            "type": "heatmap",
-            "x": list(found.axes[0].values),
-            "z": rounded,
-            "y": [phase - study.first_phase_deg for phase in found.axes[1].values],
-            "colorscale": "Viridis",
-            "reversescale": True,
-            "colorbar": {"thickness": 12},
-            "hoverongaps": False,
-        }
-    ]
-    data += [_marked(p, symbol) for p, symbol in zip(study.points, ("circle", "star"), strict=False)]
+    marks: tuple[Marker, ...] = ("circle", "star")
     return Chart(
-        "wave-map",
-        f"{name} over frequency and phase, {study.map.of}",
-        _map_caption(study),
-        data,
-        axes("frequency, Hz", "phase of the second force relative to the first, degrees"),
+        id="wave-map",
+        title=f"{name} over frequency and phase, {study.map.of}",
+        caption=_map_caption(study),
+        x=Axis("frequency, Hz"),
+        y=Axis("phase of the second force to the first, °"),
+        map=Map(
+            name=name.lower(),
+            x=tuple(map(float, found.axes[0].values)),
+            y=tuple(float(phase - study.first_phase_deg) for phase in found.axes[1].values),
+            values=tuple(numbers(row) for row in values),
+        ),
+        lines=tuple(_marked(point, symbol) for point, symbol in zip(study.points, marks, strict=False)),
     )
 
 
@@ -148,27 +140,23 @@ def _map_caption(study: "WaveFound") -> str:
 
 def _sizes(study: "WaveFound") -> Chart:
     exact, models = study.rows[0], dict.fromkeys(row.model for row in study.rows if row.count)
-    data = []
+    lines = []
     for model in models:
         rows = [row for row in study.rows if row.model == model]
         drives = [(row.count, _apart(row.drive, exact.drive)) for row in rows]
         bests = [(row.count, _apart(row.best, exact.best)) for row in rows]
         for name, dash, points in (("at the drive", "solid", drives), ("at its own best frequency", "dot", bests)):
             known = [(count, y) for count, y in points if y is not None]
-            trace = model_line(model, [count for count, _ in known], [y for _, y in known], line={"dash": dash})
-            data.append(trace | {"name": f"{trace['name']}, {name}"})
+            own = model_line(model, [count for count, _ in known], [y for _, y in known], dash=dash)
+            lines.append(replace(own, name=f"{own.name}, {name}"))
     return Chart(
-        "wave-sizes",
-        "Error of the standing-wave ratio over N",
-        "A small error of frequency spoils the wave at a fixed drive; driven at its own best frequency a coarse model "
-        "carries nearly as pure a wave as the exact beam.",
-        data,
-        axes(
-            "number of parts N",
-            "difference to exact",
-            xaxis=sizes_axis(row.count for row in study.rows if row.count),
-            yaxis=LOG,
-        ),
+        id="wave-sizes",
+        title="Error of the standing-wave ratio over N",
+        caption="A small error of frequency spoils the wave at a fixed drive; driven at its own best frequency a "
+        "coarse model carries nearly as pure a wave as the exact beam.",
+        x=sizes_axis("number of parts N", (row.count for row in study.rows if row.count)),
+        y=Axis("difference to exact", log=True),
+        lines=tuple(lines),
     )
 
 

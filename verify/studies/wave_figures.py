@@ -12,9 +12,10 @@ from verify.errors import InputError
 from verify.models.catalogue import MODELS, discrete
 from verify.quantities.cases import driven_case
 from verify.quantities.wave_arguments import Driven
+from verify.studies.chart import Chart
 from verify.studies.design_map import Axis, DesignMap, design_map
 from verify.studies.kind import Progress
-from verify.studies.told import Chart, Column, Found, Table
+from verify.studies.told import Column, Found, Table
 from verify.studies.wave import MAP_STEPS, around
 from verify.waves.case import DrivenCase
 from verify.waves.driven import (
@@ -137,6 +138,11 @@ class WaveFound(Found, frozen=True, eq=False, kw_only=True):
     count: int
     other_drive: float
     """Standing-wave ratio of the exact field if the other kind of drive is imposed with the same phase."""
+
+    def in_short(self) -> str:
+        """How pure the wave is at the drive."""
+        (told,) = self.facts()
+        return f"The {told}; 1 is a wave that travels, without reflection."
 
     def facts(self) -> tuple[str, ...]:
         """How pure the wave is on every model at the size of the envelopes."""

@@ -1,0 +1,271 @@
+"""Charts as SVG, drawn by matplotlib: the same picture on the page, in print and without scripts.
+
+Ink and grid lines are CSS variables with a fall-back, so that a dark page shows a dark chart; legends are the page's.
+"""
+
+import re
+from collections.abc import Sequence
+from io import StringIO
+from math import floor, isfinite, log10, nan
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+from msgspec.structs import replace
+
+from verify.studies.chart import Axis, Bars, Chart, Line, Map, Mark
+from verify.studies.charting import BROAD
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH, HEIGHT = 460.0, 300.0
+"""Of the picture, in units of its own; text is drawn for a page that shows it at 0.75 to 1.3 of that."""
+FONT = 10.5
+UNDER = 1.7
+"""By which the lowest lines are broader."""
+CLOSEST = 27.0
+"""Between two ticks that were chosen."""
+_INK, _RULE, _PAPER = "#010203", "#010204", "#010205"
+_VARIABLES = {
+    _INK: "var(--ink, #1c2026)",
+    _RULE: "var(--line, #dfe3e8)",
+    _PAPER: "var(--card, #ffffff)",
+}
+_DASHES = {"solid": "-", "dash": (0, (5, 2.5)), "dot": (0, (1.3, 1.7)), "dashdot": (0, (5, 2, 1.3, 2))}
+_DASHES |= {"longdash": (0, (9, 3))}
+_MARKERS = {"circle": "o", "square": "s", "diamond": "D", "triangle": "^", "cross": "x", "star": "*", "": ""}
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_PLACES = re.compile(r"(\d+\.\d{2})\d+")
+_SETTINGS: dict[Any, Any] = {
+    "svg.fonttype": "none",
+    "font.size": FONT,
+    "axes.edgecolor": _INK,
+    "axes.labelcolor": _INK,
+    "text.color": _INK,
+    "xtick.color": _INK,
+    "ytick.color": _INK,
+    "grid.color": _RULE,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.8,
+    "grid.linewidth": 0.7,
+    "axes.facecolor": "none",
+    "figure.facecolor": "none",
+    "savefig.facecolor": "none",
+    "path.simplify_threshold": 0.4,
+}
+
+
+class Drawing(msgspec.Struct, frozen=True):
+    """A chart drawn."""
+
+    svg: str
+    box: tuple[float, float, float, float]
+    """Left, top, right and bottom of the axes in the picture's units, downwards."""
+    x: tuple[float, float]
+    """What stands at its left and right."""
+    y: tuple[float, float]
+    """What stands at its bottom and top."""
+
+
+def drawn(chart: Chart) -> Drawing:
+    """A chart as SVG, and where its axes are; of several frames the last."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context(_SETTINGS | {"svg.hashsalt": chart.id}):
+        figure = Figure(figsize=(WIDTH / 72, HEIGHT / 72), dpi=72)
+        FigureCanvasSVG(figure)
+        axes = figure.add_axes((0.12, 0.15, 0.86, 0.83))
+        if chart.map is not None:
+            _map(figure, axes, chart.map)
+        if chart.bars is not None:
+            _bars(axes, chart.bars)
+        _lines(axes, chart)
+        for i, mark in enumerate(chart.marks):
+            _mark(axes, mark, i)
+        _axis(axes, "x", chart.x, chart)
+        _axis(axes, "y", chart.y, chart)
+        box = _settle(figure, axes)
+        text = StringIO()
+        figure.savefig(text, format="svg", dpi=144, metadata={"Date": None, "Creator": None, "Format": None})
+        (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+    return Drawing(_cleaned(text.getvalue()), box, (float(x0), float(x1)), (float(y0), float(y1)))
+
+
+def _lines(axes: "Axes", chart: Chart) -> None:
+    """Every line of the last frame; those that are shaded with the one before."""
+    before: Line | None = None
+    lowest = _lowest(chart)
+    for i, line in enumerate(chart.lines):
+        if line.frame is not None and line.frame != len(chart.frames) - 1:
+            continue
+        if line.filled and before is not None:
+            axes.fill_between(
+                _gaps(line.x), _gaps(before.y), _gaps(line.y), color="#8a8f98", alpha=0.18, lw=0, zorder=1
+            )
+        _line(axes, replace(line, width=UNDER * line.width) if i in lowest else line, f"{chart.id}-{i}")
+        for x, y, words in zip(line.x, line.y, line.beside, strict=False):
+            axes.annotate(words, (x, y), (0, 5), textcoords="offset points", ha="center", fontsize=FONT - 2)
+        before = line
+
+
+def _lowest(chart: Chart) -> set[int]:
+    """Lines of the first colour: drawn a little broader, so that they are seen where others lie on them."""
+    own = [i for i, line in enumerate(chart.lines) if line.joined and not line.guide and line.width < BROAD]
+    colours = dict.fromkeys(chart.lines[i].colour for i in own)
+    return {i for i in own if chart.lines[i].colour == next(iter(colours))} if len(colours) > 1 else set()
+
+
+def _line(axes: "Axes", line: Line, gid: str) -> None:
+    x, y = _gaps(line.x), _gaps(line.y)
+    style: dict[str, Any] = {"color": line.colour, "linewidth": line.width if line.joined else 0.0}
+    style |= {"linestyle": _DASHES[line.dash] if line.joined else "", "zorder": 1.5 if line.guide else 2.0}
+    marker: dict[str, Any] = {"marker": _MARKERS[line.marker], "markersize": line.size, "markeredgewidth": 1.2}
+    if not line.hollow:
+        axes.plot(x, y, gid=gid, **style, **marker)
+        return
+    for hollow in (False, True):
+        own = [one is hollow for one in line.hollow]
+        axes.plot(
+            [v for v, mine in zip(x, own, strict=True) if mine],
+            [v for v, mine in zip(y, own, strict=True) if mine],
+            gid=f"{gid}{'h' if hollow else ''}",
+            markerfacecolor="none" if hollow else line.colour,
+            **style,
+            **marker,
+        )
+
+
+def _gaps(values: Sequence[float | None]) -> list[float]:
+    return [nan if value is None else value for value in values]
+
+
+def _bars(axes: "Axes", bars: Bars) -> None:
+    places = range(len(bars.names))
+    axes.barh(places, bars.values, color=bars.colours, height=0.72)
+    axes.set_yticks(places, bars.names, fontsize=FONT - 2)
+
+
+def _map(figure: "Figure", axes: "Axes", found: Map) -> None:
+    import numpy as np
+
+    values = np.ma.masked_invalid([_gaps(row) for row in found.values])
+    mesh = axes.pcolormesh(found.x, found.y, values, cmap="viridis_r", shading="nearest", rasterized=True)
+    place = figure.add_axes((0.9, 0.15, 0.025, 0.83))
+    bar = figure.colorbar(mesh, cax=place)
+    bar.outline.set_visible(False)
+    bar.set_label(found.name)
+    axes.grid(visible=False)
+
+
+def _mark(axes: "Axes", mark: Mark, i: int) -> None:
+    axes.axvline(mark.x, color=mark.colour, linewidth=1.4, linestyle=_DASHES["dot"] if mark.words else "-", zorder=1.6)
+    place = (mark.x, 1.0 - 0.07 * i)
+    axes.annotate(
+        mark.words,
+        place,
+        (4, 0),
+        xycoords=axes.get_xaxis_transform(),
+        textcoords="offset points",
+        va="top",
+        color=mark.colour,
+    )
+
+
+def _axis(axes: "Axes", which: str, axis: Axis, chart: Chart) -> None:
+    """Title, scale, ticks and grid of one axis."""
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
+
+    own = axes.xaxis if which == "x" else axes.yaxis
+    if axis.log and _positive(chart, which):
+        (axes.set_xscale if which == "x" else axes.set_yscale)("log")
+        own.set_minor_locator(NullLocator())
+        own.set_minor_formatter(NullFormatter())
+        own.set_major_locator(LogLocator(numticks=7))
+        own.set_major_formatter(FuncFormatter(lambda value, _: power(value)))
+        _at_least_two(axes, which)
+    if axis.ticks:
+        own.set_major_locator(FixedLocator(_apart(axis, WIDTH if which == "x" else HEIGHT)))
+        own.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    own.set_label_text(axis.title)
+    if chart.map is None and not (chart.bars is not None and which == "y"):
+        axes.grid(visible=True, axis="x" if which == "x" else "y", zorder=0)
+    if axis.backwards:
+        (axes.invert_xaxis if which == "x" else axes.invert_yaxis)()
+
+
+def _at_least_two(axes: "Axes", which: str) -> None:
+    """Ticks at 1, 2 and 5 where the axis has no two powers of ten."""
+    from matplotlib.ticker import LogLocator
+
+    low, high = sorted(axes.get_xlim() if which == "x" else axes.get_ylim())
+    if log10(high / low) < 2.0:
+        own = axes.xaxis if which == "x" else axes.yaxis
+        own.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=9))
+
+
+def _positive(chart: Chart, which: str) -> bool:
+    """Whether anything stands where a logarithm has a place for it."""
+    values = [v for line in chart.lines for v in (line.x if which == "x" else line.y) if v is not None]
+    values += list(chart.bars.values) if chart.bars is not None else []
+    return any(value > 0.0 for value in values)
+
+
+def power(value: float) -> str:
+    """0.001, 5, 200, 10⁻⁵."""
+    if not isfinite(value) or value <= 0.0:
+        return f"{value:g}"
+    exponent = floor(log10(value) + 1e-9)
+    if -3 <= exponent <= 3:
+        return f"{value:g}"
+    mantissa = value / 10.0**exponent
+    times = "" if abs(mantissa - 1.0) < 1e-6 else f"{mantissa:g}·"
+    return f"{times}10{str(exponent).translate(_SUPERSCRIPTS)}"
+
+
+def _apart(axis: Axis, room: float) -> list[float]:
+    """Chosen ticks that do not stand on each other, from the largest down."""
+    places = [log10(tick) if axis.log else tick for tick in axis.ticks]
+    span = max(places) - min(places) or 1.0
+    kept: list[float] = []
+    for tick, place in sorted(zip(axis.ticks, places, strict=True), reverse=True):
+        last = (log10(kept[-1]) if axis.log else kept[-1]) if kept else None
+        if last is None or (last - place) / span * 0.8 * room >= CLOSEST:
+            kept.append(tick)
+    return kept[::-1]
+
+
+def _settle(figure: "Figure", axes: "Axes") -> tuple[float, float, float, float]:
+    """Give the axes the room that their words leave; where they are then, in the picture's units."""
+    figure.draw_without_rendering()
+    words = axes.get_tightbbox()
+    assert words is not None
+    own = axes.get_window_extent()
+    bars = [one for one in figure.axes if one is not axes]
+    right = 0.0
+    for bar in bars:
+        beside = bar.get_tightbbox()
+        right = (beside.width if beside else 0.0) + 8.0
+    left, bottom = own.x0 - words.x0 + 3.0, own.y0 - words.y0 + 3.0
+    over, above = max(words.x1 - own.x1, 0.0) + 4.0 + right, max(words.y1 - own.y1, 0.0) + 4.0
+    axes.set_position(
+        (left / WIDTH, bottom / HEIGHT, (WIDTH - left - over) / WIDTH, (HEIGHT - bottom - above) / HEIGHT)
+    )
+    for bar in bars:
+        bar.set_position(((WIDTH - right) / WIDTH, bottom / HEIGHT, 10.0 / WIDTH, (HEIGHT - bottom - above) / HEIGHT))
+    return float(left), float(above), float(WIDTH - over), float(HEIGHT - bottom)
+
+
+def _cleaned(text: str) -> str:
+    """What stands on a page: no declarations, shorter numbers, colours that follow the page."""
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->|\n *", "", text, flags=re.DOTALL)
+    text = re.sub(r'(?<= )(?:d|x|y|transform|points)="[^"]*"', lambda found: _PLACES.sub(r"\1", found[0]), text)
+    text = re.sub(r' (width|height)="[\d.]+pt"', "", text, count=2)
+    text = re.sub(r"font: ([\d.]+)px [^;\"]*", r"font-size: \1px", text)
+    for sentinel, variable in _VARIABLES.items():
+        text = text.replace(sentinel, variable)
+    return text.replace("<svg ", '<svg class="drawn" ', 1)

@@ -1,0 +1,139 @@
+"use strict";
+// A light layer on pictures that stand without it: the value under the cursor, lines switched, frames, data as CSV.
+const SVG = "http://www.w3.org/2000/svg", NEAR = 28;
+const charts = JSON.parse(document.getElementById("data").textContent);
+const made = (name, marks, parent) => {
+  const one = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(marks)) one.setAttribute(key, value);
+  if (parent) parent.append(one);
+  return one;
+};
+const place = (ends, log, low, high) => {
+  const at = log ? Math.log10 : v => v, [a, b] = ends.map(at);
+  return v => (log && v <= 0) ? NaN : low + (at(v) - a) / (b - a) * (high - low);
+};
+const short = v => {
+  if (v === null) return "–";
+  const size = Math.abs(v);
+  return size !== 0 && (size < 1e-3 || size >= 1e6) ? v.toExponential(3) : String(Number(v.toPrecision(5)));
+};
+function layered(figure, chart) {
+  const plot = figure.querySelector(".plot"), svg = plot.querySelector("svg");
+  const [left, top, right, bottom] = chart.box;
+  const x = place(chart.x, chart.xlog, left, right), y = place(chart.y, chart.ylog, bottom, top);
+  const shownAt = chart.lines.map(line => line.frame === undefined || line.frame === chart.frames.length - 1);
+  const off = new Set(), layer = made("g", {}, svg), spot = made("circle", { r: 5, fill: "none", stroke: "currentColor", "stroke-width": 1.6, visibility: "hidden" }, svg);
+  const tip = document.createElement("div");
+  tip.className = "tip"; tip.hidden = true; tip.setAttribute("role", "status"); plot.append(tip);
+  let at = null;
+  const visible = i => shownAt[i] && !off.has(chart.lines[i].group) && !chart.lines[i].guide;
+  const point = (i, k) => [x(chart.lines[i].x[k]), y(chart.lines[i].y[k])];
+  function tell(words, px, py) {
+    spot.setAttribute("cx", px); spot.setAttribute("cy", py); spot.setAttribute("visibility", "visible");
+    tip.replaceChildren(...words.map((text, i) => { const row = document.createElement(i ? "div" : "b"); row.textContent = text; return row; }));
+    tip.hidden = false;
+    const scale = plot.clientWidth / svg.viewBox.baseVal.width, room = plot.clientWidth - tip.offsetWidth - 4;
+    tip.style.left = Math.max(0, Math.min(px * scale + 12, room)) + "px";
+    tip.style.top = Math.max(0, py * scale - tip.offsetHeight - 10) + "px";
+  }
+  function show(i, k) {
+    at = [i, k];
+    const line = chart.lines[i];
+    tell([line.name, `${chart.xtitle}: ${short(line.x[k])}`, `${chart.ytitle}: ${short(line.y[k])}`, ...(line.said ? [line.said[k]] : [])], ...point(i, k));
+  }
+  const hide = () => { tip.hidden = true; spot.setAttribute("visibility", "hidden"); };
+  function nearest(px, py) {
+    let best = null, least = NEAR * NEAR;
+    chart.lines.forEach((line, i) => {
+      if (!visible(i)) return;
+      for (let k = 0; k < line.x.length; k++) {
+        if (line.y[k] === null || line.x[k] === null) continue;
+        const [qx, qy] = point(i, k), far = (qx - px) ** 2 + (qy - py) ** 2;
+        if (far < least) { least = far; best = [i, k]; }
+      }
+    });
+    return best;
+  }
+  function overMap(px, py) {
+    const map = chart.map, closest = (values, at, v) => values.reduce((b, one, i) => Math.abs(at(one) - v) < Math.abs(at(values[b]) - v) ? i : b, 0);
+    if (px < left || px > right || py < top || py > bottom) return hide();
+    const i = closest(map.x, x, px), j = closest(map.y, y, py);
+    tell([`${map.name}: ${short(map.values[j][i])}`, `${chart.xtitle}: ${short(map.x[i])}`, `${chart.ytitle}: ${short(map.y[j])}`], x(map.x[i]), y(map.y[j]));
+  }
+  plot.addEventListener("pointermove", event => {
+    const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+    const found = nearest(p.x, p.y);
+    if (found) show(...found); else if (chart.map) overMap(p.x, p.y); else hide();
+  });
+  plot.addEventListener("pointerleave", hide);
+  plot.addEventListener("blur", hide);
+  plot.addEventListener("keydown", event => {
+    const step = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
+    const known = chart.lines.map((_, i) => i).filter(i => visible(i) && chart.lines[i].y.some(v => v !== null));
+    if (event.key === "Escape") return hide();
+    if (!step || !known.length) return;
+    event.preventDefault();
+    let [i, k] = at && known.includes(at[0]) ? at : [known[0], -1];
+    i = known[(known.indexOf(i) + step[0] + known.length) % known.length];
+    const n = chart.lines[i].x.length;
+    do { k = (k + (step[1] || (chart.lines[i].y[Math.min(k, n - 1)] == null ? 1 : 0)) + n) % n; } while (chart.lines[i].y[k] === null);
+    show(i, Math.min(k, n - 1));
+  });
+  function reveal() {
+    chart.lines.forEach((line, i) => {
+      for (const id of [`${chart.id}-${i}`, `${chart.id}-${i}h`]) {
+        const own = document.getElementById(id);
+        if (own) own.style.display = off.has(line.group) || (chart.frames.length && line.frame !== undefined) ? "none" : "";
+      }
+    });
+    layer.replaceChildren();
+    if (chart.frames.length) chart.lines.forEach((line, i) => { if (line.frame !== undefined && visible(i)) drawLine(line, i); });
+    hide();
+  }
+  function drawLine(line, i) {
+    let pen = "M", d = "";
+    line.x.forEach((_, k) => { const [px, py] = point(i, k); if (line.y[k] === null || isNaN(py)) pen = "M"; else { d += `${pen}${px.toFixed(1)} ${py.toFixed(1)}`; pen = "L"; } });
+    if (line.joined) made("path", { d, fill: "none", stroke: line.colour, "stroke-width": line.width, "stroke-dasharray": line.dash }, layer);
+    if (line.marked) line.x.forEach((_, k) => { const [px, py] = point(i, k); if (line.y[k] !== null) made("circle", { cx: px, cy: py, r: 2.2, fill: line.colour }, layer); });
+  }
+  figure.querySelectorAll(".keys button").forEach(button => button.addEventListener("click", () => {
+    const group = button.dataset.group, now = off.has(group);
+    if (now) off.delete(group); else off.add(group);
+    button.setAttribute("aria-pressed", String(now));
+    reveal();
+  }));
+  const frames = figure.querySelector(".frames input");
+  if (frames) {
+    const choose = () => {
+      const k = Number(frames.value);
+      chart.lines.forEach((line, i) => { shownAt[i] = line.frame === undefined || line.frame === k; });
+      figure.querySelector(".frames output").textContent = chart.frames[k];
+      reveal();
+    };
+    figure.querySelector(".frames").hidden = false;
+    frames.addEventListener("input", choose);
+    choose();
+  }
+  const csv = figure.querySelector(".csv");
+  csv.hidden = false;
+  csv.addEventListener("click", () => save(`${document.body.dataset.scene}-${chart.id}.csv`, rows(chart)));
+}
+const quoted = cell => /[",\n]/.test(cell) ? `"${String(cell).replaceAll('"', '""')}"` : String(cell ?? "");
+function rows(chart) {
+  const told = [["line", chart.xtitle, chart.ytitle, "said"]];
+  for (const line of chart.lines) line.x.forEach((v, k) => told.push([line.name, v, line.y[k], line.said ? line.said[k] : ""]));
+  if (chart.map) chart.map.values.forEach((row, j) => row.forEach((v, i) => told.push([chart.map.name, chart.map.x[i], chart.map.y[j], v])));
+  if (chart.bars) chart.bars.names.forEach((name, i) => told.push([name, chart.bars.values[i], "", ""]));
+  return told.map(row => row.map(quoted).join(",")).join("\n") + "\n";
+}
+function save(name, text) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+  link.download = name; link.click();
+  URL.revokeObjectURL(link.href);
+}
+for (const chart of charts) layered(document.getElementById(chart.id), chart);
+const opened = () => { const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1))); for (let one = target; one; one = one.parentElement) if (one.tagName === "DETAILS") one.open = true; if (target) target.scrollIntoView(); };
+addEventListener("hashchange", opened); opened();
+document.querySelectorAll(".copy").forEach(link => link.addEventListener("click", () => navigator.clipboard?.writeText(link.href).catch(() => {})));
+document.body.dataset.drawn = String(charts.length);
