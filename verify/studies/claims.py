@@ -61,6 +61,8 @@ class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
     def in_short(self) -> str:
         """How many hold, of those that could be evaluated."""
         held, known = sum(c.holds is True for c in self.claims), sum(c.holds is not None for c in self.claims)
+        if known == 1:
+            return f"The one published figure {'holds' if held else 'fails'} under the condition told below."
         return f"Of {known} published figures {held} hold under the conditions told below." if known else ""
 
     def tables(self) -> tuple[Table, ...]:
