@@ -103,7 +103,7 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
         index: Any = getattr(found._cache, "_cache_file", None)
         if hasattr(index, "_source_stamp"):
             index._source_stamp = index._source_stamp, room_stamp(Path(function.__code__.co_filename).parent)
-            _forgive(found._cache, function.__qualname__)
+            _forgive(found, function.__qualname__)
         else:
             found._cache = nothing
         return found  # type: ignore[no-any-return]
@@ -111,14 +111,21 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
     return compile_one
 
 
-def _forgive(kept: Any, name: str) -> None:
+def _forgive(kernel: Any, name: str) -> None:
     """A file that cannot be read is compiled again; one that cannot be written is done without, and `compiling` knows.
 
     Nothing is half-written: numba writes each file beside its place and renames it.
     """
+    kept = kernel._cache
     load, save = kept.load_overload, kept.save_overload
 
     def load_or_compile(signature: Any, target: Any) -> Any:
+        found = load_unless_damaged(signature, target)
+        if found is None and compiling.absent and compiling.absent(kernel, signature):
+            return load_unless_damaged(signature, target)
+        return found
+
+    def load_unless_damaged(signature: Any, target: Any) -> Any:
         try:
             return load(signature, target)
         except Exception:  # whatever a damaged pickle raises
@@ -128,7 +135,8 @@ def _forgive(kept: Any, name: str) -> None:
 
     def save_or_tell(signature: Any, made: Any) -> None:
         try:
-            save(signature, made)
+            with compiling.kept(kernel, signature):
+                save(signature, made)
         except OSError:
             compiling.unkept.append(name)
 
