@@ -23,7 +23,7 @@ from numba.core import event
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 
-from verify.models import compiling
+from verify.models import compiling, quick_typing
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
@@ -153,6 +153,7 @@ class _Watch(event.Listener):
     def on_start(self, event: Any) -> None:
         """A kernel's compilation begins."""
         if not self.open:
+            quick_typing.begin()
             _tell(compiling.COMPILING)
         self.open.append((perf_counter(), 0.0))
 
@@ -165,6 +166,7 @@ class _Watch(event.Listener):
         kernel = f"{function.__module__.removeprefix('verify.')}.{function.__qualname__}"
         compiling.compiled.append(compiling.Compiled(kernel, seconds - within))
         if not self.open:
+            quick_typing.end()
             _tell("")
 
 
