@@ -21,7 +21,8 @@ from typing import Any, NoReturn, TypeVar
 from numba import njit
 from numba.core import event
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, DefaultPassBuilder
+from numba.core.compiler_machinery import PassManager
 
 from verify.models import compiling, quick_typing
 
@@ -56,8 +57,35 @@ class _PartLibrary(JITCodeLibrary):
         """Forget them."""
 
 
-class _PartCompiler(Compiler):
-    """Numba's, into a part's library."""
+NEEDLESS = {
+    "WithLifting",
+    "InlineClosureLikes",
+    "RewriteDynamicRaises",
+    "MakeFunctionToJitFunction",
+    "InlineInlinables",
+    "FindLiterallyCalls",
+    "LiteralUnroll",
+    "LiteralPropagationSubPipelinePass",
+    "InlineOverloads",
+    "NopythonRewrites",
+    "AnnotateTypes",
+}
+"""Passes of numba's for what no kernel has: closures, `with`, exceptions, tuples of types, expressions of arrays."""
+
+
+class _ScalarCompiler(Compiler):
+    """Numba's, without the passes that kernels do not need."""
+
+    def define_pipelines(self) -> list[Any]:
+        """The one pipeline."""
+        whole, short = DefaultPassBuilder.define_nopython_pipeline(self.state), PassManager("kernels")  # type: ignore
+        short.passes.extend([one for one in whole.passes if one[0].__name__ not in NEEDLESS])
+        short.finalize()
+        return [short]
+
+
+class _PartCompiler(_ScalarCompiler):
+    """The same, into a part's library."""
 
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
         into = library or _PartLibrary(targetctx.codegen(), "part")  # type: ignore[no-untyped-call]
@@ -93,7 +121,7 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
     """Compile with these options of numba; what is kept on disk holds while the room's kernels stay as they are."""
 
     def compile_one(function: Function) -> Function:
-        found = njit(**{**ALWAYS, **options})(function)
+        found = njit(**{**ALWAYS, "pipeline_class": _ScalarCompiler, **options})(function)
         nothing = found._cache
         try:
             found.enable_caching()
