@@ -6,7 +6,6 @@ cache on disk. Who compiles a kernel holds a lock on its byte of a file without 
 when a process ends: nobody waits for the dead, and nothing is compiled twice.
 """
 
-import ctypes
 import gc
 import os
 import pickle
@@ -129,7 +128,9 @@ class _Crew:
         try:
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it ends it
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
-            ctypes.CDLL(None).prctl(END_WITH_PARENT, signal.SIGTERM)
+            from ctypes import CDLL
+
+            CDLL(None).prctl(END_WITH_PARENT, signal.SIGTERM)
             if os.getppid() != self.owner:
                 os._exit(0)
             gc.disable()
