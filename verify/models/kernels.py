@@ -80,7 +80,7 @@ class _ScalarCompiler(Compiler):
         """The one pipeline."""
         whole, short = DefaultPassBuilder.define_nopython_pipeline(self.state), PassManager("kernels")  # type: ignore
         short.passes.extend([one for one in whole.passes if one[0].__name__ not in NEEDLESS])
-        short.finalize()
+        short.finalize()  # type: ignore[no-untyped-call]
         return [short]
 
 

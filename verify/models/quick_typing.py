@@ -11,8 +11,9 @@ from typing import Any
 
 from numba.core.types.functions import BaseFunction
 
-_NAMES = "add sub mul truediv floordiv mod pow iadd isub imul itruediv neg lt le gt ge eq ne getitem setitem".split()
-OPERATORS = {getattr(operator, name) for name in _NAMES}
+_ARITHMETIC = ("add", "sub", "mul", "truediv", "floordiv", "mod", "pow", "neg", "iadd", "isub", "imul", "itruediv")
+_OTHERS = ("lt", "le", "gt", "ge", "eq", "ne", "getitem", "setitem")
+OPERATORS = {getattr(operator, name) for name in (*_ARITHMETIC, *_OTHERS)}
 _known: dict[Any, tuple[Any, Any]] = {}
 """By operator and types: numba's function, and the signature that it found."""
 _tried = BaseFunction.get_call_type
@@ -35,7 +36,7 @@ def begin() -> None:
     """From here on something is compiled."""
     _collecting.append(gc.isenabled())
     gc.disable()
-    BaseFunction.get_call_type = _call_type  # type: ignore[method-assign]
+    BaseFunction.get_call_type = _call_type  # type: ignore[method-assign, assignment]
 
 
 def end() -> None:
