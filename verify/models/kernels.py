@@ -108,8 +108,6 @@ def part(**options: Any) -> Callable[[Function], Function]:
 
     def compile_one(function: Function) -> Function:
         found = njit(**{**PART, **options})(function)
-        if not LINKED:
-            return found  # type: ignore[no-any-return]
         found._compile_for_args = _refuse
         found.add_overload = lambda made: found.overloads.__setitem__(tuple(made.signature.args), made)
         return found  # type: ignore[no-any-return]
