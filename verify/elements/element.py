@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from skfem import BilinearForm, CellBasis
+from skfem.assembly import BilinearForm, CellBasis
 from skfem.element import DiscreteField
 from skfem.element.element import Element
 from skfem.mesh import MeshLine1
