@@ -8,6 +8,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
+from verify.options import Reference
 from verify.quantities.catalogue import QUANTITIES, arguments_of, as_plain, evaluate, in_words, needs_of, quantity
 from verify.quantities.kind import Figure, Quantity
 from verify.scenes.scene import Complex
@@ -50,6 +51,12 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     reason: str
     """Why it failed or does not apply; empty where it passed."""
     seconds: float
+    reference: Reference | None = None
+    """What stands behind the expectation; None where the scene does not say."""
+    uncertainty: float | None = None
+    """The reference's own, in the gate's unit; None where the scene does not say."""
+    source: str = ""
+    """Where the reference is to be found; empty where the scene does not say."""
 
 
 def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
@@ -81,6 +88,9 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
         share=share,
         reason=reason,
         seconds=perf_counter() - start,
+        reference=gate.reference,
+        uncertainty=gate.uncertainty,
+        source=gate.source,
     )
 
 
@@ -101,6 +111,9 @@ def set_aside(gate: "Gate", reason: str) -> GateResult:
         share=None,
         reason=reason,
         seconds=0.0,
+        reference=gate.reference,
+        uncertainty=gate.uncertainty,
+        source=gate.source,
     )
 
 

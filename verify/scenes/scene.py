@@ -13,7 +13,7 @@ from verify.checks import Relative, check_number
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.motion.starting import soft_start
-from verify.options import DriveKind, Start
+from verify.options import REFERENCES, DriveKind, Reference, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
 from verify.scenes.given import as_meant, type_at_key
@@ -141,6 +141,11 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """The lowest value that passes."""
     at_most: Relative | None = None
     """The highest value that passes."""
+    reference: Reference | None = None
+    uncertainty: Relative | None = None
+    """How far the reference may itself be off, digits left out included; 0 where it is exact."""
+    source: str = ""
+    """Of the reference, in a few words: an equation, a publication, a derivation."""
     why: Annotated[str, Meta(min_length=1)]
     """Where the expectation comes from."""
 
@@ -157,6 +162,18 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             raise InputError(
                 f"gate.{self.id}.at_least = {self.at_least!r} is above at_most = {self.at_most!r}: exchange them"
             )
+        self._check_reference()
+
+    def _check_reference(self) -> None:
+        """Raise InputError for an uncertainty that is none, or for one, or a source, of a reference not said."""
+        if self.uncertainty is not None:
+            check_number(f"gate.{self.id}.uncertainty", self.uncertainty, "in the quantity's own unit", at_least=0)
+        for name, given in (("uncertainty", self.uncertainty is not None), ("source", bool(self.source))):
+            if given and self.reference is None:
+                raise InputError(
+                    f"gate.{self.id}.{name} = {shown(getattr(self, name))} is of a reference that is not said: "
+                    f"give gate.{self.id}.reference as one of {', '.join(REFERENCES)}"
+                )
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
