@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Gate, Scene
 
 
+NOT_SAID = "not said"
+"""Of the reference of a gate whose scene does not name it."""
+
+
 class Band(msgspec.Struct, frozen=True, kw_only=True):
     """What a gate allows, as it was given: `expect` with `within`, `at_least`, `at_most`; None where not given."""
 
@@ -115,6 +119,19 @@ def set_aside(gate: "Gate", reason: str) -> GateResult:
         uncertainty=gate.uncertainty,
         source=gate.source,
     )
+
+
+def reference_in_words(gate: "Gate | GateResult", unit: str = "") -> str:
+    """What stands behind a gate: 'closed form ± 3e-05 Hz, (n pi/L)^2 ...'; 'not said' where its scene does not say.
+
+    The unit is the result's own where there is one.
+    """
+    if gate.reference is None:
+        return NOT_SAID
+    unit = gate.unit if isinstance(gate, GateResult) else unit
+    size = f" ± {gate.uncertainty:g}{f' {unit}' if unit not in ('', '1') else ''}" if gate.uncertainty else ""
+    exact = ", exact" if gate.uncertainty == 0 else ""
+    return f"{gate.reference}{size}{exact}{f', {gate.source}' if gate.source else ''}"
 
 
 def given_band(gate: "Gate") -> Band:
