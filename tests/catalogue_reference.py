@@ -390,9 +390,7 @@ def free_node():
     """Of cosh + cos - s (sinh + sin), over L."""
     y = free_root(1)
     s = (np.cosh(y) - np.cos(y)) / (np.sinh(y) - np.sin(y))
-    return brentq(
-        lambda x: np.cosh(y * x) + np.cos(y * x) - s * (np.sinh(y * x) + np.sin(y * x)), 0.1, 0.4, xtol=1e-15
-    )
+    return brentq(lambda x: np.cosh(y * x) + np.cos(y * x) - s * (np.sinh(y * x) + np.sin(y * x)), 0.1, 0.4, xtol=1e-15)
 
 
 FREE = {
@@ -439,7 +437,12 @@ def moving_force(x, time, terms=20_000):
     small = abs(w / own - 1) < 1e-9
     own = np.where(small, own * (1 + 1e-7), own)
     parts = (np.sin(w * time) - w / own * np.sin(own * time)) / (own**2 - w**2)
-    return -2 * (slider.preload + slider.mass * GRAVITY) / (beam.mass_per_length * beam.length) * (parts * np.sin(n * x)).sum()
+    return (
+        -2
+        * (slider.preload + slider.mass * GRAVITY)
+        / (beam.mass_per_length * beam.length)
+        * (parts * np.sin(n * x)).sum()
+    )
 
 
 MOVING = {

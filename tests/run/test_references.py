@@ -97,10 +97,19 @@ def test_what_a_gate_says_of_its_reference_is_in_its_result():
     ("said", "words"),
     [
         ({"reference": "closed from"}, r"reference = 'closed from' is not known: did you mean 'closed form'\?"),
-        ({"reference": "published", "uncertainty": -1.0}, r"gate.mine.uncertainty = -1.0: give a finite number of at l"),
+        (
+            {"reference": "published", "uncertainty": -1.0},
+            r"gate.mine.uncertainty = -1.0: give a finite number of at l",
+        ),
         ({"reference": "published", "uncertainty": float("inf")}, r"gate.mine.uncertainty = inf"),
-        ({"uncertainty": 0.1}, r"gate.mine.uncertainty = 0.1 is of a reference that is not said: give gate.mine.refere"),
-        ({"source": "Fryba"}, r"gate.mine.source = 'Fryba' is of a reference that is not said: .* one of closed form, "),
+        (
+            {"uncertainty": 0.1},
+            r"gate.mine.uncertainty = 0.1 is of a reference that is not said: give gate.mine.refere",
+        ),
+        (
+            {"source": "Fryba"},
+            r"gate.mine.source = 'Fryba' is of a reference that is not said: .* one of closed form, ",
+        ),
     ],
 )
 def test_what_makes_no_sense_of_a_reference_is_refused(said, words):

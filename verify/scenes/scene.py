@@ -320,7 +320,20 @@ def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict
         except InputError as error:
             wrong += error.sentences
     raise_all(wrong, MOST)
+    _forget_references(data, overrides)
     return data
+
+
+def _forget_references(data: dict[str, Any], overrides: Iterable[str]) -> None:
+    """Leave out, in place, what gates say of references to expectations that were set, unless it was set as well."""
+    keys = {text.partition("=")[0].strip() for text in overrides}
+    gates = data.get("gate") if any(key.startswith("gate.") for key in keys) else None
+    for i, gate in enumerate(gates if isinstance(gates, list) else ()):
+        names = [f"gate.{i}"] + [f"gate.{gate['id']}"] * (isinstance(gate, dict) and "id" in gate)
+        set_here = {key.rpartition(".")[2] for key in keys if key.rpartition(".")[0] in names}
+        if set_here & {"expect", "at_least", "at_most"} and isinstance(gate, dict) and "reference" not in set_here:
+            for name in ("reference", "uncertainty", "source"):
+                gate.pop(name, None)
 
 
 def _meant(value: Any, key: str) -> Any:
