@@ -189,6 +189,7 @@ HEAVY = {
         (("schema",), {"msgspec", "tomllib"}),
         (("keys", "beam"), {"msgspec", "tomllib", "rich"}),
         (("show", "paper"), {"msgspec", "tomllib"}),
+        (("catalogue", "paper"), {"msgspec", "tomllib", "numpy"}),
         (("measure", "mode.frequency", "model=analytic", "mode=22"), {"msgspec", "tomllib"}),
         (("measure", "drive.rule_frequency"), {"msgspec", "tomllib"}),
         (("measure", "mode.frequency", "model=segment", "mode=3", "count=9"), {"msgspec", "tomllib", "numpy"}),

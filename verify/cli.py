@@ -32,6 +32,7 @@ COMMANDS = {
     "quantities": "quantities:list_quantities",
     "plan": "plan",
     "stress": "stress",
+    "catalogue": "catalogue",
     "scenes": "scenes",
     "init": "scenes:init",
     "show": "scenes:show",

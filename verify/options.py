@@ -78,3 +78,8 @@ BenchSet = Literal["modes", "harmonic", "transient", "slider", "chain"]
 BENCH_SETS: tuple[str, ...] = get_args(BenchSet)
 """What a bench compares methods in. modes: natural frequencies. harmonic: the steady field under the drive. transient:
 the linear beam in time. slider: its displacement on that beam. chain: the nonlinear chain from rest."""
+
+Reference = Literal["closed form", "independent method", "published", "other code", "regression"]
+REFERENCES: tuple[str, ...] = get_args(Reference)
+"""What stands behind a gate's expectation, or its bound. closed form: a formula. independent method: another derivation
+of the figure. published: a publication. other code: another program. regression: this suite itself, once."""
