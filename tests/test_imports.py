@@ -29,6 +29,8 @@ ROOMS = (
     "run",
     "identify",
     "report",
+    "exports",
+    "pictures",
     "faces",
     "commands",
     "doors",
