@@ -1,0 +1,62 @@
+"""Frames in one file: png, webp, gif by Pillow, mp4 by imageio-ffmpeg; written whole or not at all."""
+
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from verify.errors import InputError
+from verify.files import whole
+
+MOVING = (".gif", ".webp", ".mp4")
+SUFFIXES = (".png", *MOVING)
+
+
+def check_writable(suffix: str) -> None:
+    """Raise InputError, before anything is drawn, for what takes a package that is not there."""
+    if suffix == ".mp4" and find_spec("imageio_ffmpeg") is None:
+        raise InputError("to: an mp4 takes imageio-ffmpeg, pip install imageio-ffmpeg, or give a .webp or .gif")
+
+
+def write_film(frames: Iterator[Image.Image], path: Path, n: int, seconds: float) -> None:
+    """All frames, shown in so many seconds, over and over. Raises InputError where the file cannot be written."""
+    suffix = path.suffix.lower()
+    with whole(path, "to") as part:
+        if suffix == ".mp4":
+            _mp4(frames, part, n / seconds)
+        elif suffix == ".png":
+            next(frames).save(part, format="PNG", optimize=True)
+        else:
+            _loop(frames, part, suffix, 1000.0 * seconds / n)
+
+
+def _loop(frames: Iterator[Image.Image], part: Path, suffix: str, milliseconds: float) -> None:
+    first = next(frames)
+    if suffix == ".webp":
+        first.save(
+            part, format="WEBP", save_all=True, append_images=frames, duration=round(milliseconds), loop=0, quality=80
+        )
+        return
+    palette = first.quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    rest = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
+    duration = max(round(milliseconds / 10.0) * 10, 20)  # a gif counts hundredths, and viewers slow down below two
+    palette.save(part, format="GIF", save_all=True, append_images=rest, duration=duration, loop=0, optimize=False)
+
+
+def _mp4(frames: Iterator[Image.Image], part: Path, per_second: float) -> None:
+    """Three rounds, since players do not begin again by themselves."""
+    import imageio_ffmpeg
+
+    kept = [np.asarray(frame) for frame in frames]
+    height, width = kept[0].shape[:2]
+    writer = imageio_ffmpeg.write_frames(
+        str(part), (width, height), fps=per_second, macro_block_size=2, output_params=["-f", "mp4"], ffmpeg_log_level="error"
+    )
+    writer.send(None)
+    try:
+        for frame in kept * 3:
+            writer.send(np.ascontiguousarray(frame))
+    finally:
+        writer.close()
