@@ -54,4 +54,3 @@ def export(
     with progress(n_steps(loaded), quiet=False) as step:
         written = exported(loaded, asked, step)
     click.echo(f"{written.path}: {written.told}")
-

@@ -1,4 +1,4 @@
-"""Tables in LaTeX: plain tabular, no package, everything escaped, so that any document takes them by \\input."""
+"""Tables in LaTeX: plain tabular, no package, everything escaped, so that any document takes them in."""
 
 from collections.abc import Iterator
 from unicodedata import normalize

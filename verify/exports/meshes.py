@@ -74,7 +74,7 @@ def _beside_step(sheet: Sheet, i: int) -> dict[str, Array]:
 
 def _collection(sheet: Sheet, folder: str, names: list[str]) -> str:
     rows = "".join(
-        f"    <DataSet timestep={quoteattr(repr(float(step)))} part=\"0\" file={quoteattr(f'{folder}/{name}')}/>\n"
+        f'    <DataSet timestep={quoteattr(repr(float(step)))} part="0" file={quoteattr(f"{folder}/{name}")}/>\n'
         for step, name in zip(sheet.steps, names, strict=True)
     )
     return (

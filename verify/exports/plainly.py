@@ -51,7 +51,7 @@ def write_json(sheet: Sheet, path: Path) -> None:
 def write_npz(sheet: Sheet, path: Path) -> None:
     """Everything, each array under its name, for `numpy.load`. Raises InputError."""
     with whole(path, "to") as part, part.open("wb") as stream:
-        np.savez_compressed(stream, told=np.array(sheet.told), **dict(_arrays(sheet)))
+        np.savez_compressed(stream, **dict(_arrays(sheet)), told=np.array(sheet.told))  # type: ignore[arg-type]
 
 
 def _arrays(sheet: Sheet) -> Iterator[tuple[str, Array]]:

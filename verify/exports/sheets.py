@@ -116,7 +116,7 @@ def _read(modes: Modes, wanted: Wanted) -> tuple[Array, Array, str]:
         return x, modes.deflection(x), ""
     if wanted.reading not in modes.readings:
         known = ", ".join(name for name in READINGS if name in modes.readings) or "none"
-        raise InputError(f"reading = {wanted.reading!r} is no reading of the {modes.model} model's modes: known {known}")
+        raise InputError(f"reading = {wanted.reading!r} is none of the {modes.model} model's: known {known}")
     return modes.nodes, modes.readings[wanted.reading](), f", read {wanted.reading}"
 
 

@@ -127,7 +127,7 @@ def _kept(given: Given, which: BoolArray) -> Given:
 
 def _exact(given: Given, beam: Beam, x: Array) -> Array:
     """Exact shapes, (n_modes, len(x)): as many as the names and the places let there be."""
-    n = max(len(given.names), max(given.numbers or (0,))) + SPARE
+    n = max(len(given.names), *(given.numbers or (0,))) + SPARE
     return reference_shapes(beam, max(len(given.names), min(n, len(x) - 2)), x)
 
 
@@ -228,13 +228,16 @@ def _models(
     best = found.found.best.candidate if found is not None and found.found.explained else None
     rules = dict(best.settings) if best is not None and best.model == CHAIN and best.packaged else {}
 
+    def chain_corrected() -> Array:
+        return np.asarray(MODELS[CHAIN].solve_modes(beam, n, count, **rules).deflection(x))
+
     def chain_raw() -> Array:
         modes = MODELS[CHAIN].solve_modes(beam, n, count, **rules)
         return np.array([np.interp(x, modes.nodes, shape) for shape in modes.readings["raw"]()])
 
     yield "the exact beam", None, lambda: reference_shapes(beam, n, x)
     yield "elements", count, lambda: MODELS[ELEMENTS].solve_modes(beam, n, count).deflection(x)
-    yield "segments, joints corrected", count, lambda: MODELS[CHAIN].solve_modes(beam, n, count, **rules).deflection(x)
+    yield "segments, joints corrected", count, chain_corrected
     yield "segments, raw joints", count, chain_raw
 
 
@@ -252,5 +255,3 @@ def _rows(given: Given, paired: _Paired, exact: Array, found: Compared | None) -
             exact_hz=row.exact_hz if row else None,
             frequency_error=row.error if row else None,
         )
-
-

@@ -115,7 +115,10 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
             Column("mode"),
             Column("MAC", ".6f"),
             Column("form off, %", "bare size"),
-            *([Column("yours, Hz", ".4f"), Column("exact, Hz", ".4f"), Column("error, %", "bare percent")] * self._heard),
+            *(
+                [Column("yours, Hz", ".4f"), Column("exact, Hz", ".4f"), Column("error, %", "bare percent")]
+                * self._heard
+            ),
         )
         rows = tuple(
             (

@@ -9,6 +9,8 @@ from PIL import Image
 
 from verify.errors import InputError
 from verify.files import whole
+from verify.pictures.picture import GREY, ORANGE, RED, STEEL
+from verify.pictures.view import colours
 
 MOVING = (".gif", ".webp", ".mp4")
 SUFFIXES = (".png", *MOVING)
@@ -39,10 +41,26 @@ def _loop(frames: Iterator[Image.Image], part: Path, suffix: str, milliseconds: 
             part, format="WEBP", save_all=True, append_images=frames, duration=round(milliseconds), loop=0, quality=80
         )
         return
-    palette = first.quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    palette = _palette()
     rest = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
     duration = max(round(milliseconds / 10.0) * 10, 20)  # a gif counts hundredths, and viewers slow down below two
-    palette.save(part, format="GIF", save_all=True, append_images=rest, duration=duration, loop=0, optimize=False)
+    first.quantize(palette=palette, dither=Image.Dither.NONE).save(
+        part, format="GIF", save_all=True, append_images=rest, duration=duration, loop=0
+    )
+
+
+def _palette() -> Image.Image:
+    """Of all frames, the same colours: the scale's in several lights, greys, what else is drawn; white among them."""
+    ramp = colours(np.linspace(-1.0, 1.0, 21))
+    lights = np.array([1.0, 0.92, 0.8, 0.68, 0.56, 0.44, 0.3])
+    others = np.array([[int(one[i : i + 2], 16) for i in (1, 3, 5)] for one in (RED, ORANGE, STEEL, GREY)], dtype=float)
+    shades = np.concatenate([ramp, others])[None] * lights[:, None, None]
+    greys = np.repeat(np.append(np.linspace(0.0, 238.0, 44), 255.0)[:, None], 3, axis=1)
+    inked = np.linspace([29.0, 35.0, 48.0], [226.0, 229.0, 234.0], 24)
+    known = np.rint(np.concatenate([shades.reshape(-1, 3), greys, inked]))[:256]
+    image = Image.new("P", (1, 1))
+    image.putpalette(known.astype(np.uint8).tobytes())
+    return image
 
 
 def _mp4(frames: Iterator[Image.Image], part: Path, per_second: float) -> None:
@@ -52,7 +70,12 @@ def _mp4(frames: Iterator[Image.Image], part: Path, per_second: float) -> None:
     kept = [np.asarray(frame) for frame in frames]
     height, width = kept[0].shape[:2]
     writer = imageio_ffmpeg.write_frames(
-        str(part), (width, height), fps=per_second, macro_block_size=2, output_params=["-f", "mp4"], ffmpeg_log_level="error"
+        str(part),
+        (width, height),
+        fps=per_second,
+        macro_block_size=2,
+        output_params=["-f", "mp4"],
+        ffmpeg_log_level="error",
     )
     writer.send(None)
     try:

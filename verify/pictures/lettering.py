@@ -64,7 +64,8 @@ def _scale(
 
 def _broken(pen: ImageDraw.ImageDraw, text: str, font: Font, room: float) -> list[str]:
     """A text in lines that fit."""
-    lines, line = [], ""
+    lines: list[str] = []
+    line = ""
     for word in text.split():
         longer = f"{line} {word}".strip()
         if line and pen.textlength(longer, font=font) > room:

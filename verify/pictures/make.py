@@ -9,11 +9,12 @@ from PIL import Image
 from verify.errors import InputError, near_name, shown
 from verify.files import writable_folder
 from verify.options import PICTURED
-from verify.pictures.drawn import Asked, picture_of
+from verify.pictures.drawn import picture_of
 from verify.pictures.film import MOVING, SUFFIXES, check_writable, write_film
 from verify.pictures.flat import flat_frames
 from verify.pictures.lettering import lettered
 from verify.pictures.picture import Picture
+from verify.pictures.rows import Asked
 from verify.pictures.solid import NotDrawnError, check_drawable, solid_frames
 from verify.pictures.view import MOVING as MOVING_WIDTH
 from verify.pictures.view import STILL, view_of

@@ -7,7 +7,6 @@ import sys
 import tempfile
 import threading
 from collections.abc import Iterator
-from contextlib import closing
 from importlib.util import find_spec
 from pathlib import Path
 from typing import IO
@@ -43,8 +42,7 @@ def solid_frames(picture: Picture, view: View) -> Iterator[Image.Image]:
         timer.daemon = True
         timer.start()
         try:
-            with closing(_frames(child, picture, view)) as frames:
-                yield from frames
+            yield from _frames(child, picture, view)
         except (BrokenPipeError, EOFError):
             child.wait()
             raise NotDrawnError(_why(child.returncode, errors)) from None

@@ -1,4 +1,4 @@
-"""Where a picture's plane lies on the sheet: one parallel view for solid and flat drawings, and for the words on them."""
+"""Where a picture's plane lies on the sheet: one parallel view for solid and flat drawings and the words on them."""
 
 import msgspec
 import numpy as np
