@@ -26,6 +26,8 @@ SLENDER = 0.5
 UNITS = {1.0: "metres", 1e3: "millimetres", 1e2: "centimetres", 39.37007874: "inches"}
 NEAR = 1e-3
 """By how much the length of a mesh may differ from the scene's, relative."""
+FAR, MOST = 4, 500
+"""Numbers in names beyond so many times the shapes are no mode numbers; and shapes that a file may have."""
 ACROSS = 0.5
 """Share of a shape's squares that has to lie across the thickness."""
 _HERTZ = re.compile(r"hz|hertz|freq", re.IGNORECASE)
@@ -140,6 +142,8 @@ def _candidates(read: _Read, where: str) -> tuple[list[str], list[Array]]:
     if not found:
         names = ", ".join(read.arrays) or "none"
         raise InputError(f"{where} has no vectors or numbers at its points (point data: {names}): write modes as such")
+    if len(found) > MOST:
+        raise InputError(f"{where} has {len(found)} arrays at its points: give at most {MOST} modes")
     for name, values in found.items():
         if not np.isfinite(values).all():
             bad = int(np.flatnonzero(~np.isfinite(values).all(axis=1))[0])
@@ -226,10 +230,12 @@ def _other(shares: Array, axes: _Axes) -> str:
 
 
 def _numbers(names: list[str]) -> list[int] | None:
-    """The mode number in each name, where all have one and no two the same."""
+    """The mode number in each name, where all have one, no two the same, and none far beyond how many there are."""
     found = [re.findall(r"\d+", name) for name in names]
     numbers = [int(one[-1]) for one in found if one]
-    whole = len(numbers) == len(names) == len(set(numbers)) and min(numbers) >= 1 and max(numbers) <= 2000
+    whole = (
+        len(numbers) == len(names) == len(set(numbers)) and min(numbers) >= 1 and max(numbers) <= FAR * len(names) + 50
+    )
     return numbers if whole else None
 
 

@@ -69,4 +69,9 @@ def _tabular(table: Table, first: int) -> str:
 
 def _row(cells: list[str]) -> str:
     """One that begins with a bracket would be taken for the row before's own space: braces keep it apart."""
-    return " & ".join(f"{{{escaped(one)}}}" for one in cells) + r" \\"
+    return " & ".join(f"{{{_signed(one)}}}" for one in cells) + r" \\"
+
+
+def _signed(one: str) -> str:
+    """A negative number has a minus, not a hyphen."""
+    return f"$-${escaped(one[1:])}" if one[:1] == "-" and one[1:2].isdigit() else escaped(one)

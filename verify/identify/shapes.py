@@ -224,7 +224,7 @@ def _nearness(
 def _models(
     beam: Beam, x: Array, n: int, count: int, found: Compared | None
 ) -> Iterator[tuple[str, int | None, Callable[[], Array]]]:
-    """(its words, its parts, its shapes at x (n, len(x)) when asked for), a chain by the rules that frequencies tell."""
+    """(words, parts, shapes at x (n, len(x)) when asked for), a chain by the rules that frequencies tell."""
     best = found.found.best.candidate if found is not None and found.found.explained else None
     rules = dict(best.settings) if best is not None and best.model == CHAIN and best.packaged else {}
 

@@ -86,9 +86,10 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
         which = f"{modes[0]} to {modes[-1]}" if modes == list(range(modes[0], modes[-1] + 1)) and len(modes) > 1 else ""
         said = (
             f"{len(modes)} shape{'s are' if len(modes) > 1 else ' is'} of mode{'s' * (len(modes) > 1)} "
-            f"{which or ', '.join(map(str, modes))}, the worst {percent(worst.error, sign=False)} off at mode "
-            f"{worst.mode} (MAC {worst.likeness:.6f})"
+            f"{which or ', '.join(map(str, modes))}, "
         )
+        off = f"the worst {percent(worst.error, sign=False)} off at mode {worst.mode} (MAC {worst.likeness:.6f})"
+        said += off if worst.error > ROUNDING else "each in form the exact one but for rounding"
         frequencies = f" By its frequencies: {self.compared.answer}" if self.compared else ""
         return f"{said}. {self._nearest()}.{frequencies}"
 
@@ -125,7 +126,7 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
                 row.name,
                 row.mode,
                 row.likeness,
-                row.error,
+                row.error if row.error > ROUNDING else "rounding",
                 *([row.frequency_hz, row.exact_hz, row.frequency_error] * self._heard),
             )
             for row in self.rows

@@ -140,6 +140,7 @@ def check_moves(largest: float, what: str) -> None:
 
 
 def exaggerated(beam: Beam, stage: Stage) -> str:
+    """How many times as large deflections are drawn, in words."""
     unit, factor = unit_of(stage.largest)
     drawn = times(stage.amplitude * beam.length / stage.largest)
     return f"Deflection drawn {drawn} (the largest is {factor * stage.largest:.3g} {unit})"
