@@ -59,7 +59,8 @@ def whole(path: Path, field: str = "file") -> Iterator[Path]:
     """
     import tempfile
 
-    exists(path, field)
+    if exists(path, field) and not path.is_file():  # a rename would put an ordinary file in the place of a device
+        raise InputError(f"{field} = {str(path)!r} is there and is no ordinary file: name another")
     name = ""
     try:
         _sweep(path)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -36,17 +37,15 @@ def write_film(frames: Iterator[Image.Image], path: Path, n: int, seconds: float
 
 def _loop(frames: Iterator[Image.Image], part: Path, suffix: str, milliseconds: float) -> None:
     first = next(frames)
-    if suffix == ".webp":
-        first.save(
-            part, format="WEBP", save_all=True, append_images=frames, duration=round(milliseconds), loop=0, quality=80
-        )
-        return
-    palette = _palette()
-    rest = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
-    duration = max(round(milliseconds / 10.0) * 10, 20)  # a gif counts hundredths, and viewers slow down below two
-    first.quantize(palette=palette, dither=Image.Dither.NONE).save(
-        part, format="GIF", save_all=True, append_images=rest, duration=duration, loop=0
-    )
+    with part.open("wb") as stream:
+        if suffix == ".webp":
+            more = {"append_images": frames, "duration": round(milliseconds), "quality": 80}
+            first.save(stream, format="WEBP", save_all=True, loop=0, **more)
+            return
+        palette = _palette()
+        first, *rest = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in chain([first], frames))
+        duration = max(round(milliseconds / 10.0) * 10, 20)  # it counts hundredths, and viewers slow down below two
+        first.save(stream, format="GIF", save_all=True, loop=0, append_images=rest, duration=duration)
 
 
 def _palette() -> Image.Image:

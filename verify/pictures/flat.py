@@ -30,7 +30,7 @@ def _drawn(picture: Picture, view: View, frame: int) -> Image.Image:
         line = FINER * view.pixels(at_frame(trace.points, frame))
         thick = max(round(FINER * trace.width * width / 960.0), 1)
         pen.line([(float(x), float(y)) for x, y in line], fill=trace.colour, width=thick, joint="curve")
-    return image.resize((width, height), Image.Resampling.LANCZOS)
+    return image.reduce(FINER)
 
 
 def _solid(pen: ImageDraw.ImageDraw, view: View, solid: Solid, frame: int) -> None:
