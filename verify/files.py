@@ -86,6 +86,7 @@ def whole_folder(path: Path, suffix: str, field: str = "file") -> Iterator[Path]
     import tempfile
 
     _check_only(path, suffix, field)
+    _sweep(path)
     name = ""
     try:
         name = tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
@@ -112,6 +113,7 @@ def _check_only(path: Path, suffix: str, field: str) -> None:
 
 def _sweep(path: Path) -> None:
     """Take away what killed runs left of this file; what is younger may be another run's, which goes on."""
+    import shutil
     from contextlib import suppress
     from glob import escape
     from time import time
@@ -119,7 +121,7 @@ def _sweep(path: Path) -> None:
     for part in path.parent.glob(f".{escape(path.name)}.*.part"):
         with suppress(OSError):
             if time() - part.lstat().st_mtime > STALE_S:
-                part.unlink()
+                shutil.rmtree(part) if part.is_dir() else part.unlink()
 
 
 def _umask() -> int:

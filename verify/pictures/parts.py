@@ -11,6 +11,8 @@ from verify.pictures.picture import GREY, INK, ORANGE, STEEL, Solid, Trace, arro
 
 THIN, NARROW, BROAD = 0.007, 0.012, 0.06
 """Half a drawn thickness at least; half a drawn width at least and at most; all over the length."""
+WALL = 0.068
+"""Half the height of what guides an end, over the length."""
 GAP = 0.08
 """Of a link, between it and its joints."""
 
@@ -77,8 +79,8 @@ def _held(support: str, out: float) -> Iterator[tuple[Array, str]]:
     elif support == "clamped":
         yield np.array([[0.0, -0.045], [0.025 * out, -0.045], [0.025 * out, 0.045], [0.0, 0.045]]), GREY
     elif support == "guided":
-        yield np.array([[0.0, -0.1], [0.006 * out, -0.1], [0.006 * out, 0.1], [0.0, 0.1]]), STEEL
-        yield np.array([[0.012 * out, -0.1], [0.025 * out, -0.1], [0.025 * out, 0.1], [0.012 * out, 0.1]]), GREY
+        yield np.array([[0.0, -WALL], [0.006 * out, -WALL], [0.006 * out, WALL], [0.0, WALL]]), STEEL
+        yield np.array([[0.012 * out, -WALL], [0.025 * out, -WALL], [0.025 * out, WALL], [0.012 * out, WALL]]), GREY
 
 
 def attached_parts(beam: Beam, x: Array, line: Array, y: float, drawn: Drawn) -> tuple[list[Solid], list[Trace]]:

@@ -67,7 +67,7 @@ def _tip(turn: float, line: Array) -> Label:
     """Words beyond the end of a chain (n, 2)."""
     way = (line[-1] - line[-2]) / np.linalg.norm(line[-1] - line[-2])
     x, y = line[-1] + (0.045 + 0.025 * abs(way[0])) * way
-    return Label(text=f"{turn:g} turn", x=float(x), y=float(y), side="middle")
+    return Label(text=f"{turn:g} turn", x=float(x), y=float(y), side="right" if line[-1, 0] < 0.02 else "middle")
 
 
 def _joints(beam: Beam, count: int, turn: float) -> Array:

@@ -103,7 +103,7 @@ def picture_of_rows(
             known = Row(words="", upper=row.upper, x=even, deflection=exact, links=False)
             traces.append(Trace(points=stage.line(scene.beam, known), width=1.2, depth=1.3 * drawn.depth))
     left = _free_place([one.position / scene.beam.length for one in scene.forces] if more else [])
-    deepest = 0.11 if scene.beam.spring else FORCE + 0.005 if more else 0.05
+    deepest = 0.11 if scene.beam.spring else FORCE + 0.005
     top = stage.apart + max(stage.amplitude, drawn.half) + LETTERS + 0.02
     return Picture(
         title=title,
@@ -121,7 +121,7 @@ def picture_of_rows(
 
 def _free_place(taken: list[float]) -> float:
     """Where words begin that no arrow stands in."""
-    free = (x for x in np.arange(0.0, 0.65, 0.05) if not any(x - 0.02 < at < x + 0.34 for at in taken))
+    free = (x for x in np.arange(0.01, 0.65, 0.05) if not any(x - 0.02 < at < x + 0.34 for at in taken))
     return float(next(free, 0.0))
 
 
