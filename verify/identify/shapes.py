@@ -13,6 +13,7 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.identify.compare import Asked, compared
 from verify.identify.family import CHAIN, ELEMENTS
+from verify.identify.fitting import FLOOR
 from verify.identify.pairing import reference_shapes
 from verify.identify.reading import Listed, Shapes, check_shapes
 from verify.identify.shapes_told import Nearness, ShapeRow, ShapesJudged
@@ -175,7 +176,19 @@ def _of_frequencies(
         source=given.source,
         unit="Hz",
     )
+    if count is None and (known := _of_places(scene, listed, within, len(given.x) - 1)) is not None:
+        return known
     return compared(scene, Asked(count=count, within=within), listed, None, count)
+
+
+def _of_places(scene: Scene, listed: Listed, within: float | None, count: int) -> Compared | None:
+    """What they are with a part between any two places, where that leaves nothing but rounding: no search of sizes."""
+    try:
+        found = compared(scene, Asked(count=count, within=within), listed, None, count)
+    except InputError:  # no model has so few parts, or so many take too long
+        return None
+    best = found.found.best
+    return found if best.candidate.sized and best.count == count and best.residual <= FLOOR else None
 
 
 def scale_free(shape: Array, exact: Array, weights: Array) -> float:
