@@ -30,6 +30,8 @@ ROOMS = (
     "run",
     "identify",
     "report",
+    "exports",
+    "pictures",
     "faces",
     "commands",
     "doors",
@@ -165,6 +167,7 @@ def loaded_by(*words):
 
 
 HEAVY = {
+    "PIL",
     "numpy",
     "scipy",
     "skfem",
@@ -224,6 +227,13 @@ HEAVY = {
 )
 def test_a_command_loads_only_what_it_uses(words, allowed):
     assert loaded_by(*words) & HEAVY <= allowed
+
+
+def test_an_export_loads_meshio_where_it_writes_a_mesh_alone(tmp_path):
+    words = ("export", "paper", "--what", "modes", "--count", "9", "--modes", "3", "--to")
+    plain = {"msgspec", "tomllib", "numpy"}
+    assert loaded_by(*words, str(tmp_path / "m.csv")) & HEAVY <= plain
+    assert "meshio" in loaded_by(*words, str(tmp_path / "m.vtu"))
 
 
 def test_importing_the_package_loads_nothing_heavy():
