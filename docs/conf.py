@@ -1,0 +1,40 @@
+"""Sphinx builds these pages without a network: `sphinx-build -W -b html docs docs/_build`.
+
+`-D verify_judge=1` judges every gate of the catalogue as well, so that its sheets say what was measured (a minute or two).
+"""
+
+import sys
+from importlib.metadata import version as installed
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "_ext"))
+
+project = "verify"
+author = "The verify developers"
+project_copyright = "the verify developers, MIT licence"
+release = version = installed("fem-segment-verify")
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml", "made_pages", "plain_docstrings"]
+napoleon_custom_sections = [("Fields", "params_style")]
+source_suffix = {".md": "markdown"}
+exclude_patterns = ["_build", "_ext"]
+nitpicky = False
+
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
+myst_heading_anchors = 3
+myst_dmath_double_inline = True
+
+html_theme = "furo"
+html_title = "verify"
+html_static_path = ["_static"]
+html_css_files = ["verify.css"]
+html_math_renderer = "mathml"
+html_show_sourcelink = False
+html_copy_source = False
+pygments_style = "tango"
+pygments_dark_style = "monokai"
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+autodoc_class_signature = "separated"
