@@ -1,4 +1,4 @@
-"""Every figure of the README's tables against a run, to the digits that are printed.
+"""Every figure of the tables of the README, the first page and the findings against a run, to the printed digits.
 
 A row's last column says where its figures come from, one source for each: the id of a gate, a quantity with its
 arguments (`mode.frequency model=analytic mode=3`), or the path of a figure in `verify run --json`
@@ -20,7 +20,13 @@ from verify.run.runner import run_scene, workbench_for
 from verify.scenes.scene import load_scene, packaged_scenes
 from verify.scenes.toml import given_arguments
 
-README = Path(__file__).parent.parent / "README.md"
+ROOT = Path(__file__).parent.parent
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "docs" / "index.md",
+    ROOT / "docs" / "limits.md",
+    *sorted((ROOT / "docs" / "findings").glob("*.md")),
+]
 FACTORS = {"": 1.0, "%": 100.0, "Hz": 1.0, "mm": 1e3, "cm/s": 100.0, "nm": 1e9, "µm": 1e6, "ms": 1e3}
 NUMBER = re.compile(r"([+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?)\s*(%|Hz|mm|nm|cm/s|µm|ms)?")
 
@@ -181,14 +187,18 @@ def in_words(row):
     return False
 
 
-ROWS = rows_of(README.read_text("utf-8"))
-TESTED = [row for row in ROWS if row.sources]
+TEXTS = [page.read_text("utf-8") for page in PAGES]
+ROWS = [row for text in TEXTS for row in rows_of(text)]
+TESTED = list(dict.fromkeys(row for row in ROWS if row.sources))
 
 
 def test_every_table_of_figures_is_seen():
-    text = README.read_text("utf-8")
-    assert len(ROWS) == sum(line.startswith("| ") for line in text.splitlines()) - text.count("| question |")
-    assert len(TESTED) >= 28
+    for page, text in zip(PAGES, TEXTS, strict=True):
+        lines = [line for line in text.splitlines() if line.startswith("| ")]
+        heads = sum(re.search(r"\| (gate|where|measured in) \|$", line) is not None for line in lines)
+        elsewhere = sum(re.search(r"\| \[[^|]*\]\([^|]*\) \|$", line) is not None for line in lines)
+        assert len(rows_of(text)) == len(lines) - heads - elsewhere, page.name
+    assert len(TESTED) >= 55
     assert {row.scene for row in TESTED} >= {"paper", "paper-wave", "paper-slider", "chain", "steel-cantilever"}
 
 
@@ -199,12 +209,12 @@ def test_rows_without_a_source_are_those_listed():
 
 
 @pytest.mark.parametrize("row", TESTED, ids=lambda row: row.question[:48])
-def test_the_readme_prints_what_a_run_gives(row):
+def test_a_page_prints_what_a_run_gives(row):
     assert wrong_in(row) == []
 
 
 @pytest.mark.parametrize("row", TESTED, ids=lambda row: row.question[:48])
-def test_a_digit_changed_in_the_readme_is_seen(row):
+def test_a_digit_changed_on_a_page_is_seen(row):
     """Every digit of every printed figure in turn, up by one."""
     where = [match.start() for match in re.finditer(r"\d", row.figures)] if printed_figures(row.figures) else []
     for i in where:
@@ -216,7 +226,7 @@ def test_a_digit_changed_in_the_readme_is_seen(row):
 
 
 def test_a_sign_a_unit_and_a_gate_that_are_wrong_are_seen():
-    text = README.read_text("utf-8")
+    text = "\n".join(TEXTS)
     for right, wrong in (
         ("| -0.428 % |", "| 0.428 % |"),
         ("| 4469.94 Hz |", "| 4469.94 % |"),
@@ -227,4 +237,36 @@ def test_a_sign_a_unit_and_a_gate_that_are_wrong_are_seen():
         assert right in text
         changed = [row for row in rows_of(text.replace(right, wrong)) if row.sources]
         assert any(wrong_in(row) for row in changed if row not in TESTED), wrong
-    assert rows_of(text.replace("`swr-law`", "`swr-lore`"))[10].sources == ()
+    (row,) = (
+        row for row in rows_of(text) if row.question.startswith("standing-wave ratio at the paper's 4276 Hz, exact")
+    )
+    assert row.sources == ("swr-law",)
+    lost = [row for row in rows_of(text.replace("`swr-law`", "`swr-lore`")) if row.question == row.question]
+    assert sum(not row.sources for row in lost) == len(UNTESTED) + 1
+
+
+def figures_in(text):
+    return set(re.findall(r"\d+\.\d+", text))
+
+
+def test_every_figure_said_in_words_stands_in_a_tested_row_or_in_a_dated_bench():
+    """What the README and the first page say outside their tables, to the digits of a row or rounded from it."""
+    rows = {float(figure) for row in ROWS for figure in figures_in(row.figures)}
+    for text in TEXTS[:2]:
+        prose = "\n".join(line for line in text.splitlines() if not line.startswith(("|", "beam = ")))
+        bare = {
+            figure
+            for figure in figures_in(prose) - {"3.11", "0.5", "0.02", "0.001", "2700.0"}
+            if not any(f"{known:.{len(figure.partition('.')[2])}f}" == figure for known in rows)
+        }
+        assert not bare, f"{sorted(bare)} stand in no tested row"
+
+
+def test_what_the_first_page_says_of_time_stands_in_the_pages_that_it_names():
+    rows = [line for line in TEXTS[1].splitlines() if line.startswith("| ") and "](" in line and "times" in line]
+    assert len(rows) == 2
+    for line in rows:
+        question, ratios, where = (cell.strip() for cell in line.strip("|").split("|"))
+        link = re.search(r"\(([^)]*)\)", where)[1]
+        named = " ".join((ROOT / "docs" / link).read_text("utf-8").split())
+        assert ratios.removesuffix(" times") in named, f"{question}: {ratios} is not in {link}"
