@@ -16,7 +16,8 @@ _OTHERS = ("lt", "le", "gt", "ge", "eq", "ne", "getitem", "setitem")
 OPERATORS = {getattr(operator, name) for name in (*_ARITHMETIC, *_OTHERS)}
 _known: dict[Any, tuple[Any, Any]] = {}
 """By operator and types: numba's function, and the signature that it found."""
-_tried = BaseFunction.get_call_type
+_tried: Any = getattr(BaseFunction, "get_call_type", None)
+"""Numba's own; None in a numba that has it no more, which then tries every time."""
 _collecting: list[bool] = []
 
 
@@ -36,11 +37,13 @@ def begin() -> None:
     """From here on something is compiled."""
     _collecting.append(gc.isenabled())
     gc.disable()
-    BaseFunction.get_call_type = _call_type  # type: ignore[method-assign, assignment]
+    if _tried is not None:
+        BaseFunction.get_call_type = _call_type  # type: ignore[method-assign, assignment]
 
 
 def end() -> None:
     """It is compiled."""
-    BaseFunction.get_call_type = _tried  # type: ignore[method-assign]
+    if _tried is not None:
+        BaseFunction.get_call_type = _tried  # type: ignore[method-assign]
     if _collecting.pop():
         gc.enable()
