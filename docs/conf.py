@@ -1,6 +1,7 @@
 """Sphinx builds these pages without a network: `sphinx-build -W -b html docs docs/_build`.
 
-`-D verify_judge=1` judges every gate of the catalogue as well, so that its sheets say what was measured (a minute or two).
+`-D verify_judge=1` judges every gate of the catalogue as well, so that its sheets say what was
+measured; that takes a minute or two.
 """
 
 import sys

@@ -12,16 +12,16 @@ DRAWING = re.compile(r"^<!-- drawing: ([a-z0-9-]+) -->$", re.MULTILINE)
 
 SCENE_HEAD = """# Scene reference
 
-A scene is a TOML file: what exists (`[beam]`, `[drive]`, `[slider]`), what is published about it (`[[claim]]`), and what
-is asked (`[[gate]]` and the studies). What is not asked does not run. These tables are made from the types that read a
-scene; `verify keys SECTION` prints them, `verify schema --to verify.schema.json` gives them to an editor. Lists of
-tables are written `[[beam.mass]]` or as a list of inline tables.
+A scene is a TOML file: what exists (`[beam]`, `[drive]`, `[slider]`), what is published about it (`[[claim]]`), and
+what is asked (`[[gate]]` and the studies). What is not asked does not run. These tables are made from the types that
+read a scene; `verify keys SECTION` prints them, `verify schema --to verify.schema.json` gives them to an editor. Lists
+of tables are written `[[beam.mass]]` or as a list of inline tables.
 
 """
 QUANTITIES_HEAD = """# Figures that can be asked for
 
-Every figure has a name, a unit and typed arguments: `verify measure NAME KEY=VALUE ... --scene SCENE` evaluates one, and a
-gate holds one. `verify quantities WORD ...` prints those that a word stands in.
+Every figure has a name, a unit and typed arguments: `verify measure NAME KEY=VALUE ... --scene SCENE` evaluates one,
+and a gate holds one. `verify quantities WORD ...` prints those that a word stands in.
 
 """
 
@@ -41,7 +41,7 @@ def default_words(key):
     """What stands for a key that is left out."""
     if key.required:
         return "required"
-    if key.default in (None, [], {}):
+    if key.default in (None, "", [], (), {}):
         return ""
     return f"`{str(key.default).lower() if isinstance(key.default, bool) else key.default}`"
 

@@ -1,7 +1,8 @@
 """The tutorials' commands print what the pages say they print, to the last digit that stands there.
 
-A box of `console` holds commands behind `$` and below each what it prints; `…` stands for anything. Boxes with a caption are
-files that the commands find. A command without `$ echo $?` below it ends with status 0.
+A box of `console` holds commands behind `$` and below each what it prints; `…` stands for anything. A line that ends with
+a backslash goes on. Boxes with a caption are files that the commands find. A command without `$ echo $?` below it ends
+with status 0, and what it says beside its output, of progress, is let be.
 """
 
 import contextlib
@@ -45,7 +46,7 @@ def commands_of(text):
     found = []
     for head, body in boxes(text):
         if head == "console":
-            parts = re.split(r"^\$ ", body, flags=re.MULTILINE)
+            parts = re.split(r"^\$ ", body.replace("\\\n", ""), flags=re.MULTILINE)
             assert not parts[0].strip(), f"printed before any command: {parts[0]}"
             found += [Command(*part.split("\n", 1)) for part in parts[1:]]
     return found
@@ -65,7 +66,7 @@ def verify(words, capsys):
     capsys.readouterr()
     status = status_of(words)
     out, err = capsys.readouterr()
-    return status, out + err
+    return status, out + err if status else out
 
 
 def python(words, monkeypatch):

@@ -199,7 +199,7 @@ ROWS: tuple[Row, ...] = (
         Floor(
             id=f"near-resonance-{name.replace(' ', '-')}",
             title=f"Undamped {name} close to resonance, as an error of the frequency that would explain the field",
-            why="README: frequencies below 1e-12; models/fields.py: driven no closer than 1e-9, refused nearer.",
+            why="docs/findings: rounding below 1e-12; models/fields.py: driven no closer than 1e-9, refused nearer.",
             along="off resonance",
             at=(1e-6, 1e-7, 1e-8, 3e-9),
             beyond=(1e-9, 1e-10, 1e-12),

@@ -13,7 +13,7 @@ from verify.stress.extended import Divided, hermite, links, relative_error
 N = 40
 """Parts, where nothing else is said."""
 SMALL = 1e-12
-"""README: what rounding costs a frequency."""
+"""docs/findings/other-beams.md: what rounding costs a frequency."""
 
 
 def frequency(model: str, beam: Beam, mode: int, count: int | None, **settings: float | str) -> float:

@@ -159,7 +159,7 @@ ROWS: tuple[Row, ...] = (
         Floor(
             id=f"section-steps-{parts}",
             title=f"Mode {MODE} of a stepped strip of {parts} against its matrices in 50 digits",
-            why="README: rounding below 1e-12; steps up to 1e15 of EI / l^3 are taken (beam.py CONTRAST).",
+            why="docs/findings: rounding below 1e-12; steps up to 1e15 of EI / l^3 are taken (beam.py CONTRAST).",
             along="in E",
             at=(1.0, 10.0, 1e3, 1e6),
             beyond=(1e9, 1e12, 1e14, 1e16),
@@ -185,7 +185,7 @@ ROWS: tuple[Row, ...] = (
         Floor(
             id=f"graded-{parts}",
             title=f"Mode {MODE} of {parts} graded from one end to the other, against their matrices in 50 digits",
-            why="README: rounding below 1e-12; models/division.py takes gradings from 0.001 to 1000.",
+            why="docs/findings: rounding below 1e-12; models/division.py takes gradings from 0.001 to 1000.",
             along="in length",
             at=(1.0, 10.0, 1e3),
             promise=SMALL,
@@ -210,7 +210,7 @@ ROWS: tuple[Row, ...] = (
         Floor(
             id=f"mesh-a-million-to-one-{parts}",
             title=f"Mode 2 of {FEW} {parts}, the first of which is a millionth of the beam",
-            why="README: rounding below 1e-12; beam.py takes sections from a millionth of the beam (SHORTEST_SECTION).",
+            why="docs/findings: rounding below 1e-12; beam.py takes sections from a millionth of the beam (SHORTEST_SECTION).",
             along="L",
             at=(0.1, 1e-2, 1e-3, 1e-4, 1e-6),
             promise=SMALL,

@@ -180,7 +180,7 @@ def _size_rows(model: str) -> tuple[Row, ...]:
         Floor(
             id=f"{parts}-parts",
             title=f"Modes 1 to 5 of many {parts} against their dispersion in closed form",
-            why="README: rounding below 1e-12 in modes of many parts; models/eigen.py: to rounding, at any size.",
+            why="docs/findings: rounding below 1e-12 in modes of many parts; models/eigen.py: to rounding, at any size.",
             along=parts,
             at=(100, 1000, 10_000, 30_000),
             promise=1e-12,
@@ -206,7 +206,7 @@ def _size_rows(model: str) -> tuple[Row, ...]:
         Floor(
             id=f"{parts}-counted",
             title=f"Mode 1 of a cantilever of {parts} against counts in 50 digits",
-            why="README: below 1e-12, counted in 50-digit arithmetic; a solver is no judge of a solver.",
+            why="docs/findings: below 1e-12, counted in 50-digit arithmetic; a solver is no judge of a solver.",
             along=parts,
             at=(60, 400),
             promise=1e-12,

@@ -124,7 +124,7 @@ ROWS: tuple[Row, ...] = (
     Floor(
         id="tip-mass",
         title="Mode 1 of a cantilever of elements under a tip mass, against its matrices in 50 digits",
-        why="README: rounding below 1e-12; elements keep point masses apart from what bends.",
+        why="docs/findings: rounding below 1e-12; elements keep point masses apart from what bends.",
         along="beam masses",
         at=(1e-12, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e12),
         beyond=(1e15, 1e18, 1e24),

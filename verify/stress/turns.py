@@ -172,7 +172,7 @@ ROWS: tuple[Row, ...] = (
     Floor(
         id="rolled-up",
         title=f"{LINKS} links rolled up by an end moment, gap of a circle that closes",
-        why="README: equal joints and half a joint at the wall close exactly; the chain's gate asks 1e-12.",
+        why="docs/findings: equal joints and half a joint at the wall close exactly; the chain's gate asks 1e-12.",
         along="turns",
         at=(1, 5, 20),
         beyond=(40,),
