@@ -115,6 +115,6 @@ def make(app):
 
 def setup(app):
     """Make the pages before any is read."""
-    app.add_config_value("verify_judge", default=False, rebuild="env", types=(bool, str))
+    app.add_config_value("verify_judge", default=True, rebuild="env", types=bool)
     app.connect("builder-inited", make)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

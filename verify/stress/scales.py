@@ -210,7 +210,7 @@ ROWS: tuple[Row, ...] = (
         Floor(
             id=f"mesh-a-million-to-one-{parts}",
             title=f"Mode 2 of {FEW} {parts}, the first of which is a millionth of the beam",
-            why="docs/findings: rounding below 1e-12; beam.py takes sections from a millionth of the beam (SHORTEST_SECTION).",
+            why="docs/findings: rounding below 1e-12; beam.py takes sections from a millionth (SHORTEST_SECTION).",
             along="L",
             at=(0.1, 1e-2, 1e-3, 1e-4, 1e-6),
             promise=SMALL,

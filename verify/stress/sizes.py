@@ -180,7 +180,7 @@ def _size_rows(model: str) -> tuple[Row, ...]:
         Floor(
             id=f"{parts}-parts",
             title=f"Modes 1 to 5 of many {parts} against their dispersion in closed form",
-            why="docs/findings: rounding below 1e-12 in modes of many parts; models/eigen.py: to rounding, at any size.",
+            why="docs/findings: below 1e-12 in modes of many parts; models/eigen.py: to rounding, at any size.",
             along=parts,
             at=(100, 1000, 10_000, 30_000),
             promise=1e-12,
