@@ -31,6 +31,8 @@ COMMANDS = {
     "compare": "compare",
     "quantities": "quantities:list_quantities",
     "plan": "plan",
+    "report": "report",
+    "diff": "diff",
     "stress": "stress",
     "scenes": "scenes",
     "init": "scenes:init",
