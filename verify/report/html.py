@@ -107,16 +107,20 @@ def rendered(document: Document) -> str:
 
     plots = [plot_of(chart) for chart in document.charts]
     set_aside = [gate for gate in document.gates if not gate.applicable]
-    return templates().get_template("page.html.j2").render(
-        doc=document,
-        failed=[gate for gate in document.gates if gate.passed is False],
-        set_aside=set_aside,
-        judged=len(document.gates) - len(set_aside),
-        groups=groups_of(document.gates),
-        plots=plots,
-        data=_safe_json([plot.data for plot in plots]),
-        css=part("page.css"),
-        js=part("page.js"),
+    return (
+        templates()
+        .get_template("page.html.j2")
+        .render(
+            doc=document,
+            failed=[gate for gate in document.gates if gate.passed is False],
+            set_aside=set_aside,
+            judged=len(document.gates) - len(set_aside),
+            groups=groups_of(document.gates),
+            plots=plots,
+            data=_safe_json([plot.data for plot in plots]),
+            css=part("page.css"),
+            js=part("page.js"),
+        )
     )
 
 

@@ -88,9 +88,7 @@ def keep(result: "RunResult", reports: Path, name: str, command: str, most: int 
 def as_text(document: Document, name: str, figures: dict[str, Any]) -> str:
     """The file of a run."""
     plain = json.dumps(finite(figures), allow_nan=False, separators=(",", ":"))
-    kept = Kept(
-        layout=LAYOUT, verify=__version__, report=name, document=document, figures=msgspec.Raw(plain.encode())
-    )
+    kept = Kept(layout=LAYOUT, verify=__version__, report=name, document=document, figures=msgspec.Raw(plain.encode()))
     return msgspec.json.encode(kept, enc_hook=float).decode() + "\n"  # numpy's numbers of a study from elsewhere
 
 

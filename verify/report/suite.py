@@ -20,7 +20,11 @@ NEAREST = 5
 """Gates that are told, of those nearest to their edge."""
 SLOWEST = 3
 _ID = re.compile(r'((?: id="|"#|url\(#))')
+_WORDS = re.compile(r"<text\b.*?</text>", re.DOTALL)
+_SEEN = re.compile(r'viewBox="[^"]*"')
 _MARGIN = 6.0
+_BEAM = "30 30 800 130"
+"""Of a beam's drawing, the part in which something is drawn."""
 
 
 class Near(msgspec.Struct, frozen=True):
@@ -175,18 +179,17 @@ def _picture(result: "RunResult", name: str) -> tuple[str, str]:
 
     charts = [chart for found in result.found.values() for chart in found.charts()]
     if not charts:
-        return apart(beam_drawing(result.scene), name), "The beam"
+        return _bare(beam_drawing(result.scene), name, f'viewBox="{_BEAM}"'), "The beam"
     drawing = drawn(charts[0])
     left, top, right, bottom = drawing.box
     seen = f"{left - _MARGIN:g} {top - _MARGIN:g} {right - left + 2 * _MARGIN:g} {bottom - top + 2 * _MARGIN:g}"
-    bare = re.sub(r"<text\b.*?</text>", "", drawing.svg, flags=re.DOTALL)
-    bare = re.sub(r'viewBox="[^"]*"', f'viewBox="{seen}" preserveAspectRatio="none"', bare, count=1)
-    return apart(bare, name), charts[0].title
+    return _bare(drawing.svg, name, f'viewBox="{seen}" preserveAspectRatio="none"'), charts[0].title
 
 
-def apart(svg: str, name: str) -> str:
-    """A picture whose names stand on one page with those of others."""
-    return _ID.sub(lambda found: f"{found[1]}{name}-", svg)
+def _bare(svg: str, name: str, seen: str) -> str:
+    """A picture without words, its names made other than those of pictures beside it on one page."""
+    bare = _SEEN.sub(seen, _WORDS.sub("", svg), count=1)
+    return _ID.sub(lambda found: f"{found[1]}{name}-", bare)
 
 
 def write_suite(suite: Suite, folder: Path) -> Path:
@@ -198,9 +201,12 @@ def write_suite(suite: Suite, folder: Path) -> Path:
 
 def rendered(suite: Suite) -> str:
     """The page."""
+    from verify.models.catalogue import MODELS
     from verify.report.html import part, templates
 
-    return templates().get_template("suite.html.j2").render(suite=suite, css=part("page.css") + part("suite.css"))
+    keys = {MODELS[name].title or MODELS[name].parts: MODELS[name].colour for name in MODELS.built_in}
+    css = part("page.css") + part("suite.css")
+    return templates().get_template("suite.html.j2").render(suite=suite, keys=keys, css=css)
 
 
 def as_plain(suite: Suite, runs: list[dict[str, Any]], page: Path | None) -> dict[str, Any]:
