@@ -19,7 +19,7 @@ PAGE = "index.html"
 NEAREST = 5
 """Gates that are told, of those nearest to their edge."""
 SLOWEST = 3
-_ID = re.compile(r'((?: id="|"#|url\(#))')
+_ID = re.compile(r'( id="|href="#|url\(#)')
 _WORDS = re.compile(r"<text\b.*?</text>", re.DOTALL)
 _SEEN = re.compile(r'viewBox="[^"]*"')
 _MARGIN = 6.0
@@ -120,7 +120,7 @@ class Suite(msgspec.Struct, frozen=True, kw_only=True):
         """In one line."""
         n = len(self.cards)
         told = f"{n} scene{'s' * (n != 1)} in {seconds_in_words(self.seconds)}"
-        lost = f", {len(self.refused)} could not run" if self.refused else ""
+        lost = f", {len(self.refused)} scene{'s' * (len(self.refused) != 1)} could not run" if self.refused else ""
         if self.failed:
             return f"{self.failed} of {self.judged} gates failed{lost}: {told}"
         if not self.judged:
