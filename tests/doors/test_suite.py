@@ -101,10 +101,13 @@ def test_a_gate_that_fails_is_told_with_its_scene_and_is_the_status(verify, tmp_
 def test_a_scene_that_cannot_run_is_a_row_with_its_sentence_and_stops_none(verify, tmp_path):
     status, out, err = verify("run", "nonsense", "held.toml", "wrong.toml", "fails.toml")
     page = (tmp_path / "reports" / "index.html").read_text("utf-8")
-    assert (status, err) == (2, "")
+    assert status == 2
     assert "1 of 2 gates failed, 2 scenes could not run: 2 scenes in" in out
-    assert "nonsense: scene = 'nonsense' is neither a packaged scene nor a file" in " ".join(out.split())
-    assert "wrong.toml: beam.length = -0.61" in " ".join(out.split())
+    assert re.fullmatch(
+        "verify: nonsense: scene = 'nonsense' is neither a packaged scene nor a file: .*\n"
+        "verify: wrong.toml: beam.length = -0.61.*\n",
+        err,
+    )
     assert page.count('<p class="fail">could not run</p>') == 2
     assert sorted(path.name for path in (tmp_path / "reports").glob("*.html")) == [
         "fails.html",
@@ -115,19 +118,25 @@ def test_a_scene_that_cannot_run_is_a_row_with_its_sentence_and_stops_none(verif
 
 def test_a_name_that_is_taken_is_not_run_over_another(verify, tmp_path):
     """Nor where names differ in their case alone, which some file systems do not see."""
-    status, out, _ = verify("run", "held.toml", "same.toml", "index.toml", "held.toml")
-    said = " ".join(out.split())
+    status, out, err = verify("run", "held.toml", "same.toml", "index.toml", "held.toml")
     assert status == 2
-    assert "same.toml: name = 'HELD': its report would take the place of that of held.toml" in said
-    assert "index.toml: name = 'index': its report would take the place of the page of all scenes" in said
-    assert "All 1 gates passed, 2 scenes could not run: 1 scene in" in said
+    assert "same.toml: name = 'HELD': its report would take the place of that of held.toml" in err
+    assert "index.toml: name = 'index': its report would take the place of the page of all scenes" in err
+    assert "All 1 gates passed, 2 scenes could not run: 1 scene in" in out
+
+
+def test_where_no_scene_can_run_all_is_refused_and_nothing_written(verify, tmp_path):
+    status, out, err = verify("run", "wrong.toml", "nonsense", "--json")
+    assert (status, out) == (2, "")
+    assert [line.split(":")[1].strip() for line in err.splitlines()] == ["wrong.toml", "nonsense"]
+    assert not list(tmp_path.rglob("*.html"))
 
 
 def test_as_json_every_scene_says_what_it_says_alone(verify):
     alone = json.loads(verify("run", "fails.toml", "--json", "--no-report")[1])
     status, out, err = verify("run", "held.toml", "nonsense", "fails.toml", "--json", "--no-report")
     data = json.loads(out)
-    assert (status, err) == (2, "")
+    assert (status, err.count("verify: ")) == (2, 1)
     assert [data["passed"], data["report"], len(data["scenes"])] == [False, None, 3]
     assert [scene["passed"] for scene in data["scenes"]] == [True, False, False]
     assert data["scenes"][1]["error"][0].startswith("scene = 'nonsense' is neither")
@@ -168,9 +177,9 @@ def test_a_process_that_is_killed_is_a_row(verify, tmp_path, monkeypatch):
         return true(scene, *others)
 
     monkeypatch.setattr(runner, "run_scene", killed)
-    status, out, _ = verify("run", "held.toml", "fails.toml", "drawn.toml")
+    status, out, err = verify("run", "held.toml", "fails.toml", "drawn.toml")
     assert status == 2
-    assert "fails: its process ended before it was done (signal 9)" in " ".join(out.split())
+    assert "fails: its process ended before it was done (signal 9)" in err
     assert "All 2 gates passed, 1 scene could not run" in out
 
 
@@ -179,11 +188,10 @@ def test_a_fault_of_the_suites_own_is_a_row(verify, monkeypatch):
 
     true = runner.run_scene
     monkeypatch.setattr(runner, "run_scene", lambda scene, *others: 1 / 0 if scene.name == "held" else true(scene, *others))  # fmt: skip
-    status, out, _ = verify("run", "held.toml", "drawn.toml", "--no-report")
+    status, out, err = verify("run", "held.toml", "drawn.toml", "--no-report")
     assert status == 2
-    said = " ".join(out.split())
-    assert "held: the suite itself fails on it (ZeroDivisionError: division by zero), `verify run held.toml`" in said
-    assert "All 1 gates passed, 1 scene could not run" in said
+    assert "held: the suite itself fails on it (ZeroDivisionError: division by zero), `verify run held.toml`" in err
+    assert "All 1 gates passed, 1 scene could not run" in out
 
 
 def test_without_a_name_all_packaged_scenes_are_asked_for(verify, monkeypatch):

@@ -79,8 +79,7 @@ def test_figures_in_which_verdicts_do_not_differ_are_told_with_their_difference(
     (gate,) = scene["gates"]
     assert gate["after"]["measured"] / gate["before"]["measured"] - 1.0 == pytest.approx(-2e-6 / 0.61, rel=1e-4)
     assert scene["inputs"] == [{"what": "beam.length", "before": "0.61", "after": "0.610001"}]
-    assert scene["said"]
-    assert scene["versions"] == []
+    assert scene["versions"] == scene["said"] == []
 
 
 def test_gates_that_came_and_went_are_told_and_break_nothing(kept, capsys):
@@ -96,7 +95,7 @@ def test_a_relative_difference_stands_behind_what_is_measured(kept):
     from verify.report.diff import differences
     from verify.report.kept import runs_at
 
-    before, after = (runs_at(path, "A") for path in (kept(), kept("beam.length=0.305")))
+    before, after = (runs_at(path, "A") for path in (kept(), kept("beam.length=0.305", "gate.second.expect=199.6")))
     (gate,) = differences(before, after, ("a", "b")).scenes[0].gates
     assert gate.measured.endswith("(+300 %)")
 
@@ -112,6 +111,8 @@ def test_versions_and_inputs_are_compared_by_their_names(kept, tmp_path, capsys)
     versions = {one["what"]: (one["before"], one["after"]) for one in scene["versions"]}
     assert versions == {"numpy": ("0.1", numpy.__version__), "abacus": ("3", None)}
     assert scene["inputs"] == [{"what": "spectrum.count", "before": "9", "after": "11"}]
+    assert [one["what"] for one in scene["said"]] == ["answer", "spectrum"]
+    assert ("9 segments" in scene["said"][0]["before"], "11 segments" in scene["said"][0]["after"]) == (True, True)
 
 
 def test_of_folders_the_newest_runs_of_every_name_are_compared(kept, tmp_path, capsys):

@@ -12,6 +12,7 @@ from verify.report.html import page
 from verify.report.kept import KEPT, keep, read_kept, runs_at, runs_in
 from verify.scenes.scene import load_scene
 
+
 @pytest.fixture
 def strip(tmp_path, monkeypatch):
     """The strip's result, in an empty folder with its file."""

@@ -105,7 +105,7 @@ def _refusal(line, said):
     lines = said.err.splitlines()
     if lines and lines[0].startswith(("Usage: ", "Error: ")):
         return
-    if said.out:
+    if said.out and "could not run" not in said.out and '"error": [' not in said.out:  # of several scenes one
         yield f"refused, and yet it prints {said.out[:80]!r}"
     if not lines or not all(one.startswith("verify: ") for one in lines):
         yield f"refused without a sentence: {said.err[:200]!r}"

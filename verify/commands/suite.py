@@ -10,7 +10,7 @@ import msgspec
 
 from verify.commands.run import GATE_FAILED
 from verify.commands.shared import command_line, load, print_json, progress
-from verify.errors import InputError, one_line
+from verify.errors import InputError, one_line, raise_all
 
 if TYPE_CHECKING:
     from verify.apart import Died
@@ -56,13 +56,16 @@ def run_several(
     from verify.files import writable_folder
     from verify.models.compiling import hearers, told
     from verify.report.suite import suite_of
+    from verify.scenes.problems import MOST
     from verify.scenes.scene import packaged_scenes
 
     began, at_once = perf_counter(), jobs()
-    if folder is not None:
-        writable_folder(folder, "reports")
     names = given or packaged_scenes()
     found = _loaded(names, overrides, folder, most, as_json)
+    if not any(isinstance(one, Asked) for one in found.values()):
+        raise_all([sentence for one in found.values() if isinstance(one, Ran) for sentence in _sentences(one)], MOST)
+    if folder is not None:
+        writable_folder(folder, "reports")
     asked = sorted((one for one in found.values() if isinstance(one, Asked)), key=lambda one: -one.steps)
     _bring_in(draws=folder is not None)
     with progress(sum(one.steps for one in asked), quiet=as_json) as step:
@@ -78,8 +81,10 @@ def run_several(
         from verify.report.suite import write_suite
 
         page = write_suite(suite, folder)
-    for sentence in dict.fromkeys(sentence for run in every for sentence in run.told if sentence not in told()):
-        click.echo(f"verify: {sentence}", err=True)
+    told_once = dict.fromkeys(sentence for run in every for sentence in (*_sentences(run), *run.told))
+    for sentence in told_once:
+        if sentence not in told():  # which the command line says at its end
+            click.echo(f"verify: {sentence}", err=True)
     if as_json:
         from verify.report.suite import as_plain
 
@@ -90,6 +95,16 @@ def run_several(
         print_suite(suite, page)
     if not suite.passed:
         raise SystemExit(NOT_RUN if suite.refused else GATE_FAILED)
+
+
+def _sentences(run: Ran) -> tuple[str, ...]:
+    """Why a scene could not run."""
+    from verify.report.suite import Refused
+
+    card = run.card
+    return (
+        tuple(one_line(f"{card.name}: {sentence}") for sentence in card.sentences) if isinstance(card, Refused) else ()
+    )
 
 
 COMPILES = "kernels: "

@@ -32,9 +32,6 @@ def print_suite(suite: "Suite", page: Path | None) -> None:
     for card in suite.cards:
         for gate in card.failed:
             console.print(Text(f"{card.name}: gate {gate.gate}: {gate.reason}", style="red"))
-    for lost in suite.refused:
-        for sentence in lost.sentences:
-            console.print(Text(f"{lost.name}: {sentence}", style="red"))
     console.print(Text(suite.verdict, style="bold green" if suite.passed else "bold red"))
     if page is not None:
         console.print(f"report: {page}", soft_wrap=True, markup=False)
