@@ -1,8 +1,8 @@
 """Files and folders written whole or not at all."""
 
 import os
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from errno import EEXIST, ENAMETOOLONG, ENOTEMPTY
 from pathlib import Path
 
@@ -47,26 +47,70 @@ def writable_folder(folder: Path, field: str) -> Path:
 
 
 def write_whole(path: Path, text: str, field: str = "file") -> None:
-    """Write a text file through a neighbour and a rename, so that no reader ever sees half of it.
+    """Write a text file through a neighbour and a rename, so that no reader ever sees half of it."""
+    with whole(path, field) as part:
+        part.write_text(text, encoding="utf-8", errors="backslashreplace", newline="\n")
 
-    A run that is killed in between leaves its neighbour behind; whoever writes the same file later takes it away.
+
+@contextmanager
+def whole(path: Path, field: str = "file") -> Iterator[Path]:
+    """A neighbour to write to, which becomes `path` at the end and is gone where anything is raised in between.
+
+    A run that is killed leaves its neighbour behind; whoever writes the same file later takes it away. Raises
+    InputError where the file cannot be written.
     """
     import tempfile
 
-    exists(path, field)
-    handle = None
+    if exists(path, field) and not path.is_file():  # a rename would put an ordinary file in the place of a device
+        raise InputError(f"{field} = {str(path)!r} is there and is no ordinary file: name another")
+    name = ""
     try:
         _sweep(path)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as stream:
-            stream.write(text)
+        os.close(handle)
+        yield Path(name)
         os.chmod(name, 0o666 & ~_umask())
         os.replace(name, path)
     except OSError as error:
         raise InputError(f"{field} = {str(path)!r} cannot be written ({error.strerror or error})") from None
     finally:
-        if handle is not None and os.path.exists(name):
+        if name and os.path.exists(name):
             os.unlink(name)
+
+
+@contextmanager
+def whole_folder(path: Path, suffix: str, field: str = "file") -> Iterator[Path]:
+    """A neighbour to write files to, which takes the place of the folder `path` at the end, likewise.
+
+    What stood there before goes with it: files of that suffix alone. Raises InputError where there is anything else.
+    """
+    import shutil
+    import tempfile
+
+    _check_only(path, suffix, field)
+    _sweep(path)
+    name = ""
+    try:
+        name = tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        fresh, old = Path(name) / "new", Path(name) / "old"
+        fresh.mkdir()
+        yield fresh
+        if path.exists():
+            os.replace(path, old)
+        os.replace(fresh, path)
+    except OSError as error:
+        raise InputError(f"{field} = {str(path)!r} cannot be written ({error.strerror or error})") from None
+    finally:
+        if name:
+            shutil.rmtree(name, ignore_errors=True)
+
+
+def _check_only(path: Path, suffix: str, field: str) -> None:
+    """Raise InputError where `path` is there and is no folder of files of that suffix alone."""
+    if not exists(path, field):
+        return
+    if not path.is_dir() or any(one.suffix != suffix for one in path.iterdir()):
+        raise InputError(f"{field}: {str(path)!r} is there and holds other things than {suffix} files: name another")
 
 
 def _sweep(path: Path) -> None:

@@ -168,6 +168,8 @@ def test_a_failed_gate_counts_beside_those_set_aside(verify):
     assert "1 of 23 gates failed, 1 not applicable" in words_of(out)
 
 
-@pytest.mark.parametrize("command", ["keys", "schema", "show", "init", "quantities", "run", "table", "choose", "plan"])
+@pytest.mark.parametrize(
+    "command", ["keys", "schema", "show", "init", "quantities", "run", "table", "choose", "plan", "catalogue"]
+)
 def test_help_has_an_example(verify, command):
     assert f"verify {command}" in words_of(verify(command, "--help")[1]).partition("Usage:")[2].partition("]")[2]

@@ -211,6 +211,13 @@ def _stress(draw, line):
     return [*rows, "--no-report", *_layout(draw)]
 
 
+def _catalogue(draw, line):
+    """Sheets of a few scenes, or of all."""
+    scenes = draw.several(lambda: _scene(draw, line, 10), 2)
+    folder = ["--to", draw.value(draw.one("sheets", "."))] * draw.often(40)
+    return [*scenes, *folder, *_json(draw)]
+
+
 QUICK_ROWS = ("modulus", "density", "at-resonance-exact-beam", "beyond-buckling", "rolled-up", "nothing")
 
 
@@ -237,5 +244,5 @@ def _refused(draw, line):
 DRAWERS = {
     "run": _run, "plan": _plan, "measure": _measure, "table": _table, "choose": _choose, "compare": _compare,
     "init": _init, "show": _show, "keys": _keys, "schema": _schema, "quantities": _quantities, "scenes": _scenes,
-    "bench": _bench, "stress": _stress, "report": _report, "diff": _diff,
+    "bench": _bench, "stress": _stress, "catalogue": _catalogue, "report": _report, "diff": _diff,
 }  # fmt: skip

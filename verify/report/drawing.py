@@ -49,6 +49,7 @@ _SETTINGS: dict[Any, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.linewidth": 0.8,
+    "axes.axisbelow": True,
     "grid.linewidth": 0.7,
     "axes.facecolor": "none",
     "figure.facecolor": "none",
@@ -89,6 +90,9 @@ def drawn(chart: Chart) -> Drawing:
         _axis(axes, "x", chart.x, chart)
         _axis(axes, "y", chart.y, chart)
         box = _settle(figure, axes)
+        if chart.equal:
+            axes.set_aspect("equal", adjustable="datalim")
+            axes.apply_aspect()
         text = StringIO()
         figure.savefig(text, format="svg", dpi=144, metadata={"Date": None, "Creator": None, "Format": None})
         (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
@@ -100,8 +104,6 @@ def _lines(axes: "Axes", chart: Chart) -> None:
     before: Line | None = None
     lowest = _lowest(chart)
     for i, line in enumerate(chart.lines):
-        if line.frame is not None and line.frame != len(chart.frames) - 1:
-            continue
         if line.filled and before is not None:
             axes.fill_between(
                 _gaps(line.x), _gaps(before.y), _gaps(line.y), color="#8a8f98", alpha=0.18, lw=0, zorder=1
@@ -110,6 +112,17 @@ def _lines(axes: "Axes", chart: Chart) -> None:
         for x, y, words in zip(line.x, line.y, line.beside, strict=False):
             axes.annotate(words, (x, y), (0, 5), textcoords="offset points", ha="center", fontsize=FONT - 2)
         before = line
+        _room(axes, line)
+
+
+def _room(axes: "Axes", line: Line) -> None:
+    """Limits that hold every frame."""
+    for k, y in enumerate(line.moves):
+        x = line.shifts[k] if line.shifts else line.x
+        points = [(a, b) for a, b in zip(x, y, strict=True) if a is not None and b is not None]
+        axes.update_datalim(points)
+    if line.moves:
+        axes.autoscale_view()
 
 
 def _lowest(chart: Chart) -> set[int]:
@@ -146,7 +159,14 @@ def _gaps(values: Sequence[float | None]) -> list[float]:
 def _bars(axes: "Axes", bars: Bars) -> None:
     places = range(len(bars.names))
     axes.barh(places, bars.values, color=bars.colours, height=0.72)
-    axes.set_yticks(places, bars.names, fontsize=FONT - 2)
+    axes.set_yticks(places, bars.names, fontsize=FONT - 1)
+    for at, value, words in zip(places, bars.values, bars.words, strict=False):
+        side = "left" if value >= 0.0 else "right"
+        axes.annotate(
+            words, (value, at), (4 if value >= 0.0 else -4, 0), textcoords="offset points", ha=side, va="center"
+        )
+    if bars.words:
+        axes.margins(x=0.22)
 
 
 def _map(figure: "Figure", axes: "Axes", found: Map) -> None:

@@ -11,7 +11,7 @@ import msgspec
 from verify.files import write_whole
 from verify.report.document import Document, document_of
 from verify.report.plain import finite
-from verify.run.gates import GateResult, shown_expectation
+from verify.run.gates import GateResult, reference_in_words, shown_expectation
 from verify.words import figure, seconds_in_words
 
 if TYPE_CHECKING:
@@ -97,6 +97,7 @@ def templates() -> "Environment":
         "duration": seconds_in_words,
         "hyphens": _hyphens,
         "band": shown_expectation,
+        "reference": reference_in_words,
     }
     return made
 

@@ -21,12 +21,11 @@ function layered(figure, chart) {
   const plot = figure.querySelector(".plot"), svg = plot.querySelector("svg");
   const [left, top, right, bottom] = chart.box;
   const x = place(chart.x, chart.xlog, left, right), y = place(chart.y, chart.ylog, bottom, top);
-  const shownAt = chart.lines.map(line => line.frame === undefined || line.frame === chart.frames.length - 1);
   const off = new Set(), layer = made("g", {}, svg), spot = made("circle", { r: 5, fill: "none", stroke: "currentColor", "stroke-width": 1.6, visibility: "hidden" }, svg);
   const tip = document.createElement("div");
   tip.className = "tip"; tip.hidden = true; tip.setAttribute("role", "status"); plot.append(tip);
   let at = null;
-  const visible = i => shownAt[i] && !off.has(chart.lines[i].group) && !chart.lines[i].guide;
+  const visible = i => !off.has(chart.lines[i].group) && !chart.lines[i].guide;
   const point = (i, k) => [x(chart.lines[i].x[k]), y(chart.lines[i].y[k])];
   function tell(words, px, py) {
     spot.setAttribute("cx", px); spot.setAttribute("cy", py); spot.setAttribute("visibility", "visible");
@@ -83,18 +82,24 @@ function layered(figure, chart) {
     chart.lines.forEach((line, i) => {
       for (const id of [`${chart.id}-${i}`, `${chart.id}-${i}h`]) {
         const own = document.getElementById(id);
-        if (own) own.style.display = off.has(line.group) || (chart.frames.length && line.frame !== undefined) ? "none" : "";
+        if (own) own.style.display = off.has(line.group) || line.moves ? "none" : "";
       }
     });
     layer.replaceChildren();
-    if (chart.frames.length) chart.lines.forEach((line, i) => { if (line.frame !== undefined && visible(i)) drawLine(line, i); });
+    chart.lines.forEach((line, i) => { if (line.moves && !off.has(line.group)) drawLine(line, i); });
     hide();
   }
   function drawLine(line, i) {
     let pen = "M", d = "";
     line.x.forEach((_, k) => { const [px, py] = point(i, k); if (line.y[k] === null || isNaN(py)) pen = "M"; else { d += `${pen}${px.toFixed(1)} ${py.toFixed(1)}`; pen = "L"; } });
-    if (line.joined) made("path", { d, fill: "none", stroke: line.colour, "stroke-width": line.width, "stroke-dasharray": line.dash }, layer);
-    if (line.marked) line.x.forEach((_, k) => { const [px, py] = point(i, k); if (line.y[k] !== null) made("circle", { cx: px, cy: py, r: 2.2, fill: line.colour }, layer); });
+    if (line.joined) made("path", { d, fill: "none", stroke: line.colour, "stroke-width": line.width, "stroke-dasharray": line.dash, "stroke-linejoin": "round" }, layer);
+    const r = line.size / 2, look = line.hollow ? { fill: "none", stroke: line.colour, "stroke-width": 1.2 } : { fill: line.colour };
+    if (r) line.x.forEach((_, k) => {
+      const [px, py] = point(i, k);
+      if (line.y[k] === null) return;
+      if (line.square) made("rect", { x: px - r, y: py - r, width: 2 * r, height: 2 * r, ...look }, layer);
+      else made("circle", { cx: px, cy: py, r, ...look }, layer);
+    });
   }
   figure.querySelectorAll(".keys button").forEach(button => button.addEventListener("click", () => {
     const group = button.dataset.group, now = off.has(group);
@@ -102,26 +107,52 @@ function layered(figure, chart) {
     button.setAttribute("aria-pressed", String(now));
     reveal();
   }));
-  const frames = figure.querySelector(".frames input");
-  if (frames) {
-    const choose = () => {
-      const k = Number(frames.value);
-      chart.lines.forEach((line, i) => { shownAt[i] = line.frame === undefined || line.frame === k; });
-      figure.querySelector(".frames output").textContent = chart.frames[k];
-      reveal();
-    };
-    figure.querySelector(".frames").hidden = false;
-    frames.addEventListener("input", choose);
-    choose();
-  }
+  if (chart.frames.length) framed(figure, chart, reveal);
   const csv = figure.querySelector(".csv");
   csv.hidden = false;
   csv.addEventListener("click", () => save(`${document.body.dataset.scene}-${chart.id}.csv`, rows(chart)));
 }
+// Frames by hand or as a moving picture: pause, speed; it begins by itself only where it is seen and motion is welcome.
+function framed(figure, chart, reveal) {
+  const bar = figure.querySelector(".frames"), range = bar.querySelector("input"), told = bar.querySelector("output");
+  const n = chart.frames.length, calm = matchMedia("(prefers-reduced-motion: reduce)");
+  let at = n - 1, playing = false, then = 0, asked = 0;
+  function choose(k) {
+    at = Math.floor(k) % n;
+    chart.lines.forEach(line => { if (line.moves) { line.y = line.moves[at]; if (line.shifts) line.x = line.shifts[at]; } });
+    told.textContent = chart.frames[at]; range.value = at;
+    reveal();
+  }
+  bar.hidden = false;
+  range.addEventListener("input", () => { play(false); choose(Number(range.value)); });
+  const button = bar.querySelector("button"), speed = bar.querySelector("select");
+  function play(on) {
+    playing = on;
+    if (button) button.textContent = on ? "Pause" : "Play";
+    if (on && !asked) { then = 0; asked = requestAnimationFrame(turn); }
+  }
+  function turn(now) {
+    asked = 0;
+    if (!playing) return;
+    if (!then) then = now - at * 1000 / (24 * speed.value);
+    choose((now - then) * 24 * speed.value / 1000);
+    asked = requestAnimationFrame(turn);
+  }
+  choose(n - 1);
+  if (!chart.plays) return;
+  button.addEventListener("click", () => play(!playing));
+  speed.addEventListener("change", () => { then = 0; });
+  let touched = false;
+  button.addEventListener("click", () => { touched = true; });
+  new IntersectionObserver(seen => { if (!touched && !calm.matches) play(seen.some(one => one.isIntersecting)); }, { threshold: .6 }).observe(figure);
+}
 const quoted = cell => /[",\n]/.test(cell) ? `"${String(cell).replaceAll('"', '""')}"` : String(cell ?? "");
 function rows(chart) {
   const told = [["line", chart.xtitle, chart.ytitle, "said"]];
-  for (const line of chart.lines) line.x.forEach((v, k) => told.push([line.name, v, line.y[k], line.said ? line.said[k] : ""]));
+  for (const line of chart.lines) {
+    const all = line.moves ? line.moves.map((y, f) => [chart.frames[f], line.shifts ? line.shifts[f] : line.x, y]) : [["", line.x, line.y]];
+    for (const [frame, x, y] of all) x.forEach((v, k) => told.push([line.name, v, y[k], line.said ? line.said[k] : frame]));
+  }
   if (chart.map) chart.map.values.forEach((row, j) => row.forEach((v, i) => told.push([chart.map.name, chart.map.x[i], chart.map.y[j], v])));
   if (chart.bars) chart.bars.names.forEach((name, i) => told.push([name, chart.bars.values[i], "", ""]));
   return told.map(row => row.map(quoted).join(",")).join("\n") + "\n";

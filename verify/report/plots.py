@@ -13,6 +13,8 @@ from verify.words import number
 DIGITS = 6
 """Of the data under the cursor."""
 _DASHES = {"solid": "", "dash": "5 2.5", "dot": "1.3 1.7", "dashdot": "5 2 1.3 2", "longdash": "9 3"}
+MOVING_DIGITS = 4
+"""Of what moves: a thousandth of a picture is no pixel."""
 TOLD = 8
 """Lines that are put into words."""
 
@@ -34,7 +36,6 @@ class Plot(msgspec.Struct, frozen=True, kw_only=True):
     keys: tuple[Key, ...]
     words: str
     data: dict[str, Any]
-    frames_title: str = "Shown:"
 
 
 def plot_of(chart: Chart) -> Plot:
@@ -63,7 +64,9 @@ def _swatch(line: Line) -> str:
     if line.joined:
         dash = f' stroke-dasharray="{_DASHES[line.dash]}"' if _DASHES[line.dash] else ""
         parts.append(f'<path d="M1 6H29" stroke="{line.colour}" stroke-width="{min(line.width, 4):g}"{dash}/>')
-    parts.append(_marker(line.marker, line.colour))
+    marker = _marker(line.marker, line.colour)
+    hollow = bool(line.hollow) and all(line.hollow)
+    parts.append(marker.replace("fill=", 'stroke-width="1.3" fill="none" stroke=') if hollow else marker)
     return f'<svg viewBox="0 0 30 12" aria-hidden="true">{"".join(parts)}</svg>'
 
 
@@ -87,7 +90,7 @@ def words_of(chart: Chart) -> str:
     if chart.bars is not None:
         pairs = zip(reversed(chart.bars.names), reversed(chart.bars.values), strict=True)
         told.append(", ".join(f"{name} {number(value, 3)}" for name, value in pairs) + ".")
-    lines = [line for line in chart.lines if not line.guide and line.y and line.frame in (None, len(chart.frames) - 1)]
+    lines = [line for line in chart.lines if not line.guide and line.y]
     told += [_line_words(line) for line in lines[:TOLD]]
     if len(lines) > TOLD:
         told.append(f"{len(lines) - TOLD} more lines; the data has them all.")
@@ -138,6 +141,7 @@ def _data(chart: Chart, drawing: Drawing) -> dict[str, Any]:
         "xtitle": chart.x.title,
         "ytitle": chart.y.title,
         "frames": chart.frames,
+        "plays": chart.plays,
         "lines": [_line_data(line) for line in chart.lines],
     }
     if chart.map is not None:
@@ -154,9 +158,11 @@ def _line_data(line: Line) -> dict[str, Any]:
         data["said"] = line.said or line.beside
     if line.guide:
         data["guide"] = True
-    if line.frame is not None:
-        data |= {"frame": line.frame, "colour": line.colour, "width": line.width, "dash": _DASHES[line.dash]}
-        data |= {"joined": line.joined, "marked": bool(line.marker)}
+    if line.moves:
+        data |= {"colour": line.colour, "width": line.width, "dash": _DASHES[line.dash], "joined": line.joined}
+        data |= {"size": line.size if line.marker else 0, "hollow": any(line.hollow), "square": line.marker == "square"}
+        data["moves"] = [_short(row, MOVING_DIGITS) for row in line.moves]
+        data |= {"shifts": [_short(row, DIGITS) for row in line.shifts]} if line.shifts else {}
     return data
 
 

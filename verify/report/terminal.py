@@ -18,6 +18,7 @@ from verify.run.gates import shown_expectation
 from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
+    from verify.identify.shapes_told import ShapesJudged
     from verify.identify.told import Compared
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
@@ -91,7 +92,7 @@ def _by_reason(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     return found
 
 
-def print_compared(result: "Compared", report: Path | None) -> None:
+def print_compared(result: "Compared | ShapesJudged", report: Path | None) -> None:
     """What somebody's model is; its modes, the candidates, the gates, where the report lies."""
     console = Terminal()
     answer, *facts = result.facts()

@@ -29,8 +29,11 @@ _COLOURS = {
 
 
 def axial_charts(study: "AxialFound") -> tuple[Chart, ...]:
-    """Every model at one force in time, and the departure from the linear chain over the force."""
-    return _lines(study), _departures(study)
+    """Every model at one force in time, the departure from the linear chain over the force, and one bent far."""
+    from verify.studies.bending_movie import bending_movie
+
+    charts = (_lines(study), _departures(study))
+    return (*charts, bending_movie(study.beam, _COLOURS["full"])) if study.beam is not None else charts
 
 
 def _lines(study: "AxialFound") -> Chart:

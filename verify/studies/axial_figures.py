@@ -37,6 +37,7 @@ from verify.studies.told import Found, Table
 from verify.words import percent
 
 if TYPE_CHECKING:
+    from verify.beam import Beam
     from verify.scenes.scene import Scene
 
 
@@ -83,6 +84,7 @@ class AxialFound(Found, frozen=True, eq=False, kw_only=True):
     duration: float
     x: float
     """Metres from the left end: the place read."""
+    beam: "Beam | None" = None
 
     def in_short(self) -> str:
         """Up to which force the linear chain will do."""
@@ -220,6 +222,7 @@ def axial_study(scene: "Scene", asked: AxialInertia, progress: Progress = lambda
         lines={model: tuple(line.tolist()) for model, line in lines.items()},
         duration=asked.duration,
         x=driven.x,
+        beam=scene.beam,
     )
 
 

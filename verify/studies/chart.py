@@ -49,8 +49,10 @@ class Line(msgspec.Struct, frozen=True, kw_only=True):
     """Something to hold the others against: it is not pointed at and not put into words."""
     filled: bool = False
     """The room between this line and the one before it is shaded."""
-    frame: int | None = None
-    """Shown at this frame alone; at all of them unless given."""
+    moves: tuple[Numbers, ...] = ()
+    """`y` at every frame of a chart that has some, the last as `y`."""
+    shifts: tuple[Numbers, ...] = ()
+    """`x` at every frame, where that changes too."""
 
 
 class Bars(msgspec.Struct, frozen=True):
@@ -59,6 +61,8 @@ class Bars(msgspec.Struct, frozen=True):
     names: tuple[str, ...]
     values: tuple[float, ...]
     colours: tuple[str, ...]
+    words: tuple[str, ...] = ()
+    """Of each, at its end."""
 
 
 class Map(msgspec.Struct, frozen=True, kw_only=True):
@@ -95,6 +99,10 @@ class Chart(msgspec.Struct, frozen=True, kw_only=True):
     marks: tuple[Mark, ...] = ()
     frames: tuple[str, ...] = ()
     """Names of frames to choose among, the last is shown first."""
+    plays: bool = False
+    """Whether frames follow each other as a moving picture; they are chosen by hand unless told."""
+    equal: bool = False
+    """Whether both axes have one scale."""
 
     @property
     def empty(self) -> bool:

@@ -8,9 +8,9 @@ from msgspec.structs import replace
 
 from verify.exact.error_laws import MEAN_LIMIT
 from verify.judge.compare import EIGENVALUE_FLOOR
-from verify.models.catalogue import bounding
+from verify.models.catalogue import MODELS, bounding
 from verify.options import THEORIES
-from verify.studies.chart import Axis, Chart, Line
+from verify.studies.chart import Axis, Bars, Chart, Line
 from verify.studies.charting import (
     DASHES,
     GREY,
@@ -39,8 +39,11 @@ _THEORIES = {"rayleigh": RAYLEIGH, "timoshenko": TIMOSHENKO}
 
 
 def spectrum_charts(study: "SpectrumFound") -> tuple[Chart, ...]:
-    """Signed errors, and their sizes beside the theories'."""
-    charts = (_signed_errors(study), _model_form(study))
+    """Signed errors, their sizes beside the theories', what the last mode's is made of, shapes."""
+    from verify.studies.shape_charts import shapes_chart
+
+    shapes = shapes_chart(study.bench, study.variants, study.count, study.modes[-1]) if study.bench else ()
+    charts = (_signed_errors(study), _model_form(study), _split(study), *shapes)
     return tuple(one for one in charts if not one.empty)
 
 
@@ -112,6 +115,30 @@ def _model_form(study: "SpectrumFound") -> Chart:
         x=Axis("mode number"),
         y=Axis("size of the frequency error, %", log=True),
         lines=tuple(lines),
+    )
+
+
+def _split(study: "SpectrumFound") -> Chart:
+    """Of the last mode's frequency: division, theory, rounding, each by itself."""
+    found = [(one, study.errors[one.label][-1]) for one in study.variants]
+    parts = [(f"division, {one.title}", abs(e), MODELS[one.model].colour) for one, e in found if e]
+    parts += [(f"theory, {theory_name(t)}", abs(v[-1]), _THEORIES[t]) for t, v in study.theories.items() if v[-1]]
+    parts.append(("rounding, at most", EIGENVALUE_FLOOR, GREY))
+    return Chart(
+        id="error-split",
+        title=f"What the error of mode {study.modes[-1]} is made of, N = {study.count}",
+        caption="Division into parts: against the exact beam of the same theory. Theory: what Euler-Bernoulli's leaves "
+        "out. Rounding: the floor of the eigenvalues. Nothing is stepped in time here, so that no step has a share.",
+        x=Axis("relative", log=True),
+        y=Axis(""),
+        bars=Bars(
+            names=tuple(name for name, _, _ in parts[::-1]),
+            values=tuple(size for _, size, _ in parts[::-1]),
+            colours=tuple(colour for _, _, colour in parts[::-1]),
+            words=tuple(f"{size:.1e}" for _, size, _ in parts[::-1]),
+        )
+        if len(parts) > 1
+        else None,
     )
 
 

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.models.catalogue import MODELS
-from verify.studies.chart import Axis, Chart, Line
+from verify.studies.chart import Axis, Bars, Chart, Line
 from verify.studies.charting import BROAD, GREY, model_line, plain_line, thinned
 
 if TYPE_CHECKING:
@@ -18,8 +18,11 @@ SLIDER = "#2f80ed"
 
 
 def slider_charts(study: "SliderFound") -> tuple[Chart, ...]:
-    """Way and force on three models, the surface under the slider, work against error."""
-    return _trajectory(study), _force(study), _speeds(study), _work(study)
+    """Way and force on three models, the surface under the slider, the ride, the books, work against error."""
+    from verify.studies.slider_movie import slider_movie
+
+    charts = (_trajectory(study), _force(study), _speeds(study), *slider_movie(study), *_books(study), _work(study))
+    return (*charts, *_split(study))
 
 
 def _how(study: "SliderFound") -> str:
@@ -86,6 +89,69 @@ def _speeds(study: "SliderFound") -> Chart:
         y=Axis("speed, mm/s"),
         lines=tuple(
             plain_line(name, colour, times, [1e3 * v for v in thinned(values)]) for name, values, colour in speeds
+        ),
+    )
+
+
+def _books(study: "SliderFound") -> tuple[Chart, ...]:
+    """Where the work of the forces went; nothing where it was not booked."""
+    ledger = study.subject.ledger
+    if ledger is None:
+        return ()
+    entries = {
+        "work of the forces": ledger.work_in,
+        "kinetic, beam": ledger.kinetic,
+        "elastic, beam": ledger.elastic,
+        "damped in the beam": ledger.damped,
+        "rubbed off": ledger.rubbed,
+        "gained by the slider": ledger.slider,
+        "friction on the beam": ledger.contact_on_beam,
+        "normal reaction on the beam": ledger.normal_on_beam,
+        "missed by the books": ledger.residual,
+    }
+    told = [(name, value) for name, value in entries.items() if value or name.startswith("missed")][::-1]
+    bars = Bars(
+        names=tuple(name for name, _ in told),
+        values=tuple(1e6 * value for _, value in told),
+        colours=tuple(GREY if name.startswith("missed") else SLIDER for name, _ in told),
+        words=tuple(f"{1e6 * value:.3g}" for _, value in told),
+    )
+    return (
+        Chart(
+            id="slider-books",
+            title=f"Where the energy went, N = {study.count}",
+            caption="From the start of the run to its end, segments. What the books miss is quadrature over a step; "
+            f"under one-way coupling the beam is not charged with friction: {_how(study)}.",
+            x=Axis("energy, µJ"),
+            y=Axis(""),
+            bars=bars,
+        ),
+    )
+
+
+def _split(study: "SliderFound") -> tuple[Chart, ...]:
+    """Of the slider's displacement: what the division, the step and the linear model leave, each by itself."""
+    rows = [row for row in study.work.rows if row.count == min(r.count for r in study.work.rows)]
+    parts = {
+        f"division, {row.count} {MODELS[row.model].title}": (abs(row.error), MODELS[row.model].colour) for row in rows
+    }
+    parts["time step, half the step"] = (study.work.step_floor, GREY)
+    parts["axial inertia left out, (kL)² ⟨θ²⟩"] = (study.subject.margins.nonlinearity, "#9b6bdf")
+    shown = [(name, size, colour) for name, (size, colour) in parts.items() if size > 0.0][::-1]
+    return (
+        Chart(
+            id="slider-split",
+            title="What the error of the slider's displacement is made of",
+            caption="Division: against the exact beam. Time step: what half of it changes. Axial inertia: the number "
+            f"that says what a linear model leaves out of a chain of rigid links: {_how(study)}.",
+            x=Axis("relative", log=True),
+            y=Axis(""),
+            bars=Bars(
+                names=tuple(name for name, _, _ in shown),
+                values=tuple(size for _, size, _ in shown),
+                colours=tuple(colour for _, _, colour in shown),
+                words=tuple(f"{size:.1e}" for _, size, _ in shown),
+            ),
         ),
     )
 

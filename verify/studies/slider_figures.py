@@ -131,7 +131,9 @@ def slider_study(scene: "Scene", progress: Progress = lambda step: None) -> Slid
     models: dict[str, int | None] = {model.name: asked.count for model in discrete("time_basis", scene.beam)}
     for model, count in (models | {"analytic": None}).items():
         progress(f"slider on {model}")
-        runs[model] = run_once(scene, model, count, ledger=True, samples=max(asked.samples, every_step(scene)))
+        joints = places_of(scene, count) if model == bounding()[0].name else ()
+        samples = max(asked.samples, every_step(scene))
+        runs[model] = run_once(scene, model, count, ledger=True, samples=samples, at=joints)
         conditions[model] = condition_of(scene, model, count)
         turned = run_once(back, model, count) if back else None
         ended = all(one is None or one.statistics.stopped == "end" for one in (runs[model], turned))
@@ -149,6 +151,12 @@ def slider_study(scene: "Scene", progress: Progress = lambda step: None) -> Slid
         count=asked.count,
         n_motions=len(runs) * (2 if back else 1) + len(drifts) + work.n_runs,
     )
+
+
+def places_of(scene: "Scene", count: int | None) -> list[float]:
+    """Joints of a chain of equal links, (count + 1,), metres."""
+    n = count or 1
+    return [scene.beam.length * k / n for k in range(n + 1)]
 
 
 def figures_of(run: Ride, back: Ride | None) -> dict[str, float]:

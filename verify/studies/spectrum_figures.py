@@ -32,6 +32,8 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     """Of the errors."""
     left_out: tuple[str, ...] = ()
     """Which models of other packages are not here, and why."""
+    bench: Workbench | None = None
+    """Where the modes are, for their shapes."""
 
     def charts(self) -> tuple[Chart, ...]:
         """Signed errors, and their sizes beside the theories'."""
@@ -94,6 +96,7 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
         theories=_theory_errors(bench, modes),
         bracketed=is_bracketed(bench.beam) and len(variants) == len(models) and not asked.chosen,
         left_out=tuple(left_out.values()),
+        bench=bench,
     )
 
 

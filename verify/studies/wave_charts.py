@@ -20,8 +20,17 @@ CLIPPED = 10.0
 
 
 def wave_charts(study: "WaveFound") -> tuple[Chart, ...]:
-    """Envelopes, ellipses, map, figures over sizes."""
-    return _envelopes(study), _ellipses(study), _map(study), _sizes(study)
+    """Envelopes, ellipses, the wave as it runs, map, figures over sizes."""
+    from verify.studies.wave_movie import wave_movie
+
+    moving = wave_movie(study.snapshots, study.ellipses, study.count)
+    return _envelopes(study), _ellipses(study), moving, _map(study), _sizes(study)
+
+
+def magnification(ellipses: "tuple[Ellipse, ...]") -> float:
+    """By how much motion along the beam is drawn larger, so that neighbours leave each other room."""
+    across = max(max(map(abs, e.across)) for e in ellipses)
+    return 0.42 * (ellipses[1].x - ellipses[0].x) / across
 
 
 def _damping(study: "WaveFound") -> str:
@@ -51,8 +60,7 @@ def _ellipses(study: "WaveFound") -> Chart:
     """Paths of surface points, drawn where they are; across enlarged against up, and saying so."""
     across = max(max(map(abs, e.across)) for e in study.ellipses)
     up = max(max(map(abs, e.up)) for e in study.ellipses)
-    gap = (study.ellipses[1].x - study.ellipses[0].x) * 1e3
-    magnified = 0.42 * gap / (1e3 * across)
+    magnified = magnification(study.ellipses)
     ratio = across / up
     return Chart(
         id="wave-ellipses",

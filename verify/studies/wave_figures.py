@@ -51,12 +51,24 @@ class MotorRow(msgspec.Struct, frozen=True, kw_only=True):
     """What is wrong with `best`: it is missing, or lies at the edge of the search."""
 
 
+SMOOTH = 160
+"""Stretches of an exact line in a moving picture."""
+
+
 class Ellipse(msgspec.Struct, frozen=True, kw_only=True):
     """The path of one surface point over a period, metres."""
 
     x: float
     across: tuple[float, ...]
     up: tuple[float, ...]
+
+
+class Snapshot(msgspec.Struct, frozen=True):
+    """A model's complex deflection where it knows it, metres, at places along the beam."""
+
+    x: tuple[float, ...]
+    real: tuple[float, ...]
+    imaginary: tuple[float, ...]
 
 
 _OPERATION = (Column("SWR", "ratio"), Column("axis ratio", "+.5f"), Column("mm/s", "+.5g", 1e3))
@@ -138,6 +150,8 @@ class WaveFound(Found, frozen=True, eq=False, kw_only=True):
     count: int
     other_drive: float
     """Standing-wave ratio of the exact field if the other kind of drive is imposed with the same phase."""
+    snapshots: dict[str, Snapshot] = msgspec.field(default_factory=dict)
+    """By model, of parts at their ends."""
 
     def in_short(self) -> str:
         """How pure the wave is at the drive."""
@@ -273,7 +287,14 @@ def wave_study(scene: "Scene", bench: "Workbench", asked: "Wave", progress: Prog
         pure_phase=_pure_along_a_phase(scene),
         first_phase_deg=scene.forces[0].phase_deg,
         other_drive=_under_the_other_drive(scene, bench),
+        snapshots={name: _snapshot(field, sizes[name]) for name, field in fields.items()},
     )
+
+
+def _snapshot(field: "HarmonicField", count: int | None) -> Snapshot:
+    x = np.linspace(0.0, field.beam.length, (count or SMOOTH) + 1)
+    w = field.deflection(x)
+    return Snapshot(tuple(x.tolist()), tuple(w.real.tolist()), tuple(w.imag.tolist()))
 
 
 def _under_the_other_drive(scene: "Scene", bench: "Workbench") -> float:

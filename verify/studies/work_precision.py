@@ -20,6 +20,8 @@ from verify.studies.slider import EXACT, ROUNDS
 from verify.studies.told import Found, Table
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from verify.motion.result import Motion
     from verify.scenes.scene import Scene
 
@@ -191,12 +193,13 @@ def run_once(
     ledger: bool = False,
     samples: int = 2,
     coupling: str | None = None,
+    at: "Sequence[float]" = (),
 ) -> "Motion":
-    """The scene's slider on one model, coupled as it says unless told otherwise."""
+    """The scene's slider on one model, coupled as it says unless told otherwise; the deflection kept `at` places."""
     a = SliderInTime(model=model, count=count, coupling=coupling)  # type: ignore[arg-type]
     per_period = scene.motion.steps_per_period if scene.motion else 64
     found = motion_case(a, scene).run(
-        slider=slider_of(a, scene), steps_per_period=per_period, samples=samples, ledger=ledger, patient=False
+        slider=slider_of(a, scene), steps_per_period=per_period, samples=samples, ledger=ledger, patient=False, at=at
     )
     if found.statistics.interrupted:
         raise KeyboardInterrupt
