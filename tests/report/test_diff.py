@@ -139,6 +139,6 @@ def test_the_page_of_a_difference_has_its_verdict_and_links_to_what_broke(kept, 
     assert status == 1
     assert "<strong>1 gate held before and fails now</strong>" in page
     assert '<a href="#strip-gate-second">' in page
-    assert '<tr id="strip-gate-second">' in page
+    assert 'id="strip-gate-second"' in page
     assert "49.90041 ± 0.001 to 50 ± 0.001" in page.replace("50.0", "50")
     assert page.rstrip().endswith("</html>")

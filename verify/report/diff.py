@@ -127,10 +127,11 @@ def differences(before: dict[str, Kept], after: dict[str, Kept], names: tuple[st
     else:
         pairs = {name: (before[name].document, after[name].document) for name in before if name in after}
     single = len(before) == len(after) == 1
+    scenes = (difference(name, *pair) for name, pair in pairs.items())
     return Differences(
         before=names[0],
         after=names[1],
-        scenes=tuple(difference(name, *pair) for name, pair in pairs.items()),
+        scenes=tuple(sorted(scenes, key=lambda one: not one.broken)),
         only_before=() if single else tuple(name for name in before if name not in after),
         only_after=() if single else tuple(name for name in after if name not in before),
     )
