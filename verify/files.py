@@ -151,8 +151,16 @@ def write_folder(folder: Path, texts: Mapping[str, str], field: str = "folder") 
 
 
 def _moved(part: Path, folder: Path) -> Path:
-    """Rename a folder to the first name that is free, whoever else looks for one. Raises OSError."""
-    for number in range(1, NAMES):
+    """Rename a folder to the first name behind those that are taken, whoever else looks for one. Raises OSError.
+
+    A number that is free again, because its folder was taken away, is not used: the order of names is that of time.
+    """
+    from glob import escape
+
+    behind = (one.name.rpartition("-")[2] for one in folder.parent.glob(f"{escape(folder.name)}-*"))
+    numbers = [int(number) for number in behind if number.isascii() and number.isdigit()]
+    first = max(numbers, default=int(folder.exists())) + 1
+    for number in range(first, first + NAMES):
         there = folder if number == 1 else folder.with_name(f"{folder.name}-{number}")
         folder.parent.mkdir(exist_ok=True)
         if there.exists():

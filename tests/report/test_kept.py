@@ -67,13 +67,25 @@ def test_numbers_behind_a_time_are_counted_and_not_spelt(tmp_path):
     assert [path.name for path in runs_in(tmp_path)] == names
 
 
+def test_the_run_that_was_just_made_is_never_the_one_that_is_taken_away(strip, tmp_path):
+    """However many there are in one second, of which the first are gone already."""
+    for _ in range(7):
+        last = keep(strip, tmp_path, "strip", "verify run", 2).folder
+        assert runs_in(tmp_path / "strip")[-1] == last
+    assert len(runs_in(tmp_path / "strip")) == 2
+
+
 def test_none_is_kept_where_none_is_wanted_and_the_latest_page_is_there(strip, tmp_path):
     keep(strip, tmp_path, "strip", "verify run")
     written = keep(strip, tmp_path, "strip", "verify run", 0)
     assert written.folder is None
     assert written.latest.is_file()
     assert runs_in(tmp_path / "strip") == []
-    assert KEPT >= 2  # or `verify diff` had nothing to compare
+    from verify.commands.run import run
+
+    assert (
+        next(one.default for one in run.params if one.name == "most") == KEPT >= 2
+    )  # or `verify diff` had nothing to compare
 
 
 def test_without_a_report_nothing_is_kept(strip, tmp_path):
