@@ -835,7 +835,6 @@ DEAD = [
 OFF: dict[str, Any] = {
     "epsilon": 0.13,
     "resistance": 3.7,
-    "stiffness": 4100.0,
     "ratio": 1.3,
     "loss_factor": 0.017,
     "modal_damping": 0.019,

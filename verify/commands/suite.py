@@ -33,6 +33,8 @@ class Asked(msgspec.Struct, frozen=True, kw_only=True):
     """Whether all its figures are wanted."""
     steps: int
     """How often it tells of its progress."""
+    at_once: int
+    """Scenes that run side by side."""
 
 
 class Ran(msgspec.Struct, frozen=True, kw_only=True):
@@ -124,6 +126,7 @@ def _loaded(
     names: tuple[str, ...], overrides: tuple[str, ...], folder: Path | None, most: int, plain: bool
 ) -> "dict[str, Asked | Ran]":
     """Every scene once, in order: loaded, or why it cannot be. Two whose reports had one name are not both run."""
+    from verify.cores import jobs
     from verify.report.suite import PAGE
     from verify.run.applies import report_name
     from verify.run.runner import n_steps
@@ -151,6 +154,7 @@ def _loaded(
                 most=most,
                 plain=plain,
                 steps=n_steps(scene),
+                at_once=min(jobs(), len(names)),
             )
         except InputError as error:
             found[given] = _refused(given, error.sentences)
@@ -214,7 +218,7 @@ def _ran(asked: Asked, say: Callable[[str], None]) -> Ran:
     written = None
     if asked.folder is not None:
         line = command_line("run", (asked.given,), asked.overrides)
-        written = keep(result, asked.folder, asked.name, line, asked.most)
+        written = keep(result, asked.folder, asked.name, line, asked.most, at_once=asked.at_once)
     card = card_of(result, asked.name, written, asked.folder or Path())
     plain = run_as_plain(result, written.latest if written else None) if asked.plain else {}
     return Ran(card=card, plain=plain)

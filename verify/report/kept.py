@@ -63,8 +63,10 @@ def folder_for(reports: Path, name: str) -> Path:
     return home
 
 
-def keep(result: "RunResult", reports: Path, name: str, command: str, most: int = KEPT) -> Written:
+def keep(result: "RunResult", reports: Path, name: str, command: str, most: int = KEPT, *, at_once: int = 1) -> Written:
     """Write the page of a run and what it says, and take away what is older than the `most` newest runs of that name.
+
+    `at_once` scenes ran side by side, which the page says where they were several, for their times are of that.
 
     The page in the folder stands before the latest one does, so that what is shown is always kept too; with `most` 0
     the latest stands alone. Raises InputError.
@@ -72,6 +74,9 @@ def keep(result: "RunResult", reports: Path, name: str, command: str, most: int 
     from verify.report.html import rendered
 
     document = document_of(result, command)
+    if at_once > 1:
+        beside = {"scenes at once": f"up to {at_once}: run times here are of a machine that did other things too"}
+        document = msgspec.structs.replace(document, environment=document.environment | beside)
     page = rendered(document)
     latest, folder = reports / f"{name}.html", None
     home = folder_for(reports, name) if most else reports / name
