@@ -17,6 +17,7 @@ ROOMS = (
     "values",
     "models",
     *MODELS,
+    "contact",
     "judge",
     "waves",
     "motion",

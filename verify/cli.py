@@ -34,6 +34,8 @@ COMMANDS = {
     "picture": "picture",
     "quantities": "quantities:list_quantities",
     "plan": "plan",
+    "report": "report",
+    "diff": "diff",
     "stress": "stress",
     "catalogue": "catalogue",
     "scenes": "scenes",

@@ -1,15 +1,17 @@
-"""Files written whole or not at all."""
+"""Files and folders written whole or not at all."""
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
-from errno import ENAMETOOLONG
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from errno import EEXIST, ENAMETOOLONG, ENOTEMPTY
 from pathlib import Path
 
 from verify.errors import InputError, shown
 
 STALE_S = 600.0
 """Seconds after which a part that nobody went on with is one that a killed run left."""
+NAMES = 1000
+"""Numbers that are tried behind a folder's name before it is given up."""
 
 
 def exists(path: Path, field: str) -> bool:
@@ -113,15 +115,82 @@ def _check_only(path: Path, suffix: str, field: str) -> None:
 
 def _sweep(path: Path) -> None:
     """Take away what killed runs left of this file; what is younger may be another run's, which goes on."""
-    import shutil
-    from contextlib import suppress
     from glob import escape
     from time import time
 
     for part in path.parent.glob(f".{escape(path.name)}.*.part"):
         with suppress(OSError):
             if time() - part.lstat().st_mtime > STALE_S:
-                shutil.rmtree(part) if part.is_dir() else part.unlink()
+                _delete(part)
+
+
+def write_folder(folder: Path, texts: Mapping[str, str], field: str = "folder") -> Path:
+    """Write text files, by their names, into a new folder that is there whole or not at all; returns where it is.
+
+    It is made beside the folder that it will lie in, and renamed: where the name is taken, another run's perhaps, a
+    number stands behind it. Raises InputError.
+    """
+    import tempfile
+
+    exists(folder, field)
+    home, part = folder.parent, None
+    try:
+        _sweep(home)
+        part = Path(tempfile.mkdtemp(dir=home.parent, prefix=f".{home.name}.", suffix=".part"))
+        for name, text in texts.items():
+            (part / name).write_text(text, encoding="utf-8", errors="backslashreplace")
+        part.chmod(0o777 & ~_umask())
+        return _moved(part, folder)
+    except OSError as error:
+        raise InputError(f"{field} = {str(home)!r} cannot be written to ({error.strerror or error})") from None
+    finally:
+        if part is not None and part.exists():
+            _delete(part)
+            with suppress(OSError):
+                home.rmdir()  # which it does where it is empty, and nowhere else
+
+
+def _moved(part: Path, folder: Path) -> Path:
+    """Rename a folder to the first name behind those that are taken, whoever else looks for one. Raises OSError.
+
+    A number that is free again, because its folder was taken away, is not used: the order of names is that of time.
+    """
+    from glob import escape
+
+    behind = (one.name.rpartition("-")[2] for one in folder.parent.glob(f"{escape(folder.name)}-*"))
+    numbers = [int(number) for number in behind if number.isascii() and number.isdigit()]
+    first = max(numbers, default=int(folder.exists())) + 1
+    for number in range(first, first + NAMES):
+        there = folder if number == 1 else folder.with_name(f"{folder.name}-{number}")
+        folder.parent.mkdir(exist_ok=True)
+        if there.exists():
+            continue
+        try:
+            os.replace(part, there)
+        except OSError as error:
+            if not there.exists() and error.errno not in (EEXIST, ENOTEMPTY):
+                raise
+        else:
+            return there
+    raise FileExistsError(EEXIST, "every name that was tried is taken")
+
+
+def delete_folder(folder: Path) -> None:
+    """Take a folder away: first its name, so that nobody finds half of it. Does nothing where it cannot."""
+    gone = folder.parent.parent / f".{folder.parent.name}.{folder.name}.part"
+    with suppress(OSError):
+        os.replace(folder, gone)
+        _delete(gone)
+
+
+def _delete(part: Path) -> None:
+    """A file, or a folder and what is in it."""
+    import shutil
+
+    if part.is_dir() and not part.is_symlink():
+        shutil.rmtree(part, ignore_errors=True)
+    else:
+        part.unlink()
 
 
 def _umask() -> int:

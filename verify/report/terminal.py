@@ -54,8 +54,8 @@ def _harmless(segment: Segment) -> Segment:
     return Segment("\n".join(lines), segment.style)
 
 
-def print_run(result: "RunResult", report: Path | None) -> None:
-    """Gates, what the studies found, the verdict, where the report lies."""
+def print_run(result: "RunResult", report: Path | None, kept: Path | None = None) -> None:
+    """Gates, what the studies found, the verdict, where the report lies and is kept."""
     console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
     if judged := tuple(gate for gate in result.gates if gate.applicable):
@@ -70,6 +70,8 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     console.print(f"{_verdict(result)} in {seconds_in_words(result.seconds)}: {work}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True, markup=False)
+    if kept is not None:
+        console.print(f"kept: {kept}", soft_wrap=True, markup=False)
 
 
 def _verdict(result: "RunResult") -> str:

@@ -329,9 +329,11 @@ def _forget_references(data: dict[str, Any], overrides: Iterable[str]) -> None:
     keys = {text.partition("=")[0].strip() for text in overrides}
     gates = data.get("gate") if any(key.startswith("gate.") for key in keys) else None
     for i, gate in enumerate(gates if isinstance(gates, list) else ()):
-        names = [f"gate.{i}"] + [f"gate.{gate['id']}"] * (isinstance(gate, dict) and "id" in gate)
+        if not isinstance(gate, dict):
+            continue
+        names = (f"gate.{i}", f"gate.{gate.get('id', i)}")
         set_here = {key.rpartition(".")[2] for key in keys if key.rpartition(".")[0] in names}
-        if set_here & {"expect", "at_least", "at_most"} and isinstance(gate, dict) and "reference" not in set_here:
+        if set_here & {"expect", "at_least", "at_most"} and "reference" not in set_here:
             for name in ("reference", "uncertainty", "source"):
                 gate.pop(name, None)
 
