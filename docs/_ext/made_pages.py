@@ -104,13 +104,15 @@ def verdicts_of(scene):
 
 
 def make(app):
-    """Write the pages."""
+    """Write the pages, each whole: two builds may run at once."""
+    from verify.files import write_whole
+
     pages = {"scenes.md": scene_page(), "quantities.md": quantities_page()}
     for name, text in (pages | catalogue_pages(judged=app.config.verify_judge)).items():
         path = MADE / name
         if not path.exists() or path.read_text("utf-8") != text:
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, "utf-8")
+            write_whole(path, text, "docs/made")
 
 
 def setup(app):
