@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.files import write_whole
-from verify.report.document import Document, document_of
+from verify.report.document import Document, PageTable, Section, document_of
 from verify.report.plain import finite
 from verify.run.gates import GateResult, shown_expectation
 from verify.words import figure, seconds_in_words
@@ -20,6 +20,12 @@ if TYPE_CHECKING:
     from verify.identify.told import Compared
     from verify.run.runner import RunResult
     from verify.scenes.scene import Scene
+
+
+UPRIGHT = 112
+"""Letters of a table's row on A4 in the size in which tables are printed."""
+WRAPPED = 24
+"""Letters of a cell from which on it is broken into lines."""
 
 
 def write_report(result: "RunResult", path: Path, command: str) -> None:
@@ -80,6 +86,22 @@ def groups_of(gates: tuple[GateResult, ...]) -> tuple[GateGroup, ...]:
     )
 
 
+def worded(table: PageTable) -> bool:
+    """Whether a column has sentences: a phone shows the rows of such a table one under the other."""
+    return any(head.side == "long" for head in table.heads)
+
+
+def broad(section: Section) -> bool:
+    """Whether a table of a section has more in a row than a page of paper has room for upright."""
+    return any(_letters(table) > UPRIGHT for table in section.tables if table.rows and not table.folded)
+
+
+def _letters(table: PageTable) -> int:
+    """In a row, each column as wide as its widest cell or what of it stays in one line."""
+    columns = zip(table.heads, *table.rows, strict=True)
+    return sum(2 + max(min(len(cell.text), WRAPPED) for cell in column) for column in columns)
+
+
 def rendered(document: Document) -> str:
     """The whole HTML page of a document: pictures, layer and data in one file."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -96,6 +118,7 @@ def rendered(document: Document) -> str:
         "hyphens": _hyphens,
         "band": shown_expectation,
     }
+    templates.tests |= {"worded": worded, "broad": broad}
     plots = [plot_of(chart) for chart in document.charts]
     set_aside = [gate for gate in document.gates if not gate.applicable]
     return templates.get_template("page.html.j2").render(

@@ -164,6 +164,16 @@ function save(name, text) {
   URL.revokeObjectURL(link.href);
 }
 for (const chart of charts) layered(document.getElementById(chart.id), chart);
+// A table that is broader than its place says so, and the keyboard moves it.
+const watched = new ResizeObserver(seen => seen.forEach(({ target }) => {
+  const over = target.scrollWidth > target.clientWidth + 1, hint = target.previousElementSibling?.matches(".hint") ? target.previousElementSibling : null;
+  if (over === Boolean(hint)) return;
+  if (!over) { hint.remove(); target.removeAttribute("tabindex"); target.removeAttribute("role"); return; }
+  const told = document.createElement("p");
+  told.className = "hint"; told.textContent = "scroll sideways \u2192"; target.before(told);
+  target.tabIndex = 0; target.setAttribute("role", "region"); target.setAttribute("aria-label", target.querySelector("caption").textContent);
+}));
+document.querySelectorAll(".scroll").forEach(one => watched.observe(one));
 const opened = () => { const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1))); for (let one = target; one; one = one.parentElement) if (one.tagName === "DETAILS") one.open = true; if (target) target.scrollIntoView(); };
 addEventListener("hashchange", opened); opened();
 document.querySelectorAll(".copy").forEach(link => link.addEventListener("click", () => navigator.clipboard?.writeText(link.href).catch(() => {})));
