@@ -20,10 +20,7 @@ class Box(msgspec.Struct, frozen=True):
     def meets(self, other: "Box") -> bool:
         """Whether both take some of the same room."""
         return (
-            self.left < other.right
-            and other.left < self.right
-            and self.top < other.bottom
-            and other.top < self.bottom
+            self.left < other.right and other.left < self.right and self.top < other.bottom and other.top < self.bottom
         )
 
 
