@@ -2,6 +2,7 @@
 window.checks = (() => {
   const settled = () => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 0))));
   const openAll = () => document.querySelectorAll("details").forEach(one => { one.open = true; });
+  const close = () => document.querySelectorAll("details").forEach(one => { one.open = false; });
   const shown = one => one.getClientRects().length > 0;
   const named = one => (one.textContent || "").trim().replace(/\s+/g, " ").slice(0, 60);
   const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 0.25 * Math.min(a.height, b.height);
@@ -134,5 +135,5 @@ window.checks = (() => {
   });
 
   const pictures = () => [...document.querySelectorAll("svg.drawn")].filter(one => one.getBoundingClientRect().width > 200).length;
-  return { wide, contrast, tables, words, told, legends, frames, playing, paper, printed, pictures, settled };
+  return { wide, contrast, tables, words, told, legends, frames, playing, paper, printed, pictures, close };
 })();

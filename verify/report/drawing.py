@@ -273,22 +273,33 @@ def _settle(figure: "Figure", axes: "Axes") -> tuple[float, float, float, float]
 
     measuring: Any = RendererSVG
     renderer = measuring(WIDTH, HEIGHT, StringIO())
-    words = axes.get_tightbbox(renderer, bbox_extra_artists=axes.texts)
-    assert words is not None
-    own = axes.get_window_extent()
     bars = [one for one in figure.axes if one is not axes]
-    right = 0.0
+    for _ in range(2 if axes.texts else 1):  # words at a bar's end go farther out as the axes shrink
+        left, above, over, bottom, right = _margins(axes, bars, renderer)
+        wide, tall = (WIDTH - left - over) / WIDTH, (HEIGHT - bottom - above) / HEIGHT
+        axes.set_position((left / WIDTH, bottom / HEIGHT, wide, tall))
+        for bar in bars:
+            bar.set_position(((WIDTH - right) / WIDTH, bottom / HEIGHT, 10.0 / WIDTH, tall))
+    return left, above, WIDTH - over, HEIGHT - bottom
+
+
+def _margins(axes: "Axes", bars: "list[Axes]", renderer: Any) -> tuple[float, float, float, float, float]:
+    """What words need at the left, above, at the right, below; and of the right what a bar of colours needs."""
+    words, own = axes.get_tightbbox(renderer, bbox_extra_artists=axes.texts), axes.get_window_extent()
+    assert words is not None
+    right, top = 0.0, words.y1
     for bar in bars:
         beside = bar.get_tightbbox(renderer)
         right = (beside.width if beside else 0.0) + 8.0
-    left, bottom = own.x0 - words.x0 + 3.0, own.y0 - words.y0 + 3.0
-    over, above = max(words.x1 - own.x1, 0.0) + 4.0 + right, max(words.y1 - own.y1, 0.0) + 4.0
-    axes.set_position(
-        (left / WIDTH, bottom / HEIGHT, (WIDTH - left - over) / WIDTH, (HEIGHT - bottom - above) / HEIGHT)
+        top = max(top, beside.y1 if beside else 0.0)
+    over, above = max(words.x1 - own.x1, 0.0) + 4.0 + right, max(top - own.y1, 0.0) + 4.0
+    return (
+        float(own.x0 - words.x0 + 3.0),
+        float(above),
+        float(over),
+        float(own.y0 - words.y0 + 3.0),
+        float(right),
     )
-    for bar in bars:
-        bar.set_position(((WIDTH - right) / WIDTH, bottom / HEIGHT, 10.0 / WIDTH, (HEIGHT - bottom - above) / HEIGHT))
-    return float(left), float(above), float(WIDTH - over), float(HEIGHT - bottom)
 
 
 def _cleaned(text: str) -> str:

@@ -26,7 +26,7 @@ function layered(figure, chart) {
   tip.className = "tip"; tip.hidden = true; tip.setAttribute("role", "status"); plot.append(tip);
   let at = null;
   const visible = i => !off.has(chart.lines[i].group) && !chart.lines[i].guide;
-  const there = (i, k) => chart.lines[i].x[k] !== null && chart.lines[i].y[k] !== null && point(i, k).every(isFinite);
+  const there = (i, k) => (chart.lines[i].x[k] ?? null) !== null && (chart.lines[i].y[k] ?? null) !== null && point(i, k).every(isFinite);
   const point = (i, k) => [x(chart.lines[i].x[k]), y(chart.lines[i].y[k])];
   function tell(words, px, py) {
     spot.setAttribute("cx", px); spot.setAttribute("cy", py); spot.setAttribute("visibility", "visible");
@@ -85,11 +85,15 @@ function layered(figure, chart) {
     if (chart.bars) return bar(turn(at ? at[0] : chart.bars.names.length, -step[0] - step[1], chart.bars.names.length));
     const known = chart.lines.map((_, i) => i).filter(i => visible(i) && chart.lines[i].x.some((_, k) => there(i, k)));
     if (!known.length) return;
+    const aside = step[1], leap = step[0];
     let [i, k] = at && known.includes(at[0]) ? at : [known[0], -1];
-    i = known[turn(known.indexOf(i), step[0], known.length)];
-    const n = chart.lines[i].x.length;
-    k = step[1] ? turn(Math.min(k, n - 1), step[1], n) : Math.max(Math.min(k, n - 1), 0);
-    while (!there(i, k)) k = turn(k, step[1] || 1, n);
+    const next = by => { i = known[turn(known.indexOf(i), by, known.length)]; return chart.lines[i].x.length; };
+    let n = leap ? next(leap) : chart.lines[i].x.length;
+    k = leap ? Math.max(Math.min(k, n - 1), 0) : k + aside;
+    while (!there(i, k)) {
+      if (k >= 0 && k < n) k += aside || 1;
+      else { n = next(aside || 1); k = aside < 0 ? n - 1 : 0; }
+    }
     show(i, k);
   });
   function reveal() {
