@@ -2,6 +2,7 @@
 
 import json
 import os
+import select
 import shutil
 import subprocess
 import time
@@ -18,7 +19,7 @@ QUIET = [
     "--disable-background-networking",
     "--disable-component-update",
 ]
-PATIENCE = 120.0
+PATIENCE = 30.0
 
 
 class Browser:
@@ -46,7 +47,7 @@ class Browser:
     def __exit__(self, *_):
         os.close(self._out)
         try:
-            self._process.wait(10)
+            self._process.wait(5)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
@@ -77,6 +78,8 @@ class Browser:
                 if wanted(one):
                     return one
                 self._told.append(one)
+            if not select.select([self._in], [], [], 1.0)[0]:
+                continue
             more = os.read(self._in, 1 << 20)
             assert more, "Chromium ended"
             self._rest += more
@@ -102,6 +105,7 @@ class Page:
     def open(self, path):
         """Load a file and wait until it is there."""
         self._browser._told = []
+        self.send("Page.bringToFront")  # one behind another is not painted
         self.send("Page.navigate", url=path.as_uri())
         self._browser.event("Page.loadEventFired", self._session)
         return self

@@ -59,8 +59,9 @@ def nothing(chromium, tmp_path_factory):
     word = tmp_path_factory.mktemp("word") / "word.html"
     word.write_text("<!doctype html><title>a word</title>word", "utf-8")
     page = chromium.page()
-    yield first_paint(page, word)
+    took = first_paint(page, word)
     page.close()
+    return took
 
 
 def test_a_report_is_light_and_soon_painted(report, nothing):
