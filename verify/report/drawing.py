@@ -26,6 +26,8 @@ UNDER = 1.7
 """By which the lowest lines are broader."""
 CLOSEST = 27.0
 """Between two ticks that were chosen."""
+FEW, MANY = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
+"""Times a power of ten: ticks of an axis that is short."""
 SHORT = 0.2
 """Of all bars' span: words of a bar to the left that is shorter stand at its right, clear of the names."""
 _INK, _RULE, _PAPER = "#010203", "#010204", "#010205"
@@ -227,13 +229,15 @@ def _axis(axes: "Axes", which: str, axis: Axis, chart: Chart) -> None:
 
 
 def _at_least_two(axes: "Axes", which: str) -> None:
-    """Ticks at 1, 2 and 5 where the axis has no two powers of ten."""
+    """Ticks at 1, 2 and 5 where the axis has no two powers of ten; more of them where it has not two of those."""
     from matplotlib.ticker import LogLocator
 
     low, high = sorted(axes.get_xlim() if which == "x" else axes.get_ylim())
     if log10(high / low) < 2.0:
+        decades = range(floor(log10(low)), floor(log10(high)) + 1)
+        few = sum(low <= sub * 10.0**k <= high for k in decades for sub in FEW) < 3
         own = axes.xaxis if which == "x" else axes.yaxis
-        own.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=9))
+        own.set_major_locator(LogLocator(subs=MANY if few else FEW, numticks=20))
 
 
 def _positive(chart: Chart, which: str) -> bool:

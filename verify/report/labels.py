@@ -5,7 +5,7 @@ from itertools import count
 
 import msgspec
 
-LETTER, ROW = 6.9, 14.0
+LETTER, ROW = 7.3, 14.0
 """Width of a letter and height of a row of words at the picture's size of 12."""
 
 
