@@ -20,8 +20,8 @@ WORK = {
     "chain equilibria": {("chain/statics.py", "solve_static")},
     "chain motions": {("chain/stepping.py", "simulate"), ("chain/stretching.py", "simulate")},
     "charts": {("", "charts")},
-    "pages": {("report/html.py", "page")},
-    "files": {("files.py", "write_whole"), ("files.py", "writable_folder")},
+    "pages": {("report/html.py", "rendered")},
+    "files": {("files.py", "write_whole"), ("files.py", "write_folder"), ("files.py", "writable_folder")},
     "compilations": {("core/dispatcher.py", "_compile_core"), ("core/dispatcher.py", "compile")},
 }
 """What is counted, by the functions that do it: the end of their file's path, and their name."""

@@ -1,28 +1,68 @@
-"""Parts of numpy and scipy that others import and hardly a command looks into: they stay asleep until one does.
+"""Parts of Python, numpy, scipy and scikit-fem that others import and hardly a command looks into: asleep until then.
 
 `import scipy` reaches for everything that numpy has, its test tools and Fortran tools among it, which is longer than
-all of numpy. The command line leaves them unread by the standard library's `LazyLoader`: a module is there under its
-name, and is read when anybody first looks into it. `import verify` does nothing of the kind to whoever imports it.
+all of numpy; each module of scikit-fem for every solver that scipy has. The command line leaves them unread: a module
+is there under its name, and is read when anybody first looks into it (the standard library's `LazyLoader`), or, of a
+package that only gathers the names of its modules, when anybody first asks for a name that is no module of it.
+`import verify` does nothing of the kind to whoever imports it.
 """
 
 import sys
-from typing import TYPE_CHECKING
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from importlib.abc import Loader
     from importlib.machinery import ModuleSpec
-    from types import ModuleType
 
-ASLEEP = frozenset(
-    {
-        *(f"numpy.{part}" for part in ("char", "core", "ctypeslib", "f2py", "fft", "ma", "polynomial")),
-        *(f"numpy.{part}" for part in ("rec", "strings", "testing", "typing")),
-        "scipy.linalg",
-        "scipy.sparse.csgraph",
-        "scipy.sparse.linalg",
-    }
-)
+GATHERS = frozenset({"scipy.linalg", "skfem"})
+"""Packages whose own file gathers names and does nothing else: their modules do without it."""
+
+ASLEEP = GATHERS | {
+    *("ipaddress", "pydoc", "shutil", "subprocess"),
+    *(f"numpy.{part}" for part in ("char", "core", "ctypeslib", "f2py", "fft", "ma", "polynomial")),
+    *(f"numpy.{part}" for part in ("rec", "strings", "testing", "typing")),
+    "scipy.sparse.csgraph",
+    "scipy.sparse.linalg",
+}
 """Packages and modules by the names that others import them by."""
+
+
+class Gathering(ModuleType):
+    """A package that is there and not read: its modules are imported by their names, any other name reads it."""
+
+    def __getattr__(self, name: str) -> Any:
+        """A module of it; else what it has under a name once it is read. It gathers nothing private."""
+        from importlib import import_module
+        from importlib.machinery import PathFinder
+
+        if PathFinder.find_spec(f"{self.__name__}.{name}", self.__path__) is not None:
+            return import_module(f"{self.__name__}.{name}")
+        if name.startswith("_") and not name.endswith("__"):  # as a module asks that may lie beside it or not
+            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
+        self.__class__ = ModuleType  # type: ignore[assignment]
+        assert self.__spec__ is not None
+        assert self.__spec__.loader is not None
+        self.__spec__.loader.exec_module(self)
+        return getattr(self, name)
+
+
+class Later:
+    """The loader of such a package: leaves it unread, and gives way to Python's own."""
+
+    def __init__(self, loader: "Loader") -> None:
+        self.loader = loader
+
+    def create_module(self, spec: "ModuleSpec") -> ModuleType | None:
+        """As Python's own loader makes it."""
+        return self.loader.create_module(spec)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing yet."""
+        assert module.__spec__ is not None
+        module.__spec__.loader = module.__loader__ = self.loader
+        module.__class__ = Gathering
 
 
 class Sleepers:
@@ -40,7 +80,7 @@ class Sleepers:
 
         spec = PathFinder.find_spec(name, path, target)
         if spec is not None and spec.loader is not None:
-            spec.loader = LazyLoader(spec.loader)
+            spec.loader = (Later if name in GATHERS else LazyLoader)(spec.loader)  # type: ignore[assignment]
         return spec
 
 

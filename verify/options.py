@@ -78,3 +78,22 @@ BenchSet = Literal["modes", "harmonic", "transient", "slider", "chain"]
 BENCH_SETS: tuple[str, ...] = get_args(BenchSet)
 """What a bench compares methods in. modes: natural frequencies. harmonic: the steady field under the drive. transient:
 the linear beam in time. slider: its displacement on that beam. chain: the nonlinear chain from rest."""
+
+Reference = Literal["closed form", "independent method", "published", "other code", "regression"]
+REFERENCES: tuple[str, ...] = get_args(Reference)
+"""What stands behind a gate's expectation, or its bound. closed form: a formula. independent method: another derivation
+of the figure. published: a publication. other code: another program. regression: this suite itself, once."""
+Exported = Literal["modes", "field", "motion", "tables"]
+EXPORTED: tuple[str, ...] = get_args(Exported)
+"""What a scene gives to other tools. modes: shapes and frequencies. field: the steady answer to the drive. motion: the
+beam in time, with its slider. tables: those that a run prints."""
+
+FileFormat = Literal["vtu", "pvd", "xdmf", "csv", "json", "npz", "tex"]
+FILE_FORMATS: tuple[str, ...] = get_args(FileFormat)
+"""How that is written. vtu: one mesh of VTK. pvd: a series of them. xdmf: a series in one file. csv: a table. json: all
+of it as text. npz: arrays of numpy. tex: tables for LaTeX."""
+
+Pictured = Literal["modes", "wave", "slider", "chain"]
+PICTURED: tuple[str, ...] = get_args(Pictured)
+"""What is drawn. modes: one shape, segments above elements. wave: the driven beam over a period. slider: its run with
+the force on it. chain: a nonlinear chain rolled up, at true scale."""

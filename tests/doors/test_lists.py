@@ -154,7 +154,7 @@ def test_another_beam_has_a_report_of_its_own_and_fails_no_gate_of_the_scene(ver
     status, out, _ = verify("run", "free-free-bar", "--set", "beam.length=0.4")
     assert status == 0
     assert "stated for another beam: --set beam.length" in words_of(out)
-    (report,) = (tmp_path / "reports").iterdir()
+    (report,) = (tmp_path / "reports").glob("*.html")
     assert report.name == "free-free-bar--beam.length=0.4.html"
     page = report.read_text("utf-8")
     assert "No gate applies" in page
@@ -168,6 +168,8 @@ def test_a_failed_gate_counts_beside_those_set_aside(verify):
     assert "1 of 23 gates failed, 1 not applicable" in words_of(out)
 
 
-@pytest.mark.parametrize("command", ["keys", "schema", "show", "init", "quantities", "run", "table", "choose", "plan"])
+@pytest.mark.parametrize(
+    "command", ["keys", "schema", "show", "init", "quantities", "run", "table", "choose", "plan", "catalogue"]
+)
 def test_help_has_an_example(verify, command):
     assert f"verify {command}" in words_of(verify(command, "--help")[1]).partition("Usage:")[2].partition("]")[2]

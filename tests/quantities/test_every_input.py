@@ -280,6 +280,21 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "segment", "count": 12, "position": 0.11, "x": 0.37}, CARRIED),
         Case({"model": "fem", "count": 12, "position": 0.11, "x": 0.37, "theory": "timoshenko"}, PLAIN),
     ],
+    "wave.absorber_impedance": [Case({"position": 0.0573})],
+    "wave.absorber_reflection": [
+        Case({"position": 0.0573, "ratio": 1.7}),
+        Case({"position": 0.0573, "resistance": 3.1, "stiffness": 5100.0}),
+        Case({"position": 0.0573, "ratio": 1.7, "model": "analytic"}),
+        Case({"position": 0.0573, "resistance": 3.1, "stiffness": 5100.0, "model": "segment", "count": 24}),
+        Case({"position": 0.0573, "ratio": 1.7, "model": "fem", "count": 14}),
+    ],
+    "slider.winkler_speed_ratio": [
+        Case({"contact_half_angle": 1.1}),
+        Case({"contact_half_angle": 1.1, "epsilon": 0.13}),
+    ],
+    "slider.layer_force": [Case({"contact_half_angle": 1.1, "speed_ratio": 0.71, "epsilon": 0.3})],
+    "slider.layer_efficiency": [Case({"contact_half_angle": 1.1, "speed_ratio": 0.71})],
+    "contact.landing_phase": [Case({"acceleration_ratio": 1.7})],
     "wave.reflection_per_hertz": [Case({}), Case({"model": "segment", "count": 24})],
     "wave.reflection_per_degree": [Case({}), Case({"model": "fem", "count": 14})],
     "friction.free_decay": [Case({"mu": 0.23, "slope": 90.0, "speed": 0.013, "time": 0.004})],
@@ -462,6 +477,10 @@ def by_a_ratio(asked):
     own = None if asked.quantity.startswith("motion.released") else asked.scene["motion"]["modal_damping"]
     ratios = own, asked.arguments.get("modal_damping")
     return "modal_damping" in asked.arguments and ratios != (None, None)
+
+
+def half_infinite(asked):
+    return asked.arguments.get("model") is None
 
 
 def euler(asked):
@@ -676,7 +695,7 @@ DEAD = [
     Dead("*", "beam.loss_factor", "given instead", given("loss_factor")),
     Dead("*", "drive.kind", "given instead", given("drive")),
     Dead(
-        "wave.* slider.* motion.*",
+        "wave.[!a]* wave.axis_ratio slider.* motion.*",
         "drive.force.*.position drive.force.*.measured_from",
         "given instead",
         given("position"),
@@ -685,6 +704,30 @@ DEAD = [
     Dead("wave.receptance", "drive.kind drive.force.*", "one newton at `position` instead"),
     Dead("friction.belt_stick_time", "arguments.mass", "2 (F_s - F_k)/(k V): what rides has no inertia to show"),
     Dead("friction.coulomb_decrement", "arguments.mass", "4 F/k"),
+    Dead(
+        "slider.winkler_speed_ratio slider.layer_*",
+        "beam.* drive.* slider.* motion.*",
+        "a layer on crests of their own",
+    ),
+    Dead("contact.landing_phase", "beam.* drive.* slider.* motion.*", "a surface of its own"),
+    Dead("wave.absorber_*", "drive.kind drive.force.*", "one wave from the left, whatever makes it", half_infinite),
+    Dead("wave.absorber_*", "beam.extreme_fibre", "no surface"),
+    Dead("wave.absorber_*", "beam.length beam.supports.0", "half-infinite: the left end is far away", half_infinite),
+    Dead(
+        "wave.absorber_reflection", "drive.force.*.amplitude drive.force.*.phase_deg", "one force is left, and a ratio"
+    ),
+    Dead(
+        "wave.absorber_reflection",
+        "beam.* drive.frequency_hz arguments.frequency_hz arguments.position",
+        "|s - 1|/(s + 1) of a resistance off by a factor s, of any beam",
+        lambda asked: half_infinite(asked) and asked.arguments.get("ratio") is not None,
+    ),
+    Dead(
+        "wave.absorber_reflection",
+        "beam.width",
+        "of beam and device alike, which is matched to it",
+        lambda asked: asked.arguments.get("ratio") is not None,
+    ),
     Dead("friction.*", "beam.* drive.* slider.* motion.*", "a rigid surface of its own"),
     Dead(
         "slider.terminal_speed",
@@ -790,6 +833,9 @@ DEAD = [
 ]
 
 OFF: dict[str, Any] = {
+    "epsilon": 0.13,
+    "resistance": 3.7,
+    "ratio": 1.3,
     "loss_factor": 0.017,
     "modal_damping": 0.019,
     "joint_dashpot": 0.013,

@@ -127,7 +127,7 @@ def test_what_moves_is_light_and_ends_where_it_began(wave_html):
     moving = data_of(wave_html)["wave-moving"]
     assert moving["plays"]
     assert len(json.dumps(moving)) < 150_000
-    _exact, segments, elements, surface = moving["lines"]
+    _, segments, elements, surface = moving["lines"]
     assert len(segments["x"]) == len(elements["x"]) == 50
     half, whole = segments["moves"][17], segments["moves"][35]
     assert half == pytest.approx([-w for w in whole], abs=2e-3)

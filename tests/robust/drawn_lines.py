@@ -211,7 +211,29 @@ def _stress(draw, line):
     return [*rows, "--no-report", *_layout(draw)]
 
 
+def _catalogue(draw, line):
+    """Sheets of a few scenes, or of all."""
+    scenes = draw.several(lambda: _scene(draw, line, 10), 2)
+    folder = ["--to", draw.value(draw.one("sheets", "."))] * draw.often(40)
+    return [*scenes, *folder, *_json(draw)]
+
+
 QUICK_ROWS = ("modulus", "density", "at-resonance-exact-beam", "beyond-buckling", "rolled-up", "nothing")
+
+
+def _kept(draw, line):
+    """What might be a run that is kept, and is none."""
+    head = b'{"layout": 1, "verify": "0.1.0", "report": "mine", "document": {}, "figures": {}}'
+    line.files["run.json"] = draw.one(head, head.replace(b"1", b"2", 1), b"{}", b"", draw.randbytes(30))
+    return draw.value(draw.one("run.json", "run.json", ".", "nowhere", "scene/run.json"))
+
+
+def _report(draw, line):
+    return [_kept(draw, line), *["--to", draw.value(draw.one("again.html", "no/again.html"))] * draw.often(60)]
+
+
+def _diff(draw, line):
+    return [_kept(draw, line), draw.value(draw.one("run.json", ".", "nowhere")), *_json(draw)]
 
 
 def _refused(draw, line):
@@ -222,5 +244,5 @@ def _refused(draw, line):
 DRAWERS = {
     "run": _run, "plan": _plan, "measure": _measure, "table": _table, "choose": _choose, "compare": _compare,
     "init": _init, "show": _show, "keys": _keys, "schema": _schema, "quantities": _quantities, "scenes": _scenes,
-    "bench": _bench, "stress": _stress,
+    "bench": _bench, "stress": _stress, "catalogue": _catalogue, "report": _report, "diff": _diff,
 }  # fmt: skip

@@ -28,10 +28,11 @@ def shell(line, folder, **environment):
     return done.returncode, done.stdout, done.stderr
 
 
-def started(words, folder, **environment):
-    """A command that goes on by itself."""
+def started(words, folder, *, start_new_session=False, **environment):
+    """A command that goes on by itself, in a session of its own where its processes are counted."""
     env = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)} | environment
-    return subprocess.Popen([*RUNS, *words], cwd=folder, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "start_new_session": start_new_session}
+    return subprocess.Popen([*RUNS, *words], cwd=folder, env=env, **how)
 
 
 def whole(path):

@@ -1,5 +1,6 @@
 """Runs that are killed at any moment: files whole or absent, and the next run does not notice."""
 
+import json
 import signal
 import sys
 from random import Random
@@ -36,7 +37,7 @@ def killed_at_random(folder, seed, scene, longest):
 
 def parts_in(folder):
     """What was begun and not ended."""
-    return {path.name for path in (folder / "reports").glob(".*")}
+    return {path.name for path in (folder / "reports").rglob(".*")}
 
 
 def check_left(folder, process, said, parts):
@@ -44,10 +45,13 @@ def check_left(folder, process, said, parts):
     how, begins = process.returncode, b"/verify/" not in said[1] and said[1].endswith(b"KeyboardInterrupt\n")
     assert how in (0, -signal.SIGKILL, 130, 143, -signal.SIGINT, -signal.SIGTERM) or (how == 1 and begins), said
     assert b"Traceback" not in said[1] or begins  # Python itself, before the suite is asked
-    assert all(whole(page) for page in (folder / "reports").glob("[!.]*"))
+    assert all(whole(page) for page in (folder / "reports").glob("[!.]*.html"))
+    kept = [run for home in (folder / "reports").glob("[!.]*/") for run in home.iterdir()]
+    assert all({one.name for one in run.iterdir()} == {"index.html", "run.json"} for run in kept)
+    assert all(whole(run / "index.html") and json.loads((run / "run.json").read_text("utf-8")) for run in kept)
     new = parts_in(folder) - parts
     assert not new or how == -signal.SIGKILL
-    assert all(name.startswith((".mine.html.", ".slides.html.")) and name.endswith(".part") for name in new)
+    assert all(name.startswith((".mine.", ".slides.")) and name.endswith(".part") for name in new)
 
 
 def next_run_is_unharmed(folder, name):
@@ -81,8 +85,9 @@ def test_two_hundred_runs_that_are_killed_leave_no_half_file_and_kernels_that_ru
     next_run_is_unharmed(tmp_path, "slides")
 
 
-def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path, monkeypatch, capsys):
-    """Told between the first and the last byte of the page."""
+@pytest.mark.parametrize(("at", "left"), [(1, []), (2, ["mine"])])
+def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path, monkeypatch, capsys, at, left):
+    """Told when the folder of the run, or the latest page, is written and not yet there."""
     import os
 
     from verify import cli
@@ -93,8 +98,9 @@ def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path,
     seen, true = [], os.replace
 
     def told(source, target):
-        seen.extend(path.suffix for path in (tmp_path / "reports").iterdir())
-        os.kill(os.getpid(), signal.SIGTERM)
+        seen.append(sorted(path.suffix or path.name for path in (tmp_path / "reports").iterdir()))
+        if len(seen) == at:
+            os.kill(os.getpid(), signal.SIGTERM)
         true(source, target)
 
     monkeypatch.setattr(os, "replace", told)
@@ -106,6 +112,8 @@ def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path,
     finally:
         for one, handler in before.items():
             signal.signal(one, handler)
-    assert seen == [".part"]
-    assert list((tmp_path / "reports").iterdir()) == []
+    assert seen == [[".part", "mine"]] * at
+    assert [path.name for path in (tmp_path / "reports").iterdir()] == left
+    kept = [sorted(one.name for one in run.iterdir()) for run in (tmp_path / "reports").glob("mine/*")]
+    assert kept == [["index.html", "run.json"]] * len(left)
     assert capsys.readouterr().err == "verify: terminated; nothing half-written is left\n"

@@ -26,7 +26,8 @@ def test_a_closed_stream_changes_neither_the_verdict_nor_the_report(folder, clos
     assert status == 0
     assert err == ""
     assert ("all 1 gates passed" in out) == (">&-" not in closed.replace("2>&-", ""))
-    assert sorted(path.name for path in folder.rglob("*.*")) == ["mine.html", "mine.toml"]
+    names = sorted(path.name for path in folder.rglob("*.*"))
+    assert names == ["index.html", "mine.html", "mine.toml", "run.json"]
     page = (folder / "reports" / "mine.html").read_text("utf-8")
     assert page.startswith("<!doctype html>")
     assert whole(folder / "reports" / "mine.html")
@@ -47,7 +48,7 @@ def test_a_full_disk_behind_a_report_is_one_sentence_and_leaves_nothing(folder):
     """A limit of 4 KiB for files, which a page exceeds."""
     status, out, err = shell(f"ulimit -f 4; $V {' '.join(SMALL)} | cat", folder)
     assert (status, out) == (0, "")  # of cat
-    assert err == "verify: reports = 'reports/mine.html' cannot be written (File too large)\n"
+    assert err == "verify: reports = 'reports/mine' cannot be written to (File too large)\n"
     assert list((folder / "reports").iterdir()) == []
 
 
@@ -69,8 +70,10 @@ def test_two_runs_into_one_folder_at_once_leave_one_whole_report(folder):
     runs = [started(SMALL, folder) for _ in range(2)]
     assert [run.communicate()[1] for run in runs] == [b"", b""]
     assert [run.returncode for run in runs] == [0, 0]
-    assert [path.name for path in (folder / "reports").iterdir()] == ["mine.html"]
+    assert sorted(path.name for path in (folder / "reports").iterdir()) == ["mine", "mine.html"]
     assert whole(folder / "reports" / "mine.html")
+    kept = sorted((folder / "reports" / "mine").iterdir())
+    assert [sorted(one.name for one in run.iterdir()) for run in kept] == [["index.html", "run.json"]] * 2
 
 
 @pytest.mark.parametrize("kind", ["a file", "a link to nothing", "a loop", "below a file"])

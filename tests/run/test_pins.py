@@ -23,6 +23,8 @@ TIMED = ("seconds", "run_time_s", "run_ms_per_ms", "set_up_ms", "answer", "repor
 """How keys end whose values are of the clock, follow from it, or are counts and rounding of adaptive steps."""
 ROUNDED = ("stress.rows", "stress.fits", "stress.machine", "stress.date", "stress.left_out", "gates")
 """Of the scene stress all but its plan: roundings, exponents and times of the machine that it runs on."""
+OF_REFERENCES = (".reference", ".uncertainty", ".source")
+"""Of gates: what a scene says of its references is told, not found."""
 FEW = 3
 """Of a long list that many are pinned, and its length."""
 ROUNDING = 1e-11
@@ -49,7 +51,10 @@ def found(scene):
     plan = msgspec.to_builtins(plan_scene(load_scene(scene)))
     words = ("why", "band", "expected", "share", "reason", "quantity", "arguments", "notes", "applicable")
     run = {
-        path: value for path, value in leaves(told(scene)) if not set(path.replace("]", "].").split(".")) & set(words)
+        path: value
+        for path, value in leaves(told(scene))
+        if not set(path.replace("]", "].").split(".")) & set(words)
+        and not (path.startswith("gates[") and path.endswith(OF_REFERENCES))
     }
     if scene == "stress":
         run = {path: value for path, value in run.items() if not path.startswith(ROUNDED)}

@@ -162,11 +162,24 @@ def test_a_report_is_drawn_and_written_once_where_it_is_wanted_and_nowhere_else(
     (tmp_path / "strip.toml").write_text(text)
     wanted, not_wanted = (counted(tmp_path, "run", "strip.toml", "--json", *more) for more in ((), ("--no-report",)))
     drawn = {"charts", "pages", "files"}
-    assert {name: wanted.times(name) for name in drawn} == {"charts": 1, "pages": 1, "files": 2}
+    assert {name: wanted.times(name) for name in drawn} == {"charts": 1, "pages": 1, "files": 3}
     assert not drawn & set(not_wanted.work)
     assert not not_wanted.libraries & {"jinja2", "matplotlib"}
     assert "matplotlib" in wanted.libraries
     assert wanted.times("solves") == not_wanted.times("solves") == 3
+
+
+def test_several_scenes_draw_their_pages_and_one_picture_each_and_without_a_report_nothing(tmp_path):
+    for name in ("strip", "other"):
+        text = BEAM.replace("strip", name) + "spectrum = { modes = 3, count = 9 }\n" + figures("segment", 2)
+        (tmp_path / f"{name}.toml").write_text(text)
+    both = ("run", "strip.toml", "other.toml", "--json")
+    wanted, not_wanted = (counted(tmp_path, *both, *more) for more in ((), ("--no-report",)))
+    assert not {"charts", "pages", "files"} & set(not_wanted.work)
+    assert not not_wanted.libraries & {"jinja2", "matplotlib", "rich", "numba"}
+    assert not {"verify.report.drawing", "verify.report.html"} & not_wanted.modules
+    assert {name: wanted.times(name) for name in ("pages", "files")} == {"pages": 2, "files": 6}
+    assert wanted.times("solves") == not_wanted.times("solves") == 6
 
 
 def test_beside_what_is_timed_a_study_solves_each_size_once(tmp_path):

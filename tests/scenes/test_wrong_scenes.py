@@ -94,3 +94,9 @@ def test_overrides_that_name_nothing_are_all_named():
         "--set gate.nobody",
         "--set beam.length",
     ]
+
+
+@pytest.mark.parametrize("gates", ["[{}]", "[3]", '["id"]', "{}"])
+def test_gates_that_are_none_are_refused_whatever_is_set_of_them(gates):
+    with pytest.raises(InputError, match="gate"):
+        load_scene("paper", ("gate.0.expect=1.3", f"gate={gates}"))

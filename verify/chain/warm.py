@@ -13,28 +13,41 @@ Call = tuple[Callable[..., Any], tuple[Any, ...]]
 
 def calls() -> Iterator[Call]:
     """Rigid links in steps and in modes, links that stretch."""
-    from verify.chain import held_kernels, kernels, recursion_kernels, splitting_kernels
+    yield from rigid()
+    yield from modal()
+    yield from stretching()
 
-    flat, one, chain = np.zeros((1, 1)), np.zeros(1), _flat()
-    few = np.zeros(1, dtype=np.int64)
+
+def rigid() -> Iterator[Call]:
+    """Rigid links in steps."""
+    from verify.chain import held_kernels, kernels, recursion_kernels
+
+    flat, one, few, chain = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64), _flat()
     yield recursion_kernels.hub_motion, (one, 0.0)
     yield held_kernels.place, (chain, 0.0, one, one, flat)
     yield held_kernels.project, (chain, 0.0, one, one, few, 0.0, flat)
     yield kernels.accelerate, (chain, 0.0, one, one, flat, one)
-    yield kernels.energies, (chain, 0.0, one, one, flat)
     yield kernels.march, (chain, _march(), 1, flat)
+
+
+def modal() -> Iterator[Call]:
+    """Rigid links in modes, and their energies."""
+    from verify.chain import kernels, splitting_kernels
+
+    flat, one, few, chain = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64), _flat()
+    yield kernels.energies, (chain, 0.0, one, one, flat)
     yield splitting_kernels.march_modal, (chain, _modal(), one, few, one, np.zeros((1, 1, 1)), 1, flat, flat)
-    yield from _stretching()
 
 
-def _stretching() -> Iterator[Call]:
+def stretching() -> Iterator[Call]:
+    """Links that stretch."""
     from verify.chain import stretching_kernels
 
     flat, one, cube = np.zeros((1, 1)), np.zeros(1), np.zeros((1, 1, 1))
     links = stretching_kernels.Elastic(links=flat, loads=flat, gravity=one, factors=cube)
     yield stretching_kernels.factorise, (one, one, flat, cube)
-    yield stretching_kernels.energy, (links, one, one, flat, flat)
     yield stretching_kernels.march, (links, 0.0, 0.0, 1, flat, flat, cube, cube)
+    yield stretching_kernels.energy, (links, one, one, flat, flat)
 
 
 def _flat() -> Flat:

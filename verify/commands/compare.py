@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, load, overridden, print_json
-from verify.errors import InputError
+from verify.commands.shared import json_alone, load, overridden, print_json, whole_number
 
 if TYPE_CHECKING:
     from verify.identify.told import Compared
@@ -59,7 +58,7 @@ def compare(
         frequencies=None if frequencies is None else Path(frequencies),
         shapes=None if modes is None else Path(modes),
         model=model,
-        count=None if count is None else _whole("count", count),
+        count=whole_number("count", count),
         unit=unit,
         kind=kind,
         mode=None if mode is None else mode_number(mode),
@@ -72,15 +71,6 @@ def compare(
     _show(result, report, as_json=as_json)
     if not result.passed:
         raise SystemExit(GATE_FAILED)
-
-
-def _whole(field: str, text: str) -> int:
-    from verify.scenes.toml import literal
-
-    value = literal(text, field)
-    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-        raise InputError(f"{field} = {text!r}: give a whole number from 1")
-    return value
 
 
 def _report(scene: "Scene", result: "Compared", folder: str) -> Path:

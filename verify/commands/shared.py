@@ -56,11 +56,23 @@ def print_json(data: Any) -> None:
     click.echo(json.dumps(finite(data), indent=2, allow_nan=False))
 
 
-def command_line(command: str, scene: str, overrides: tuple[str, ...]) -> str:
+def whole_number(field: str, text: str | None) -> int | None:
+    """A whole number from 1 as typed; None where nothing is. Raises InputError."""
+    if text is None:
+        return None
+    from verify.scenes.toml import literal
+
+    value = literal(text, field)
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError(f"{field} = {text!r}: give a whole number from 1")
+    return value
+
+
+def command_line(command: str, scenes: tuple[str, ...], overrides: tuple[str, ...]) -> str:
     """The line that does the same again."""
     from shlex import join
 
-    return join(["verify", command, scene, *(word for text in overrides for word in ("--set", text))])
+    return join(["verify", command, *scenes, *(word for text in overrides for word in ("--set", text))])
 
 
 def in_percent(step: Callable[[str], None]) -> Callable[[float], None]:

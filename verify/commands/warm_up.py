@@ -65,8 +65,11 @@ def _calls() -> list[tuple[Any, tuple[Any, ...]]]:
 
 
 def _compile_all() -> None:
-    for kernel, given in _calls():
-        kernel.compile(tuple(kernel.typeof_pyval(value) for value in given))
+    from verify.models.ahead import compiled_ahead
+
+    with compiled_ahead(_calls):
+        for kernel, given in _calls():
+            kernel.compile(tuple(kernel.typeof_pyval(value) for value in given))
 
 
 def _print(found: dict[str, Any], own: "list[Compiled]") -> None:

@@ -11,7 +11,7 @@ with g_1 they are of order 4. Imports scikit-fem, so it is itself imported in fu
 from typing import Any
 
 import numpy as np
-from skfem import BilinearForm
+from skfem.assembly import BilinearForm
 from skfem.element import DiscreteField
 from skfem.element.element import Element
 from skfem.refdom import RefLine

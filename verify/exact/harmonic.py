@@ -10,7 +10,7 @@ import numpy as np
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.arrays import Array, ComplexArray, Indices
+from verify.models.arrays import Array, BoolArray, ComplexArray, Indices
 from verify.models.fields import (
     RESONANCE,
     HarmonicField,
@@ -121,22 +121,29 @@ def pinned_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[
     def shapes(x: Array, derivative: int) -> ComplexArray:
         field = np.zeros((*np.shape(k)[:-1], len(x)), dtype=complex)
         for force in forces:
+            left = x <= force.position
+            lie = left, np.where(left, x, beam.length - x), abs(x - force.position)
             for q, factor in ((1j * k, -1j), (near, -1.0)):
-                field += phasor(force) * scale * factor * _green(q, force.position, beam.length, x, derivative)
+                field += phasor(force) * scale * factor * _green(q, force.position, beam.length, lie, derivative)
         return field
 
     return shapes
 
 
-def _green(q: Any, source: float, length: float, x: Array, derivative: int) -> ComplexArray:
-    """A derivative of e^{-q(b-a)} S(a) S(L-b) / S(L) by x, which is a or b: each one turns a sign in S, (len(x),)."""
+def _green(q: Any, source: float, length: float, lie: tuple[BoolArray, Array, Array], derivative: int) -> ComplexArray:
+    """A derivative of e^{-q(b-a)} S(a) S(L-b) / S(L) by x, which is a or b: each one turns a sign in S, (len(x),).
+
+    Of every x `lie` says whether it lies left of the force, how far from its own end and how far from the force.
+    """
+    left, own, apart = lie
     turned = -1.0 if derivative % 2 == 0 else 1.0
-    left = x <= source
     before, behind, whole = (1.0 - np.exp(-2 * q * part) for part in (source, length - source, length))
-    moving = 1.0 + turned * np.exp(-2 * q * np.where(left, x, length - x))
+    moving = 1.0 + turned * np.exp(-2 * q * own)
     start, end = np.where(left, moving, before), np.where(left, behind, moving)
-    sign = np.where(left, 1.0, -1.0) ** derivative
-    return np.asarray(q**derivative * sign * np.exp(-q * abs(x - source)) * start * end / whole)
+    wave = np.exp(-q * apart)
+    if derivative:
+        wave = q**derivative * np.where(left, 1.0, -1.0) ** derivative * wave
+    return np.asarray(wave * start * end / whole)
 
 
 _NO_INERTIA = 1e-280

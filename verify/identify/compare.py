@@ -60,8 +60,12 @@ class Asked(msgspec.Struct, frozen=True, kw_only=True):
 
 def compare(scene: Scene, asked: Asked) -> Compared:
     """What a list of frequencies, or a model, of the scene's beam is, how surely, how far off. Raises InputError."""
+    return compared(scene, asked, *_given(scene, asked))
+
+
+def compared(scene: Scene, asked: Asked, listed: Listed, shapes: Shapes | None, count: int | None) -> Compared:
+    """The same of a list that was read already, perhaps with shapes, of so many parts if that is known."""
     beam, start = scene.beam, perf_counter()
-    listed, shapes, count = _given(scene, asked)
     if asked.mode is not None and asked.mode > listed.n:
         raise InputError(f"mode = {asked.mode}: {listed.source} has {listed.n} modes, ask for one of them")
     n_modes = max(listed.n, *(listed.numbers or (0,))) + SPARE

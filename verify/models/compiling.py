@@ -1,7 +1,8 @@
 """What is compiled in this process, for whoever shows or counts it; numba is not loaded for that."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import Any
 
 import msgspec
 
@@ -26,6 +27,17 @@ hearers: list[Callable[[str], None]] = []
 """Told what begins, and nothing, "", when it is over."""
 unkept: list[str] = []
 """Kernels for which there is no folder, or none that takes what is written."""
+absent: Callable[[Any, Any], bool] | None = None
+"""Asked where a kernel is not on disk for these types, whether it may be there by now (`ahead`)."""
+
+
+def keep_alone(kernel: Any, types: Any) -> AbstractContextManager[None]:
+    """Nobody else writes."""
+    return nullcontext()
+
+
+kept: Callable[[Any, Any], AbstractContextManager[None]] = keep_alone
+"""Around the writing of a kernel for these types."""
 
 
 def told() -> tuple[str, ...]:

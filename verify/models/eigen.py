@@ -3,6 +3,7 @@
 How vectors are found depends on size and contrast; every value is read from the pencil's own quotient (`pencil`).
 """
 
+from functools import lru_cache
 from typing import Any
 
 import msgspec
@@ -277,10 +278,15 @@ def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:
 
     Exact where it is small, which is where it matters; far from a resonance an estimate.
     """
-    start = np.random.default_rng(4276).standard_normal((pencil.n, 1))
-    inertia = np.asarray(pencil.mass_matrix() @ start)
+    inertia = np.asarray(pencil.mass_matrix() @ _start(pencil.n))
     vector = forced_response(pencil, inertia, omega2, pencil.stiffness.astype(complex)).real
     return float(vector[:, 0] @ inertia[:, 0] / (vector[:, 0] @ (pencil.mass_matrix() @ vector[:, 0])) / omega2)
+
+
+@lru_cache(maxsize=8)
+def _start(n: int) -> Array:
+    """What inverse iteration starts from, (n, 1), the same every time."""
+    return np.random.default_rng(4276).standard_normal((n, 1))
 
 
 def modal_basis(pencil: FactoredPencil, sharp: bool = False) -> tuple[Array, Array]:

@@ -21,9 +21,10 @@ from typing import Any, NoReturn, TypeVar
 from numba import njit
 from numba.core import event
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, DefaultPassBuilder
+from numba.core.compiler_machinery import PassManager
 
-from verify.models import compiling
+from verify.models import compiling, quick_typing
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
@@ -56,8 +57,35 @@ class _PartLibrary(JITCodeLibrary):
         """Forget them."""
 
 
-class _PartCompiler(Compiler):
-    """Numba's, into a part's library."""
+NEEDLESS = {
+    "WithLifting",
+    "InlineClosureLikes",
+    "RewriteDynamicRaises",
+    "MakeFunctionToJitFunction",
+    "InlineInlinables",
+    "FindLiterallyCalls",
+    "LiteralUnroll",
+    "LiteralPropagationSubPipelinePass",
+    "InlineOverloads",
+    "NopythonRewrites",
+    "AnnotateTypes",
+}
+"""Passes of numba's for what no kernel has: closures, `with`, exceptions, tuples of types, expressions of arrays."""
+
+
+class _ScalarCompiler(Compiler):
+    """Numba's, without the passes that kernels do not need."""
+
+    def define_pipelines(self) -> list[Any]:
+        """The one pipeline."""
+        whole, short = DefaultPassBuilder.define_nopython_pipeline(self.state), PassManager("kernels")  # type: ignore
+        short.passes.extend([one for one in whole.passes if one[0].__name__ not in NEEDLESS])
+        short.finalize()  # type: ignore[no-untyped-call]
+        return [short]
+
+
+class _PartCompiler(_ScalarCompiler):
+    """The same, into a part's library."""
 
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
         into = library or _PartLibrary(targetctx.codegen(), "part")  # type: ignore[no-untyped-call]
@@ -80,8 +108,6 @@ def part(**options: Any) -> Callable[[Function], Function]:
 
     def compile_one(function: Function) -> Function:
         found = njit(**{**PART, **options})(function)
-        if not LINKED:
-            return found  # type: ignore[no-any-return]
         found._compile_for_args = _refuse
         found.add_overload = lambda made: found.overloads.__setitem__(tuple(made.signature.args), made)
         return found  # type: ignore[no-any-return]
@@ -93,7 +119,7 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
     """Compile with these options of numba; what is kept on disk holds while the room's kernels stay as they are."""
 
     def compile_one(function: Function) -> Function:
-        found = njit(**{**ALWAYS, **options})(function)
+        found = njit(**{**ALWAYS, "pipeline_class": _ScalarCompiler, **options})(function)
         nothing = found._cache
         try:
             found.enable_caching()
@@ -103,7 +129,7 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
         index: Any = getattr(found._cache, "_cache_file", None)
         if hasattr(index, "_source_stamp"):
             index._source_stamp = index._source_stamp, room_stamp(Path(function.__code__.co_filename).parent)
-            _forgive(found._cache, function.__qualname__)
+            _forgive(found, function.__qualname__)
         else:
             found._cache = nothing
         return found  # type: ignore[no-any-return]
@@ -111,14 +137,21 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
     return compile_one
 
 
-def _forgive(kept: Any, name: str) -> None:
+def _forgive(kernel: Any, name: str) -> None:
     """A file that cannot be read is compiled again; one that cannot be written is done without, and `compiling` knows.
 
     Nothing is half-written: numba writes each file beside its place and renames it.
     """
+    kept = kernel._cache
     load, save = kept.load_overload, kept.save_overload
 
     def load_or_compile(signature: Any, target: Any) -> Any:
+        found = load_unless_damaged(signature, target)
+        if found is None and compiling.absent and compiling.absent(kernel, signature):
+            return load_unless_damaged(signature, target)
+        return found
+
+    def load_unless_damaged(signature: Any, target: Any) -> Any:
         try:
             return load(signature, target)
         except Exception:  # whatever a damaged pickle raises
@@ -128,7 +161,8 @@ def _forgive(kept: Any, name: str) -> None:
 
     def save_or_tell(signature: Any, made: Any) -> None:
         try:
-            save(signature, made)
+            with compiling.kept(kernel, signature):
+                save(signature, made)
         except OSError:
             compiling.unkept.append(name)
 
@@ -145,6 +179,7 @@ class _Watch(event.Listener):
     def on_start(self, event: Any) -> None:
         """A kernel's compilation begins."""
         if not self.open:
+            quick_typing.begin()
             _tell(compiling.COMPILING)
         self.open.append((perf_counter(), 0.0))
 
@@ -157,6 +192,7 @@ class _Watch(event.Listener):
         kernel = f"{function.__module__.removeprefix('verify.')}.{function.__qualname__}"
         compiling.compiled.append(compiling.Compiled(kernel, seconds - within))
         if not self.open:
+            quick_typing.end()
             _tell("")
 
 

@@ -5,7 +5,7 @@ make than all fields of a sweep.
 """
 
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import msgspec
 import numpy as np
@@ -80,8 +80,7 @@ def _inverse(pieces: bytes, ends: Ends) -> Array:
 
 
 def _by_band(pieces: Array, ends: Ends, right: Array) -> Array:
-    from scipy.linalg import solve_banded
+    from scipy.linalg.lapack import dgtsv, zgtsv
 
     below, on, above = _system(pieces, ends)
-    band: Any = np.array([np.append(0.0, above), on, np.append(below, 0.0)])
-    return np.asarray(solve_banded((1, 1), band, right.T, check_finite=False).T)
+    return np.asarray((zgtsv if np.iscomplexobj(right) else dgtsv)(below, on, above, right.T)[3].T)

@@ -10,22 +10,47 @@ from verify.motion.stepping import contact_space, fresh_motion
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 """A kernel and what it is called with."""
+LAWS = {"tanh": None, "coulomb": 0.0}
+"""`Law.static`, as far as its kind goes."""
+COUPLINGS = {"one-way": None, "two-way": True}
+"""`Rider.two_way`."""
 
 
 def calls() -> Iterator[Call]:
     """Each law, each coupling."""
-    from verify.motion import friction_kernels, kernels
+    yield from on_belt()
+    for law in ("tanh", "coulomb"):
+        yield from on_chain(law)
+        yield from on_beam(law, "auto")
 
-    flat, one, space = np.zeros((1, 1)), np.zeros(1), contact_space(1)
-    surface = Surface(modes=flat, drive=_drive(), table=np.zeros((1, 1, 1)), edges=one)
-    given = Given(local=np.zeros((1, 1, 1)), along=one, edges=one)
-    for law in (_law(None), _law(0.0)):
-        yield friction_kernels.slide_on_belt, (1, 0.0, law, 0.0, 0.0, 0.0, one, flat)
-        yield kernels.slide_given, (1, 0.0, given, Rider(one, law, None), flat, space)
-        for two_way in (None, True):
-            rider = Rider(fresh_motion(), law, two_way)
-            yield kernels.look, (surface, rider, space, 0)
-            yield kernels.slide, (1, 0.0, surface, rider, _books(), _kept(), space)
+
+def on_belt() -> Iterator[Call]:
+    """A slider on a surface of constant speed."""
+    from verify.motion import friction_kernels
+
+    for static in LAWS.values():
+        yield friction_kernels.slide_on_belt, (1, 0.0, _law(static), 0.0, 0.0, 0.0, np.zeros(1), np.zeros((1, 1)))
+
+
+def on_chain(law: str) -> Iterator[Call]:
+    """A slider on a surface that is given."""
+    from verify.motion import kernels
+
+    given = Given(local=np.zeros((1, 1, 1)), along=np.zeros(1), edges=np.zeros(1))
+    rider = Rider(fresh_motion(), _law(LAWS[law]), None)
+    yield kernels.slide_given, (1, 0.0, given, rider, np.zeros((1, 1)), contact_space(1))
+
+
+def on_beam(law: str, coupling: str) -> Iterator[Call]:
+    """A slider on a beam; both couplings where it is left open which one it is."""
+    from verify.motion import kernels
+
+    surface = Surface(modes=np.zeros((1, 1)), drive=_drive(), table=np.zeros((1, 1, 1)), edges=np.zeros(1))
+    for name, two_way in COUPLINGS.items():
+        if coupling in (name, "auto"):
+            rider = Rider(fresh_motion(), _law(LAWS[law]), two_way)
+            yield kernels.look, (surface, rider, contact_space(1), 0)
+            yield kernels.slide, (1, 0.0, surface, rider, _books(), _kept(), contact_space(1))
 
 
 def _law(static: float | None) -> Law:

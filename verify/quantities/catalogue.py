@@ -15,6 +15,7 @@ from verify.errors import InputError, shown
 from verify.judge.bracket import Bracket
 from verify.judge.workbench import Need, Workbench
 from verify.quantities.chain import CHAIN_QUANTITIES
+from verify.quantities.contact import CONTACT_QUANTITIES
 from verify.quantities.energies import ENERGY_QUANTITIES
 from verify.quantities.kind import A, Arguments, Figure, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
@@ -39,6 +40,7 @@ QUANTITIES: Registry[Quantity[Any]] = Registry(
         *ENERGY_QUANTITIES,
         *CHAIN_QUANTITIES,
         *STATIC_QUANTITIES,
+        *CONTACT_QUANTITIES,
     ),
     homes={"stress.share": "verify.stress.quantity:SHARE"},
 )

@@ -11,10 +11,11 @@ import msgspec
 from verify.files import write_whole
 from verify.report.document import Document, PageTable, Section, document_of
 from verify.report.plain import finite
-from verify.run.gates import GateResult, shown_expectation
+from verify.run.gates import GateResult, reference_in_words, shown_expectation
 from verify.words import figure, seconds_in_words
 
 if TYPE_CHECKING:
+    from jinja2 import Environment
     from markupsafe import Markup
 
     from verify.identify.told import Compared
@@ -102,39 +103,52 @@ def _letters(table: PageTable) -> int:
     return sum(2 + max(min(len(cell.text), WRAPPED) for cell in column) for column in columns)
 
 
-def rendered(document: Document) -> str:
-    """The whole HTML page of a document: pictures, layer and data in one file."""
+def templates() -> "Environment":
+    """Of pages, with the filters that they use."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    from verify.report.plots import plot_of
-
-    loader = PackageLoader("verify", "report")
-    templates = Environment(
-        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    made = Environment(
+        loader=PackageLoader("verify", "report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
-    templates.filters |= {
+    made.filters |= {
         "figure": figure,
         "duration": seconds_in_words,
         "hyphens": _hyphens,
         "band": shown_expectation,
+        "reference": reference_in_words,
     }
-    templates.tests |= {"worded": worded, "broad": broad}
+    made.tests |= {"worded": worded, "broad": broad}
+    return made
+
+
+def rendered(document: Document) -> str:
+    """The whole HTML page of a document: pictures, layer and data in one file."""
+    from verify.report.plots import plot_of
+
     plots = [plot_of(chart) for chart in document.charts]
     set_aside = [gate for gate in document.gates if not gate.applicable]
-    return templates.get_template("page.html.j2").render(
-        doc=document,
-        failed=[gate for gate in document.gates if gate.passed is False],
-        set_aside=set_aside,
-        judged=len(document.gates) - len(set_aside),
-        groups=groups_of(document.gates),
-        plots=plots,
-        data=_safe_json([plot.data for plot in plots]),
-        css=_part("page.css"),
-        js=_part("page.js"),
+    return (
+        templates()
+        .get_template("page.html.j2")
+        .render(
+            doc=document,
+            failed=[gate for gate in document.gates if gate.passed is False],
+            set_aside=set_aside,
+            judged=len(document.gates) - len(set_aside),
+            groups=groups_of(document.gates),
+            plots=plots,
+            data=_safe_json([plot.data for plot in plots]),
+            css=part("page.css"),
+            js=part("page.js"),
+        )
     )
 
 
-def _part(name: str) -> str:
+def part(name: str) -> str:
     """A style or a script of the page."""
     return (files("verify.report") / name).read_text("utf-8")
 

@@ -18,6 +18,7 @@ from verify.run.gates import shown_expectation
 from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
+    from verify.identify.shapes_told import ShapesJudged
     from verify.identify.told import Compared
     from verify.judge.sizing import Choice
     from verify.judge.workbench import Workbench
@@ -53,8 +54,8 @@ def _harmless(segment: Segment) -> Segment:
     return Segment("\n".join(lines), segment.style)
 
 
-def print_run(result: "RunResult", report: Path | None) -> None:
-    """Gates, what the studies found, the verdict, where the report lies."""
+def print_run(result: "RunResult", report: Path | None, kept: Path | None = None) -> None:
+    """Gates, what the studies found, the verdict, where the report lies and is kept."""
     console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
     if judged := tuple(gate for gate in result.gates if gate.applicable):
@@ -69,6 +70,8 @@ def print_run(result: "RunResult", report: Path | None) -> None:
     console.print(f"{_verdict(result)} in {seconds_in_words(result.seconds)}: {work}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True, markup=False)
+    if kept is not None:
+        console.print(f"kept: {kept}", soft_wrap=True, markup=False)
 
 
 def _verdict(result: "RunResult") -> str:
@@ -89,7 +92,7 @@ def _by_reason(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     return found
 
 
-def print_compared(result: "Compared", report: Path | None) -> None:
+def print_compared(result: "Compared | ShapesJudged", report: Path | None) -> None:
     """What somebody's model is; its modes, the candidates, the gates, where the report lies."""
     console = Terminal()
     answer, *facts = result.facts()

@@ -1,7 +1,6 @@
 """Which gates of a scene are about what it is run with: `--set` of a beam makes another beam of it."""
 
 import re
-from hashlib import sha256
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -66,4 +65,6 @@ def report_name(scene: "Scene", overrides: tuple[str, ...]) -> str:
     name = "--".join([scene.name, *(re.sub(r"[^A-Za-z0-9.=_+-]+", "-", text).strip("-") for text in changes)])
     if len(name) <= LONGEST:
         return name
+    from hashlib import sha256
+
     return f"{name[: LONGEST - 9]}-{sha256(name.encode()).hexdigest()[:8]}"

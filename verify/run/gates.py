@@ -8,6 +8,7 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
+from verify.options import Reference
 from verify.quantities.catalogue import QUANTITIES, arguments_of, as_plain, evaluate, in_words, needs_of, quantity
 from verify.quantities.kind import Figure, Quantity
 from verify.scenes.scene import Complex
@@ -16,6 +17,10 @@ from verify.words import rounded
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
     from verify.scenes.scene import Gate, Scene
+
+
+NOT_SAID = "not said"
+"""Of the reference of a gate whose scene does not name it."""
 
 
 class Band(msgspec.Struct, frozen=True, kw_only=True):
@@ -50,6 +55,12 @@ class GateResult(msgspec.Struct, frozen=True, kw_only=True):
     reason: str
     """Why it failed or does not apply; empty where it passed."""
     seconds: float
+    reference: Reference | None = None
+    """What stands behind the expectation; None where the scene does not say."""
+    uncertainty: float | None = None
+    """The reference's own, in the gate's unit; None where the scene does not say."""
+    source: str = ""
+    """Where the reference is to be found; empty where the scene does not say."""
 
 
 def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
@@ -81,6 +92,9 @@ def judge(gate: "Gate", scene: "Scene", bench: "Workbench") -> GateResult:
         share=share,
         reason=reason,
         seconds=perf_counter() - start,
+        reference=gate.reference,
+        uncertainty=gate.uncertainty,
+        source=gate.source,
     )
 
 
@@ -101,7 +115,23 @@ def set_aside(gate: "Gate", reason: str) -> GateResult:
         share=None,
         reason=reason,
         seconds=0.0,
+        reference=gate.reference,
+        uncertainty=gate.uncertainty,
+        source=gate.source,
     )
+
+
+def reference_in_words(gate: "Gate | GateResult", unit: str = "") -> str:
+    """What stands behind a gate: 'closed form ± 3e-05 Hz, (n pi/L)^2 ...'; 'not said' where its scene does not say.
+
+    The unit is the result's own where there is one.
+    """
+    if gate.reference is None:
+        return NOT_SAID
+    unit = gate.unit if isinstance(gate, GateResult) else unit
+    size = f" ± {gate.uncertainty:g}{f' {unit}' if unit not in ('', '1') else ''}" if gate.uncertainty else ""
+    exact = ", exact" if gate.uncertainty == 0 else ""
+    return f"{gate.reference}{size}{exact}{f', {gate.source}' if gate.source else ''}"
 
 
 def given_band(gate: "Gate") -> Band:

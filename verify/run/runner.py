@@ -1,5 +1,6 @@
 """A scene run: whatever it asks for is evaluated once, and nothing else."""
 
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -8,9 +9,11 @@ import msgspec
 
 from verify.errors import InputError
 from verify.judge.workbench import Solve, Workbench
+from verify.models.ahead import compiled_ahead
 from verify.run.applies import applicable, not_applicable
 from verify.run.asks import asks_of
 from verify.run.gates import GateResult, judge, set_aside
+from verify.run.kernels_asked import kernels_asked
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.kind import Progress, Study
@@ -67,13 +70,14 @@ def run_scene(
     aside = not_applicable(asked_scene, overrides)
     bench = workbench_for(applicable(asked_scene, overrides))
     gates = []
-    for gate in asked_scene.gate:
-        progress(f"gate {gate.id}")
-        why = aside.get(gate.id)
-        gates.append(set_aside(gate, why) if why else judge(gate, asked_scene, bench))
     found: dict[str, Found] = {}
-    for study, asked in asked_of(asked_scene):
-        found[study.name] = _done(study, asked, asked_scene, bench, found, progress)
+    with compiled_ahead(partial(kernels_asked, asked_scene)):
+        for gate in asked_scene.gate:
+            progress(f"gate {gate.id}")
+            why = aside.get(gate.id)
+            gates.append(set_aside(gate, why) if why else judge(gate, asked_scene, bench))
+        for study, asked in asked_of(asked_scene):
+            found[study.name] = _done(study, asked, asked_scene, bench, found, progress)
     return RunResult(
         scene=asked_scene,
         gates=tuple(gates),

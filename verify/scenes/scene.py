@@ -13,7 +13,7 @@ from verify.checks import Relative, check_number
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.motion.starting import soft_start
-from verify.options import DriveKind, Start
+from verify.options import REFERENCES, DriveKind, Reference, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
 from verify.scenes.given import as_meant, type_at_key
@@ -141,6 +141,11 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """The lowest value that passes."""
     at_most: Relative | None = None
     """The highest value that passes."""
+    reference: Reference | None = None
+    uncertainty: Relative | None = None
+    """How far the reference may itself be off, digits left out included; 0 where it is exact."""
+    source: str = ""
+    """Of the reference, in a few words: an equation, a publication, a derivation."""
     why: Annotated[str, Meta(min_length=1)]
     """Where the expectation comes from."""
 
@@ -157,6 +162,18 @@ class Gate(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             raise InputError(
                 f"gate.{self.id}.at_least = {self.at_least!r} is above at_most = {self.at_most!r}: exchange them"
             )
+        self._check_reference()
+
+    def _check_reference(self) -> None:
+        """Raise InputError for an uncertainty that is none, or for one, or a source, of a reference not said."""
+        if self.uncertainty is not None:
+            check_number(f"gate.{self.id}.uncertainty", self.uncertainty, "in the quantity's own unit", at_least=0)
+        for name, given in (("uncertainty", self.uncertainty is not None), ("source", bool(self.source))):
+            if given and self.reference is None:
+                raise InputError(
+                    f"gate.{self.id}.{name} = {shown(getattr(self, name))} is of a reference that is not said: "
+                    f"give gate.{self.id}.reference as one of {', '.join(REFERENCES)}"
+                )
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -303,7 +320,22 @@ def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict
         except InputError as error:
             wrong += error.sentences
     raise_all(wrong, MOST)
+    _forget_references(data, overrides)
     return data
+
+
+def _forget_references(data: dict[str, Any], overrides: Iterable[str]) -> None:
+    """Leave out, in place, what gates say of references to expectations that were set, unless it was set as well."""
+    keys = {text.partition("=")[0].strip() for text in overrides}
+    gates = data.get("gate") if any(key.startswith("gate.") for key in keys) else None
+    for i, gate in enumerate(gates if isinstance(gates, list) else ()):
+        if not isinstance(gate, dict):
+            continue
+        names = (f"gate.{i}", f"gate.{gate.get('id', i)}")
+        set_here = {key.rpartition(".")[2] for key in keys if key.rpartition(".")[0] in names}
+        if set_here & {"expect", "at_least", "at_most"} and "reference" not in set_here:
+            for name in ("reference", "uncertainty", "source"):
+                gate.pop(name, None)
 
 
 def _meant(value: Any, key: str) -> Any:

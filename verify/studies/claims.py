@@ -154,15 +154,19 @@ class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
         self, asked: tuple[Claim, ...], scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
     ) -> ClaimsFound:
         """Every claim of a scene. One that cannot be evaluated says why."""
-        from verify.studies.slider_figures import SliderFound
-
-        slid = next((found for found in done.values() if isinstance(found, SliderFound)), None)
+        slid = _slider_of(done) if any(is_of_study(claim, scene) for claim in asked) else None
         results = []
         for claim in asked:
             step(f"claim {claim.id}")
             of_run = slid is not None and is_of_study(claim, scene)
             results.append(_on_the_run(claim, slid) if slid and of_run else _alone(claim, scene, bench))
         return ClaimsFound(claims=tuple(results))
+
+
+def _slider_of(done: Mapping[str, Found]) -> "SliderFound | None":
+    from verify.studies.slider_figures import SliderFound
+
+    return next((found for found in done.values() if isinstance(found, SliderFound)), None)
 
 
 def _on_the_run(claim: Claim, study: "SliderFound") -> ClaimResult:

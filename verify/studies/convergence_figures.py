@@ -17,7 +17,7 @@ from verify.studies.chart import Chart
 from verify.studies.kind import Progress
 from verify.studies.told import Column, Found, Table
 from verify.timing import interleaved_medians
-from verify.words import theory_name
+from verify.words import percent, theory_name
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -73,6 +73,21 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
     rules: tuple[RuleErrors, ...] = ()
     """Every rule of the chain that makes a difference on this beam; none where there is but one."""
 
+    def in_short(self) -> str:
+        """What is left of the highest mode's error at the largest size, and how it fell on the way."""
+        mode = max((row.mode for row in self.rows), default=0)
+        own = [row for row in self.rows if row.mode == mode]
+        if len(own) < ABREAST:
+            return ""
+        last = own[-1]
+        found = [(one.title, last.cells[one.label]) for one in self.variants]
+        told = [
+            f"{title} are {percent(cell.error)} off, {_falling(cell.order)}"
+            for title, cell in found
+            if cell.error is not None and cell.order is not None
+        ]
+        return f"At mode {mode} and N = {last.count}, {' and '.join(told)}." if told else ""
+
     def tables(self) -> tuple[Table, ...]:
         """One for each mode, of some variants at a time where there are many."""
         groups = [tuple(group) for _, group in groupby(self.rows, key=lambda row: row.mode)]
@@ -110,6 +125,10 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
     def plain(self) -> Any:
         """The same."""
         return self.records()
+
+
+def _falling(order: float) -> str:
+    return f"falling at order {order:.2f}" if order > 0.0 else "not falling yet with the size before"
 
 
 def flat_row(row: Row) -> dict[str, Any]:

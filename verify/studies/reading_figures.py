@@ -216,10 +216,12 @@ def readings_study(scene: "Scene", asked: ReadingsAsk, progress: Progress = lamb
         drawn.setdefault(values[: len(GROUPED_BY)], []).append((read, found))
     best = {key: max(rows, key=lambda row: row[1].n_met) for key, rows in drawn.items()}
     shown = sorted(best, key=lambda key: -best[key][1].n_met)[: asked.shown]
-    exact: dict[tuple[float | str | None, ...], Reading] = {}
-    for number, key in enumerate(shown):
-        progress(f"exact beam beside the best readings, {number + 1}")
-        exact[key] = reading(best[key][0], claims, "analytic", None)
+    on_exact = for_each(
+        lambda read: reading(read, claims, "analytic", None),
+        [best[key][0] for key in shown],
+        lambda number: progress(f"exact beam beside the best readings, {number}"),
+    )
+    exact = dict(zip(shown, on_exact, strict=True))
     groups = tuple(
         Group(readings=tuple(one for _, one in rows), best=best[key][1], exact=exact.get(key))
         for key, rows in drawn.items()
@@ -244,10 +246,13 @@ def _on_the_chain(
     """Those readings of a massless slider whose forces act at once, on the nonlinear chain of as many links."""
     chains, drawn = Chains({}), dict[tuple[str, float], list[Reading]]()
     at_once = [row for row in rows if not row[1].condition.soft_start_periods and row[1].condition.normal == "massless"]
-    for number, (scene, linear) in enumerate(at_once):
-        progress(f"reading {number + 1} of {len(at_once)} on the nonlinear chain")
-        how = linear.condition
-        drawn.setdefault((how.kinematics, how.position), []).append(chain_reading(scene, claims, chains))
+    on_chain = for_each(
+        lambda scene: chain_reading(scene, claims, chains),
+        [scene for scene, _ in at_once],
+        lambda number: progress(f"reading {number} of {len(at_once)} on the nonlinear chain"),
+    )
+    for (_, linear), found in zip(at_once, on_chain, strict=True):
+        drawn.setdefault((linear.condition.kinematics, linear.condition.position), []).append(found)
     return tuple(
         Group(readings=tuple(found), best=max(found, key=lambda one: one.n_met), exact=None) for found in drawn.values()
     )

@@ -1,6 +1,6 @@
 """The slider on the chain over the whole run as a moving picture, with the friction that carries it."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -9,6 +9,9 @@ from verify.studies.chart import Axis, Chart, Line
 from verify.studies.charting import numbers
 
 if TYPE_CHECKING:
+    from verify.models.arrays import Array
+    from verify.motion.result import Motion
+    from verify.studies.chart import Numbers
     from verify.studies.slider_figures import SliderFound
 
 FRAMES = 96
@@ -19,18 +22,11 @@ ARROW = 0.08
 
 def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
     """The chain by its joints, the slider on it, friction as a line from it; nothing where no joint was kept."""
-    run, model = study.subject, bounding()[0]
+    run = study.subject
     if not len(run.points) or len(run.times) < 2:
         return ()
     kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
-    x, w = 1e3 * run.points, 1e6 * run.deflection[kept]
-    places, pulls = 1e3 * run.position[kept], run.friction[kept]
-    heights = np.array([np.interp(at, x, row) for at, row in zip(places, w, strict=True)])
     largest = float(abs(run.friction).max()) or 1.0
-    tips = places + ARROW * x[-1] * pulls / largest
-    joints = tuple(numbers(row) for row in w)
-    blocks = [numbers([h]) for h in heights]
-    arrows = [numbers([h, h]) for h in heights]
     return (
         Chart(
             id="slider-moving",
@@ -39,38 +35,32 @@ def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
             "longest. Along the beam the slider moves by too little to be seen; its way is charted above.",
             x=Axis("x, mm"),
             y=Axis("deflection, µm"),
-            lines=(
-                Line(
-                    name=model.title,
-                    colour=model.colour,
-                    x=numbers(x),
-                    y=joints[-1],
-                    moves=joints,
-                    marker="circle",
-                    size=3.0,
-                ),
-                Line(
-                    name="friction on the slider",
-                    colour=FRICTION,
-                    x=numbers((places[-1], tips[-1])),
-                    y=arrows[-1],
-                    moves=tuple(arrows),
-                    shifts=tuple(numbers(pair) for pair in zip(places, tips, strict=True)),
-                    width=3.0,
-                ),
-                Line(
-                    name="slider",
-                    colour=SLIDER,
-                    x=numbers(places[-1:]),
-                    y=blocks[-1],
-                    moves=tuple(blocks),
-                    shifts=tuple(numbers([at]) for at in places),
-                    marker="square",
-                    size=12.0,
-                    joined=False,
-                ),
-            ),
+            lines=_parts(run, kept, largest),
             frames=tuple(f"{1e3 * t:.3f} ms" for t in run.times[kept]),
             plays=True,
         ),
     )
+
+
+def _parts(run: "Motion", kept: "Array", largest: float) -> tuple[Line, ...]:
+    """Chain, friction, slider at the samples `kept`, (n_frames,)."""
+    x, w = 1e3 * run.points, 1e6 * run.deflection[kept]
+    places, tips = 1e3 * run.position[kept], 1e3 * run.position[kept] + ARROW * x[-1] * run.friction[kept] / largest
+    heights = [float(np.interp(at, x, row)) for at, row in zip(places, w, strict=True)]
+    model, joints = bounding()[0], tuple(numbers(row) for row in w)
+    chain = Line(
+        name=model.title, colour=model.colour, x=numbers(x), y=joints[-1], moves=joints, marker="circle", size=3.0
+    )
+    arrows = tuple((numbers(pair), (h, h)) for pair, h in zip(zip(places, tips, strict=True), heights, strict=True))
+    blocks = tuple((numbers([at]), (h,)) for at, h in zip(places, heights, strict=True))
+    return (
+        chain,
+        _carried("friction on the slider", FRICTION, arrows, width=3.0),
+        _carried("slider", SLIDER, blocks, marker="square", size=12.0, joined=False),
+    )
+
+
+def _carried(name: str, colour: str, rows: "tuple[tuple[Numbers, Numbers], ...]", **style: Any) -> Line:
+    """What has another place at every frame, by (x, y) of each."""
+    shifts, moves = tuple(x for x, _ in rows), tuple(y for _, y in rows)
+    return Line(name=name, colour=colour, x=shifts[-1], y=moves[-1], shifts=shifts, moves=moves, **style)

@@ -1,0 +1,95 @@
+"""Kernels that other processes compile while a run compiles the first: each once, and no process is left behind."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux forks safely")
+
+START = """
+import json, os, sys
+from verify.models import ahead, compiling
+from verify.motion import warm
+forked = []
+fork = os.fork
+def counted():
+    child = fork()
+    if child:
+        forked.append(child)
+        print("began", child, flush=True)
+    return child
+os.fork = counted
+"""
+RUN = """
+with ahead.compiled_ahead(warm.on_belt):
+    for kernel, given in warm.on_belt():
+        kernel.compile(tuple(kernel.typeof_pyval(value) for value in given))
+names = [one.kernel for one in compiling.compiled if not one.kernel.startswith("numba.")]
+print(json.dumps({"forked": len(forked), "kernels": sorted(names)}))
+"""
+
+
+def surroundings(cache, jobs):
+    path = os.pathsep.join(sys.path)
+    return {**os.environ, "PYTHONPATH": path, "NUMBA_CACHE_DIR": str(cache), "VERIFY_JOBS": str(jobs)}
+
+
+def told(cache, jobs, code=RUN):
+    command = [sys.executable, "-W", "error", "-c", START + code]
+    done = subprocess.run(command, capture_output=True, text=True, env=surroundings(cache, jobs), check=False)
+    assert done.returncode == 0, done.stderr
+    began = [int(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("began")]
+    return json.loads(done.stdout.splitlines()[-1]), began
+
+
+def test_two_processes_compile_what_one_would_and_a_run_that_finds_it_starts_none(tmp_path):
+    alone, _ = told(tmp_path / "alone", 1)
+    both, began = told(tmp_path / "both", 2)
+    assert alone["forked"] == 0
+    assert both["forked"] == len(began) == 1
+    assert set(both["kernels"]) == set(alone["kernels"])
+    loops = [[name for name in one["kernels"] if name.endswith("slide_on_belt")] for one in (alone, both)]
+    assert len(loops[0]) == len(loops[1]) == 2  # one for each law, none twice
+    assert not any(is_there(child) for child in began)
+    assert told(tmp_path / "both", 2)[0] == {"forked": 0, "kernels": []}
+    assert not list(tmp_path.rglob("*.tmp.*"))
+
+
+def is_there(process):
+    """Whether it runs; one that has ended and that nobody has asked about does not."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text("ascii").rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+@pytest.mark.parametrize("ended_by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_no_helper_outlives_a_run_that_is_ended(tmp_path, ended_by):
+    command = [sys.executable, "-c", START + RUN]
+    run = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=surroundings(tmp_path, 2), text=True
+    )
+    helper = int(run.stdout.readline().split()[1])
+    time.sleep(0.1)
+    run.send_signal(ended_by)
+    run.communicate()
+    assert run.returncode != 0
+    for _ in range(100):
+        if not is_there(helper):
+            break
+        time.sleep(0.02)
+    assert not is_there(helper)
+
+
+def test_a_helper_that_is_killed_costs_its_work_and_nothing_else(tmp_path):
+    killed = """
+os.fork = lambda: (lambda child: os._exit(9) if child == 0 else child)(fork())
+"""
+    found, _ = told(tmp_path, 2, killed + RUN)
+    assert sum(name.endswith("slide_on_belt") for name in found["kernels"]) == 2

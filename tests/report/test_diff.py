@@ -1,0 +1,144 @@
+"""What changed between two runs: gates first, the status that of gates that were held and fail."""
+
+import json
+from itertools import count
+
+import pytest
+from strip import DRAWN
+
+from verify import run_scene
+from verify.cli import status_of
+from verify.report.document import document_of
+from verify.report.kept import as_text
+from verify.scenes.scene import load_scene
+
+MORE = """
+[[gate]]
+id = "third"
+quantity = "mode.frequency"
+arguments = { model = "analytic", mode = 3 }
+expect = 112.2759
+within = 1e-3
+why = "Nine times the first."
+"""
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch):
+    """Keep a run of the strip as it is, or with overrides: the folder of that run."""
+    (tmp_path / "strip.toml").write_text(DRAWN)
+    (tmp_path / "more.toml").write_text(DRAWN + MORE)
+    monkeypatch.chdir(tmp_path)
+
+    seconds = count(10)
+
+    def run(*overrides, scene="strip.toml", folder="reports", name="strip"):
+        result = run_scene(load_scene(scene, overrides), overrides=overrides)
+        made = tmp_path / folder / name / f"2001-02-03_04-05-{next(seconds)}"
+        made.mkdir(parents=True)
+        text = as_text(document_of(result, "verify run"), name, {})
+        (made / "run.json").write_text(text, encoding="utf-8")
+        return made
+
+    return run
+
+
+def told(capsys, *words):
+    """(status, output)."""
+    capsys.readouterr()
+    status = status_of(["diff", *map(str, words)])
+    out, err = capsys.readouterr()
+    assert not err
+    return status, out
+
+
+def test_a_run_that_is_done_again_is_the_same_to_the_last_digit(kept, capsys):
+    status, out = told(capsys, kept(), kept())
+    assert status == 0
+    assert out == "strip: 1 gate the same to the last digit\nNo gate that was held fails now\n"
+
+
+def test_a_gate_that_fails_now_is_told_first_and_is_the_status(kept, capsys):
+    before = kept(scene="more.toml")
+    after = kept("gate.third.expect=112.3", scene="more.toml")
+    status, out = told(capsys, before, after)
+    assert status == 1
+    assert out.startswith("strip: 1 gate held before and fails now\n")
+    row = next(line for line in out.splitlines() if line.strip().startswith("third"))
+    assert "pass to FAIL" in row
+    assert "second" not in out
+    status, out = told(capsys, after, before)
+    assert status == 0
+    assert "1 verdict changed, none from pass to FAIL" in out
+
+
+def test_figures_in_which_verdicts_do_not_differ_are_told_with_their_difference(kept, capsys):
+    status, out = told(capsys, kept(), kept("beam.length=0.610001", "gate.second.expect=49.90025"), "--json")
+    (scene,) = json.loads(out)["scenes"]
+    assert status == 0
+    (gate,) = scene["gates"]
+    assert gate["after"]["measured"] / gate["before"]["measured"] - 1.0 == pytest.approx(-2e-6 / 0.61, rel=1e-4)
+    assert scene["inputs"] == [{"what": "beam.length", "before": "0.61", "after": "0.610001"}]
+    assert scene["versions"] == scene["said"] == []
+
+
+def test_gates_that_came_and_went_are_told_and_break_nothing(kept, capsys):
+    less, more = kept(), kept(scene="more.toml")
+    for before, after, words in ((less, more, "not there to pass"), (more, less, "pass to not there")):
+        status, out = told(capsys, before, after, "--json")
+        assert status == 0
+        assert [gate["id"] for gate in json.loads(out)["scenes"][0]["gates"]] == ["third"]
+        assert words in " ".join(told(capsys, before, after)[1].split())
+
+
+def test_a_relative_difference_stands_behind_what_is_measured(kept):
+    from verify.report.diff import differences
+    from verify.report.kept import runs_at
+
+    before, after = (runs_at(path, "A") for path in (kept(), kept("beam.length=0.305", "gate.second.expect=199.6")))
+    (gate,) = differences(before, after, ("a", "b")).scenes[0].gates
+    assert gate.measured.endswith("(+300 %)")
+
+
+def test_versions_and_inputs_are_compared_by_their_names(kept, tmp_path, capsys):
+    before, after = kept(), kept("spectrum.count=11")
+    data = json.loads((before / "run.json").read_text())
+    data["document"]["environment"] |= {"numpy": "0.1", "abacus": "3"}
+    (before / "run.json").write_text(json.dumps(data))
+    (scene,) = json.loads(told(capsys, before, after, "--json")[1])["scenes"]
+    import numpy
+
+    versions = {one["what"]: (one["before"], one["after"]) for one in scene["versions"]}
+    assert versions == {"numpy": ("0.1", numpy.__version__), "abacus": ("3", None)}
+    assert scene["inputs"] == [{"what": "spectrum.count", "before": "9", "after": "11"}]
+    assert [one["what"] for one in scene["said"]] == ["answer", "spectrum"]
+    assert ("9 segments" in scene["said"][0]["before"], "11 segments" in scene["said"][0]["after"]) == (True, True)
+
+
+def test_of_folders_the_newest_runs_of_every_name_are_compared(kept, tmp_path, capsys):
+    kept("gate.second.expect=50")
+    kept()
+    kept(name="gone")
+    kept("gate.second.expect=50", folder="other")
+    kept(folder="other", name="come")
+    status, out = told(capsys, "reports", "other", "--json")
+    data = json.loads(out)
+    assert (status, data["broken"], data["only_before"], data["only_after"]) == (1, 1, ["gone"], ["come"])
+    assert [one["name"] for one in data["scenes"]] == ["strip"]
+    assert told(capsys, "reports/strip", "other/strip")[0] == 1
+    assert told(capsys, "other", "other") == (
+        0,
+        "come: 1 gate the same to the last digit\nstrip: 1 gate the same to the last digit\n"
+        "No gate that was held fails now\n",
+    )
+
+
+def test_the_page_of_a_difference_has_its_verdict_and_links_to_what_broke(kept, tmp_path, capsys):
+    status, _ = told(capsys, kept(), kept("gate.second.expect=50"), "--to", tmp_path / "d.html")
+    page = (tmp_path / "d.html").read_text("utf-8").replace("<wbr>", "")
+    assert status == 1
+    assert "<strong>1 gate held before and fails now</strong>" in page
+    assert '<a href="#strip-gate-second">' in page
+    assert 'id="strip-gate-second"' in page
+    assert "49.90041 ± 0.001 to 50 ± 0.001" in page.replace("50.0", "50")
+    assert page.rstrip().endswith("</html>")

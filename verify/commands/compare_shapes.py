@@ -1,0 +1,48 @@
+"""The command `verify compare-shapes`: somebody's mode shapes on a mesh, judged."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from verify.commands.run import GATE_FAILED
+from verify.commands.shared import json_alone, load, overridden, print_json, whole_number
+
+if TYPE_CHECKING:
+    from verify.identify.shapes_told import ShapesJudged
+
+
+@click.command("compare-shapes")
+@click.argument("file")
+@click.option("--scene", default="paper", show_default=True, help="Whose beam the mesh is of.")
+@overridden
+@click.option("--count", metavar="N", help="Segments or elements of the model. Default: what fits, else by the points.")
+@click.option("--within", metavar="E", help="Gate every frequency against the exact beam: 1%.")
+@json_alone
+def compare_shapes(
+    file: str, scene: str, overrides: tuple[str, ...], count: str | None, within: str | None, as_json: bool
+) -> None:
+    """Say which modes of SCENE's beam the shapes in a mesh FILE are, how far off, and whose model's they are nearest.
+
+    FILE is any mesh that meshio reads, solid, shell or line, along an axis: vectors or numbers at its points are modes,
+    field data named after Hz or rad/s their frequencies. Exit 1 where a shape is no mode's, or as `verify compare`.
+    """
+    from verify.exports.given_mesh import read_shapes_of_mesh
+    from verify.identify.shapes import judge_shapes
+    from verify.report.plain import accuracy
+
+    parts, limit = whole_number("count", count), None if within is None else accuracy(within, "within")
+    loaded = load(scene, overrides)
+    result = judge_shapes(loaded, read_shapes_of_mesh(Path(file), loaded.beam.length), parts, limit)
+    _show(result, as_json=as_json)
+    if not result.passed:
+        raise SystemExit(GATE_FAILED)
+
+
+def _show(result: "ShapesJudged", *, as_json: bool) -> None:
+    if as_json:
+        print_json(result.plain())
+        return
+    from verify.report.terminal import print_compared
+
+    print_compared(result, None)

@@ -1,0 +1,51 @@
+"""A point mass on a surface that shakes across: when it leaves, when it lands, when it bounces in step.
+
+The surface moves as A sin theta; `ratio` is A omega^2 over what presses the mass down, g + F/m. Closed forms of
+P. J. Holmes's bouncing ball (J. Sound Vib. 84 (1982) 173).
+"""
+
+from math import asin, cos, pi, sin, sqrt
+
+from verify.checks import check_number
+from verify.errors import InputError
+
+LOOKS = 720
+"""Of a turn, in which a landing is looked for."""
+
+
+def leaving_phase(ratio: float) -> float:
+    """Where the mass leaves the surface, radians. Raises InputError at 1 and below, where it never does."""
+    check_number("acceleration_ratio", ratio, "largest acceleration over that which presses")
+    if not ratio > 1.0:
+        raise InputError(f"acceleration_ratio = {ratio!r}: the mass leaves the surface above 1 alone, raise it")
+    return asin(1.0 / ratio)
+
+
+def landing_phase(ratio: float) -> float:
+    """Where it lands after it left for the first time, radians from the surface's own zero. Raises InputError."""
+    start = leaving_phase(ratio)
+
+    def above(theta: float) -> float:
+        t = theta - start
+        return sin(start) + cos(start) * t - 0.5 * t * t / ratio - sin(theta)
+
+    step, after = 2.0 * pi / LOOKS, start + 2.0 * pi / LOOKS
+    while above(after) > 0.0:
+        after += step
+    low, high = after - step, after
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        low, high = (middle, high) if above(middle) > 0.0 else (low, middle)
+    return 0.5 * (low + high)
+
+
+def bouncing_limits(restitution: float) -> tuple[float, float]:
+    """Between which ratios a mass that lands with this restitution bounces once a period, stably. Raises InputError."""
+    check_number("restitution", restitution, "speed after over speed before", at_least=0)
+    if restitution >= 1.0:
+        raise InputError(f"restitution = {restitution!r}: a bounce that loses nothing has no limits, give one below 1")
+    low = pi * (1.0 - restitution) / (1.0 + restitution)
+    width = 2.0 * (1.0 + restitution**2) / (1.0 + restitution) ** 2
+    return low, sqrt(low * low + width * width)

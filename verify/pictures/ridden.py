@@ -1,0 +1,110 @@
+"""The run of a slider on segments and on elements, friction as an arrow."""
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.errors import InputError
+from verify.judge.workbench import Workbench
+from verify.motion.result import Motion
+from verify.pictures.parts import drawn_section, force_solids
+from verify.pictures.picture import RED, Picture, Solid, box
+from verify.pictures.rows import (
+    CHAIN,
+    ELEMENTS,
+    FINE,
+    FORCE,
+    Asked,
+    Row,
+    Stage,
+    check_moves,
+    count_of,
+    exaggerated,
+    picture_of_rows,
+    stage_of,
+    unit_of,
+)
+from verify.scenes.scene import Scene
+
+RUN = 72
+"""Frames."""
+
+
+def ridden(scene: Scene, asked: Asked) -> Picture:
+    """The run of the slider on segments and on elements, friction as an arrow."""
+    if scene.slider is None or scene.motion is None:
+        missing = "slider" if scene.slider is None else "motion"
+        raise InputError(f"what = 'slider': the scene has no [{missing}], add it or draw its wave")
+    count = count_of(scene, asked, "motion")
+    runs = {model: _run(scene, model, count) for model in (CHAIN, ELEMENTS)}
+    n = min(len(run.times) for run in runs.values())
+    shown = slice(0, n) if asked.moving else slice(n - 1, n)
+    rows, blocks, told = [], [], []
+    largest = max(float(abs(run.deflection).max()) for run in runs.values())
+    check_moves(largest, "the drive")
+    hardest = max(float(abs(run.friction).max()) for run in runs.values()) or 1.0
+    for model, run in runs.items():
+        words = f"{count} {'rigid links and joints' if model == CHAIN else 'Hermite elements'}"
+        is_chain = model == CHAIN
+        row = Row(words=words, upper=is_chain, x=run.points, deflection=run.deflection[shown], links=is_chain)
+        rows.append(row)
+    stage = stage_of(scene.beam, rows, largest)
+    for row, run in zip(rows, runs.values(), strict=True):
+        blocks += _block(scene.beam, row, run, shown, stage, hardest)
+        unit, factor = unit_of(float(abs(run.travelled).max()))
+        told.append([f"{round(factor * x, 2) + 0.0:+.2f} {unit}" for x in run.travelled[shown].tolist()])
+    instants = runs[CHAIN].times[shown]
+    notes = [
+        f"{1e3 * t:.3f} ms; travelled on segments {a}, on elements {b}" for t, a, b in zip(instants, *told, strict=True)
+    ]
+    unit, factor = unit_of(largest)
+    return picture_of_rows(
+        scene,
+        rows,
+        title=f"{scene.name}: the slider and the friction on it",
+        said=f"{exaggerated(scene.beam, stage)}; the longest arrow is {1e3 * hardest:.3g} mN; the slider's travel is "
+        "not enlarged",
+        scale=(f"-{factor * largest:.3g} {unit}", "deflection", f"+{factor * largest:.3g} {unit}"),
+        largest=largest,
+        notes=tuple(notes),
+        seconds=6.0,
+        more=tuple(blocks),
+    )
+
+
+def _run(scene: Scene, model: str, count: int) -> Motion:
+    """One model's run, kept at RUN instants and at its own nodes. Raises InputError."""
+    from verify.quantities.motion_arguments import InTime, SliderInTime
+    from verify.quantities.simulated import motion_case, slider_of, steps_per_period
+
+    x = Workbench(scene.beam).modes(model, count, 1).nodes
+    if model != CHAIN:
+        x = np.linspace(0.0, scene.beam.length, max(FINE, 10 * count + 1))
+    found = motion_case(InTime(model=model, count=count), scene).run(
+        slider=slider_of(SliderInTime(model=model, count=count), scene),
+        at=x.tolist(),
+        samples=RUN,
+        steps_per_period=steps_per_period(scene),
+        patient=False,
+    )
+    if found.statistics.interrupted:
+        raise KeyboardInterrupt
+    return found
+
+
+def _block(beam: Beam, row: Row, run: Motion, shown: slice, stage: Stage, hardest: float) -> list[Solid]:
+    """The slider on the surface as it is drawn, and the friction on it."""
+    drawn, line = drawn_section(beam), stage.line(beam, row)
+    x = run.position[shown] / beam.length
+    y = np.array([np.interp(at, one[:, 0], one[:, 1]) for at, one in zip(x, line, strict=True)])
+    slope = np.array(
+        [np.interp(at, one[:, 0], np.gradient(one[:, 1], one[:, 0])) for at, one in zip(x, line, strict=True)]
+    )
+    turn = np.arctan(slope)
+    foot = np.stack([x - drawn.half * np.sin(turn), y + drawn.half * np.cos(turn)], axis=1)
+    half, height = 0.016, 0.026
+    middle = foot + 0.5 * height * np.stack([-np.sin(turn), np.cos(turn)], axis=1)
+    push = FORCE * run.friction[shown] / hardest
+    way = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    start = middle + way * (half * np.sign(push))[:, None]
+    block = Solid(outlines=box(foot, turn, half, height), depth=0.8 * drawn.depth, colour="#4b5568", edges=True)
+    return [block, *force_solids(start, way * push[:, None], drawn, RED)]

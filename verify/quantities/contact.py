@@ -1,0 +1,217 @@
+"""Named figures of contact in closed form: a driving layer, a mass that leaves the surface, a device that absorbs."""
+
+from math import pi
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from verify.errors import InputError
+from verify.judge.workbench import Workbench
+from verify.models import catalogue
+from verify.models.catalogue import MODELS
+from verify.models.naming import model_meta
+from verify.quantities.cases import drive_frequency
+from verify.quantities.kind import Arguments, AtFrequency, Quantity, Size
+
+if TYPE_CHECKING:
+    from verify.scenes.scene import Scene
+
+
+_WHOLE = "of the whole beam, driven by its other forces; half-infinite unless given"
+
+
+class Layer(Arguments, frozen=True, kw_only=True):
+    """A rigid slider on the crests of a wave, through a layer of springs."""
+
+    reads: ClassVar[tuple[str, ...]] = ()
+    contact_half_angle: Annotated[float, Meta(gt=0, lt=pi, description="of the wave's phase, radians")]
+    epsilon: Annotated[
+        float, Meta(ge=0, description="2 mu kappa/(kappa_t k h), the layer's give along the surface; 0 is Coulomb's")
+    ] = 0.0
+
+
+class LayerAt(Layer, frozen=True, kw_only=True):
+    """The same at a speed of the slider."""
+
+    speed_ratio: Annotated[float, Meta(description="over the speed of the surface at the crests")]
+
+
+class CoulombLayerAt(Arguments, frozen=True, kw_only=True):
+    """The same without give along the surface."""
+
+    reads: ClassVar[tuple[str, ...]] = ()
+    contact_half_angle: Annotated[float, Meta(gt=0, lt=pi, description="of the wave's phase, radians")]
+    speed_ratio: Annotated[float, Meta(ge=0, lt=1, description="over the speed of the surface at the crests")]
+
+
+class Shaken(Arguments, frozen=True, kw_only=True):
+    """A mass on a surface that shakes across."""
+
+    reads: ClassVar[tuple[str, ...]] = ()
+    acceleration_ratio: Annotated[
+        float, Meta(gt=1, description="A omega^2 over the acceleration that presses it down, above 1")
+    ]
+
+
+class Device(AtFrequency, frozen=True, kw_only=True):
+    """A place for a device near the right end, which is pinned."""
+
+    position: Annotated[float, Meta(gt=0, description="metres from the right end")]
+
+
+class Absorbing(Device, frozen=True, kw_only=True):
+    """A device there: by its dashpot and spring, or by its resistance over the matched one's, its spring matched."""
+
+    resistance: Annotated[float, Meta(ge=0, description="of its dashpot, kg/s")] | None = None
+    stiffness: Annotated[float, Meta(description="of its spring, N/m; 0 unless given with resistance")] | None = None
+    ratio: Annotated[float, Meta(ge=0, description="of its resistance to the matched one")] | None = None
+    model: Annotated[str, model_meta(_WHOLE, "solve_harmonic")] | None = None
+    count: Size | None = None
+
+    def __post_init__(self) -> None:
+        if self.model is not None:
+            catalogue.check_count(self.model, self.count)
+        elif self.count is not None:
+            raise InputError(f"count = {self.count!r}: a half-infinite beam has no parts, give model as well")
+        if (self.ratio is None) == (self.resistance is None):
+            raise InputError(f"ratio = {self.ratio!r} and resistance = {self.resistance!r}: give one of the two")
+        if self.ratio is not None and self.stiffness is not None:
+            raise InputError(f"stiffness = {self.stiffness!r}: with ratio the spring is the matched one, leave it out")
+
+
+def _layer_speed(a: Layer, scene: "Scene", bench: Workbench) -> float:
+    from verify.contact.layer import no_load_speed
+
+    return no_load_speed(a.contact_half_angle, a.epsilon)
+
+
+def _layer_force(a: LayerAt, scene: "Scene", bench: Workbench) -> float:
+    from verify.contact.layer import force
+
+    return force(a.contact_half_angle, a.speed_ratio, a.epsilon)
+
+
+def _layer_efficiency(a: CoulombLayerAt, scene: "Scene", bench: Workbench) -> float:
+    from verify.contact.layer import efficiency
+
+    return efficiency(a.contact_half_angle, a.speed_ratio)
+
+
+def _landing(a: Shaken, scene: "Scene", bench: Workbench) -> float:
+    from verify.contact.bouncing import landing_phase
+
+    return landing_phase(a.acceleration_ratio)
+
+
+def _matched(a: Device, scene: "Scene") -> complex:
+    """Raises InputError where the beam ends otherwise."""
+    from verify.waves.absorber import matched_impedance
+
+    if scene.beam.supports[1] != "pinned":
+        raise InputError(
+            f"beam.supports ends with {scene.beam.supports[1]!r}: the impedance beside a pinned end is known, pin it"
+        )
+    if a.position >= scene.beam.length:
+        raise InputError(f"position = {a.position!r} lies off the beam: give less than {scene.beam.length!r} m")
+    return matched_impedance(scene.beam, drive_frequency(a, scene), a.position)
+
+
+def _impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
+    return _matched(a, scene)
+
+
+def _device(a: Absorbing, scene: "Scene") -> complex:
+    """Its impedance, kg/s."""
+    matched, omega = _matched(a, scene), 2.0 * pi * drive_frequency(a, scene)
+    if a.ratio is not None:
+        return complex(a.ratio * matched.real, matched.imag)
+    return complex(a.resistance or 0.0, -(a.stiffness or 0.0) / omega)
+
+
+def _reflection(a: Absorbing, scene: "Scene", bench: Workbench) -> float:
+    from verify.waves.absorber import reflection
+
+    impedance, own = _device(a, scene), _matched(a, scene).conjugate()
+    return reflection(impedance, own) if a.model is None else _left_on_beam(a, scene, impedance)
+
+
+def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
+    """The same of a model's whole beam, between its forces and the device, in the middle half."""
+    from verify.waves.absorber import field_with_device
+    from verify.waves.driven import measures
+
+    assert a.model is not None
+    at, model = scene.beam.length - a.position, MODELS.named(a.model)
+    forces = [force for force in scene.forces if abs(force.position - at) > 1e-9 * scene.beam.length]
+    if scene.drive is not None and scene.drive.kind != "force":
+        raise InputError(f"drive.kind = {scene.drive.kind!r}: beside a device forces drive the beam, give 'force'")
+    if not forces:
+        raise InputError("drive.force: no force is left beside the device to drive the beam, add one")
+    field = field_with_device(
+        lambda given, hertz: model.solve_harmonic(scene.beam, given, hertz, a.count),
+        forces,
+        drive_frequency(a, scene),
+        at,
+        impedance,
+    )
+    return measures(field, None).reflection
+
+
+def _needs_device(a: Device, scene: "Scene") -> tuple[()]:
+    """Raise InputError where no device can stand."""
+    _matched(a, scene)
+    return ()
+
+
+CONTACT_QUANTITIES: tuple[Quantity[Any], ...] = (
+    Quantity(
+        "slider.winkler_speed_ratio",
+        "1",
+        "No-load speed of a rigid slider on a driving layer of springs, over the speed of the crests.",
+        Layer,
+        "closed form",
+        _layer_speed,
+    ),
+    Quantity(
+        "slider.layer_force",
+        "1",
+        "Force on that slider at a speed, over mu N.",
+        LayerAt,
+        "closed form",
+        _layer_force,
+    ),
+    Quantity(
+        "slider.layer_efficiency",
+        "1",
+        "Power on that slider over power into the layer, with Coulomb's friction.",
+        CoulombLayerAt,
+        "closed form",
+        _layer_efficiency,
+    ),
+    Quantity(
+        "contact.landing_phase",
+        "rad",
+        "Phase of a shaking surface at which a mass that has left it lands first.",
+        Shaken,
+        "closed form",
+        _landing,
+    ),
+    Quantity(
+        "wave.absorber_impedance",
+        "kg/s",
+        "Impedance of a device beside the pinned right end that reflects nothing: force over velocity.",
+        Device,
+        "harmonic",
+        _impedance,
+        needs=_needs_device,
+    ),
+    Quantity(
+        "wave.absorber_reflection",
+        "1",
+        "Gamma that a device there leaves of a wave from the left: half-infinite beam, or a model's middle half.",
+        Absorbing,
+        "harmonic",
+        _reflection,
+        needs=_needs_device,
+    ),
+)
