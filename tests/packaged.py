@@ -2,6 +2,7 @@
 
 from functools import cache
 
+from verify.report.html import page
 from verify.report.plain import run_as_plain
 from verify.run.runner import run_scene
 
@@ -17,3 +18,9 @@ def ran(scene):
 def told(scene):
     """The same in plain data."""
     return run_as_plain(ran(scene)[0], None)
+
+
+@cache
+def html_of(scene):
+    """The page of its report."""
+    return page(ran(scene)[0], f"verify run {scene}")

@@ -70,10 +70,10 @@ def test_gates_are_folded_by_family_and_open_where_one_fails(result):
     from msgspec.structs import replace
 
     passed = page(result, "verify run x")
-    assert '<details class="card" id="gates-mode">' in passed
+    assert '<details class="card prints" id="gates-mode">' in passed
     failed = replace(result.gates[0], passed=False, reason="measured 1 lies below 2")
     text = page(replace(result, gates=(failed, *result.gates[1:])), "verify run x")
-    assert f'<details class="card" id="gates-{failed.quantity.partition(".")[0]}" open>' in text
+    assert f'<details class="card prints" id="gates-{failed.quantity.partition(".")[0]}" open>' in text
     assert "Failed: 1 of 24 gates" in text
     assert "measured 1 lies below 2" in text
 
@@ -145,7 +145,7 @@ def test_the_problem_is_drawn_tabulated_and_written_down(html, result):
 
     problem = html[html.index('id="problem"') : html.index('id="answer"')]
     assert "500 mm" in problem
-    assert problem.count("pinned</text>") == 2
+    assert problem.count("pinned</text>") == 4  # both ends, for a page and for a phone
     assert "x = 11.6 mm" in problem
     assert '<th scope="row">youngs_modulus</th><td>7e+10</td>' in problem
     toml = re.search(r"<pre>(.*?)</pre>", problem, re.DOTALL)[1]
@@ -331,3 +331,43 @@ def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(tit
     assert mean_in_words(low).endswith("always nearer than elements alone.")
     high = convergence(bench, Convergence(modes=(3, 9), counts=(12, 13, 24)))
     assert mean_in_words(high).endswith("beyond about n = 0.7 N: mode 9 at N = 12.")
+
+
+def test_words_in_a_drawing_keep_clear_of_each_other_however_close_their_places():
+    from verify.report.labels import Box, Label, placed
+
+    crowd = [Label(400.0 + 3.0 * k, -20.0, (f"x = {k} mm", "1 N")) for k in range(9)]
+    crowd += [Label(2.0, 14.0, ("pinned at the very edge",), down=True) for _ in range(3)]
+    beam = Box(60.0, -8.0, 800.0, 8.0)
+    words, boxes = placed(crowd, [beam], 860.0)
+    assert len(words) == 9 * 2 + 3
+    assert not any(one.meets(other) for i, one in enumerate(boxes) for other in boxes[:i])
+    assert all(one.left >= 0.0 and one.right <= 860.0 for one in boxes)
+
+
+def test_a_short_logarithmic_axis_has_several_ticks_and_zero_has_no_place_on_it():
+    from verify.report.drawing import drawn
+    from verify.studies.chart import Axis, Chart, Line
+
+    line = Line(name="a", x=(5.9, 11.0, 15.9), y=(1e-3, 0.0, 1e-7), colour="#112233")
+    picture = drawn(Chart(id="c", title="t", caption="", x=Axis("x", log=True), y=Axis("y", log=True), lines=(line,)))
+    ticks = re.findall(r">(\d+)</text>", picture.svg)
+    assert {"7", "10", "15"} <= set(ticks)
+    assert 1e-8 < picture.y[0] < 1e-7
+
+
+def test_shapes_are_those_of_the_scenes_theory():
+    """A thick bar: ends of elements lie on Timoshenko's shape, which is the one drawn."""
+    from verify import load_scene
+    from verify.judge.variants import Variant
+    from verify.judge.workbench import Workbench
+    from verify.studies.shape_charts import shapes_chart
+
+    bench = Workbench(load_scene("thick-bar").beam)
+    variants = (Variant("fem", (("theory", "timoshenko"),)),)
+    (chart,) = shapes_chart(bench, variants, 40, 4)
+    exact, elements = chart.lines
+    at = {round(x, 6): y for x, y in zip(exact.x, exact.moves[3], strict=True)}
+    pairs = [(at[round(x, 6)], y) for x, y in zip(elements.x, elements.moves[3], strict=True) if round(x, 6) in at]
+    assert len(pairs) > 20
+    assert max(abs(a - b) for a, b in pairs) < 5e-3 * max(abs(a) for a, _ in pairs)

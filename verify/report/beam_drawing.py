@@ -1,13 +1,17 @@
 """A drawing of a scene's beam as SVG: supports, sections, what stands on it, forces, the slider, all where they are.
 
 Lengths along the beam are to scale; heights are not, but sections keep their order of thickness. Lines follow the page.
+Words are laid where nothing else stands: beside what they name, else farther from the beam.
 """
 
 from collections.abc import Iterator
 from math import log10
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
+
+import msgspec
 
 from verify.options import Support
+from verify.report.labels import Box, Label, placed, words_at
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -15,27 +19,57 @@ if TYPE_CHECKING:
     from verify.section import Piece
     from verify.slider import Slider
 
-WIDTH, HEIGHT, EDGE = 860.0, 190.0, 60.0
-AXIS = 105.0
-"""Height of the neutral line in the picture, downwards."""
+BROAD, NARROW = (860.0, 60.0), (400.0, 48.0)
+"""Width of the picture and of its margins: for a page, for a phone."""
 LEAST, MOST = 5.0, 24.0
 """Thickness of the thinnest and the thickest section."""
+ARROW = 46.0
+"""Length of a force."""
 INK, SOFT, BODY, FORCE, SPRING = "var(--ink)", "var(--soft)", "var(--bar)", "#d6427a", "#2a9d5c"
 
+Drawn: TypeAlias = "Box | Label | str"
+"""What a part of the picture consists of: room that words keep clear of, words, strokes."""
 
-def beam_drawing(scene: "Scene") -> str:
+
+class View(msgspec.Struct, frozen=True):
+    """Where on the picture a place of the beam is; its neutral line is at height 0, downwards positive."""
+
+    beam: "Beam"
+    width: float
+    edge: float
+
+    def at(self, x: float) -> float:
+        """Across the picture, of a place in metres."""
+        return self.edge + (self.width - 2 * self.edge) * x / self.beam.length
+
+
+def beam_drawing(scene: "Scene", size: tuple[float, float] = BROAD) -> str:
     """The whole picture."""
-    beam = scene.beam
-    parts = [*_foundation(beam), *_pieces(beam), *_supports(beam), *_springs(beam), *_masses(beam), *_tension(beam)]
-    if scene.slider is not None:
-        parts += _slider(scene.slider, beam)
-    parts += _forces(scene)
-    parts += _length(beam)
+    view = View(scene.beam, *size)
+    parts = list(_parts(scene, view))
+    boxes = [one for one in parts if isinstance(one, Box)]
+    words, boxes = placed([one for one in parts if isinstance(one, Label)], boxes, view.width)
+    top = min(box.top for box in boxes) - 6.0
+    bottom = max(box.bottom for box in boxes) + 32.0
+    strokes = [one for one in parts if isinstance(one, str)] + words + list(_length(view, bottom - 10.0))
     return (
-        f'<svg viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img" aria-label="{_told(scene)}" '
-        f'style="width:100%;max-width:{WIDTH:g}px;display:block;margin:auto" font-size="12" fill="none">'
-        f"{''.join(parts)}</svg>"
+        f'<svg viewBox="0 {top:.0f} {view.width:g} {bottom - top:.0f}" role="img" aria-label="{_told(scene)}" '
+        f'style="width:100%;max-width:{view.width:g}px;display:block;margin:auto" font-size="12" fill="none">'
+        f"{''.join(strokes)}</svg>"
     )
+
+
+def _parts(scene: "Scene", view: View) -> Iterator[Drawn]:
+    """Everything that stands in the picture; of words the first have the choice of places."""
+    yield from _foundation(view)
+    yield from _pieces(view)
+    yield from _supports(view)
+    yield from _springs(view)
+    yield from _masses(view)
+    yield from _tension(view)
+    if scene.slider is not None:
+        yield from _slider(scene.slider, view)
+    yield from _forces(scene, view)
 
 
 def _told(scene: "Scene") -> str:
@@ -45,10 +79,6 @@ def _told(scene: "Scene") -> str:
     counts = {"sections": beam.section, "bodies": beam.mass, "springs": beam.spring, "forces": scene.forces}
     words += [f"{len(found)} {name}" for name, found in counts.items() if found]
     return ", ".join([*words, *(["a slider"] if scene.slider else [])])
-
-
-def _place(beam: "Beam", x: float) -> float:
-    return EDGE + (WIDTH - 2 * EDGE) * x / beam.length
 
 
 def _metres(x: float) -> str:
@@ -62,10 +92,6 @@ def _metres(x: float) -> str:
 def _line(*points: tuple[float, float], colour: str = INK, width: float = 1.4, more: str = "") -> str:
     d = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points)
     return f'<path d="{d}" stroke="{colour}" stroke-width="{width:g}"{more}/>'
-
-
-def _text(x: float, y: float, words: str, anchor: str = "middle", colour: str = SOFT) -> str:
-    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{colour}">{words}</text>'
 
 
 def _heights(beam: "Beam") -> list[float]:
@@ -88,17 +114,18 @@ def _half(beam: "Beam", x: float) -> float:
     return 0.5 * heights[-1]
 
 
-def _pieces(beam: "Beam") -> Iterator[str]:
-    start = 0.0
+def _pieces(view: View) -> Iterator[Drawn]:
+    beam, start = view.beam, 0.0
     for piece, height in zip(beam.pieces, _heights(beam), strict=True):
-        x, width = _place(beam, start), _place(beam, piece.length) - EDGE
+        x, width = view.at(start), view.at(piece.length) - view.edge
         yield (
-            f'<rect x="{x:.1f}" y="{AXIS - 0.5 * height:.1f}" width="{width:.1f}" height="{height:.1f}" '
+            f'<rect x="{x:.1f}" y="{-0.5 * height:.1f}" width="{width:.1f}" height="{height:.1f}" '
             f'fill="{BODY}" fill-opacity=".35" stroke="{BODY}"/>'
         )
+        yield Box(x, -0.5 * height, x + width, 0.5 * height)
         start += piece.length
     if len(beam.pieces) == 1:
-        yield _text(0.5 * WIDTH, AXIS + 27, _section_words(beam.pieces[0], beam))
+        yield Label(0.5 * view.width, 14.0, (_section_words(beam.pieces[0], beam),), down=True)
 
 
 def _section_words(piece: "Piece", beam: "Beam") -> str:
@@ -109,83 +136,88 @@ def _section_words(piece: "Piece", beam: "Beam") -> str:
     return f"EI = {piece.bending_stiffness:.4g} N m²"
 
 
-def _supports(beam: "Beam") -> Iterator[str]:
-    kinds: dict[Support, int] = {}
-    for x, support, out in ((0.0, beam.supports[0], -1.0), (beam.length, beam.supports[1], 1.0)):
-        kinds[support] = kinds.get(support, 0) + 1
-        at, half = _place(beam, x), _half(beam, x)
+def _supports(view: View) -> Iterator[Drawn]:
+    beam = view.beam
+    ends: tuple[tuple[float, Support, float], ...] = ((0.0, beam.supports[0], -1.0), (beam.length, beam.supports[1], 1))
+    for x, support, out in ends:
+        at, half = view.at(x), _half(beam, x)
         if support == "clamped":
             yield from _wall(at, out, half)
         elif support == "guided":
             yield from _wall(at + 9 * out, out, half)
             for up in (-0.5, 0.5):
-                yield f'<circle cx="{at + 4.5 * out:.1f}" cy="{AXIS + 16 * up:.1f}" r="3.5" stroke="{INK}"/>'
+                yield f'<circle cx="{at + 4.5 * out:.1f}" cy="{16 * up:.1f}" r="3.5" stroke="{INK}"/>'
         elif support == "pinned":
             yield from _foot(at, half, rolls=out > 0)
-        yield _text(at, AXIS + (62 if support == "pinned" else 44), support)
+        yield Label(at, half + 8.0, (support,), down=True)
 
 
-def _wall(at: float, out: float, half: float) -> Iterator[str]:
+def _wall(at: float, out: float, half: float) -> Iterator[Drawn]:
     tall = half + 16
-    yield _line((at, AXIS - tall), (at, AXIS + tall), width=2)
+    yield _line((at, -tall), (at, tall), width=2)
+    yield Box(min(at, at + 9 * out), -tall, max(at, at + 9 * out), tall + 7)
     for k in range(6):
-        y = AXIS - tall + 2 * tall * (k + 0.5) / 6
+        y = -tall + 2 * tall * (k + 0.5) / 6
         yield _line((at, y), (at + 9 * out, y + 7), colour=SOFT, width=1)
 
 
-def _foot(at: float, half: float, *, rolls: bool) -> Iterator[str]:
-    y = AXIS + half
+def _foot(at: float, half: float, *, rolls: bool) -> Iterator[Drawn]:
+    y = half
     yield _line((at, y), (at - 11, y + 18), (at + 11, y + 18), (at, y), more=' stroke-linejoin="round"')
     if rolls:
         yield f'<circle cx="{at - 6:.1f}" cy="{y + 22:.1f}" r="3.2" stroke="{INK}"/>'
         yield f'<circle cx="{at + 6:.1f}" cy="{y + 22:.1f}" r="3.2" stroke="{INK}"/>'
     ground = y + (27 if rolls else 19)
     yield _line((at - 16, ground), (at + 16, ground), colour=SOFT)
+    yield Box(at - 16, y, at + 16, ground)
 
 
-def _springs(beam: "Beam") -> Iterator[str]:
-    for spring in beam.spring:
-        at, y = _place(beam, spring.position), AXIS + _half(beam, spring.position)
+def _springs(view: View) -> Iterator[Drawn]:
+    for spring in view.beam.spring:
+        at, half = view.at(spring.position), _half(view.beam, spring.position)
         if spring.stiffness:
-            zigzag = [(at + (6 if k % 2 else -6), y + 8 + 4 * k) for k in range(6)]
-            yield _line((at, y), (at, y + 5), *zigzag, (at, y + 32), (at, y + 36), colour=SPRING)
-            yield _line((at - 11, y + 36), (at + 11, y + 36), colour=SOFT)
-            yield _text(at, y + 50, f"{spring.stiffness:.4g} N/m")
+            zigzag = [(at + (6 if k % 2 else -6), half + 8 + 4 * k) for k in range(6)]
+            yield _line((at, half), (at, half + 5), *zigzag, (at, half + 32), (at, half + 36), colour=SPRING)
+            yield _line((at - 11, half + 36), (at + 11, half + 36), colour=SOFT)
+            yield Box(at - 11, half, at + 11, half + 37)
+            yield Label(at, half + 40, (f"{spring.stiffness:.4g} N/m",), down=True)
         if spring.rotational:
-            yield f'<path d="M{at + 12:.1f} {AXIS:.1f}a12 12 0 1 1 -12 -12" stroke="{SPRING}" stroke-width="1.6"/>'
-            yield _text(at, AXIS - 20, f"{spring.rotational:.4g} N m/rad")
+            yield f'<path d="M{at + 12:.1f} 0a12 12 0 1 1 -12 -12" stroke="{SPRING}" stroke-width="1.6"/>'
+            yield Box(at - 12, -12, at + 12, 12)
+            yield Label(at, -half - 10, (f"{spring.rotational:.4g} N m/rad",))
 
 
-def _masses(beam: "Beam") -> Iterator[str]:
-    for mass in beam.mass:
-        at, y = _place(beam, mass.position), AXIS - _half(beam, mass.position)
+def _masses(view: View) -> Iterator[Drawn]:
+    for mass in view.beam.mass:
+        at, y = view.at(mass.position), -_half(view.beam, mass.position)
         yield f'<circle cx="{at:.1f}" cy="{y - 9:.1f}" r="9" fill="{INK}" fill-opacity=".75"/>'
-        words = [f"{mass.mass:.4g} kg"] * bool(mass.mass) + [f"{mass.rotary_inertia:.4g} kg m²"] * bool(
-            mass.rotary_inertia
-        )
-        anchor = "end" if at > WIDTH - 2 * EDGE else "start" if at < 2 * EDGE else "middle"
-        yield _text(at, y - 24, ", ".join(words), anchor)
+        yield Box(at - 9, y - 18, at + 9, y)
+        words = [f"{mass.mass:.4g} kg"] * bool(mass.mass)
+        words += [f"{mass.rotary_inertia:.4g} kg m²"] * bool(mass.rotary_inertia)
+        yield Label(at, y - 20, (", ".join(words),))
 
 
-def _tension(beam: "Beam") -> Iterator[str]:
-    if not beam.tension:
+def _tension(view: View) -> Iterator[Drawn]:
+    if not view.beam.tension:
         return
-    pull = 1.0 if beam.tension > 0 else -1.0
-    for at, out in ((EDGE - 8, -1.0), (WIDTH - EDGE + 8, 1.0)):
-        tail, head = (at + 12 * out, at + 40 * out) if pull > 0 else (at + 40 * out, at + 12 * out)
-        yield from _arrow((tail, AXIS), (head, AXIS), SPRING)
-    yield _text(WIDTH - 4, AXIS - 10, f"{beam.tension:.4g} N", "end")
+    pull = view.beam.tension > 0
+    for at, out in ((view.edge - 8, -1.0), (view.width - view.edge + 8, 1.0)):
+        near, far = at + 6 * out, at + 36 * out
+        yield from _arrow((near if pull else far, 0.0), (far if pull else near, 0.0), SPRING)
+        yield Box(min(near, far), -4, max(near, far), 4)
+    yield Label(view.width - 4, -8, (f"{view.beam.tension:.4g} N",))
 
 
-def _foundation(beam: "Beam") -> Iterator[str]:
-    if not beam.foundation:
+def _foundation(view: View) -> Iterator[Drawn]:
+    if not view.beam.foundation:
         return
-    y = AXIS + 34
-    for k in range(25):
-        at = EDGE + (WIDTH - 2 * EDGE) * (k + 0.5) / 25
-        yield _line((at, AXIS), (at - 4, AXIS + 14), (at + 4, AXIS + 22), (at, y), colour=SOFT, width=0.9)
-    yield _line((EDGE, y), (WIDTH - EDGE, y), colour=SOFT)
-    yield _text(0.5 * WIDTH, y + 28, f"foundation {beam.foundation:.4g} N/m²")
+    left, right, n = view.edge, view.width - view.edge, int(view.width / 34)
+    for k in range(n):
+        at = left + (right - left) * (k + 0.5) / n
+        yield _line((at, 0.0), (at - 4, 14.0), (at + 4, 22.0), (at, 34.0), colour=SOFT, width=0.9)
+    yield _line((left, 34.0), (right, 34.0), colour=SOFT)
+    yield Box(left, 0.0, right, 35.0)
+    yield Label(0.5 * view.width, 36.0, (f"foundation {view.beam.foundation:.4g} N/m²",), down=True)
 
 
 def _arrow(tail: tuple[float, float], head: tuple[float, float], colour: str) -> Iterator[str]:
@@ -198,29 +230,40 @@ def _arrow(tail: tuple[float, float], head: tuple[float, float], colour: str) ->
     yield f'<polygon points="{points}{x1 - 1.5 * ux + 0.7 * uy:.1f},{y1 - 1.5 * uy - 0.7 * ux:.1f}" fill="{colour}"/>'
 
 
-def _forces(scene: "Scene") -> Iterator[str]:
+def _forces(scene: "Scene", view: View) -> Iterator[Drawn]:
+    """Arrows that stand on the beam, or on what it carries there."""
     if scene.drive is None:
         return
-    unit, beam = ("N" if scene.drive.kind == "force" else "m"), scene.beam
+    unit = "N" if scene.drive.kind == "force" else "m"
     for force in scene.forces:
-        at, y = _place(beam, force.position), AXIS - _half(beam, force.position)
-        yield from _arrow((at, y - 46), (at, y - 2), FORCE)
+        at, y = view.at(force.position), -_half(view.beam, force.position) - _carried(scene, view, force.position)
+        yield from _arrow((at, y - ARROW), (at, y - 2), FORCE)
+        yield Box(at - 5, y - ARROW, at + 5, y)
         phase = f", {force.phase_deg:g}°" if force.phase_deg else ""
-        yield _text(at, y - 53, f"{force.amplitude:.4g} {unit}{phase}", colour=FORCE)
-        yield _text(at, y - 67, f"x = {_metres(force.position)}")
-    yield _text(0.5 * WIDTH, 20, f"{scene.drive.frequency_hz:g} Hz")
+        yield Label(at, y - ARROW - 2, (f"x = {_metres(force.position)}", f"{force.amplitude:.4g} {unit}{phase}"))
+    yield Label(0.5 * view.width, -MOST - ARROW, (f"driven at {scene.drive.frequency_hz:g} Hz",))
 
 
-def _slider(slider: "Slider", beam: "Beam") -> Iterator[str]:
-    x = slider.start_on(beam)
-    at, y = _place(beam, x), AXIS - _half(beam, x)
+def _carried(scene: "Scene", view: View, x: float) -> float:
+    """Height of what the beam carries at x: a body, the slider."""
+    near = 20.0 / (view.width - 2 * view.edge) * view.beam.length
+    slider = scene.slider.start_on(view.beam) if scene.slider is not None else None
+    if any(abs(mass.position - x) < 0.5 * near for mass in view.beam.mass):
+        return 18.0
+    return 17.0 if slider is not None and abs(slider - x) < near else 0.0
+
+
+def _slider(slider: "Slider", view: View) -> Iterator[Drawn]:
+    x = slider.start_on(view.beam)
+    at, y = view.at(x), -_half(view.beam, x)
     yield f'<rect x="{at - 16:.1f}" y="{y - 17:.1f}" width="32" height="16" rx="2" fill="#e8760c" fill-opacity=".8"/>'
-    yield _text(at, y - 24, f"slider, {1e3 * slider.mass:.4g} g, mu {slider.mu:g}")
+    yield Box(at - 16, y - 17, at + 16, y)
+    yield Label(at, y - 19, (f"slider, {1e3 * slider.mass:.4g} g, mu {slider.mu:g}",))
 
 
-def _length(beam: "Beam") -> Iterator[str]:
-    y = HEIGHT - 14
-    yield _line((EDGE, y), (WIDTH - EDGE, y), colour=SOFT, width=1)
-    for at in (EDGE, WIDTH - EDGE):
+def _length(view: View, y: float) -> Iterator[str]:
+    left, right = view.edge, view.width - view.edge
+    yield _line((left, y), (right, y), colour=SOFT, width=1)
+    for at in (left, right):
         yield _line((at, y - 5), (at, y + 5), colour=SOFT, width=1)
-    yield _text(0.5 * WIDTH, y - 4, _metres(beam.length))
+    yield words_at(0.5 * view.width, y - 6, _metres(view.beam.length))

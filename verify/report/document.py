@@ -160,22 +160,27 @@ def _side(i: int, column: "Column", rows: tuple[tuple[Any, ...], ...]) -> str:
 
 
 def _on_page(table: "Table", shared: tuple[str, ...]) -> PageTable:
-    """A table with its figures written out: heads with their side, rows of cells, sentences before and after."""
-    sides = [_side(i, column, table.rows) for i, column in enumerate(table.columns)]
+    """A table with its figures written out: heads with their side, rows of cells, sentences before and after.
+
+    Columns without any figure are left out.
+    """
+    kept = [i for i in range(len(table.columns)) if not table.rows or any(row[i] is not None for row in table.rows)]
+    columns = [table.columns[i] for i in kept]
+    sides = [_side(i, table.columns[i], table.rows) for i in kept]
     rows = tuple(
         tuple(
             Cell(
                 _verdict(value) if column.form == "verdict" else side,
                 cell(value, column.form, column.factor, column.unit),
             )
-            for side, value, column in zip(sides, row, table.columns, strict=True)
+            for side, value, column in zip(sides, (row[i] for i in kept), columns, strict=True)
         )
         for row in table.rows
     )
     return PageTable(
         title=table.title,
         before=table.before,
-        heads=tuple(Cell(side, column.head) for side, column in zip(sides, table.columns, strict=True)),
+        heads=tuple(Cell(side, column.head) for side, column in zip(sides, columns, strict=True)),
         rows=rows,
         notes=tuple(told_once(note for note in table.notes if note not in shared)),
         folded=table.folded,

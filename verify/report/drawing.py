@@ -19,13 +19,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDTH, HEIGHT = 460.0, 300.0
-"""Of the picture, in units of its own; text is drawn for a page that shows it at 0.75 to 1.3 of that."""
-FONT = 10.5
+WIDTH, HEIGHT = 430.0, 285.0
+"""Of the picture, in units of its own; text is drawn for a page that shows it at 0.8 to 1.35 of that."""
+FONT = 11.0
 UNDER = 1.7
 """By which the lowest lines are broader."""
 CLOSEST = 27.0
 """Between two ticks that were chosen."""
+FEW, MANY = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
+"""Times a power of ten: ticks of an axis that is short."""
+SHORT = 0.2
+"""Of all bars' span: words of a bar to the left that is shorter stand at its right, clear of the names."""
 _INK, _RULE, _PAPER = "#010203", "#010204", "#010205"
 _VARIABLES = {
     _INK: "var(--ink, #1c2026)",
@@ -109,10 +113,16 @@ def _lines(axes: "Axes", chart: Chart) -> None:
                 _gaps(line.x), _gaps(before.y), _gaps(line.y), color="#8a8f98", alpha=0.18, lw=0, zorder=1
             )
         _line(axes, replace(line, width=UNDER * line.width) if i in lowest else line, f"{chart.id}-{i}")
-        for x, y, words in zip(line.x, line.y, line.beside, strict=False):
-            axes.annotate(words, (x, y), (0, 5), textcoords="offset points", ha="center", fontsize=FONT - 2)
+        _beside(axes, line, below=before is not None)
         before = line
         _room(axes, line)
+
+
+def _beside(axes: "Axes", line: Line, *, below: bool) -> None:
+    """Words over the points of the first line and under those of the others."""
+    for x, y, words in zip(line.x, line.y, line.beside, strict=False):
+        style: dict[str, Any] = {"ha": "center", "va": "top" if below else "bottom", "fontsize": FONT - 2}
+        axes.annotate(words, (x, y), (0, -5 if below else 5), textcoords="offset points", **style)
 
 
 def _room(axes: "Axes", line: Line) -> None:
@@ -160,10 +170,12 @@ def _bars(axes: "Axes", bars: Bars) -> None:
     places = range(len(bars.names))
     axes.barh(places, bars.values, color=bars.colours, height=0.72)
     axes.set_yticks(places, bars.names, fontsize=FONT - 1)
+    span = max(bars.values, default=0.0) - min(bars.values, default=0.0)
     for at, value, words in zip(places, bars.values, bars.words, strict=False):
-        side = "left" if value >= 0.0 else "right"
+        side = -1 if value < -SHORT * span else 1
+        style: dict[str, Any] = {"ha": "left" if side > 0 else "right", "va": "center"}
         axes.annotate(
-            words, (value, at), (4 if value >= 0.0 else -4, 0), textcoords="offset points", ha=side, va="center"
+            words, (max(value, 0.0) if side > 0 else value, at), (4 * side, 0), textcoords="offset points", **style
         )
     if bars.words:
         axes.margins(x=0.22)
@@ -191,7 +203,6 @@ def _mark(axes: "Axes", mark: Mark, i: int) -> None:
         xycoords=axes.get_xaxis_transform(),
         textcoords="offset points",
         va="top",
-        color=mark.colour,
     )
 
 
@@ -201,7 +212,7 @@ def _axis(axes: "Axes", which: str, axis: Axis, chart: Chart) -> None:
 
     own = axes.xaxis if which == "x" else axes.yaxis
     if axis.log and _positive(chart, which):
-        (axes.set_xscale if which == "x" else axes.set_yscale)("log")
+        (axes.set_xscale if which == "x" else axes.set_yscale)("log", nonpositive="clip" if chart.bars else "mask")
         own.set_minor_locator(NullLocator())
         own.set_minor_formatter(NullFormatter())
         own.set_major_locator(LogLocator(numticks=7))
@@ -218,13 +229,15 @@ def _axis(axes: "Axes", which: str, axis: Axis, chart: Chart) -> None:
 
 
 def _at_least_two(axes: "Axes", which: str) -> None:
-    """Ticks at 1, 2 and 5 where the axis has no two powers of ten."""
+    """Ticks at 1, 2 and 5 where the axis has no two powers of ten; more of them where it has not two of those."""
     from matplotlib.ticker import LogLocator
 
     low, high = sorted(axes.get_xlim() if which == "x" else axes.get_ylim())
     if log10(high / low) < 2.0:
+        decades = range(floor(log10(low)), floor(log10(high)) + 1)
+        few = sum(low <= sub * 10.0**k <= high for k in decades for sub in FEW) < 3
         own = axes.xaxis if which == "x" else axes.yaxis
-        own.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=9))
+        own.set_major_locator(LogLocator(subs=MANY if few else FEW, numticks=20))
 
 
 def _positive(chart: Chart, which: str) -> bool:
@@ -260,23 +273,37 @@ def _apart(axis: Axis, room: float) -> list[float]:
 
 def _settle(figure: "Figure", axes: "Axes") -> tuple[float, float, float, float]:
     """Give the axes the room that their words leave; where they are then, in the picture's units."""
-    figure.draw_without_rendering()
-    words = axes.get_tightbbox()
-    assert words is not None
-    own = axes.get_window_extent()
+    from matplotlib.backends.backend_svg import RendererSVG
+
+    measuring: Any = RendererSVG
+    renderer = measuring(WIDTH, HEIGHT, StringIO())
     bars = [one for one in figure.axes if one is not axes]
-    right = 0.0
+    for _ in range(2 if axes.texts else 1):  # words at a bar's end go farther out as the axes shrink
+        left, above, over, bottom, right = _margins(axes, bars, renderer)
+        wide, tall = (WIDTH - left - over) / WIDTH, (HEIGHT - bottom - above) / HEIGHT
+        axes.set_position((left / WIDTH, bottom / HEIGHT, wide, tall))
+        for bar in bars:
+            bar.set_position(((WIDTH - right) / WIDTH, bottom / HEIGHT, 10.0 / WIDTH, tall))
+    return left, above, WIDTH - over, HEIGHT - bottom
+
+
+def _margins(axes: "Axes", bars: "list[Axes]", renderer: Any) -> tuple[float, float, float, float, float]:
+    """What words need at the left, above, at the right, below; and of the right what a bar of colours needs."""
+    words, own = axes.get_tightbbox(renderer, bbox_extra_artists=axes.texts), axes.get_window_extent()
+    assert words is not None
+    right, top = 0.0, words.y1
     for bar in bars:
-        beside = bar.get_tightbbox()
+        beside = bar.get_tightbbox(renderer)
         right = (beside.width if beside else 0.0) + 8.0
-    left, bottom = own.x0 - words.x0 + 3.0, own.y0 - words.y0 + 3.0
-    over, above = max(words.x1 - own.x1, 0.0) + 4.0 + right, max(words.y1 - own.y1, 0.0) + 4.0
-    axes.set_position(
-        (left / WIDTH, bottom / HEIGHT, (WIDTH - left - over) / WIDTH, (HEIGHT - bottom - above) / HEIGHT)
+        top = max(top, beside.y1 if beside else 0.0)
+    over, above = max(words.x1 - own.x1, 0.0) + 4.0 + right, max(top - own.y1, 0.0) + 4.0
+    return (
+        float(own.x0 - words.x0 + 3.0),
+        float(above),
+        float(over),
+        float(own.y0 - words.y0 + 3.0),
+        float(right),
     )
-    for bar in bars:
-        bar.set_position(((WIDTH - right) / WIDTH, bottom / HEIGHT, 10.0 / WIDTH, (HEIGHT - bottom - above) / HEIGHT))
-    return float(left), float(above), float(WIDTH - over), float(HEIGHT - bottom)
 
 
 def _cleaned(text: str) -> str:

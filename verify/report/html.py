@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.files import write_whole
-from verify.report.document import Document, document_of
+from verify.report.document import Document, PageTable, Section, document_of
 from verify.report.plain import finite
 from verify.run.gates import GateResult, reference_in_words, shown_expectation
 from verify.words import figure, seconds_in_words
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
     from verify.identify.told import Compared
     from verify.run.runner import RunResult
     from verify.scenes.scene import Scene
+
+
+UPRIGHT = 112
+"""Letters of a table's row on A4 in the size in which tables are printed."""
+WRAPPED = 24
+"""Letters of a cell from which on it is broken into lines."""
 
 
 def write_report(result: "RunResult", path: Path, command: str) -> None:
@@ -81,6 +87,22 @@ def groups_of(gates: tuple[GateResult, ...]) -> tuple[GateGroup, ...]:
     )
 
 
+def worded(table: PageTable) -> bool:
+    """Whether a column has sentences: a phone shows the rows of such a table one under the other."""
+    return any(head.side == "long" for head in table.heads)
+
+
+def broad(section: Section) -> bool:
+    """Whether a table of a section has more in a row than a page of paper has room for upright."""
+    return any(_letters(table) > UPRIGHT for table in section.tables if table.rows and not table.folded)
+
+
+def _letters(table: PageTable) -> int:
+    """In a row, each column as wide as its widest cell or what of it stays in one line."""
+    columns = zip(table.heads, *table.rows, strict=True)
+    return sum(2 + max(min(len(cell.text), WRAPPED) for cell in column) for column in columns)
+
+
 def templates() -> "Environment":
     """Of pages, with the filters that they use."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -99,6 +121,7 @@ def templates() -> "Environment":
         "band": shown_expectation,
         "reference": reference_in_words,
     }
+    made.tests |= {"worded": worded, "broad": broad}
     return made
 
 

@@ -26,6 +26,7 @@ function layered(figure, chart) {
   tip.className = "tip"; tip.hidden = true; tip.setAttribute("role", "status"); plot.append(tip);
   let at = null;
   const visible = i => !off.has(chart.lines[i].group) && !chart.lines[i].guide;
+  const there = (i, k) => (chart.lines[i].x[k] ?? null) !== null && (chart.lines[i].y[k] ?? null) !== null && point(i, k).every(isFinite);
   const point = (i, k) => [x(chart.lines[i].x[k]), y(chart.lines[i].y[k])];
   function tell(words, px, py) {
     spot.setAttribute("cx", px); spot.setAttribute("cy", py); spot.setAttribute("visibility", "visible");
@@ -46,37 +47,54 @@ function layered(figure, chart) {
     chart.lines.forEach((line, i) => {
       if (!visible(i)) return;
       for (let k = 0; k < line.x.length; k++) {
-        if (line.y[k] === null || line.x[k] === null) continue;
+        if (!there(i, k)) continue;
         const [qx, qy] = point(i, k), far = (qx - px) ** 2 + (qy - py) ** 2;
         if (far < least) { least = far; best = [i, k]; }
       }
     });
     return best;
   }
+  const cell = (i, j) => { const map = chart.map; at = [i, j]; tell([`${map.name}: ${short(map.values[j][i])}`, `${chart.xtitle}: ${short(map.x[i])}`, `${chart.ytitle}: ${short(map.y[j])}`], x(map.x[i]), y(map.y[j])); };
   function overMap(px, py) {
     const map = chart.map, closest = (values, at, v) => values.reduce((b, one, i) => Math.abs(at(one) - v) < Math.abs(at(values[b]) - v) ? i : b, 0);
     if (px < left || px > right || py < top || py > bottom) return hide();
-    const i = closest(map.x, x, px), j = closest(map.y, y, py);
-    tell([`${map.name}: ${short(map.values[j][i])}`, `${chart.xtitle}: ${short(map.x[i])}`, `${chart.ytitle}: ${short(map.y[j])}`], x(map.x[i]), y(map.y[j]));
+    cell(closest(map.x, x, px), closest(map.y, y, py));
+  }
+  const bar = i => { at = [i, i]; tell([chart.bars.names[i], `${chart.xtitle}: ${short(chart.bars.values[i])}`], x(chart.bars.values[i]), y(i)); };
+  function overBars(py) {
+    const i = Math.round(chart.y[0] + (bottom - py) / (bottom - top) * (chart.y[1] - chart.y[0]));
+    if (i in chart.bars.names) bar(i); else hide();
   }
   plot.addEventListener("pointermove", event => {
     const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
     const found = nearest(p.x, p.y);
-    if (found) show(...found); else if (chart.map) overMap(p.x, p.y); else hide();
+    if (found) show(...found); else if (chart.map) overMap(p.x, p.y); else if (chart.bars) overBars(p.y); else hide();
   });
   plot.addEventListener("pointerleave", hide);
   plot.addEventListener("blur", hide);
   plot.addEventListener("keydown", event => {
     const step = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
-    const known = chart.lines.map((_, i) => i).filter(i => visible(i) && chart.lines[i].y.some(v => v !== null));
     if (event.key === "Escape") return hide();
-    if (!step || !known.length) return;
+    if (!step) return;
     event.preventDefault();
+    const turn = (k, by, n) => (k + by + n) % n, far = event.shiftKey ? 10 : 1;
+    if (chart.map) {
+      const n = chart.map.x.length, m = chart.map.y.length, [i, j] = at || [n >> 1, m >> 1];
+      return cell(turn(i, far * step[1], n), turn(j, -far * step[0], m));
+    }
+    if (chart.bars) return bar(turn(at ? at[0] : chart.bars.names.length, -step[0] - step[1], chart.bars.names.length));
+    const known = chart.lines.map((_, i) => i).filter(i => visible(i) && chart.lines[i].x.some((_, k) => there(i, k)));
+    if (!known.length) return;
+    const aside = step[1], leap = step[0];
     let [i, k] = at && known.includes(at[0]) ? at : [known[0], -1];
-    i = known[(known.indexOf(i) + step[0] + known.length) % known.length];
-    const n = chart.lines[i].x.length;
-    do { k = (k + (step[1] || (chart.lines[i].y[Math.min(k, n - 1)] == null ? 1 : 0)) + n) % n; } while (chart.lines[i].y[k] === null);
-    show(i, Math.min(k, n - 1));
+    const next = by => { i = known[turn(known.indexOf(i), by, known.length)]; return chart.lines[i].x.length; };
+    let n = leap ? next(leap) : chart.lines[i].x.length;
+    k = leap ? Math.max(Math.min(k, n - 1), 0) : k + aside;
+    while (!there(i, k)) {
+      if (k >= 0 && k < n) k += aside || 1;
+      else { n = next(aside || 1); k = aside < 0 ? n - 1 : 0; }
+    }
+    show(i, k);
   });
   function reveal() {
     chart.lines.forEach((line, i) => {
@@ -164,6 +182,16 @@ function save(name, text) {
   URL.revokeObjectURL(link.href);
 }
 for (const chart of charts) layered(document.getElementById(chart.id), chart);
+// A table that is broader than its place says so, and the keyboard moves it.
+const watched = new ResizeObserver(seen => seen.forEach(({ target }) => {
+  const over = target.scrollWidth > target.clientWidth + 1, hint = target.previousElementSibling?.matches(".hint") ? target.previousElementSibling : null;
+  if (over === Boolean(hint)) return;
+  if (!over) { hint.remove(); target.removeAttribute("tabindex"); target.removeAttribute("role"); return; }
+  const told = document.createElement("p");
+  told.className = "hint"; told.textContent = "scroll sideways \u2192"; target.before(told);
+  target.tabIndex = 0; target.setAttribute("role", "region"); target.setAttribute("aria-label", target.querySelector("caption").textContent);
+}));
+document.querySelectorAll(".scroll").forEach(one => watched.observe(one));
 const opened = () => { const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1))); for (let one = target; one; one = one.parentElement) if (one.tagName === "DETAILS") one.open = true; if (target) target.scrollIntoView(); };
 addEventListener("hashchange", opened); opened();
 document.querySelectorAll(".copy").forEach(link => link.addEventListener("click", () => navigator.clipboard?.writeText(link.href).catch(() => {})));

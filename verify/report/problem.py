@@ -33,14 +33,16 @@ class Problem(msgspec.Struct, frozen=True):
     """SVG."""
     inputs: tuple[Group, ...]
     toml: str
+    narrow: str = ""
+    """The same drawing for a phone."""
 
 
 def problem_of(scene: "Scene") -> Problem:
     """A scene drawn, tabulated and written down, as it was run."""
-    from verify.report.beam_drawing import beam_drawing
+    from verify.report.beam_drawing import NARROW, beam_drawing
     from verify.scenes.writing import toml_text
 
-    return Problem(beam_drawing(scene), inputs_of(scene), toml_text(stated(scene)))
+    return Problem(beam_drawing(scene), inputs_of(scene), toml_text(stated(scene)), beam_drawing(scene, NARROW))
 
 
 def inputs_of(scene: "Scene") -> tuple[Group, ...]:

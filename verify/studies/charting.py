@@ -56,6 +56,11 @@ def sizes_axis(title: str, counts: Iterable[int]) -> Axis:
     return Axis(title, log=True, ticks=tuple(sorted(set(counts))))
 
 
+def unbroken(words: str) -> str:
+    """A figure that no line ends within."""
+    return words.replace("-", "\N{NON-BREAKING HYPHEN}").replace(" ", "\N{NO-BREAK SPACE}")
+
+
 def thinned(values: "Sequence[float] | Array", most: int = 1000) -> list[float]:
     """Every so manyth value, for a chart."""
     return [float(v) for v in values[:: max(len(values) // most, 1)]]

@@ -25,16 +25,20 @@ from verify.studies.charting import (
     percent,
     plain_line,
     sizes_axis,
+    unbroken,
 )
 from verify.words import theory_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from verify.studies.chart import Dash
     from verify.studies.convergence_figures import ConvergenceFound, Row
     from verify.studies.sensitivity_figures import SensitivityFound
     from verify.studies.spectrum_figures import SpectrumFound
 
+GUIDES: "dict[int, Dash]" = {2: "dashdot", 4: "solid", 6: "dot"}
+"""Of a slope, by its order."""
 _THEORIES = {"rayleigh": RAYLEIGH, "timoshenko": TIMOSHENKO}
 
 
@@ -177,7 +181,7 @@ def _convergence(found: "ConvergenceFound") -> Chart:
         title="Convergence with the number of segments or elements",
         caption=(mean_in_words(found) + " " if means else "")
         + "Grey: the slopes that theory gives these models on this beam. "
-        f"At about {100.0 * EIGENVALUE_FLOOR:.0e} % rounding takes over.",
+        f"At about {unbroken(f'{100.0 * EIGENVALUE_FLOOR:.0e} %')} rounding takes over.",
         x=sizes_axis("number of parts N", (row.count for row in rows)),
         y=Axis("size of the frequency error, %", log=True),
         lines=(*_named_once(lines), *guides, *keys),
@@ -211,7 +215,7 @@ def _slope(found: "ConvergenceFound", order: int) -> Line:
     label = next((label for label, own in found.slopes if own == order), None)
     points = [(row.count, row.cells[label].error if label else row.mean_error) for row in found.rows]
     start = next(((n, e) for n, e in points if e), None)
-    dash = DASHES[2] if label is None else DASHES[0]
+    dash = GUIDES.get(order, "longdash")
     if start is None:
         return plain_line(f"slope {order}", GREY, (), (), guide=True)
     counts = sorted({row.count for row in found.rows if row.count >= start[0]})

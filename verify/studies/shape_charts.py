@@ -24,13 +24,13 @@ EXACT = "analytic"
 def shapes_chart(bench: "Workbench", variants: tuple[Variant, ...], count: int, modes: int) -> tuple[Chart, ...]:
     """The chart of as many modes; none where a beam's exact shapes are not to be had."""
     chosen = sorted({int(n) for n in np.linspace(1, modes, min(modes, MOST)).round()})
-    x = np.linspace(0.0, bench.beam.length, POINTS)
+    x, theory = np.linspace(0.0, bench.beam.length, POINTS), variants[0].theory
     try:
-        exact = [_exact(bench, mode, x) for mode in chosen]
+        exact = [_exact(bench, mode, x, theory) for mode in chosen]
     except InputError:
         return ()
     lines = [_moving(MODELS[EXACT].title, MODELS[EXACT].colour, x, exact, width=BROAD)]
-    for one in _plain(variants):
+    for one in _first(variants, theory):
         lines += _readings(bench, one, count, chosen)
     return (
         Chart(
@@ -46,19 +46,19 @@ def shapes_chart(bench: "Workbench", variants: tuple[Variant, ...], count: int, 
     )
 
 
-def _plain(variants: tuple[Variant, ...]) -> list[Variant]:
-    """The first variant of each model by Euler-Bernoulli's theory."""
+def _first(variants: tuple[Variant, ...], theory: str) -> list[Variant]:
+    """The first variant of each model by one theory."""
     found: dict[str, Variant] = {}
     for one in variants:
-        if "theory" not in dict(one.settings):
+        if one.theory == theory:
             found.setdefault(one.model, one)
     return list(found.values())
 
 
-def _exact(bench: "Workbench", mode: int, x: "Array") -> "Array":
+def _exact(bench: "Workbench", mode: int, x: "Array", theory: str) -> "Array":
     from verify.exact.modes import mode_shape
 
-    return mode_shape(bench.beam, mode, x)
+    return mode_shape(bench.beam, mode, x, theory=theory)
 
 
 def _readings(bench: "Workbench", one: Variant, count: int, modes: list[int]) -> list[Line]:
