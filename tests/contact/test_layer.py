@@ -44,9 +44,10 @@ def test_no_layer_carries_more_than_friction_and_none_drives_more_at_more_speed(
     assert -1.0 - 1e-9 <= fast <= slow + 1e-9 <= 1.0 + 2e-9
 
 
-@given(phi=ANGLES, r=SPEEDS)
+@given(phi=ANGLES, r=st.one_of(st.floats(-0.9, 0.95), st.floats(1.05, 1.3)))
 def test_a_layer_that_hardly_gives_way_is_coulombs(phi, r):
-    assert force(phi, r, 1e-7) == pytest.approx(force(phi, r), abs=2e-3)
+    """But where the slider is as fast as the crests: there the stretch grows too slowly to reach any limit."""
+    assert force(phi, r, 1e-10) == pytest.approx(force(phi, r), abs=2e-3)
 
 
 @given(phi=st.floats(0.05, 2.5), epsilon=GIVES)
