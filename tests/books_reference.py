@@ -90,7 +90,13 @@ def ridden(normal):
         push = FORCE * grown(t, hertz) * sum(np.cos(omega * t + turn) * load for turn, load in loads)
         forces = push - 2 * ZETA * own * qd - own**2 * q - friction * along - reaction * shape(at, 0)
         lost = 2 * ZETA * own @ qd**2
-        powers = [push @ qd, lost, -friction * (along @ qd), -reaction * (shape(at, 0) @ qd), friction * (along @ qd - v)]
+        powers = [
+            push @ qd,
+            lost,
+            -friction * (along @ qd),
+            -reaction * (shape(at, 0) @ qd),
+            friction * (along @ qd - v),
+        ]
         return np.concatenate([qd, forces, [v, friction / MASS], powers])
 
     def moved(t, y):
