@@ -369,7 +369,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         needs=beforehand.pushable,
     ),
     Quantity(
-        "chain.shaken_imbalance",
+        "chain.imbalance",
         "1",
         "What the books miss of a chain that base, load and actuator shake, over what its dashpots lose.",
         Shaken,
