@@ -63,8 +63,8 @@ def grown(t, hertz):
 
 
 @cache
-def ridden(normal):
-    """{displacement, lines of the books} of the slider that the beam of `paper-slider` feels, held or massless."""
+def ridden(normal, felt=True):
+    """{displacement, lines of the books} of the slider that the beam of `paper-slider` feels, held or massless; not felt, its work is that on the moving surface."""
     scene = load_scene("paper-slider")
     beam, hertz = scene.beam, scene.drive.frequency_hz
     length, half, omega = beam.length, 0.5 * beam.thickness, 2 * np.pi * hertz
@@ -88,7 +88,7 @@ def ridden(normal):
         q, qd, _, v, at, along = contact(y)
         friction = -limit * np.tanh(SLOPE * (v - qd @ along))
         push = FORCE * grown(t, hertz) * sum(np.cos(omega * t + turn) * load for turn, load in loads)
-        forces = push - 2 * ZETA * own * qd - own**2 * q - friction * along - reaction * shape(at, 0)
+        forces = push - 2 * ZETA * own * qd - own**2 * q - felt * friction * along - reaction * shape(at, 0)
         lost = 2 * ZETA * own @ qd**2
         powers = [
             push @ qd,

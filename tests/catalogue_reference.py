@@ -524,6 +524,7 @@ SLIDER = {
     "held-steady-segments": held_steady,
     "held-steady-elements": held_steady,
     "books-contact": lambda: ridden("massless")["contact_on_beam"],
+    "books-contact-one-way": lambda: ridden("massless", felt=False)["contact_on_beam"],
     "books-damped": lambda: ridden("massless")["damped"],
     "books-reaction": lambda: ridden("held")["normal_on_beam"],
     "books-way": lambda: ridden("held")["displacement"],

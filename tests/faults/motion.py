@@ -109,6 +109,11 @@ def one_way_for_two_way(patch):
     patch.setattr(carried, "coupling_of", lambda *given: structs.replace(true(*given), two_way=False))
 
 
+def two_way_for_one_way(patch):
+    true = carried.coupling_of
+    patch.setattr(carried, "coupling_of", lambda *given: structs.replace(true(*given), two_way=True))
+
+
 def held_slider_without_inertia(patch):
     """Nor weight: only friction is given back to the beam."""
     true = carried.law_of
@@ -325,6 +330,7 @@ FAULTS = {
             "books-reaction",
             "books-way",
         },
+        two_way_for_one_way: {"books-contact-one-way"},
         loss_of_the_beam_booked_at_a_thousandth_less: {
             "books-damped",
             "books-close",
