@@ -1,6 +1,7 @@
 """The nonlinear chain in time: conservation, reversal, known motions, orders, limits, and what stops a run."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -359,12 +360,32 @@ def test_the_stable_step_is_that_of_the_fastest_mode(n):
     assert step_limit(replace(system, dashpots=np.full(n, 1e-2)), at_rest(system)) < 2.5 / fastest
 
 
+def test_one_points_linear_motion_is_the_same_whichever_way_its_times_run():
+    system, times = driven(9, 2.0), np.linspace(3e-5, 5e-4, 31)
+    basis = modal_basis(system)
+    forth, back = (linear_deflection(basis, at_rest(system), t, 0.21) for t in (times, times[::-1]))
+    assert back[::-1] == pytest.approx(forth, abs=1e-9 * abs(forth).max())
+
+
 def test_a_step_above_the_limit_is_refused_with_the_limit():
     system = driven(20, 1.0)
     limit = step_limit(system, at_rest(system))
     with pytest.raises(InputError, match=rf"step = .* lies above the stability limit {limit:.4g} s of rk4"):
         simulate(system, at_rest(system), [1e-3], method="rk4", step=1.02 * limit)
     assert simulate(system, at_rest(system), [1e-3], method="rk4", step=0.98 * limit).finished
+
+
+def test_a_run_that_has_become_cheap_is_not_refused_for_a_dear_beginning():
+    """What is left is told by the cheaper of all that is done and of the last part."""
+    machine = SimpleNamespace(clock=[0.0], samples=[0.0, 1.0], counts=[0, 0, 0])
+    pace = chain_motion._Pace(SimpleNamespace(m=machine, system=SimpleNamespace(n_links=8)), most=9e5)
+    machine.clock[0], machine.counts[2] = 0.1, 4000
+    assert pace.part() == pytest.approx(0.1)
+    machine.clock[0], machine.counts[2] = 0.2, 14_000
+    with pytest.raises(InputError, match="accelerations of links"):
+        pace.part()
+    machine.clock[0], machine.counts[2] = 0.3, 14_500
+    assert pace.part() == pytest.approx(0.3)
 
 
 def test_a_run_that_diverges_stops_at_once_and_keeps_what_it_has(monkeypatch):
