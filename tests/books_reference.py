@@ -19,7 +19,7 @@ LINES = ("work_in", "damped", "contact_on_beam", "normal_on_beam", "rubbed")
 
 
 def hermite(length):
-    """The four cubics of an element and their derivatives along x by powers of a share of its length, (4, 4, powers)."""
+    """The four cubics of an element and their derivatives along x, (4, 4, powers of a share of its length)."""
     cubics = [[1, 0, -3, 2], [0, length, -2 * length, length], [0, 0, 3, -2], [0, 0, -length, length]]
     table = np.zeros((4, 4, 4))
     for derivative in range(4):
@@ -64,7 +64,10 @@ def grown(t, hertz):
 
 @cache
 def ridden(normal, felt=True):
-    """{displacement, lines of the books} of the slider that the beam of `paper-slider` feels, held or massless; not felt, its work is that on the moving surface."""
+    """{displacement, lines of the books} of a slider on the beam of `paper-slider`, held or massless.
+
+    Not felt, its work is that on the moving surface.
+    """
     scene = load_scene("paper-slider")
     beam, hertz = scene.beam, scene.drive.frequency_hz
     length, half, omega = beam.length, 0.5 * beam.thickness, 2 * np.pi * hertz

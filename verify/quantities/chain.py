@@ -124,14 +124,6 @@ class FromRest(Chained, frozen=True, kw_only=True):
     )
 
 
-class Shaken(Chained, frozen=True, kw_only=True):
-    """A clamped chain on which a base that turns, a load, an actuator and dashpots work."""
-
-    reads: ClassVar[tuple[str, ...]] = ()
-    tip: Annotated[options.Tip, Meta(description="free, or a roller on an axial spring")] = "free"
-    tolerance: Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step")] = 1e-9
-
-
 class ContactLine(Chained, frozen=True, kw_only=True):
     """One mode of the scene's beam as a slider on its nonlinear chain sees it."""
 
@@ -239,12 +231,6 @@ def _transient_deflection(a: FromRest, scene: "Scene", bench: Workbench) -> floa
     )
     bench.n_unkept_motions += 1
     return float(motion.deflection([a.x])[0, 0])
-
-
-def _shaken_imbalance(a: Shaken, scene: "Scene", bench: Workbench) -> float:
-    from verify.chain import problems as chain_studies
-
-    return chain_studies.shaken_imbalance(a.links, a.tip, a.tolerance, bench.tell)
 
 
 def _axial_departure(a: Departing, scene: "Scene", bench: Workbench) -> float:
@@ -367,14 +353,6 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _transient_deflection,
         needs=beforehand.pushable,
-    ),
-    Quantity(
-        "chain.imbalance",
-        "1",
-        "What the books miss of a chain that base, load and actuator shake, over what its dashpots lose.",
-        Shaken,
-        "in time",
-        _shaken_imbalance,
     ),
     Quantity(
         "chain.axial_departure",
