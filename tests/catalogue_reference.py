@@ -8,6 +8,7 @@ from functools import cache
 
 import mpmath as mp
 import numpy as np
+from books_reference import ridden
 from carried_reference import GREGORY, enough_links
 from chain_reference import elastica_tip, woinowsky_krieger
 from driven_reference import Elements, Links, phasor, unit_field
@@ -522,6 +523,11 @@ SLIDER = {
     "loaded-elements": lambda: loaded(0.31, SLIDER_MASS, 0.25),
     "held-steady-segments": held_steady,
     "held-steady-elements": held_steady,
+    "books-contact": lambda: ridden("massless")["contact_on_beam"],
+    "books-contact-one-way": lambda: ridden("massless", felt=False)["contact_on_beam"],
+    "books-damped": lambda: ridden("massless")["damped"],
+    "books-reaction": lambda: ridden("held")["normal_on_beam"],
+    "books-way": lambda: ridden("held")["displacement"],
 }
 
 # --- The nonlinear chain --------------------------------------------------------------------------------------------------

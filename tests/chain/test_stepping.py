@@ -1,6 +1,7 @@
 """The nonlinear chain in time: conservation, reversal, known motions, orders, limits, and what stops a run."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -288,6 +289,17 @@ def test_kicks_are_of_order_two_and_two_kicks_far_better_than_one(kicks, amplitu
     assert errors[1] < (3e-4 if kicks == 1 else 3e-5)
 
 
+@pytest.mark.parametrize("n", [3, 5, 8])
+def test_kicks_feel_the_rates_of_all_modes_whether_they_are_even_or_odd_in_number(n):
+    """Few links under large forces; what a lost rate leaves does not fall with the step."""
+    system, times = driven(n, 600.0), np.linspace(1e-5, 6e-4, 60)
+    exact = simulate(system, at_rest(system), times, tolerance=1e-12).deflection([0.2])
+    basis = modal_basis(system)
+    runs = [simulate_modal(basis, at_rest(system), times, step=h).deflection([0.2]) for h in (1e-5, 5e-6)]
+    errors = [rms(run - exact) for run in runs]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.1, abs=0.15)
+
+
 def test_kicks_beat_fixed_steps_at_the_same_work_and_pass_their_limit():
     system, times = driven(60, 10.0), np.linspace(5e-6, 5e-4, 100)
     exact = simulate(system, at_rest(system), times, tolerance=1e-9).deflection([0.2])
@@ -348,12 +360,32 @@ def test_the_stable_step_is_that_of_the_fastest_mode(n):
     assert step_limit(replace(system, dashpots=np.full(n, 1e-2)), at_rest(system)) < 2.5 / fastest
 
 
+def test_one_points_linear_motion_is_the_same_whichever_way_its_times_run():
+    system, times = driven(9, 2.0), np.linspace(3e-5, 5e-4, 31)
+    basis = modal_basis(system)
+    forth, back = (linear_deflection(basis, at_rest(system), t, 0.21) for t in (times, times[::-1]))
+    assert back[::-1] == pytest.approx(forth, abs=1e-9 * abs(forth).max())
+
+
 def test_a_step_above_the_limit_is_refused_with_the_limit():
     system = driven(20, 1.0)
     limit = step_limit(system, at_rest(system))
     with pytest.raises(InputError, match=rf"step = .* lies above the stability limit {limit:.4g} s of rk4"):
         simulate(system, at_rest(system), [1e-3], method="rk4", step=1.02 * limit)
     assert simulate(system, at_rest(system), [1e-3], method="rk4", step=0.98 * limit).finished
+
+
+def test_a_run_that_has_become_cheap_is_not_refused_for_a_dear_beginning():
+    """What is left is told by the cheaper of all that is done and of the last part."""
+    machine = SimpleNamespace(clock=[0.0], samples=[0.0, 1.0], counts=[0, 0, 0])
+    pace = chain_motion._Pace(SimpleNamespace(m=machine, system=SimpleNamespace(n_links=8)), most=9e5)
+    machine.clock[0], machine.counts[2] = 0.1, 4000
+    assert pace.part() == pytest.approx(0.1)
+    machine.clock[0], machine.counts[2] = 0.2, 14_000
+    with pytest.raises(InputError, match="accelerations of links"):
+        pace.part()
+    machine.clock[0], machine.counts[2] = 0.3, 14_500
+    assert pace.part() == pytest.approx(0.3)
 
 
 def test_a_run_that_diverges_stops_at_once_and_keeps_what_it_has(monkeypatch):

@@ -145,3 +145,12 @@ def test_bad_requests_are_refused(change, request_, message):
     system = replace(driven(6, 1.0), **change)
     with pytest.raises(InputError, match=message):
         simulate_elastic(system, request_.get("axial_stiffness", EA), request_.get("times", [0.0, 1e-5]))
+
+
+def test_steps_are_counted_whole_between_all_samples():
+    system, times = driven(7, 3.0), np.linspace(0.0, 3e-4, 4)
+    told = simulate_elastic(system, axial_stiffness(beam(), 7), times, step=2.3e-8).statistics
+    between = np.ceil(1e-4 / told.step_s - 1e-9)
+    assert told.steps == 3 * between
+    assert told.evaluations == 4 * told.steps
+    assert told.steps * told.step_s == pytest.approx(3e-4)

@@ -316,3 +316,10 @@ def test_unknowns_counted_without_scikit_fem_are_those_it_leaves(left, right):
     assert linear.unknowns(beam, 7) == len(free)
     held = {"pinned": {0}, "clamped": {0, 1}, "guided": {1}, "free": set()}
     assert set(range(16)) - set(free.tolist()) == held[left] | {14 + j for j in held[right]}
+
+
+def test_small_bases_are_kept_for_who_asks_next_and_large_ones_are_not():
+    few, many = np.linspace(0.0, 0.43, 17), np.linspace(0.0, 0.43, mesh.KEPT + 1)
+    assert mesh.basis_between(few) is mesh.basis_between(few.copy())
+    assert mesh.basis_between(few) is not mesh.basis_between(few, shear=True)
+    assert mesh.basis_between(many) is not mesh.basis_between(many)

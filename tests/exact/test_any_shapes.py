@@ -7,7 +7,9 @@ from msgspec.structs import replace
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
+from verify.errors import InputError
 from verify.exact import modes as analytic_modes
+from verify.exact import shapes
 from verify.exact.modes import mode_shape, mode_shapes
 from verify.exact.shapes import general_shapes
 from verify.section import Section
@@ -199,3 +201,13 @@ def test_shapes_of_many_modes_are_those_of_each_carried_once_for_all_derivatives
         assert np.max(abs(found - each)) <= 1e-13 * np.max(abs(each))
     monkeypatch.setattr(shapes, "_TOGETHER", 7)  # in groups of two modes
     assert np.array_equal(mode_shapes(beam, 23, places, 2), together[2])
+
+
+def test_equations_that_stay_singular_beside_a_resonance_are_refused(monkeypatch):
+    def singular(spans):
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(shapes, "solver", singular)
+    beam = Beam(length=0.61, width=0.03, thickness=0.004, youngs_modulus=9e10, density=3100.0)
+    with pytest.raises(InputError, match="mode: no shape is found at this frequency"):
+        general_shapes(beam, [2], np.array([0.17]), 0, "euler-bernoulli")

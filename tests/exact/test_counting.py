@@ -9,7 +9,9 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam
 from verify.elements import linear as elements
+from verify.exact import roots
 from verify.exact.buckling import buckling_load
+from verify.exact.lineup import line_up
 from verify.exact.modes import exact_frequency_hz, modes_below, solve_modes
 from verify.options import SUPPORTS, THEORIES
 from verify.section import Section
@@ -116,3 +118,16 @@ def test_a_spring_raises_and_a_mass_lowers_every_frequency(one, mode, more):
     assert raised >= plain * (1 - 2e-12)
     assert raised <= exact_frequency_hz(beam, mode + 1, theory) * (1 + 1e-12)
     assert exact_frequency_hz(heavier, mode, theory) <= plain
+
+
+def test_a_root_is_found_by_its_minor_as_soon_as_it_is_alone_whichever_it_is():
+    """Of 52 bits of a root halving asks for each; a minor that changes its sign gives a dozen of them at a time."""
+    beam = Beam(
+        length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0, supports=("clamped", "free")
+    )
+    say = roots.trials(line_up(beam, "euler-bernoulli"))
+    for wanted, known in ((1, 1.875104068711961), (3, 7.854757438237613), (11, 10.5 * np.pi)):
+        asked = []
+        root = roots.nth_root(lambda value, asked=asked: asked.append(value) or say(value), wanted)
+        assert abs(root - known) < 1e-12 * known
+        assert len(set(asked)) < 36

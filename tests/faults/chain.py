@@ -132,7 +132,13 @@ FAULTS = {
         clamp_that_turns_without_a_centrifugal_pull: {"turning-slow", "turning-fast", "turning-third-mode"},
         links_pulled_straight_as_if_they_flapped: {"turning-slow", "turning-fast", "turning-third-mode"},
         departures_at_mid_span_wherever_they_are_asked_for: {"departure-at-two-fifths", "departure-at-seven-tenths"},
-        recursion_with_another_inertia_than_the_energy: {"energy-is-kept", "small-force", "ten-newton"},
+        recursion_with_another_inertia_than_the_energy: {
+            "energy-is-kept",
+            "shaken-books",
+            "shaken-books-on-a-roller",
+            "small-force",
+            "ten-newton",
+        },
         forces_that_lag_instead_of_lead: {
             "small-force",
             "ten-newton",

@@ -109,10 +109,26 @@ def one_way_for_two_way(patch):
     patch.setattr(carried, "coupling_of", lambda *given: structs.replace(true(*given), two_way=False))
 
 
+def two_way_for_one_way(patch):
+    true = carried.coupling_of
+    patch.setattr(carried, "coupling_of", lambda *given: structs.replace(true(*given), two_way=True))
+
+
 def held_slider_without_inertia(patch):
     """Nor weight: only friction is given back to the beam."""
     true = carried.law_of
     patch.setattr(carried, "law_of", lambda *given: true(*given)._replace(held=False))
+
+
+def loss_of_the_beam_booked_at_a_thousandth_less(patch):
+    true = carried._ledger
+
+    def short(*given):
+        books = true(*given)
+        missed = 1e-3 * books.damped
+        return structs.replace(books, damped=books.damped - missed, residual=books.residual + missed)
+
+    patch.setattr(carried, "_ledger", short)
 
 
 def weight_of_another_load(patch):
@@ -306,8 +322,22 @@ FAULTS = {
         },
         static_friction_for_kinetic: {"belt-stick-time", "belt-slip-time"},
         friction_of_half_the_slope: {"free-decay", "creep"},
-        one_way_for_two_way: {"slider-felt", "held-from-rest"},
-        held_slider_without_inertia: {"held-steady-segments", "held-steady-elements", "held-from-rest"},
+        one_way_for_two_way: {"slider-felt", "held-from-rest", "books-contact", "books-way"},
+        held_slider_without_inertia: {
+            "held-steady-segments",
+            "held-steady-elements",
+            "held-from-rest",
+            "books-reaction",
+            "books-way",
+        },
+        two_way_for_one_way: {"books-contact-one-way"},
+        loss_of_the_beam_booked_at_a_thousandth_less: {
+            "books-damped",
+            "books-close",
+            "books-close-coulomb",
+            "books-close-one-way",
+            "books-close-held",
+        },
         steady_start_without_the_mass: {"held-steady-segments", "held-steady-elements"},
         start_without_the_sag: {"held-steady-segments", "held-steady-elements"},
         mass_that_pulls_the_beam_along: {"loaded-exact", "loaded-segments", "loaded-elements"},

@@ -119,3 +119,13 @@ def test_a_shape_that_rests_at_every_node_has_no_error():
 def test_all_nodes_of_a_high_mode_are_found_each_where_it_is():
     found = compare.zeros(lambda x: np.sin(61 * np.pi * x / 0.73), 0.73, 61)
     assert found == pytest.approx(0.73 * np.arange(1, 61) / 61, abs=1e-13)
+
+
+def test_three_modes_find_their_likes_among_five_shapes():
+    """More shapes than modes: each mode one, by the largest sum, though two of them are most like the same shape."""
+    likeness = np.array([[0.1, 0.9, 0.0, 0.0, 0.0], [0.0, 0.8, 0.7, 0.0, 0.1], [0.0, 0.0, 0.0, 0.2, 0.6]])
+    index, mac = compare.pair_modes(likeness)
+    assert list(index) == [1, 2, 4]
+    assert list(mac) == [0.9, 0.7, 0.6]
+    own, _ = compare.pair_modes(np.eye(3, 5) + 0.1)
+    assert list(own) == [0, 1, 2]

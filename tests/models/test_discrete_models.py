@@ -360,3 +360,9 @@ def test_the_means_limit_is_where_segments_are_three_times_as_far_off():
     assert segment / hermite == pytest.approx(-3, abs=1e-10)
     assert mu / np.pi == pytest.approx(0.69635, abs=1e-5)
     assert not mean_is_nearest(("clamped", "free"), 1, 1000)
+
+
+def test_a_dense_solve_is_told_eight_times_as_long_for_twice_the_unknowns():
+    few = eigen.DENSE_UNKNOWNS // 2
+    assert eigen.solve_seconds(2 * few, 3) == pytest.approx(8 * eigen.solve_seconds(few, 3))
+    assert 0.001 < eigen.solve_seconds(2 * few, 3) < 100

@@ -190,6 +190,17 @@ def test_stick_and_slip_on_a_belt_last_what_the_closed_forms_say(mass, stiffness
     assert slip == pytest.approx(2 / own * (pi - atan(drop * own / (stiffness * speed))), rel=1e-5)
 
 
+@pytest.mark.parametrize(("mass", "stiffness", "static", "kinetic", "speed"), BELTS)
+def test_a_mass_slips_first_when_the_belt_has_stretched_its_spring_to_the_limit(
+    mass, stiffness, static, kinetic, speed
+):
+    stretching = static / (stiffness * speed)
+    events, state = np.zeros((1, 3)), np.array([0.0, speed, 1.0])
+    law = rigid_surface._law(True, kinetic / mass, static / mass, 0.0)
+    assert slide_on_belt(37, stretching / 29.3, law, speed, stiffness / mass, 0.0, state, events) == 1
+    assert list(events[0]) == pytest.approx([stretching, SLIPS, static / stiffness], rel=1e-12)
+
+
 def test_a_belt_that_never_lets_slip_is_refused():
     with pytest.raises(InputError, match="without a drop nothing slips"):
         stick_slip_times(0.7, 310.0, 1.7, 1.7, 0.11)

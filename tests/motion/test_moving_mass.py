@@ -198,6 +198,15 @@ def test_the_lighter_the_slider_the_less_it_matters_whether_it_is_held():
     assert lost[1] / lost[2] == pytest.approx(10.0, rel=0.05)
 
 
+@pytest.mark.parametrize("preload", [0.0, 3.7e-5])
+def test_the_surface_falls_away_under_a_held_slider_as_under_a_massless_one(preload):
+    """Of its own reaction, the largest fall over what presses it on: ten milligrams change no beam."""
+    light = replace(HELD, mass=1e-5, preload=preload)
+    held, felt = (slid(one).margins.lift_off for one in (light, replace(light, normal="massless", coupling="one-way")))
+    assert held == pytest.approx(felt, rel=5e-3)
+    assert felt == pytest.approx(1.827 / (1 + preload / (1e-5 * 9.81)), rel=1e-3)
+
+
 def test_a_run_of_a_held_slider_continues_where_it_stopped():
     asked = {
         "samples": 11,

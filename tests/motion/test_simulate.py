@@ -1,6 +1,7 @@
 """How runs begin, end, are interrupted and are refused."""
 
 import signal
+from time import perf_counter
 
 import msgspec
 import numpy as np
@@ -238,3 +239,12 @@ def test_the_work_of_harmonic_forces_in_closed_form_is_that_of_the_quadrature(ti
     assert closed.work_in == pytest.approx(line.work_in, rel=1e-10)
     assert closed.damped == pytest.approx(line.damped, rel=1e-10)
     assert abs(closed.residual) < 1e-12 * closed.work_in
+
+
+def test_what_a_run_says_of_its_time_is_no_longer_than_the_clock_saw():
+    began = perf_counter()
+    slider = Slider(mass=1e-3, mu=0.2, slope=100.0, position=0.19)
+    run = simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=6, slider=slider)
+    said = run.statistics.set_up_s, run.statistics.wall_s
+    assert min(said) > 0.0
+    assert sum(said) < perf_counter() - began

@@ -235,6 +235,34 @@ def test_displacement_is_of_order_four_in_the_step_where_friction_is_smooth():
     assert np.log2(errors[0] / errors[2]) / 2 > 3.5
 
 
+def test_a_follower_that_gathers_speed_within_a_step_meets_the_convective_terms_of_that_speed():
+    """Under friction of 300 times its weight: order four, where the speed of the step's start leaves less than two."""
+    slider = replace(HEAVY, coupling="one-way", kinematics="following", mu=300.0, slope=13.3, speed=0.3)
+    forces = tuple(replace(f, amplitude=100.0 * f.amplitude) for f in FORCES)
+
+    def way(steps):
+        step = 1 / (FREQUENCY * steps)
+        asked = {"soft_start_periods": 2.0, "samples": 2, "ledger": False}
+        return simulate(
+            STRIP, forces, FREQUENCY, DURATION, model="segment", count=6, slider=slider, step=step, **asked
+        ).displacement
+
+    exact = way(1920)
+    errors = [abs(way(n) / exact - 1) for n in (120, 480)]
+    assert np.log2(errors[0] / errors[1]) / 2 > 3.2
+    assert errors[1] < 5e-12
+
+
+@pytest.mark.parametrize("turned", [0.0, 180.0])
+def test_a_slider_that_the_surface_leaves_at_once_slips_from_the_start_and_no_event_is_noted(turned):
+    """At rest on a beam at rest under step loads, whichever way they throw its surface."""
+    slider = replace(HEAVY, coupling="one-way", law="coulomb", mu=1e-3)
+    forces = tuple(replace(f, phase_deg=f.phase_deg + turned) for f in FORCES)
+    run = simulate(STRIP, forces, FREQUENCY, 1e-3, model="segment", count=6, slider=slider, samples=2)
+    assert len(run.events) == 0
+    assert np.sign(run.displacement) == (1.0 if turned else -1.0)
+
+
 def test_the_raw_line_jumps_at_the_joints_and_costs_steps():
     """The paper's C2 spline has no jumps (Section II.B); on the links' own edges no step is small enough."""
     slider = Slider(mass=0.4, mu=0.3, slope=0.05, position=0.19, coupling="one-way", speed=6.0)

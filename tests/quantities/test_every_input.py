@@ -321,6 +321,11 @@ CASES: dict[str, list[Case]] = {
     "slider.mean_friction": [Case({"model": "fem", "count": 12}, SHAKEN)],
     "slider.mean_surface_speed": [Case({"model": "segment", "count": 12}, SHAKEN)],
     "slider.reversal": [Case({"model": "segment", "count": 12}, {**SHAKEN, "readings": READINGS})],
+    "slider.energy": [
+        Case({"model": "segment", "count": 12, "of": "rubbed"}, SHAKEN),
+        Case({"model": "fem", "count": 12, "of": "normal_on_beam", "mass": 0.02}, COARSE),
+    ],
+    "slider.imbalance": [Case({"model": "fem", "count": 12, "mass": 0.02, "step": 2e-5}, SHAKEN)],
     "slider.deflection": [
         Case({"model": "segment", "count": 12, "x": 0.31, "mass": 0.02}, COARSE),
         Case(
@@ -421,6 +426,7 @@ CASES: dict[str, list[Case]] = {
             },
         )
     ],
+    "chain.imbalance": [Case({"segments": 4, "tip": "roller", "tolerance": 1e-6})],
     "chain.slider_imbalance": [Case({"segments": 5, "step": 7e-5, "kinematics": "following"}, RIDDEN)],
     "chain.turning_frequency": [Case({"mode": 2, "segments": 4, "speed": 3.7})],
 }
@@ -781,7 +787,7 @@ DEAD = [
     Dead("motion.deflection", "motion.steps_per_period", "closed form in time: no step"),
     Dead("motion.deflection", "slider.*", "the beam alone"),
     Dead(
-        "chain.cantilever_tip chain.rollup_gap chain.hanging_frequency chain.turning_frequency",
+        "chain.cantilever_tip chain.rollup_gap chain.hanging_frequency chain.turning_frequency chain.imbalance",
         "beam.* drive.*",
         "a chain of unit length of its own",
     ),
@@ -799,7 +805,7 @@ DEAD = [
     Dead("chain.[!s]*", "slider.*", "the beam alone"),
     Dead("chain.[!s]*", "motion.duration motion.steps_per_period", "the chain's runs have arguments of their own"),
     Dead(
-        "chain.cantilever_tip chain.rollup_gap chain.*_frequency chain.energy_drift",
+        "chain.cantilever_tip chain.rollup_gap chain.*_frequency chain.energy_drift chain.imbalance",
         "motion.*",
         "at rest, or let go without a drive that could set in",
     ),

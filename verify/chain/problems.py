@@ -7,15 +7,15 @@ from math import pi, sqrt
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.chain.dynamics import at_rest, linearise, positions
+from verify.chain.dynamics import at_rest, linearise, positions, project
 from verify.chain.result import ChainMotion
 from verify.chain.splitting import modal_basis, simulate_linear, simulate_modal
 from verify.chain.statics import solve_static
 from verify.chain.stepping import simulate
-from verify.chain.system import ChainState, ChainSystem, LinkLoad, Rotation, build_system
-from verify.chain.work import MOST, STATIC_LINKS, check_links, check_modes_of
+from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
+from verify.chain.work import DENSE_LINKS, MOST, STATIC_LINKS, check_links, check_modes_of
 from verify.errors import InputError
-from verify.options import Wall
+from verify.options import Tip, Wall
 from verify.section import Piece
 from verify.segments.links import link_inertia
 
@@ -211,6 +211,39 @@ def energy_drift(
     _finished(motion)
     kinetic, elastic, _ = motion.energies()
     return float(abs(motion.residual()).max() / (kinetic + elastic)[0])
+
+
+def shaken_imbalance(n_segments: int, tip: Tip, tolerance: float, progress: Progress = unheard) -> float:
+    """What the books of a shaken chain miss at most, over what its dashpots lose.
+
+    All that can work on a chain works on this one: a base that turns and swings, a load off its link's middle with a
+    moment, an actuator, dashpots; its tip is free or a roller on an axial spring. Raises InputError.
+    """
+    check_links(n_segments, 3, DENSE_LINKS, "the base, an actuator and the load each have a link of their own")
+    system, stiff = build_system(UNIT_CANTILEVER, n_segments), UNIT_STIFFNESS
+    unit, link = sqrt(stiff / UNIT_CANTILEVER.mass_per_length), 1.0 / n_segments
+    push = LinkLoad(
+        link=n_segments,
+        at=0.3 * link,
+        force=(0.2 * stiff, -0.4 * stiff),
+        moment=0.13 * stiff,
+        frequency_hz=0.9 * unit,
+        phase_deg=40.0,
+    )
+    system = replace(
+        system,
+        dashpots=np.full(n_segments, 0.003 * n_segments * stiff / unit),
+        tip=tip,
+        axial_spring=40.0 * stiff if tip == "roller" else 0.0,
+        rotation=Rotation(offset=0.1, rate=0.05 * unit, amplitude=0.2, frequency_hz=0.7 * unit, phase_deg=20.0),
+        loads=(push,),
+        actuators=(Actuator(link=2, at=0.4 * link, amplitude=0.03, frequency_hz=0.4 * unit, phase_deg=-70.0),),
+    )
+    start, _ = project(system, ChainState(np.zeros(n_segments), np.zeros(n_segments)))
+    times = np.linspace(0.0, 1.0 / unit, 17)
+    motion = simulate(system, start, times, tolerance=tolerance, most=MOST, progress=progress)
+    _finished(motion)
+    return float(abs(motion.residual()).max() / motion.dissipated[-1])
 
 
 def transient(

@@ -4,9 +4,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from msgspec import Meta
 
+from verify import options
 from verify.checks import Relative
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
+from verify.quantities.chain import Chained
 from verify.quantities.kind import Arguments, MovingModel, Quantity, Size, check_count
 from verify.quantities.motion_arguments import InTime
 
@@ -18,6 +20,14 @@ SAMPLES = 32
 """Of a motion that waves are measured of, in each period."""
 EXACT_MODES = 400
 """Of the exact beam, unless asked for otherwise."""
+
+
+class Shaken(Chained, frozen=True, kw_only=True):
+    """A clamped chain on which a base that turns, a load, an actuator and dashpots work."""
+
+    reads: ClassVar[tuple[str, ...]] = ()
+    tip: Annotated[options.Tip, Meta(description="free, or a roller on an axial spring")] = "free"
+    tolerance: Annotated[float, Meta(gt=0, lt=0.1, description="of the adaptive step")] = 1e-9
 
 
 class Booked(InTime, frozen=True, kw_only=True):
@@ -98,6 +108,12 @@ def _booked(a: Booked, scene: "Scene", bench: Workbench) -> float:
     return float(getattr(books, a.of))
 
 
+def _shaken_imbalance(a: Shaken, scene: "Scene", bench: Workbench) -> float:
+    from verify.chain import problems as chain_studies
+
+    return chain_studies.shaken_imbalance(a.links, a.tip, a.tolerance, bench.tell)
+
+
 def _let_go(a: Released, scene: "Scene", at: tuple[float, ...]) -> "FreeVibration":
     from verify.motion.free_vibration import free_vibration
 
@@ -156,5 +172,13 @@ ENERGY_QUANTITIES: tuple[Quantity[Any], ...] = (
         MeasuredInTime,
         "in time",
         _reflection,
+    ),
+    Quantity(
+        "chain.imbalance",
+        "1",
+        "What the books miss of a chain that base, load and actuator shake, over what its dashpots lose.",
+        Shaken,
+        "in time",
+        _shaken_imbalance,
     ),
 )

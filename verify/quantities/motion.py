@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.motion.figures import RUN_FIGURES, RunFigure
 from verify.quantities import beforehand
@@ -16,12 +17,14 @@ from verify.quantities.motion_arguments import (
     OnBelt,
     OnWave,
     Oscillator,
+    SliderBooked,
     SliderDeflection,
     SliderInTime,
     SliderOrder,
 )
 
 if TYPE_CHECKING:
+    from verify.motion.result import Ledger
     from verify.scenes.scene import Scene
 
 
@@ -81,6 +84,24 @@ def _deflection_under(a: SliderDeflection, scene: "Scene", bench: Workbench) -> 
     from verify.quantities.simulated import with_slider
 
     return float(with_slider(a, scene, bench, at=(a.x,)).deflection[-1, 0])
+
+
+def _books(a: SliderInTime, scene: "Scene", bench: Workbench) -> "Ledger":
+    from verify.quantities.simulated import with_slider
+
+    books = with_slider(a, scene, bench, ledger=True).ledger
+    if books is None:
+        raise InputError("start = 'steady': a beam in its steady state is not booked, give start = 'rest'")
+    return books
+
+
+def _booked(a: SliderBooked, scene: "Scene", bench: Workbench) -> float:
+    return float(getattr(_books(a, scene, bench), a.of))
+
+
+def _imbalance(a: SliderInTime, scene: "Scene", bench: Workbench) -> float:
+    books = _books(a, scene, bench)
+    return abs(books.residual) / books.work_in
 
 
 def _loaded(a: LoadedDeflection, scene: "Scene", bench: Workbench) -> complex:
@@ -170,6 +191,24 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         SliderDeflection,
         "in time",
         _deflection_under,
+        needs=beforehand.in_time,
+    ),
+    Quantity(
+        "slider.energy",
+        "J",
+        "A line of the books of the driven beam and its slider, from rest.",
+        SliderBooked,
+        "in time",
+        _booked,
+        needs=beforehand.in_time,
+    ),
+    Quantity(
+        "slider.imbalance",
+        "1",
+        "What the books of beam and slider miss over the work of the forces, from rest.",
+        SliderInTime,
+        "in time",
+        _imbalance,
         needs=beforehand.in_time,
     ),
     Quantity(

@@ -136,6 +136,18 @@ class SliderDeflection(SliderInTime, frozen=True, kw_only=True):
     x: Annotated[float, Meta(description="metres from the left end")]
 
 
+class SliderBooked(SliderInTime, frozen=True, kw_only=True):
+    """A line of the books of the driven beam and its slider, from rest."""
+
+    of: Annotated[
+        Literal["work_in", "damped", "rubbed", "slider", "contact_on_beam", "normal_on_beam"],
+        Meta(
+            description="from the start: work of the forces; lost in the beam; lost in friction; gained by the slider; "
+            "work of friction, and of the normal reaction, on the beam"
+        ),
+    ]
+
+
 class Steady(DriveArguments, frozen=True, kw_only=True):
     """The driven beam in its steady state with the slider on it: what is not given is the scene's."""
 

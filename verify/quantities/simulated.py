@@ -110,8 +110,9 @@ def with_slider(
     sampled: bool = False,
     back: bool = False,
     at: tuple[float, ...] = (),
+    ledger: bool = False,
 ) -> Motion:
-    """The slider's run, solved once; `sampled` at every step, `back` with all phases turned round.
+    """The slider's run, solved once; `sampled` at every step, `back` with all phases turned round, `ledger` booked.
 
     Raises InputError where it does not reach its end.
     """
@@ -120,7 +121,7 @@ def with_slider(
     steps = steps_per_period(scene)
     longest = a.step or 1.0 / (steps * case.frequency_hz)
     samples = ceil(min(case.duration / longest, MOST_SAMPLES)) + 1 if sampled else 2
-    key = ("slider", case, slider, a.step, steps, samples, at)
+    key = ("slider", case, slider, a.step, steps, samples, at, ledger)
     if key not in bench.motions:
         bench.motions[key] = case.run(
             slider=slider,
@@ -128,6 +129,7 @@ def with_slider(
             steps_per_period=steps,
             samples=samples,
             at=at,
+            ledger=ledger,
             progress=bench.tell,
             patient=False,
         )
