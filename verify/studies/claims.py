@@ -188,14 +188,16 @@ def _on_the_run(claim: Claim, study: "SliderFound") -> ClaimResult:
 
 def _alone(claim: Claim, scene: "Scene", bench: "Workbench") -> ClaimResult:
     """As `verify measure` finds it."""
-    from verify.quantities.catalogue import arguments_of, evaluate, quantity
+    from verify.quantities.catalogue import arguments_of, evaluate, needs_of, quantity
 
     given = ", ".join(f"{name} = {value}" for name, value in claim.arguments.items())
     unit = ""
     try:
         found = quantity(claim.quantity)
         unit = found.unit
-        value = evaluate(found, arguments_of(found, claim.arguments), scene, bench)
+        arguments = arguments_of(found, claim.arguments)
+        needs_of(found, arguments, scene)  # which refuses what a plan knows will fail, before anything is solved for it
+        value = evaluate(found, arguments, scene, bench)
         if not isinstance(value, float | int):
             raise InputError(f"{claim.quantity} is no real number, which a claim compares with: claim another figure")
     except InputError as error:
