@@ -22,6 +22,7 @@ ROOMS = (
     "waves",
     "motion",
     "chain",
+    "motor",
     "scenes",
     "quantities",
     "studies",
