@@ -212,7 +212,7 @@ event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]
 def room_stamp(room: Path) -> str:
     """What kernels and records of the room say, and those of rooms that they import from, as one number."""
     sources = [
-        one.name.encode() + b"\0" + one.read_bytes() for one in sorted([*room.glob(KERNELS), *room.glob(RECORDS)])
+        one.name.encode() + b"\n" + one.read_bytes() for one in sorted([*room.glob(KERNELS), *room.glob(RECORDS)])
     ]
     others = sorted(set(_OTHER_ROOM.findall(b"\n".join(sources))) - {room.name.encode()})
     return sha256(
