@@ -69,7 +69,8 @@ def run_on_chain(
     riding = Riding.fresh(slider, request, plan.start, False, held.speed, held.frozen)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
     begin(plan, riding, None)
-    riding.at_start, riding.first = riding.energy(), np.zeros(0)
+    riding.look()
+    riding.first = np.zeros(0)
     given = surface_given(moved, plan)
     riding.feet.piece[:] = np.clip(
         np.searchsorted(given.edges[1:-1], riding.feet.points[:, records.OFFSET]), 0, len(given.edges) - 2
