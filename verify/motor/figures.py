@@ -167,16 +167,23 @@ def reversed_way(case: MotorCase, before: MotorRun, target: float, periods: int 
 
 
 def _timed(run: MotorRun, start: float, target: float) -> Timed:
-    """Where the speed crosses what is to be reached, between two samples by a straight line."""
+    return Timed(start_speed=start, end_speed=float(run.speed[-1]), time=started_of(run, target), run=run)
+
+
+def started_of(run: MotorRun, target: float) -> float | None:
+    """Seconds until 1 - 1/e of the way from a run's first speed to `target` (m/s) is made; None where it is not.
+
+    Between two samples by a straight line.
+    """
+    start = float(run.speed[0])
     wanted = start + REACHED * (target - start)
     ahead = (run.speed - wanted) * np.sign(target - start)
     past = np.flatnonzero(ahead >= 0.0)
-    time = None
-    if len(past) and past[0] > 0:
-        i = int(past[0])
-        share = -ahead[i - 1] / (ahead[i] - ahead[i - 1])
-        time = float(run.times[i - 1] + share * (run.times[i] - run.times[i - 1]) - run.times[0])
-    return Timed(start_speed=start, end_speed=float(run.speed[-1]), time=time, run=run)
+    if not len(past) or past[0] == 0:
+        return None
+    i = int(past[0])
+    share = -ahead[i - 1] / (ahead[i] - ahead[i - 1])
+    return float(run.times[i - 1] + share * (run.times[i] - run.times[i - 1]) - run.times[0])
 
 
 def mean_speed(run: MotorRun, last: int) -> tuple[float, float]:

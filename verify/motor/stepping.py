@@ -97,14 +97,17 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     def energy(self) -> tuple[float, float]:
         """(kinetic, in the springs across) now, joules; the springs' at the depths that the touch says."""
         feet, p, touch = self.feet, self.feet.points, self.feet.touch
-        masses = 1.0 / feet.given[:, records.LIGHTNESS]
-        eases = feet.given[:, records.EASE]
-        inertias = np.divide(1.0, eases, out=np.zeros_like(eases), where=eases > 0.0)
+        masses, inertias = (_turned(feet.given[:, one]) for one in (records.LIGHTNESS, records.EASE))
         kinetic = 0.5 * self.stage_mass * feet.body[records.V] ** 2 + 0.5 * float(
             masses @ feet.state[:, records.CLIMB] ** 2 + inertias @ feet.state[:, records.TURN] ** 2
         )
         depth = np.maximum(touch[:, records.DEPTH], 0.0)
         return float(kinetic), 0.5 * float(p[:, records.STIFF] @ depth**2)
+
+
+def _turned(eases: Array) -> Array:
+    """One over each; 0, in place of what has no end, where nothing moves."""
+    return np.divide(1.0, eases, out=np.zeros_like(eases), where=eases > 0.0)
 
 
 def run_stages(
