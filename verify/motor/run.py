@@ -193,7 +193,7 @@ def _coupling(request: Request, slider: Slider, stage: Stage, basis: TimeBasis |
     lever, k = beam.surface_distance, float(np.sqrt(omega / beam.wave_constant))
     rub = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
     across = slider.normal_force * abs(felt) / moved if moved else np.inf
-    along = rub / (lever * omega * turned) if turned else None
+    along = float(rub / (lever * omega * turned)) if turned else None
     forced = slider.coupling != "auto"
     return Coupling(
         two_way=slider.coupling == "two-way" if forced else along is None or max(along, across) > FELT,
