@@ -40,6 +40,8 @@ LAST = 0.25
 """Of a free run, at its end: of which means are taken."""
 PORTRAIT = (3, 48)
 """Periods, and samples in each, of the foot's motion across."""
+CONSTANTS = 8.0
+"""Of time: what charts show of starting, stopping and turning round."""
 FRAMES = 36
 PLACES = 73
 """Of the surface in the picture."""
@@ -267,7 +269,7 @@ def _field(
         coupling=run.coupling,
         amplitude=_amplitude(case),
     )
-    return found, _histories(case, run, cut_off, turned)
+    return found, _histories(begun, under_way, cut_off, turned)
 
 
 def _free(under_way: Timed) -> FreeRun:
@@ -310,17 +312,20 @@ def _amplitude(case: MotorCase) -> float:
     return float(abs(field.deflection([case.slider.start_on(case.beam)])[0]))
 
 
-def _histories(case: MotorCase, run: MotorRun, cut_off: Timed | None, turned: Timed | None) -> dict[str, History]:
-    """What charts show of free runs."""
+def _histories(case: MotorCase, under_way: Timed, cut_off: Timed | None, turned: Timed | None) -> dict[str, History]:
+    """What charts show of free runs: as much as is still under way."""
+    run = under_way.run
+    n = _still_moving(under_way)
     kept = {
-        "start": _history(run.times, run.speed),
-        "contact": _history(run.times[1:], run.contact_share[1:]),
-        "stuck": _history(run.times[1:], run.stuck_share[1:]),
+        "start": _history(run.times[:n], run.speed[:n]),
+        "contact": _history(run.times[1:n], run.contact_share[1:n]),
+        "stuck": _history(run.times[1:n], run.stuck_share[1:n]),
     }
     for name, one in (("stop", cut_off), ("reversal", turned)):
         if one is not None:
-            kept[name] = _history(one.run.times - one.run.times[0], one.run.speed)
-    if run.statistics.finished and case.start == "steady":
+            m = _still_moving(one)
+            kept[name] = _history(one.run.times[:m] - one.run.times[0], one.run.speed[:m])
+    if run.statistics.finished:
         periods, samples = PORTRAIT
         fine = case.run(periods * case.period, samples=periods * samples + 1, continue_from=run)
         height, rate = phase_portrait(fine)
@@ -328,8 +333,14 @@ def _histories(case: MotorCase, run: MotorRun, cut_off: Timed | None, turned: Ti
     return kept
 
 
+def _still_moving(one: Timed) -> int:
+    """Samples until some time constants have passed; all where there is none."""
+    times = one.run.times - one.run.times[0]
+    return len(times) if one.time is None else max(int(np.searchsorted(times, CONSTANTS * one.time)), 3)
+
+
 def _history(times: Any, values: Any) -> History:
-    return History(x=tuple(thinned(times, 500)), y=tuple(thinned(values, 500)))
+    return History(x=tuple(thinned(times, 300)), y=tuple(thinned(values, 300)))
 
 
 def _picture(case: MotorCase, field: FieldFound) -> MotorRun | None:
