@@ -22,6 +22,7 @@ from verify.motion.surface import Stage, basis_of, stages_from_rest, steady_stag
 from verify.motor import records
 from verify.motor.combine import CHAIN, check_together
 from verify.motor.laid import Onto, check_on_beam, feet_of, put_down
+from verify.motor.records import Feet
 from verify.motor.result import MotorRun, MotorState
 from verify.motor.stepping import RIDES_FROM_HERE, Riding, run_stages
 from verify.motor.told import told
@@ -36,6 +37,8 @@ STEPS_PER_PERIOD = 61
 RESOLVED = 0.5
 """Radians of the contact's own swing in a step, unless a step is given: an error of 1 % of its period."""
 UNSTABLE = 2.0
+PASSES = 4
+"""Each shortens what is left of the way to the material under a point by (h/2) w'' and more."""
 SAGGING = 20
 """Modes that a static deflection is read from."""
 SHARP = 0.5 * np.pi
@@ -357,6 +360,16 @@ def begin(plan: Plan, riding: Riding, before: Sequence[MotorState]) -> None:
     if riding.hard is not None:
         riding.before[0, 0] = RIDES_FROM_HERE
         return
-    levels = stage.deflection(plan.z, np.zeros(1), riding.start + feet.points[:, records.OFFSET])[0]
+    levels = _levels(stage, plan, feet)
     put_down(feet, levels)
     riding.set_touch(levels)
+
+
+def _levels(stage: Stage, plan: Plan, feet: Feet) -> Array:
+    """The surface under every point at the start, (points,), metres: of the material X = x + face (h/2) w' there."""
+    x, p, beam = plan.onto[0].start + feet.points[:, records.OFFSET], feet.points, plan.request.beam
+    lever, at = beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE], x
+    factors = np.concatenate([plan.z[0], stage.drive_factors(np.zeros(1))[0]])
+    for _ in range(PASSES):
+        at = np.clip(x + lever * (factors @ stage.rows(at, 1)), 0.0, beam.length)
+    return np.asarray(factors @ stage.rows(at))
