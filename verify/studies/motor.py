@@ -1,5 +1,6 @@
 """The motor of a scene: a slider that may leave the beam, held, free and from rest, on every field."""
 
+from math import pi, sqrt
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
@@ -27,8 +28,8 @@ PER_FIELD = 2
 """Steps of progress of one field: held, free."""
 FREE_RUNS = 3
 """Under way, cut off, turned round."""
-VARIANTS = 5
-"""Of the runs from rest: as the scene says, halved steps, a quarter of a wave either way, phases turned round."""
+CONDITIONS = 4
+"""Of the runs from rest: the wave either way, in steps and in half of them."""
 
 
 class Motor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -56,6 +57,8 @@ class Motor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Newton, of every force in those runs, with all that presses in proportion; the scene's unless given."""
     links: tuple[Links, ...] = ("rigid", "stretching")
     """Of that chain."""
+    places: Annotated[int, Meta(ge=2, le=64)] = 8
+    """Of one wavelength about the slider's own, at which it is put in those runs."""
 
     def __post_init__(self) -> None:
         check_number("motor.soft_start_periods", self.soft_start_periods, "periods of the drive", at_least=0)
@@ -133,7 +136,8 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         for start, models in starts.items():
             for model in models:
                 check_combines(model, start, scene.slider)
-        check_on_beam(scene.slider, scene.beam, scene.slider.start_on(scene.beam))
+        for x in (scene.slider.start_on(scene.beam), *(places_from_rest(asked, scene) if asked.from_rest else ())):
+            check_on_beam(scene.slider, scene.beam, x)
         as_forces(scene.forces)
         self._check_models(asked, scene)
 
@@ -171,12 +175,12 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         )
 
     def n_steps(self, asked: Motor, scene: "Scene") -> int:
-        """Of each field two; a step for each variant of the runs from rest; the moving picture."""
-        return PER_FIELD * len(asked.linear) + VARIANTS * bool(asked.from_rest) + 1
+        """Of each field two, and one from rest; the moving picture."""
+        return PER_FIELD * len(asked.linear) + len(asked.from_rest) + 1
 
     def n_motions(self, asked: Motor, scene: "Scene") -> int:
         """Held speeds, a search for no load counted as one; free runs; those from rest; one period for the picture."""
-        return len(asked.linear) * (asked.speeds + 1 + FREE_RUNS) + VARIANTS * len(asked.from_rest) + 1
+        return len(asked.linear) * (asked.speeds + 1 + FREE_RUNS) + CONDITIONS * asked.places * len(asked.from_rest) + 1
 
     def run(
         self, asked: Motor, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress
@@ -207,3 +211,12 @@ def case_of(asked: Motor, scene: "Scene", model: str) -> "MotorCase":
         modal_damping=asked.modal_damping,
         steps_per_period=asked.steps_per_period,
     )
+
+
+def places_from_rest(asked: Motor, scene: "Scene") -> tuple[float, ...]:
+    """Over one wavelength about the slider's own place, which is one of them, metres."""
+    assert scene.drive is not None
+    assert scene.slider is not None
+    length = 2.0 * pi / sqrt(2.0 * pi * scene.drive.frequency_hz / scene.beam.wave_constant)
+    x, n = scene.slider.start_on(scene.beam), asked.places
+    return tuple(x + (k - n // 2) / n * length for k in range(n))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from verify.motor.figures import AtSpeed
     from verify.studies.motor_figures import FieldFound, History, MotorFound
-    from verify.studies.motor_rest import RestRun
+    from verify.studies.motor_rest import RestField
 
 CHAINS = {"rigid": PALETTE[1], "stretching": PALETTE[2]}
 """Colours of nonlinear chains by their links."""
@@ -108,9 +108,9 @@ def _portrait(found: "MotorFound") -> Chart:
     return Chart(
         id="motor-portrait",
         title="The first foot across the beam: its rate over its height",
-        caption="At the end of the free run, over three periods of the drive. A motion that repeats itself is a "
-        "closed loop; one that bounces without a pattern fills a patch.",
-        x=Axis("height, µm"),
+        caption="After the free run, over forty periods of the drive, about the mean of each. A motion that repeats "
+        "itself is a closed loop; one that bounces without a pattern fills a patch.",
+        x=Axis("height from its mean, µm"),
         y=Axis("rate, mm/s"),
         lines=tuple(
             plain_line(
@@ -176,12 +176,12 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
     rest = found.rest
     if rest is None:
         return ()
-    order = sorted(rest.runs, key=lambda run: run.model != CHAIN and MODELS[run.model].sized)
+    order = sorted(rest.fields, key=lambda one: one.model != CHAIN and MODELS[one.model].sized)
     return (
         Chart(
             id="motor-rest",
             title=f"From rest: the slider's way at {rest.force:g} N",
-            caption="Undamped, forces switched on at once, which is how a nonlinear chain starts: the wave never "
+            caption="From its own place, undamped, forces switched on at once, which is how a nonlinear chain starts: the wave never "
             f"settles. (kL)² ⟨θ²⟩ = {rest.size:.2g} of the drive's own motion.",
             x=Axis("time, ms"),
             y=Axis("distance, µm"),
@@ -190,7 +190,7 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
     )
 
 
-def _way(run: "RestRun") -> Line:
+def _way(run: "RestField") -> Line:
     chain = run.model == CHAIN
     return plain_line(
         run.title,

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 LAST = 0.25
 """Of a free run, at its end: of which means are taken."""
-PORTRAIT = (3, 48)
+PORTRAIT = (40, 12)
 """Periods, and samples in each, of the foot's motion across."""
 CONSTANTS = 8.0
 """Of time: what charts show of starting, stopping and turning round."""
@@ -329,7 +329,7 @@ def _histories(case: MotorCase, under_way: Timed, cut_off: Timed | None, turned:
         periods, samples = PORTRAIT
         fine = case.run(periods * case.period, samples=periods * samples + 1, continue_from=run)
         height, rate = phase_portrait(fine)
-        kept["portrait"] = History(x=tuple(map(float, height)), y=tuple(map(float, rate)))
+        kept["portrait"] = History(x=tuple(map(float, height - height.mean())), y=tuple(map(float, rate)))
     return kept
 
 

@@ -1,103 +1,129 @@
-"""All fields from rest, undamped, under forces that are switched on at once: the only start of a nonlinear chain."""
+"""All fields from rest, undamped, under forces that are switched on at once: the only start of a nonlinear chain.
 
+An undamped beam never comes to a steady wave, and where a slider ends depends on where it was put. So it is put at many
+places of one wavelength, the wave runs both ways, and what is said of a field is a mean over all of these with its
+standard error; what halved steps change stands beside it.
+"""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import msgspec
+import numpy as np
 from msgspec.structs import replace
 
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.motor.case import MotorCase
 from verify.motor.combine import CHAIN
 from verify.options import Links
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
-from verify.studies.motor import case_of
+from verify.studies.motor import CONDITIONS, case_of, places_from_rest
 
 if TYPE_CHECKING:
+    from verify.motor.result import MotorRun
     from verify.scenes.scene import Scene
     from verify.studies.motor import Motor
 
-CLOSE = "segment"
-"""The linear chain, of which the nonlinear ones are made."""
-EXACT = "analytic"
+SURE = 2.0
+"""Standard errors from which on a mean is told."""
 
 
-class RestRun(msgspec.Struct, frozen=True, kw_only=True):
-    """One field's slider, from rest."""
+class Departure(msgspec.Struct, frozen=True, kw_only=True):
+    """How far a field's sliders end from those of the first field, metres along +x."""
+
+    mean: float
+    error: float
+    """Standard error of that mean, over the starts."""
+    rms: float
+
+    @property
+    def told(self) -> bool:
+        """Whether there is one."""
+        return abs(self.mean) > SURE * self.error
+
+
+class RestField(msgspec.Struct, frozen=True, kw_only=True):
+    """One field's sliders, from rest."""
 
     model: str
     links: Links
-    travelled: float
-    """Metres along +x at the end."""
-    force: float
-    """Mean friction over all of the run, newton along +x."""
-    contact_share: float
+    ends: tuple[float, ...]
+    """Metres along +x, of every place, then of every place with the wave turned round."""
+    halved: tuple[float, ...]
+    """The same in half the steps."""
+    forces: tuple[float, ...]
+    """Mean friction over each run, newton along +x."""
     times: tuple[float, ...]
     way: tuple[float, ...]
-    """Metres, at those times."""
-    stopped: str
+    """Metres, at those times, of the slider at the scene's own place."""
+    whole: bool
+    """Whether all runs reached their end."""
 
     @property
     def title(self) -> str:
-        """'exact beam', 'chain of rigid links'."""
-        return f"chain of {self.links} links" if self.model == CHAIN else MODELS[self.model].title
+        """'exact beam', 'rigid links'."""
+        return f"{self.links} links" if self.model == CHAIN else MODELS[self.model].title
 
+    @property
+    def stepped(self) -> float:
+        """What halved steps change, rms, metres."""
+        return float(np.sqrt(np.mean((np.array(self.ends) - np.array(self.halved)) ** 2)))
 
-class Variant(msgspec.Struct, frozen=True, kw_only=True):
-    """All fields under one condition."""
-
-    what: str
-    """'as the scene says', 'halved steps'."""
-    runs: tuple[RestRun, ...]
-
-    def of(self, model: str, links: Links = "rigid") -> RestRun | None:
-        """A field's run; None where it was not asked for."""
-        return next((run for run in self.runs if run.model == model and (model != CHAIN or run.links == links)), None)
+    def own(self, turned: bool) -> float:
+        """Of the scene's own place."""
+        n = len(self.ends) // 2
+        return self.ends[n // 2 + n * turned]
 
 
 class FromRest(msgspec.Struct, frozen=True, kw_only=True):
     """The runs from rest."""
 
     force: float
-    """Newton, of the first force of the drive."""
+    """Newton, of the largest force of the drive."""
     preload: float
     """Newton."""
     seconds: float
     size: float
     """(kL)^2 <theta^2> of the steady linear chain under those forces."""
-    variants: tuple[Variant, ...]
+    places: tuple[float, ...]
+    """Metres."""
+    fields: tuple[RestField, ...]
 
     @property
     def n_runs(self) -> int:
-        """All of them."""
-        return sum(len(one.runs) for one in self.variants)
+        """Of sliders."""
+        return CONDITIONS * len(self.places) * len(self.fields)
 
-    @property
-    def runs(self) -> tuple[RestRun, ...]:
-        """As the scene says."""
-        return self.variants[0].runs
+    def departure(self, one: RestField) -> Departure:
+        """From the first field."""
+        apart = np.array(one.ends) - np.array(self.fields[0].ends)
+        error = float(apart.std(ddof=1)) / sqrt(len(apart))
+        return Departure(mean=float(apart.mean()), error=error, rms=float(np.sqrt((apart**2).mean())))
 
 
 def rest_runs(scene: "Scene", asked: "Motor", progress: Progress) -> FromRest | None:
-    """Every field under every condition; None where no chain was asked for. Raises InputError."""
+    """Every field from every start; None where no chain was asked for. Raises InputError."""
     if not asked.from_rest:
         return None
-    scaled = _scaled(scene, asked)
-    variants, size = [], 0.0
-    for what, case in _conditions(scaled, asked):
-        progress(f"from rest, {what}")
-        runs = []
-        for model, links in asked.from_rest:
-            run, nonlinear = _run(case, asked, model, links)
-            runs.append(run)
-            size = size or nonlinear or 0.0
-        variants.append(Variant(what=what, runs=tuple(runs)))
+    case, places = _scaled(scene, asked), places_from_rest(asked, scene)
+    fields, size = [], 0.0
+    for model, links in asked.from_rest:
+        progress(f"from rest on {links + ' links' if model == CHAIN else model}")
+        own = replace(case, model=model, count=asked.sized(model), links=links)
+        found, nonlinear = _field(own, asked.chain, places)
+        fields.append(found)
+        size = nonlinear if model == CHAIN else size
     return FromRest(
-        force=scaled.forces[0].amplitude,
-        preload=scaled.slider.preload,
+        force=max(abs(force.amplitude) for force in case.forces),
+        preload=case.slider.preload,
         seconds=asked.chain,
         size=size,
-        variants=tuple(variants),
+        places=places,
+        fields=tuple(fields),
     )
 
 
@@ -112,72 +138,74 @@ def _scaled(scene: "Scene", asked: "Motor") -> MotorCase:
     return case.driven(factor).on(pressed)
 
 
-def _conditions(case: MotorCase, asked: "Motor") -> tuple[tuple[str, MotorCase], ...]:
-    """What is changed, each by itself: a figure that one of them turns round is not a figure of the field."""
-    quarter = 0.25 * 2.0 * 3.141592653589793 / (2.0 * 3.141592653589793 * case.frequency_hz / case.beam.wave_constant) ** 0.5
-    x = case.slider.start_on(case.beam)
-    up, down = (case.on(replace(case.slider, position=x + way * quarter)) for way in (1.0, -1.0))
-    return (
-        ("as the scene says", case),
-        ("steps halved", replace(case, steps_per_period=2 * asked.steps_per_period)),
-        ("a quarter of a wave to the right", up),
-        ("a quarter of a wave to the left", down),
-        ("phases turned round", case.turned()),
+def _field(case: MotorCase, seconds: float, places: tuple[float, ...]) -> tuple[RestField, float]:
+    """All starts of one field, and how nonlinear its chain is."""
+    halved = replace(case, steps_per_period=2 * case.steps_per_period)
+    runs = [_run(one, seconds, places) for one in (case, case.turned(), halved, halved.turned())]
+    first, shown = [*runs[0], *runs[1]], runs[0][len(places) // 2]
+    found = RestField(
+        model=case.model,
+        links=case.links,
+        ends=tuple(float(run.travelled[-1]) for run in first),
+        halved=tuple(float(run.travelled[-1]) for run in (*runs[2], *runs[3])),
+        forces=tuple(float(run.friction[1:].mean()) for run in first),
+        times=tuple(thinned(shown.times, 200)),
+        way=tuple(thinned(shown.travelled, 200)),
+        whole=all(run.statistics.stopped == "end" for row in runs for run in row),
+    )
+    return found, shown.motor_margins.chain or 0.0
+
+
+def _run(case: MotorCase, seconds: float, places: tuple[float, ...]) -> "tuple[MotorRun, ...]":
+    """Sliders at all places on one beam, which does not feel them."""
+    from verify.motor.run import run_motors
+
+    return run_motors(
+        case.beam,
+        case.forces,
+        case.frequency_hz,
+        seconds,
+        sliders=[replace(case.slider, position=x) for x in places],
+        model=case.model,
+        count=case.count,
+        modes=case.modes,
+        start="rest",
+        modal_damping=0.0,
+        links=case.links,
+        samples=int(seconds * case.frequency_hz) + 2,
+        steps_per_period=case.steps_per_period,
     )
 
 
-def _run(case: MotorCase, asked: "Motor", model: str, links: Links) -> tuple[RestRun, float | None]:
-    """One run, and how nonlinear its chain is."""
-    own = replace(case, model=model, count=asked.sized(model), links=links)
-    run = own.run(asked.chain, samples=int(asked.chain * case.frequency_hz) + 2)
-    found = RestRun(
-        model=model,
-        links=links,
-        travelled=float(run.travelled[-1]),
-        force=float(run.friction[1:].mean()),
-        contact_share=float(run.contact_share[1:].mean()),
-        times=tuple(thinned(run.times, 200)),
-        way=tuple(thinned(run.travelled, 200)),
-        stopped=run.statistics.stopped,
+def what_stands(found: FromRest) -> Iterator[str]:
+    """What the runs say of the chains beside the beam; withheld where it is within twice its standard error."""
+    starts = 2 * len(found.places)
+    first = found.fields[0].title
+    yield (
+        f"from rest, undamped, {found.force:g} N switched on at once, {1e3 * found.seconds:g} ms, (kL)^2 <theta^2> = "
+        f"{found.size:.2g}, {starts} starts ({len(found.places)} places of one wavelength, the wave either way): where "
+        f"a slider ends against that on the {first}, " + "; ".join(_departs(found, one) for one in found.fields[1:])
     )
-    return found, run.motor_margins.chain if model == CHAIN else None
+    chains = [one for one in found.fields if one.model == CHAIN]
+    for one, other in pairwise(chains):
+        yield _nearer(found, one, other)
 
 
-def apart(variant: Variant, one: tuple[str, Links], other: tuple[str, Links]) -> float | None:
-    """How far two fields' sliders end from each other, metres; None where one was not run to its end."""
-    a, b = variant.of(*one), variant.of(*other)
-    if a is None or b is None or a.stopped != "end" or b.stopped != "end":
-        return None
-    return abs(a.travelled - b.travelled)
+def _departs(found: FromRest, one: RestField) -> str:
+    gone = found.departure(one)
+    mean = f"{1e6 * gone.mean:+.3g} +- {1e6 * gone.error:.2g} um"
+    said = mean if gone.told else f"no mean that is told from its error ({mean})"
+    return f"on {one.title} {said}, rms {1e6 * gone.rms:.3g} um, halved steps {1e6 * one.stepped:.2g} um"
 
 
-def nearer(found: FromRest, to: str) -> tuple[int, int] | None:
-    """(in how many conditions stretching links end nearer to a field than rigid ones, of how many); None without."""
-    pairs = [(apart(one, (CHAIN, "stretching"), (to, "rigid")), apart(one, (CHAIN, "rigid"), (to, "rigid")))
-             for one in found.variants]  # fmt: skip
-    whole = [(a, b) for a, b in pairs if a is not None and b is not None]
-    return (sum(a < b for a, b in whole), len(whole)) if whole else None
+def _nearer(found: FromRest, one: RestField, other: RestField) -> str:
+    """Which of two is nearer the first field, start by start."""
+    first: Array = np.array(found.fields[0].ends)
+    apart = abs(np.array(one.ends) - first) - abs(np.array(other.ends) - first)
+    mean, error = float(apart.mean()), float(apart.std(ddof=1)) / sqrt(len(apart))
+    pair = f"{one.title} against {other.title}: by {1e6 * mean:+.3g} +- {1e6 * error:.2g} um a start"
+    beam = found.fields[0].title
+    if abs(mean) <= max(SURE * error, one.stepped + other.stepped):
+        return f"which chain is nearer the {beam} is withheld ({pair}, no more than its error allows)"
+    return f"{(other if mean > 0 else one).title} are nearer the {beam} ({pair} farther)"
 
-
-def what_stands(found: FromRest) -> tuple[str, ...]:
-    """What the runs say of the chains beside the beam; withheld where a condition turns it round."""
-    how = (
-        f"from rest, undamped, forces of {found.force:g} N switched on at once, {1e3 * found.seconds:g} ms, "
-        f"(kL)^2 <theta^2> = {found.size:.2g}"
-    )
-    told = []
-    for to, name in ((CLOSE, "the linear chain of as many links"), (EXACT, "the exact beam")):
-        count = nearer(found, to)
-        if count is None:
-            continue
-        near, of = count
-        told.append(f"{_verdict(near, of)} {name} ({how})")
-    return tuple(told)
-
-
-def _verdict(near: int, of: int) -> str:
-    if near == of:
-        return f"in all {of} conditions the slider on stretching links ends nearer than on rigid ones to that on"
-    if near == 0:
-        return f"in all {of} conditions the slider on rigid links ends nearer than on stretching ones to that on"
-    return f"withheld, as stretching links win {near} of {of} conditions: which chain ends nearer to the slider on"

@@ -22,19 +22,19 @@ def motor_tables(found: "MotorFound") -> tuple[Table, ...]:
 def _overview(found: "MotorFound") -> Table:
     columns = (
         Column("field", left=True),
-        Column("crests, cm/s", ".4f", 100.0),
+        Column("crests, cm/s", ".4f", 100.0, wide=True),
         Column("no load, cm/s", "+.4f", 100.0),
         Column("free, cm/s", "+.4f", 100.0),
         Column("stall, mN", "+.4f", 1e3),
-        Column("most power, mW", ".4g", 1e3),
+        Column("most power, mW", ".4g", 1e3, wide=True),
         Column("best efficiency", "bare size"),
-        Column("touching", "bare size"),
-        Column("sticking", "bare size"),
+        Column("touching", "bare size", wide=True),
+        Column("sticking", "bare size", wide=True),
         Column("start", "duration"),
         Column("stop", "duration"),
         Column("turn", "duration"),
-        Column("wear, mW", ".4g", 1e3),
-        Column("s per s", ".2g"),
+        Column("wear, mW", ".4g", 1e3, wide=True),
+        Column("s per s", ".2g", wide=True),
     )
     return Table(
         title="The motor on every field",
@@ -77,9 +77,9 @@ def _force_speed(found: "MotorFound") -> Table:
     columns = [Column("speed, cm/s", "+.4f", 100.0)]
     for one in found.fields:
         columns += [
-            Column(f"{one.title}: force, mN", "+.4f", 1e3),
-            Column("power, mW", "+.4g", 1e3),
-            Column("efficiency %", "bare size"),
+            Column(f"{one.title}, mN", "+.4f", 1e3),
+            Column("power, mW", "+.4g", 1e3, wide=True),
+            Column("efficiency %", "bare size", wide=True),
         ]
     rows = []
     for k, at in enumerate(found.fields[0].curve):
@@ -134,18 +134,29 @@ def _margins(found: "MotorFound") -> Table:
 
 
 def _rest(rest: "FromRest") -> Table:
-    """Where the slider ends on every field under every condition."""
-    first = rest.variants[0]
-    columns = [Column("condition", left=True)]
-    columns += [Column(f"{run.title}, µm", "+.4g", 1e6) for run in first.runs]
-    columns += [Column(f"{run.title}, mN", "+.3f", 1e3) for run in first.runs]
+    """Where sliders end on every field."""
+    gone = [rest.departure(one) for one in rest.fields]
     return Table(
-        title=f"From rest, {1e3 * rest.seconds:g} ms, {rest.force:g} N",
-        before="Undamped, forces switched on at once, as a nonlinear chain starts: where the slider ends, and the mean "
-        f"friction on it, preload {rest.preload:.3g} N.",
-        columns=tuple(columns),
+        title=f"From rest, {1e3 * rest.seconds:g} ms under {rest.force:g} N",
+        before=f"Undamped, forces switched on at once, as a nonlinear chain starts; preload {rest.preload:.3g} N, the "
+        f"slider put at {len(rest.places)} places of one wavelength, the wave either way.",
+        columns=(
+            Column("field", left=True),
+            Column("own place, µm", "+.4g", 1e6),
+            Column("wave turned, µm", "+.4g", 1e6),
+            Column("from the first, µm", "+.3g", 1e6),
+            Column("error, µm", ".2g", 1e6),
+            Column("rms, µm", ".3g", 1e6),
+            Column("steps halved, µm", ".2g", 1e6),
+        ),
         rows=tuple(
-            (one.what, *(run.travelled for run in one.runs), *(run.force for run in one.runs)) for one in rest.variants
+            (one.title, one.own(False), one.own(True), away.mean, away.error, away.rms, one.stepped)
+            for one, away in zip(rest.fields, gone, strict=True)
+        ),
+        notes=(
+            "Own place: where the slider ends that starts where the scene puts it. From the first: mean, over all "
+            "starts, of how much farther along +x it ends than on the first field, with its standard error and its "
+            "rms. Steps halved: what that changes, rms.",
         ),
         shown="both",
     )

@@ -33,7 +33,7 @@ def facts_of(found: "MotorFound") -> tuple[str, ...]:
     from verify.studies.motor_rest import what_stands
 
     told = [line for one in found.fields for line in _of_field(one)]
-    rest = what_stands(found.rest) if found.rest else ()
+    rest = tuple(what_stands(found.rest)) if found.rest else ()
     return (*told, *rest, *_fields_agree(found.fields), *found.doubts)
 
 
