@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from verify.models.catalogue import MODELS
 from verify.motor.combine import CHAIN
 from verify.studies.chart import Axis, Chart, Dash, Line
-from verify.studies.charting import BROAD, DASHES, PALETTE, key, plain_line
+from verify.studies.charting import BROAD, DASHES, PALETTE, key, line, plain_line
 from verify.studies.motor_movie import motor_movie
 
 if TYPE_CHECKING:
@@ -187,6 +187,33 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
             y=Axis("distance, µm"),
             lines=tuple(_way(run) for run in order),
         ),
+        Chart(
+            id="motor-rest-force",
+            title=f"From rest: force over speed at {rest.force:g} N",
+            caption="Means over the last half of those runs and over all places, over mu N. Left and right: the wave "
+            "as the scene says, and turned round. A motor that pushes with its wave is below nought on one side of "
+            "standing still and above it on the other.",
+            x=Axis("speed, cm/s"),
+            y=Axis("force over mu N"),
+            lines=tuple(line for one in order for line in _held_lines(one)),
+        ),
+    )
+
+
+def _held_lines(one: "RestField") -> tuple[Line, ...]:
+    chain = one.model == CHAIN
+    return tuple(
+        line(
+            one.title,
+            CHAINS[one.links] if chain else MODELS[one.model].colour,
+            [100.0 * at.speed for at in curve],
+            [at.force for at in curve],
+            dash="dash" if chain else "solid",
+            said=tuple(f"{at.force:+.3f} ± {at.error:.2g}" for at in curve),
+            keyed=not k,
+            group=one.title,
+        )
+        for k, curve in enumerate((one.curve, one.turned))
     )
 
 

@@ -204,9 +204,9 @@ def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step
         fields.append(found)
         for name, one in kept.items():
             histories[name][model] = one
-    rest = rest_runs(scene, asked, progress)
-    progress("the picture of one period")
     first = fields[0]
+    rest = rest_runs(scene, asked, -1.0 if first.stall.force < 0.0 else 1.0, progress)
+    progress("the picture of one period")
     assert scene.slider is not None
     return MotorFound(
         fields=tuple(fields),

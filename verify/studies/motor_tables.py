@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def motor_tables(found: "MotorFound") -> tuple[Table, ...]:
     """All of them."""
-    rest = (_rest(found.rest),) if found.rest else ()
+    rest = (_rest(found.rest), _rest_curve(found.rest)) if found.rest else ()
     return (_overview(found), _force_speed(found), _margins(found), *rest)
 
 
@@ -158,6 +158,28 @@ def _rest(rest: "FromRest") -> Table:
             "starts, of how much farther along +x it ends than on the first field, with its standard error and its "
             "rms. Steps halved: what that changes, rms.",
         ),
+        shown="both",
+    )
+
+
+def _rest_curve(rest: "FromRest") -> Table:
+    """Force over speed of all fields from rest."""
+    columns = [Column("speed, cm/s", "+.4f", 100.0)]
+    for one in rest.fields:
+        columns += [Column(one.title, "+.3f"), Column("error", ".2g", wide=True)]
+    rows = []
+    for k in range(-len(rest.fields[0].curve), len(rest.fields[0].turned)):
+        cells: list[float] = []
+        for one in rest.fields:
+            at = one.curve[-1 - k] if k < 0 else one.turned[k]
+            cells += [at.speed] * (not cells) + [at.force, at.error]
+        rows.append(tuple(cells))
+    return Table(
+        title="Force over speed from rest, over mu N",
+        before="The same runs, held at each speed and at each place, means over their last half: above with the wave as "
+        "the scene says, below with it turned round.",
+        columns=tuple(columns),
+        rows=tuple(rows),
         shown="both",
     )
 
