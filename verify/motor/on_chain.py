@@ -76,9 +76,7 @@ def run_on_chain(
     return tuple(replace(run, model=CHAIN, notes=(note, *run.notes[1:])) for run in runs)
 
 
-def _ride(
-    plan: Plan, given: Moved, begun: tuple[float, float], progress: Callable[[float], None]
-) -> MotorRun:
+def _ride(plan: Plan, given: Moved, begun: tuple[float, float], progress: Callable[[float], None]) -> MotorRun:
     """One slider on a chain that does not feel it, hence none of the others; `given` is the surface under all."""
     stage = plan.stages[0]
     riding = Riding.fresh(plan.onto, plan.request, False)

@@ -181,8 +181,8 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
         Chart(
             id="motor-rest",
             title=f"From rest: the slider's way at {rest.force:g} N",
-            caption="From its own place, undamped, forces switched on at once, which is how a nonlinear chain starts: the wave never "
-            f"settles. (kL)² ⟨θ²⟩ = {rest.size:.2g} of the drive's own motion.",
+            caption="From its own place, undamped, forces switched on at once, which is how a nonlinear chain starts: "
+            f"the wave never settles. (kL)² ⟨θ²⟩ = {rest.size:.2g} of the drive's own motion.",
             x=Axis("time, ms"),
             y=Axis("distance, µm"),
             lines=tuple(_way(run) for run in order),

@@ -18,10 +18,10 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.motor.case import MotorCase
 from verify.motor.combine import CHAIN
+from verify.motor.figures import crest_speed
 from verify.options import Links
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
-from verify.motor.figures import crest_speed
 from verify.studies.motor import HELD, RUNS, case_of, places_from_rest
 
 if TYPE_CHECKING:
@@ -176,9 +176,13 @@ def _field(case: MotorCase, asked: "Motor", places: tuple[float, ...], crests: f
         turned=tuple(_held(row, fine_back[k] if k == 1 else ()) for k, row in enumerate(back) if k),
         times=tuple(thinned(shown.times, 200)),
         way=tuple(thinned(shown.travelled, 200)),
-        whole=all(run.statistics.stopped == "end" for rows in (there, back, fine, fine_back) for row in rows for run in row),
+        whole=all(_whole(rows) for rows in (there, back, fine, fine_back)),
     )
     return found, shown.motor_margins.chain or 0.0
+
+
+def _whole(rows: "list[tuple[MotorRun, ...]]") -> bool:
+    return all(run.statistics.stopped == "end" for row in rows for run in row)
 
 
 def _held(runs: "Sequence[MotorRun]", fine: "Sequence[MotorRun]") -> RestHeld:

@@ -176,8 +176,8 @@ def _rest_curve(rest: "FromRest") -> Table:
         rows.append(tuple(cells))
     return Table(
         title="Force over speed from rest, over mu N",
-        before="The same runs, held at each speed and at each place, means over their last half: above with the wave as "
-        "the scene says, below with it turned round.",
+        before="The same runs, held at each speed and at each place, means over their last half: above with the wave "
+        "as the scene says, below with it turned round.",
         columns=tuple(columns),
         rows=tuple(rows),
         shown="both",
@@ -186,7 +186,8 @@ def _rest_curve(rest: "FromRest") -> Table:
 
 def at_speed_as_plain(at: "AtSpeed") -> dict[str, Any]:
     """With what follows from it."""
-    return msgspec.to_builtins(at) | {"power": at.power, "efficiency": at.efficiency}
+    plain: dict[str, Any] = msgspec.to_builtins(at)
+    return plain | {"power": at.power, "efficiency": at.efficiency}
 
 
 def field_as_plain(one: "FieldFound") -> dict[str, Any]:
