@@ -57,12 +57,12 @@ class Device(AtFrequency, frozen=True, kw_only=True):
     """A place for a device near the right end."""
 
     position: Annotated[float, Meta(ge=0, description="metres from the right end")]
-    turning: Annotated[bool, Meta(description="against turning there, in N m s; else across, in kg/s")] = False
 
 
 class Absorbing(Device, frozen=True, kw_only=True):
     """A device there: by its dashpot and spring, or by its resistance over the matched one's, its spring matched."""
 
+    turning: Annotated[bool, Meta(description="whether it acts against turning there; else across")] = False
     resistance: Annotated[float, Meta(ge=0, description="of its dashpot, kg/s; N m s turning")] | None = None
     stiffness: (
         Annotated[float, Meta(ge=0, description="of its spring, N/m; N m/rad turning; with resistance")] | None
@@ -108,23 +108,27 @@ def _landing(a: Shaken, scene: "Scene", bench: Workbench) -> float:
     return landing_phase(a.acceleration_ratio)
 
 
-def _matched(a: Device, scene: "Scene") -> complex:
+def _matched(a: Device, scene: "Scene", *, turning: bool = False) -> complex:
     """Raises InputError off the beam, and on a support where a device does nothing."""
     from verify.waves.absorber import matched_impedance
 
     if a.position >= scene.beam.length:
         raise InputError(f"position = {a.position!r} lies off the beam: give less than {scene.beam.length!r} m")
     hertz, support = drive_frequency(a, scene), scene.beam.supports[1]
-    return matched_impedance(scene.beam, hertz, a.position, support, turning=a.turning)
+    return matched_impedance(scene.beam, hertz, a.position, support, turning=turning)
 
 
 def _impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
     return _matched(a, scene)
 
 
+def _turning_impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
+    return _matched(a, scene, turning=True)
+
+
 def _device(a: Absorbing, scene: "Scene") -> complex:
     """Its impedance, kg/s."""
-    matched, omega = _matched(a, scene), 2.0 * pi * drive_frequency(a, scene)
+    matched, omega = _matched(a, scene, turning=a.turning), 2.0 * pi * drive_frequency(a, scene)
     if a.ratio is not None:
         return complex(a.ratio * matched.real, matched.imag)
     return complex(a.resistance or 0.0, omega * (a.mass or 0.0) - (a.stiffness or 0.0) / omega)
@@ -133,7 +137,7 @@ def _device(a: Absorbing, scene: "Scene") -> complex:
 def _reflection(a: Absorbing, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.absorber import reflection
 
-    impedance, own = _device(a, scene), _matched(a, scene).conjugate()
+    impedance, own = _device(a, scene), _matched(a, scene, turning=a.turning).conjugate()
     return reflection(impedance, own) if a.model is None else _left_on_beam(a, scene, impedance)
 
 
@@ -163,7 +167,13 @@ def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
 
 def _needs_device(a: Device, scene: "Scene") -> tuple[()]:
     """Raise InputError where no device can stand."""
-    _matched(a, scene)
+    _matched(a, scene, turning=isinstance(a, Absorbing) and a.turning)
+    return ()
+
+
+def _needs_turning(a: Device, scene: "Scene") -> tuple[()]:
+    """The same against turning."""
+    _matched(a, scene, turning=True)
     return ()
 
 
@@ -203,11 +213,21 @@ CONTACT_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "wave.absorber_impedance",
         "kg/s",
-        "Impedance of a device near the right end that reflects nothing: force over velocity, or N m s turning.",
+        "Impedance of a device near the right end that reflects nothing: force over velocity.",
         Device,
         "harmonic",
         _impedance,
         needs=_needs_device,
+        devices=True,
+    ),
+    Quantity(
+        "wave.absorber_turning_impedance",
+        "N m s",
+        "The same of one against turning: couple over speed of turning.",
+        Device,
+        "harmonic",
+        _turning_impedance,
+        needs=_needs_turning,
         devices=True,
     ),
     Quantity(

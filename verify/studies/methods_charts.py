@@ -31,7 +31,8 @@ def _frequency(found: "MethodsFound") -> Chart:
     return Chart(
         id="methods-frequency",
         title="Reflection over frequency, nothing retuned",
-        caption=_said(found) + "The device keeps its dashpot, spring and mass, the second force its phase.",
+        caption=_said(found) + "The device keeps its dashpot, spring and mass, the second force its phase. "
+        "With two forces the beam keeps its resonances, where the wave stands.",
         x=Axis("frequency, Hz"),
         y=Axis("reflection"),
         lines=tuple(
@@ -40,7 +41,10 @@ def _frequency(found: "MethodsFound") -> Chart:
             )
             for way in WAYS
         ),
-        marks=(Mark(found.hertz, "drive", GREY),),
+        marks=(
+            Mark(found.hertz, "drive", GREY),
+            *(Mark(hertz, f"mode {mode}", GREY) for mode, hertz in found.resonances if x[0] <= hertz <= x[-1]),
+        ),
     )
 
 
@@ -86,8 +90,8 @@ def _along(found: "MethodsFound") -> Chart:
     return Chart(
         id="methods-along",
         title="Local standing-wave ratio along the beam",
-        caption=f"{found.damping.capitalize()}, at {found.hertz:g} Hz, between force and device. The lumped picture has "
-        f"two modes alone and knows no actuator. Ratios above {MOST:g} are not drawn.",
+        caption=f"{found.damping.capitalize()}, at {found.hertz:g} Hz, between force and device. The lumped picture "
+        f"has two modes alone and knows no actuator. Ratios above {MOST:g} are not drawn.",
         x=Axis("x, mm"),
         y=Axis("standing-wave ratio", log=True, ticks=(1.0, 2.0, 5.0, 10.0, 20.0)),
         lines=(*fields, lumped),

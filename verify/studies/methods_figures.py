@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.device import Device
+from verify.exact.closed_forms import frequency_hz
 from verify.models.catalogue import MODELS, discrete
 from verify.motion.validity import nearest_mode
 from verify.studies.chart import Chart
@@ -176,12 +177,15 @@ def along(setting: Setting, asked: "Methods", bench: "Workbench") -> Along:
 
 def neighbours(beam: Beam, hertz: float) -> tuple[int, int]:
     """The modes whose frequencies a drive lies between; the lowest two below the first."""
-    from verify.exact.closed_forms import frequency_hz
-
     near = nearest_mode(beam, hertz)
     lower = near if frequency_hz(beam, near) <= hertz else near - 1
     lower = max(lower, 1)
     return lower, lower + 1
+
+
+def _resonances(setting: Setting) -> tuple[tuple[int, float], tuple[int, float]]:
+    lower, upper = neighbours(setting.beam, setting.hertz)
+    return (lower, frequency_hz(setting.beam, lower)), (upper, frequency_hz(setting.beam, upper))
 
 
 class MethodsFound(Found, frozen=True, eq=False, kw_only=True):
@@ -200,6 +204,8 @@ class MethodsFound(Found, frozen=True, eq=False, kw_only=True):
     rides: tuple[Ride, ...]
     slider: str
     """How the slider was run; empty without one."""
+    resonances: tuple[tuple[int, float], tuple[int, float]]
+    """(mode, Hz) of the bare beam on either side of the drive."""
     hertz: float
     span_hz: float
     force: float
@@ -266,6 +272,7 @@ def methods_study(
         picture=_picture(setting, found.modes, bench),
         rides=rides,
         slider=words,
+        resonances=_resonances(setting),
         hertz=setting.hertz,
         span_hz=asked.span_hz,
         force=setting.force.amplitude,

@@ -52,7 +52,12 @@ def _frequency(found: "MethodsFound") -> Iterator[str]:
         yield f"{span}: a frequency is a resonance of the undamped beam under two forces, where nothing is compared"
         return
     figures = f"the largest reflection is {device:.3g} with the device and {forces:.3g} with two forces"
+    (lower, below), (upper, above) = found.resonances
     yield f"{span}: {figures}" + _better(device, forces)
+    yield (
+        f"two forces leave the beam its resonances, of which {found.hertz:g} Hz lies between mode {lower} at {below:.5g} "
+        f"and mode {upper} at {above:.5g} Hz; the device takes them away"
+    )
 
 
 def _better(device: float, forces: float) -> str:
@@ -108,8 +113,8 @@ def _lumped(found: "MethodsFound") -> Iterator[str]:
         at = ", ".join(f"{lumped:.4g} at {1e3 * x:g} mm" for x, lumped, _ in found.picture)
         fields = [field for *_, field in found.picture]
         yield (
-            f"modes {first} and {second} alone, equal and a quarter of a period apart, have a local standing-wave ratio "
-            f"of {at}, whatever drives them; the field of two forces at {found.hertz:g} Hz, {found.damping}, has "
+            f"modes {first} and {second} alone, equal and a quarter of a period apart, have a local standing-wave "
+            f"ratio of {at}, whatever drives them; the field of two forces at {found.hertz:g} Hz, {found.damping}, has "
             f"{min(fields):.4g}" + (f" to {max(fields):.4g}" if max(fields) > 1.001 * min(fields) else "") + " there"
         )
 
@@ -214,7 +219,7 @@ def _picture(found: "MethodsFound") -> Table:
         ),
         rows=found.picture,
         notes=(
-            f"Local standing-wave ratio. The picture has two modes, equal and 90° apart, and knows no actuator; the field "
-            f"is the exact one at {found.hertz:g} Hz, {found.damping}.",
+            f"Local standing-wave ratio. The picture has two modes, equal and 90° apart, and knows no actuator; the "
+            f"field is the exact one at {found.hertz:g} Hz, {found.damping}.",
         ),
     )

@@ -32,10 +32,9 @@ def beam_impedance(
     InputError on a support where nothing moves, and for a beam that is not uniform.
     """
     check_number("position", distance, "metres from the end", at_least=0)
+    idle = f"position = {distance!r} m stands on a {support} support, where a device does nothing: move it"
     if distance == 0.0 and support in _IDLE[turning]:
-        raise InputError(
-            f"position = {distance!r} m stands on a {support} support, where a device does nothing: move it"
-        )
+        raise InputError(idle)
     if not beam.uniform:
         raise InputError(f"beam.{beam.added[0]}: the impedance of a half-infinite beam is that of a uniform one")
     k, omega = wavenumber(beam, frequency_hz), 2.0 * np.pi * frequency_hz
@@ -45,8 +44,10 @@ def beam_impedance(
     rows = np.array([(-_WAYS) ** order for order in _ENDS[support]])
     given = np.array([_WAYS**order @ arriving for order in _ENDS[support]])
     back = np.linalg.solve(rows, -given) * np.exp(-_WAYS * k * distance)
-    there = -(1.0 - 1j) * k**2 * -1.0 if turning else -(1.0 + 1j)
+    there = (1.0 - 1j) * k**2 if turning else -(1.0 + 1j)
     seen = there + (back @ (-_WAYS * k) if turning else back.sum())
+    if seen == 0.0:  # to rounding
+        raise InputError(idle)
     return complex(4.0 * stiffness * k**3 / (1j * omega * seen))
 
 
