@@ -191,17 +191,17 @@ def _springs(view: View) -> Iterator[Drawn]:
 
 
 def _devices(scene: "Scene", view: View) -> Iterator[Drawn]:
-    """Below the beam a dashpot on the ground, with what else the device has in words."""
+    """Above the beam, clear of its supports, a dashpot to the ground; what the device has in words."""
     for device in scene.devices:
-        at, half = view.at(device.position), _half(view.beam, device.position)
-        top, ground = half + 12, half + 36
-        yield _line((at, half), (at, top + 8), colour=SPRING)
-        yield _line((at - 5, top + 8), (at + 5, top + 8), colour=SPRING)
-        yield _line((at - 7, top), (at - 7, top + 16), (at + 7, top + 16), (at + 7, top), colour=SPRING)
-        yield _line((at, top + 16), (at, ground), colour=SPRING)
-        yield _line((at - 11, ground), (at + 11, ground), colour=SOFT)
-        yield Box(at - 11, half, at + 11, ground + 1)
-        yield Label(at, ground + 4, _device_words(device), down=True)
+        at, y = view.at(device.position), -_half(view.beam, device.position)
+        cup, ground = y - 12, y - 36
+        yield _line((at, y), (at, cup - 8), colour=SPRING)
+        yield _line((at - 5, cup - 8), (at + 5, cup - 8), colour=SPRING)
+        yield _line((at - 8, cup), (at - 8, cup - 16), (at + 8, cup - 16), (at + 8, cup), colour=SPRING)
+        yield _line((at, cup - 16), (at, ground), colour=SPRING)
+        yield _line((at - 12, ground), (at + 12, ground), colour=SOFT)
+        yield Box(at - 12, ground - 1, at + 12, y)
+        yield Label(at, ground - 4, (f"x = {_metres(device.position)}", *_device_words(device)))
 
 
 def _device_words(device: "Device") -> tuple[str, ...]:

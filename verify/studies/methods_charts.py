@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.studies.chart import Axis, Chart, Dash, Line, Mark
-from verify.studies.charting import GREY, MEAN_COLOUR, PALETTE, plain_line
+from verify.studies.charting import GREY, MEAN_COLOUR, PALETTE, plain_line, unbroken
 from verify.studies.charting import line as dotted
 from verify.studies.methods_seen import WAYS, WORDS
 
@@ -66,7 +66,8 @@ def _detuning(found: "MethodsFound") -> Chart:
     return Chart(
         id="methods-detuning",
         title="Reflection where one thing is off by a factor",
-        caption=_said(found) + f"At {found.hertz:g} Hz. Grey: |s - 1|/(s + 1), what a matched device leaves whose "
+        caption=_said(found)
+        + f"At {found.hertz:g} Hz. Grey: {unbroken('|s - 1|/(s + 1)')}, what a matched device leaves whose "
         "dashpot is off by s.",
         x=Axis("factor s", log=True, ticks=tuple(f for f in s if f in (0.25, 0.5, 1.0, 2.0, 4.0))),
         y=Axis("reflection"),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Way: TypeAlias = Literal["device", "forces"]
 WAYS: tuple[Way, ...] = ("device", "forces")
-WORDS: dict[Way, str] = {"device": "a device absorbs", "forces": "two forces"}
+WORDS: dict[Way, str] = {"device": "device", "forces": "two forces"}
 
 
 class Seen(msgspec.Struct, frozen=True, kw_only=True):

@@ -8,7 +8,7 @@ from verify.studies.methods_seen import WAYS, WORDS
 from verify.studies.told import Column, Table
 
 if TYPE_CHECKING:
-    from verify.studies.methods_figures import MethodsFound, Row
+    from verify.studies.methods_figures import MethodsFound
 
 
 def condition(found: "MethodsFound") -> str:
@@ -25,18 +25,14 @@ def short(found: "MethodsFound") -> str:
     driven, *off = found.edges
     if not (driven.device and driven.forces):
         return ""
-    at = f"at {found.hertz:g} Hz {_left(driven)}"
-    sides = [row for row in off if row.device and row.forces]
-    if not sides:
-        return f"The reflection {at}."
-    beside = " and ".join(f"{row.what} {_left(row)}" for row in sides)
-    return f"The reflection {at}; with nothing retuned {beside}."
-
-
-def _left(row: "Row") -> str:
-    assert row.device is not None
-    assert row.forces is not None
-    return f"is {row.device.reflection:.2g} with the device and {row.forces.reflection:.2g} with two forces"
+    device, forces = driven.device.reflection, driven.forces.reflection
+    at = f"The reflection at {found.hertz:g} Hz is {device:.2g} with the device and {forces:.2g} with two forces"
+    sides = [
+        f"{row.what} it is {row.device.reflection:.2g} and {row.forces.reflection:.2g}"
+        for row in off
+        if row.device and row.forces
+    ]
+    return f"{at}; with nothing retuned, {', '.join(sides)}." if sides else f"{at}."
 
 
 def facts(found: "MethodsFound") -> tuple[str, ...]:
@@ -52,12 +48,13 @@ def _frequency(found: "MethodsFound") -> Iterator[str]:
         yield f"{span}: a frequency is a resonance of the undamped beam under two forces, where nothing is compared"
         return
     figures = f"the largest reflection is {device:.3g} with the device and {forces:.3g} with two forces"
-    (lower, below), (upper, above) = found.resonances
     yield f"{span}: {figures}" + _better(device, forces)
-    yield (
-        f"two forces leave the beam its resonances, of which {found.hertz:g} Hz lies between mode {lower} at {below:.5g} "
-        f"and mode {upper} at {above:.5g} Hz; the device takes them away"
-    )
+    (lower, below), (upper, above) = found.resonances
+    if below <= found.hertz <= above:
+        yield (
+            f"two forces leave the beam its resonances: {found.hertz:g} Hz lies between mode {lower} at {below:.5g} Hz "
+            f"and mode {upper} at {above:.5g} Hz"
+        )
 
 
 def _better(device: float, forces: float) -> str:
