@@ -306,7 +306,7 @@ CASES: dict[str, list[Case]] = {
     ],
     "wave.lumped_swr": [
         Case({"x": 0.31, "modes": [5, 7], "ratio": 1.3, "phase_deg": 71.0}),
-        Case({"x": 0.31, "modes": [5, 7], "ratio": 1.3}, on("clamped", "free")),
+        Case({"x": 0.31, "modes": [1, 3], "ratio": 1.3}, on("clamped", "free")),
     ],
     "wave.absorber_impedance": [Case({"position": 0.0573})],
     "wave.absorber_turning_impedance": [Case({"position": 0.0573}), Case({"position": 0.0573}, on("free", "guided"))],
@@ -757,6 +757,12 @@ DEAD = [
     Dead("contact.landing_phase", "beam.* drive.* slider.* motion.*", "a surface of its own"),
     Dead("wave.absorber_*", "drive.kind drive.force.*", "one wave from the left, whatever makes it", half_infinite),
     Dead("wave.absorber_* wave.lumped_swr", "beam.extreme_fibre", "no surface"),
+    Dead(
+        "wave.lumped_swr",
+        "beam.supports.*",
+        "an end shifts both waves alike, but for the lowest modes, whose near fields reach the other end",
+        lambda a: a.arguments["modes"] == [5, 7],
+    ),
     Dead(
         "wave.lumped_swr",
         "beam.width beam.thickness beam.youngs_modulus beam.density beam.loss_factor drive.* slider.* motion.*",

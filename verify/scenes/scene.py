@@ -285,7 +285,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Raise InputError, for something that knows no device on the beam, where the drive has one."""
         for device in self.devices:
             raise InputError(
-                f"{what} knows no drive.device, and one stands at {device.position!r} m: leave it out, or ask for "
+                f"{what} knows no drive.device, and one stands at {device.position:g} m: leave it out, or ask for "
                 "figures of the steady wave"
             )
 

@@ -71,7 +71,7 @@ class MethodsStudy(Study[Methods, "MethodsFound"]):
         (force,), (device,) = scene.forces, scene.devices
         if not device.across or device.turning or device.amplitude:
             raise InputError(
-                f"methods puts a second force in place of the device at {device.position!r} m: give it stiffness, mass "
+                f"methods puts a second force in place of the device at {device.position:g} m: give it stiffness, mass "
                 "or dashpot alone"
             )
         if not scene.beam.uniform or scene.beam.tension or scene.beam.foundation:

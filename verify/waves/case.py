@@ -37,7 +37,7 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
         """Raise InputError for something that knows forces alone."""
         if self.devices:
             raise InputError(
-                f"drive.device at {self.devices[0].position!r} m: {what} superposes two forces without a device, leave "
+                f"drive.device at {self.devices[0].position:g} m: {what} superposes two forces without a device, leave "
                 "it out"
             )
 
