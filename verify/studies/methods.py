@@ -78,7 +78,10 @@ class MethodsStudy(Study[Methods, "MethodsFound"]):
             raise InputError(f"methods reads waves of one length: leave beam.{scene.beam.added[0]} out")
         assert scene.drive is not None
         if asked.span_hz >= scene.drive.frequency_hz:
-            raise InputError(f"methods.span_hz = {asked.span_hz!r} reaches below 0 Hz: give less than the drive's")
+            raise InputError(
+                f"methods.span_hz = {asked.span_hz!r} is not below drive.frequency_hz = {scene.drive.frequency_hz!r}: "
+                "give less"
+            )
         low, high = sorted((force.position, device.position))
         if asked.load_position is not None and not low < asked.load_position < high:
             raise InputError(
