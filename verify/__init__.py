@@ -3,6 +3,7 @@
 What there is (`help` of each says its fields, shapes and units; everything is SI):
 
   Beam, Section, PointMass, PointSpring, PointForce, Slider    what exists
+  Device                                                       what takes up a wave, or drives it, beside the forces
   analytic_modes, fem_beam, segment_model                      the three models: solve_modes, solve_harmonic, ...
   Modes, HarmonicField                                         what those return
   sweep_harmonic, sweep_modes of each                          many frequencies (HarmonicSweep) or beams in one call
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from verify.attached import PointMass, PointSpring
     from verify.beam import Beam, PointForce
     from verify.chain.bending import Bent, bend
+    from verify.device import Device
     from verify.errors import InputError
     from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Beam",
     "Bent",
+    "Device",
     "FreeVibration",
     "HarmonicField",
     "HarmonicSweep",
@@ -70,6 +73,7 @@ __version__ = "0.1.0"
 _HOME = {
     "Beam": "verify.beam",
     "Bent": "verify.chain.bending",
+    "Device": "verify.device",
     "FreeVibration": "verify.motion.free_vibration",
     "HarmonicField": "verify.models.fields",
     "HarmonicSweep": "verify.models.sweeps",

@@ -214,9 +214,10 @@ def test_the_study_tells_its_charts_and_what_it_takes_home():
     charts = STRANGER.charts()
     assert [chart.id.removeprefix("methods-") for chart in charts] == [
         "frequency",
+        "amplitude",
         "detuning",
-        "along",
         "load",
+        "along",
         "envelopes",
     ]
     assert not any(chart.empty for chart in charts)

@@ -19,7 +19,7 @@ MOST = 20.0
 
 def methods_charts(found: "MethodsFound") -> tuple[Chart, ...]:
     """Over frequency, detuning and load, along the beam."""
-    return _frequency(found), _detuning(found), _along(found), _load(found), _envelopes(found)
+    return _frequency(found), _amplitude(found), _detuning(found), _load(found), _along(found), _envelopes(found)
 
 
 def _said(found: "MethodsFound") -> str:
@@ -41,11 +41,36 @@ def _frequency(found: "MethodsFound") -> Chart:
             )
             for way in WAYS
         ),
-        marks=(
-            Mark(found.hertz, "drive", GREY),
-            *(Mark(hertz, f"mode {mode}", GREY) for mode, hertz in found.resonances if x[0] <= hertz <= x[-1]),
-        ),
+        marks=_marks(found),
     )
+
+
+def _amplitude(found: "MethodsFound") -> Chart:
+    x = [found.hertz + row.value for row in found.frequencies]
+    return Chart(
+        id="methods-amplitude",
+        title="Amplitude of the stronger wave over frequency",
+        caption=_said(found) + "Where two forces meet a resonance the wave grows and stands.",
+        x=Axis("frequency, Hz"),
+        y=Axis("amplitude, µm", log=True),
+        lines=tuple(
+            plain_line(
+                WORDS[way],
+                COLOURS[way],
+                x,
+                [1e6 * one.amplitude if one else None for one in _all(found, way)],
+                width=2.0,
+            )
+            for way in WAYS
+        ),
+        marks=_marks(found),
+    )
+
+
+def _marks(found: "MethodsFound") -> tuple[Mark, ...]:
+    """The drive, and the bare beam's resonances in the span."""
+    resonances = [one for one in found.resonances if abs(one[1] - found.hertz) <= found.span_hz]
+    return Mark(found.hertz, "drive", GREY), *(Mark(hertz, f"mode {mode}", GREY) for mode, hertz in resonances)
 
 
 def _all(found: "MethodsFound", way: "Way") -> "list[Seen | None]":

@@ -20,10 +20,12 @@ from msgspec.structs import replace
 
 from verify.attached import PointSpring
 from verify.beam import Beam, PointForce
+from verify.checks import several
 from verify.device import Device
 from verify.errors import InputError, ResonanceError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE, HarmonicField, phasor, wavenumber
+from verify.models.places import Forces, as_forces
 from verify.waves.imposed import AROUND, STEP
 
 
@@ -43,12 +45,14 @@ _LOOKED_AT = 97
 
 
 def field_with_devices(
-    solve: SolveOn, beam: Beam, forces: Sequence[PointForce], frequency_hz: float, devices: Sequence[Device]
+    solve: SolveOn, beam: Beam, forces: Forces, frequency_hz: float, devices: Device | Sequence[Device]
 ) -> HarmonicField:
     """The field under forces with devices on the beam; its forces are what acts across beside what resists turning.
 
-    Raises InputError for a device off the beam or on a support that makes it idle, and where nothing drives the beam.
+    `solve` is a model's: (beam, forces, hertz) -> its field, such as `analytic_modes.solve_harmonic`. Raises InputError for
+    a device off the beam or on a support that makes it idle, and where nothing drives the beam.
     """
+    forces, devices = as_forces(forces), several("devices", devices, Device)
     for device in devices:
         device.check_on(beam)
     acting = [*forces, *(_own_force(device) for device in devices if device.amplitude)]
