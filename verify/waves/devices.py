@@ -49,8 +49,8 @@ def field_with_devices(
 ) -> HarmonicField:
     """The field under forces with devices on the beam; its forces are what acts across beside what resists turning.
 
-    `solve` is a model's: (beam, forces, hertz) -> its field, such as `analytic_modes.solve_harmonic`. Raises InputError for
-    a device off the beam or on a support that makes it idle, and where nothing drives the beam.
+    `solve` is a model's: (beam, forces, hertz) -> its field, such as `analytic_modes.solve_harmonic`. Raises
+    InputError for a device off the beam or on a support that makes it idle, and where nothing drives the beam.
     """
     forces, devices = as_forces(forces), several("devices", devices, Device)
     for device in devices:
