@@ -22,7 +22,10 @@ from verify.waves.lumped import TwoModes, local_waves, standing_wave_ratios
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
     from verify.models.fields import HarmonicField
+    from verify.motion.result import Motion
+    from verify.motor.result import MotorRun
     from verify.scenes.scene import Scene
+    from verify.slider import Slider
     from verify.studies.methods import Methods
 
 ALONG = 401
@@ -305,8 +308,11 @@ def _rides(
     slider = scene.slider
     assert slider is not None
     law = f"K = {slider.slope:g} s/m" if slider.law == "tanh" else "Coulomb"
+    kind = f"always on the surface, one-way, {slider.kinematics} kinematics"
+    if slider.contact is not None:
+        kind = f"free to leave the surface, one-way, pressed on with {slider.normal_force:.4g} N"
     return tuple(rides), (
-        f"always on the surface, one-way, {slider.kinematics} kinematics, mu = {slider.mu:g}, {law}, "
+        f"{kind}, mu = {slider.mu:g}, {law}, "
         f"from x = {slider.start_on(scene.beam):g} m, mean of the last {1e3 * TAIL * asked.duration:g} of "
         f"{1e3 * asked.duration:g} ms in the steady state"
     )
@@ -316,26 +322,35 @@ def slider_speed(scene: "Scene", field: "HarmonicField", duration: float) -> flo
     """Mean speed of the scene's slider on a steady field, m/s along +x, over whole periods at the end of its run.
 
     The field's forces hold what the devices do across, so that the bare beam under them is the beam with its devices,
-    as long as the slider does not push back. A slider that does, or leaves the surface, wants the devices in time.
-    Raises InputError.
+    as long as the slider does not push back. A slider that does wants the devices in time. Raises InputError.
     """
-    from verify.motion.simulate import simulate
-
     assert scene.slider is not None
+    slider = replace(scene.slider, coupling="one-way")
     periods = max(round(duration * field.frequency_hz), 2)
-    motion = simulate(
-        scene.beam,
-        field.forces,
-        field.frequency_hz,
-        periods / field.frequency_hz,
-        model="analytic",
-        start="steady",
-        slider=replace(scene.slider, coupling="one-way"),
-        samples=periods + 1,
-        ledger=False,
-    )
+    motion = _ridden(slider, field, periods)
     times, way, late = motion.times, motion.travelled, int((1.0 - TAIL) * periods)
     return float((way[-1] - way[late]) / (times[-1] - times[late]))
+
+
+def _ridden(slider: "Slider", field: "HarmonicField", periods: int) -> "Motion | MotorRun":
+    """The slider's run on a steady field that does not feel it, sampled once a period."""
+    from verify.motion.simulate import simulate
+    from verify.motor.run import run_motor
+
+    beam, hertz, samples = field.beam, field.frequency_hz, periods + 1
+    if slider.contact is not None:
+        return run_motor(beam, field.forces, hertz, periods / hertz, model="analytic", slider=slider, samples=samples)
+    return simulate(
+        beam,
+        field.forces,
+        hertz,
+        periods / hertz,
+        model="analytic",
+        start="steady",
+        slider=slider,
+        samples=samples,
+        ledger=False,
+    )
 
 
 def worst(rows: Sequence[Row], way: Way) -> float | None:
