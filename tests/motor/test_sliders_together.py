@@ -133,7 +133,7 @@ def test_a_hard_slider_flies_on_where_a_run_has_left_it():
     for _ in range(9):
         run = moved(slider, period, samples=2, continue_from=run)
         lands += int((run.events[:, 1] == 4.0).sum())
-    assert lands == int((whole.events[:, 1] == 4.0).sum()) > 9
+    assert lands == int((whole.events[:, 1] == 4.0).sum()) > 2
     assert run.travelled[-1] == pytest.approx(whole.travelled[-1], rel=1e-6)
     assert run.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)
 
