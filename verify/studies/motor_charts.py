@@ -89,8 +89,8 @@ def _efficiency(found: "MotorFound") -> Chart:
     return Chart(
         id="motor-efficiency",
         title="Efficiency of the contact over speed",
-        caption="That power over what the surface gives along the beam; the rest is rubbed off. What the wave loses "
-        "in the beam and at its ends is not in it.",
+        caption="That power over what the surface gives along the beam; the rest is rubbed off. What the contact's "
+        "dashpots take across it, and what the wave loses at its ends, is not in it.",
         x=Axis("speed, cm/s"),
         y=Axis("efficiency, %"),
         lines=_curves(found, lambda at: None if at.efficiency is None else 100.0 * at.efficiency),

@@ -77,6 +77,8 @@ class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
     stuck_share: float
     wear_power: float
     """Lost in friction, and put into what gives way along the surface, W."""
+    damped_power: float
+    """Lost in the contact's dashpots or landings, mean over all of the run, W."""
     seconds: float
     ratio: float
     """Run time over simulated time."""
@@ -283,6 +285,7 @@ def _free(under_way: Timed) -> FreeRun:
         contact_share=float(run.contact_share[-last:].mean()),
         stuck_share=float(run.stuck_share[-last:].mean()),
         wear_power=float(run.rubbed[-last:].sum()) / seconds,
+        damped_power=(run.ledger.damped + run.ledger.impacts) / run.duration,
         seconds=run.duration,
         ratio=run.statistics.wall_s / run.duration,
         stopped=run.statistics.stopped,

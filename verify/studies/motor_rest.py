@@ -89,6 +89,25 @@ class RestField(msgspec.Struct, frozen=True, kw_only=True):
         """What halved steps change, rms, metres."""
         return float(np.sqrt(np.mean((np.array(self.ends) - np.array(self.halved)) ** 2)))
 
+    @property
+    def push(self) -> tuple[float, float]:
+        """(force over mu N on a slider that stands still, as far as it turns round with the wave, its error)."""
+        there, back = self.curve[0], self.turned[0]
+        way = 1.0 if self.turned[-1].speed > 0.0 else -1.0
+        return 0.5 * way * (back.force - there.force), 0.5 * sqrt(there.error**2 + back.error**2)
+
+    @property
+    def push_stepped(self) -> float:
+        """What halved steps change of it."""
+        there, back = self.curve[0], self.turned[0]
+        return 0.5 * abs((back.halved or 0.0) - (there.halved or 0.0) - (back.force - there.force))
+
+    @property
+    def bias(self) -> tuple[float, float]:
+        """(what does not turn round with the wave, along +x, its error)."""
+        there, back = self.curve[0], self.turned[0]
+        return 0.5 * (back.force + there.force), self.push[1]
+
     def own(self, turned: bool) -> float:
         """Of the scene's own place."""
         n = len(self.ends) // 2
@@ -249,16 +268,16 @@ def what_stands(found: FromRest) -> Iterator[str]:
         f"{found.size:.2g}, {starts} starts ({len(found.places)} places of one wavelength, the wave either way): where "
         f"a slider ends against that on the {first}, " + "; ".join(_departs(found, one) for one in found.fields[1:])
     )
-    yield "held still in those runs, force over mu N, wave as the scene says; turned round: " + "; ".join(
-        f"{one.title} {_pm(one.curve[0])}, {_pm(one.turned[0])}" for one in found.fields
+    yield "held still in those runs, force over mu N that turns round with the wave, and that does not: " + "; ".join(
+        f"{one.title} {_pm(*one.push)}, {_pm(*one.bias)}" for one in found.fields
     )
     chains = [one for one in found.fields if one.model == CHAIN]
     for one, other in pairwise(chains):
         yield _nearer(found, one, other)
 
 
-def _pm(one: RestHeld) -> str:
-    return f"{one.force:+.3f} +- {one.error:.2g}"
+def _pm(mean: float, error: float) -> str:
+    return f"{mean:+.3f} +- {error:.2g}"
 
 
 def _departs(found: FromRest, one: RestField) -> str:
@@ -269,12 +288,14 @@ def _departs(found: FromRest, one: RestField) -> str:
 
 
 def _nearer(found: FromRest, one: RestField, other: RestField) -> str:
-    """Which of two is nearer the first field, start by start."""
-    first: Array = np.array(found.fields[0].ends)
-    apart = abs(np.array(one.ends) - first) - abs(np.array(other.ends) - first)
-    mean, error = float(apart.mean()), float(apart.std(ddof=1)) / sqrt(len(apart))
-    pair = f"{one.title} against {other.title}: by {1e6 * mean:+.3g} +- {1e6 * error:.2g} um a start"
-    beam = found.fields[0].title
-    if abs(mean) <= max(SURE * error, one.stepped + other.stepped):
-        return f"which chain is nearer the {beam} is withheld ({pair}, no more than its error allows)"
-    return f"{(other if mean > 0 else one).title} are nearer the {beam} ({pair} farther)"
+    """Which of two pushes more nearly as the first field does, standing still."""
+    beam = found.fields[0]
+    far = [abs(each.push[0] - beam.push[0]) for each in (one, other)]
+    error, stepped = sqrt(one.push[1] ** 2 + other.push[1] ** 2), one.push_stepped + other.push_stepped
+    pair = f"{one.title} push {far[0]:.3f} mu N otherwise, {other.title} {far[1]:.3f}"
+    if abs(far[0] - far[1]) <= max(SURE * error, stepped):
+        return (
+            f"which chain pushes more nearly as the {beam.title} does is withheld ({pair}, apart by less than errors)"
+        )
+    near = other if far[0] > far[1] else one
+    return f"{near.title} push more nearly as the {beam.title} does where the axial inertia is that large ({pair})"

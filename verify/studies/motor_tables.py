@@ -10,7 +10,7 @@ from verify.studies.told import Column, Table
 if TYPE_CHECKING:
     from verify.motor.figures import AtSpeed
     from verify.studies.motor_figures import FieldFound, MotorFound
-    from verify.studies.motor_rest import FromRest
+    from verify.studies.motor_rest import Departure, FromRest, RestField
 
 
 def motor_tables(found: "MotorFound") -> tuple[Table, ...]:
@@ -34,6 +34,7 @@ def _overview(found: "MotorFound") -> Table:
         Column("stop", "duration"),
         Column("turn", "duration"),
         Column("wear, mW", ".4g", 1e3, wide=True),
+        Column("dashpots, mW", ".4g", 1e3, wide=True),
         Column("s per s", ".2g", wide=True),
     )
     return Table(
@@ -68,6 +69,7 @@ def _of_field(one: "FieldFound") -> tuple[Any, ...]:
         one.stop_time,
         one.reversal_time,
         free.wear_power,
+        free.damped_power,
         free.ratio,
     )
 
@@ -142,24 +144,33 @@ def _rest(rest: "FromRest") -> Table:
         f"slider put at {len(rest.places)} places of one wavelength, the wave either way.",
         columns=(
             Column("field", left=True),
-            Column("own place, µm", "+.4g", 1e6),
-            Column("wave turned, µm", "+.4g", 1e6),
-            Column("from the first, µm", "+.3g", 1e6),
+            Column("own place, µm", "+.4g", 1e6, wide=True),
+            Column("wave turned, µm", "+.4g", 1e6, wide=True),
+            Column("apart, µm", "+.3g", 1e6),
             Column("error, µm", ".2g", 1e6),
             Column("rms, µm", ".3g", 1e6),
-            Column("steps halved, µm", ".2g", 1e6),
+            Column("steps halved, µm", ".2g", 1e6, wide=True),
+            Column("push", "+.3f"),
+            Column("bias", "+.3f"),
+            Column("error", ".2g"),
+            Column("steps halved", ".1e", wide=True),
         ),
         rows=tuple(
-            (one.title, one.own(False), one.own(True), away.mean, away.error, away.rms, one.stepped)
+            (*_ends(one, away), one.push[0], one.bias[0], one.push[1], one.push_stepped)
             for one, away in zip(rest.fields, gone, strict=True)
         ),
         notes=(
-            "Own place: where the slider ends that starts where the scene puts it. From the first: mean, over all "
+            "Own place: where the slider ends that starts where the scene puts it. Apart: mean, over all "
             "starts, of how much farther along +x it ends than on the first field, with its standard error and its "
-            "rms. Steps halved: what that changes, rms.",
+            "rms. Steps halved: what that changes, rms. Push and bias: the force on a slider that stands still, over "
+            "mu N, that turns round with the wave, and that does not.",
         ),
         shown="both",
     )
+
+
+def _ends(one: "RestField", away: "Departure") -> tuple[Any, ...]:
+    return one.title, one.own(False), one.own(True), away.mean, away.error, away.rms, one.stepped
 
 
 def _rest_curve(rest: "FromRest") -> Table:
