@@ -3,13 +3,122 @@
 from typing import get_args
 
 from verify.beam import Beam
-from verify.checks import check_number, settle
+from verify.checks import check_number, check_whole, settle
 from verify.errors import InputError, near_name
 from verify.field_docs import Value
-from verify.options import CouplingChoice, Kinematics, Law, Line, NormalChoice
+from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 
 GRAVITY = 9.81
 _WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
+
+
+class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """How a slider that may leave the surface touches it: through springs, or hard. Raises InputError."""
+
+    stiffness: float | None = None
+    """N/m of each foot, all its points together; with `layer_stiffness` none, a hard contact."""
+    damping: float = 0.0
+    """N s/m, likewise. A dashpot never pulls."""
+    tangential_stiffness: float | None = None
+    """N/m along the surface, likewise; none: it does not give way along the surface."""
+    layer_stiffness: float | None = None
+    """N/m for each metre of a foot, of a layer between foot and beam: in place of `stiffness`."""
+    layer_tangential_stiffness: float | None = None
+    """The same along the surface."""
+    restitution: float = 0.0
+    """Speed after a hard landing over speed before, 0 to 1."""
+
+    def __post_init__(self) -> None:
+        settle(self)
+        for name in ("stiffness", "tangential_stiffness", "layer_stiffness", "layer_tangential_stiffness"):
+            if (value := getattr(self, name)) is not None:
+                unit = "N/m for each metre of foot" if name.startswith("layer") else "N/m"
+                check_number(f"slider.contact.{name}", value, unit, above=0)
+        check_number("slider.contact.damping", self.damping, "N s/m", at_least=0)
+        check_number("slider.contact.restitution", self.restitution, "speed after over speed before", at_least=0)
+        self._check_kinds()
+
+    def _check_kinds(self) -> None:
+        """Raise InputError for what no one contact can be."""
+        if self.restitution > 1.0:
+            raise InputError(
+                f"slider.contact.restitution = {self.restitution!r}: nothing leaves faster than it came, give 0 to 1"
+            )
+        for one, other in (
+            ("stiffness", "layer_stiffness"),
+            ("tangential_stiffness", "layer_tangential_stiffness"),
+        ):
+            if getattr(self, one) is not None and getattr(self, other) is not None:
+                raise InputError(
+                    f"slider.contact.{one} = {getattr(self, one)!r} and {other} = {getattr(self, other)!r}: give one"
+                )
+        if not self.hard and self.restitution:
+            raise InputError(
+                f"slider.contact.restitution = {self.restitution!r} is of a hard contact: on springs a landing loses by "
+                "damping, leave one out"
+            )
+        for name in ("damping", "tangential_stiffness", "layer_tangential_stiffness"):
+            if self.hard and getattr(self, name):
+                raise InputError(
+                    f"slider.contact.{name} = {getattr(self, name)!r} is of springs: give slider.contact.stiffness too"
+                )
+
+    @property
+    def hard(self) -> bool:
+        """Whether nothing gives way."""
+        return self.stiffness is None and self.layer_stiffness is None
+
+    def across(self, length: float) -> float:
+        """Stiffness of a foot of this length, N/m."""
+        return (self.stiffness or 0.0) + (self.layer_stiffness or 0.0) * length
+
+    def along(self, length: float) -> float:
+        """The same along the surface; 0 where it does not give way."""
+        return (self.tangential_stiffness or 0.0) + (self.layer_tangential_stiffness or 0.0) * length
+
+
+class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A rigid foot of a slider that may leave the surface, with its own height and pitch. Raises InputError."""
+
+    length: float = 0.0
+    """Along the beam, metres."""
+    points: int = 1
+    """At which it touches, at the middles of as many equal cells of the length, each with an equal share of stiffness."""
+    offset: float = 0.0
+    """Of its middle from the slider's position, metres."""
+    mass: float | None = None
+    """That moves across the beam, kg; its share of the slider's unless given."""
+    inertia: float | None = None
+    """About its middle, kg m^2; mass length^2 / 12 unless given."""
+    pitches: bool = True
+    """Whether it turns; a foot of one point never does."""
+    face: Face = "upper"
+    """Of the beam, on which it is pressed."""
+    mirrored: bool = False
+    """Whether the mirror image of the beam presses on it from above, as a slider between two beams has it."""
+
+    def __post_init__(self) -> None:
+        settle(self)
+        check_number("slider.foot.length", self.length, "metres", at_least=0)
+        check_whole("slider.foot.points", self.points, 1)
+        check_number("slider.foot.offset", self.offset, "metres")
+        if self.face not in get_args(Face):
+            raise InputError(
+                f"slider.foot.face = {self.face!r} is not known: {near_name(str(self.face), get_args(Face))}"
+            )
+        for name, unit in (("mass", "kg"), ("inertia", "kg m^2")):
+            if (value := getattr(self, name)) is not None:
+                check_number(f"slider.foot.{name}", value, unit, above=0)
+        if self.points > 1 and not self.length:
+            raise InputError(f"slider.foot.points = {self.points!r} on no length: give slider.foot.length in metres")
+        if self.points == 1 and self.inertia is not None:
+            raise InputError(
+                f"slider.foot.inertia = {self.inertia!r} of a foot of one point, which does not turn: leave it out"
+            )
+        if self.mirrored and self.face != "upper":
+            raise InputError(
+                "slider.foot.mirrored = true on the lower face: a foot between two beams is on the upper one"
+            )
 
 
 class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -49,8 +158,18 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     the acceleration of the surface under it, convective terms included: a moving mass. massless: nothing, the paper's
     simplification. Friction has N = m g + preload either way."""
 
+    contact: Contact | None = None
+    """How it touches where it may leave the surface; unless given it never does."""
+    foot: tuple[Foot, ...] = ()
+    """Where it may leave the surface: what it stands on, all with one speed; one point unless given."""
+    pull: float = 0.0
+    """Newton along +x on it, where it may leave the surface: a load that brakes is negative."""
+    preload_stiffness: float = 0.0
+    """N/m of the spring that presses each foot on, where it may leave the surface."""
+
     def __post_init__(self) -> None:
-        settle(self)
+        settle(self, "slider", foot=Foot)
+        self._check_feet()
         for name, kind in _WORDS.items():
             word, known = getattr(self, name), get_args(kind)
             if word not in known:
@@ -71,6 +190,34 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_number("slider.position", self.position, "metres")
         if self.normal_force == 0.0:
             raise InputError("slider.gravity = 0.0 without slider.preload presses on nothing: give one of the two")
+
+    def _check_feet(self) -> None:
+        """Raise InputError for feet and loads of a slider that never leaves the surface, and what they do not take."""
+        check_number("slider.pull", self.pull, "newton along x")
+        check_number("slider.preload_stiffness", self.preload_stiffness, "N/m", at_least=0)
+        if self.contact is None:
+            for name in ("foot", "pull", "preload_stiffness"):
+                if getattr(self, name):
+                    raise InputError(
+                        f"slider.{name} is of a slider that may leave the surface: give slider.contact too"
+                    )
+            return
+        for name, fixed in (("mu_static", None), ("line", "spline"), ("kinematics", "tangential"), ("normal", "held")):
+            if getattr(self, name) != fixed:
+                raise InputError(
+                    f"slider.{name} = {getattr(self, name)!r} is of a slider that stays on the surface: leave it out, or "
+                    "slider.contact"
+                )
+        lengths = [foot.length for foot in self.foot] or [0.0]
+        if self.contact.layer_stiffness is not None and not all(lengths):
+            raise InputError("slider.contact.layer_stiffness is for each metre of foot: give slider.foot.length")
+        if self.contact.hard and (len(self.foot) > 1 or any(foot.points > 1 for foot in self.foot)):
+            raise InputError("slider.foot: a hard contact is of one point, give slider.contact.stiffness or one point")
+
+    @property
+    def feet(self) -> tuple[Foot, ...]:
+        """What it stands on: one point unless said otherwise."""
+        return self.foot or (Foot(),)
 
     @property
     def normal_force(self) -> float:

@@ -15,6 +15,8 @@ from contextlib import suppress
 from functools import cache, partial
 from hashlib import sha256
 from pathlib import Path
+from re import MULTILINE
+from re import compile as compile_pattern
 from time import perf_counter
 from typing import Any, NoReturn, TypeVar
 
@@ -92,6 +94,8 @@ class _PartCompiler(_ScalarCompiler):
         super().__init__(typingctx, targetctx, into, *given)  # type: ignore[no-untyped-call]
 
 
+KERNELS, RECORDS = "*kernels.py", "*records.py"
+_OTHER_ROOM = compile_pattern(rb"^from verify\.(\w+)\.\w*(?:kernels|records) import", MULTILINE)
 INNER = ("_raise_if_finalized", "_ensure_finalized", "_get_module_for_linking")
 """What a part's library is made of: numba's own names, which a later numba may not have."""
 LINKED = all(hasattr(JITCodeLibrary, name) for name in INNER)
@@ -206,9 +210,10 @@ event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]
 
 @cache
 def room_stamp(room: Path) -> str:
-    """What the room's kernels and records say, as one number."""
-    sources = sorted([*room.glob("*kernels.py"), *room.glob("*records.py")])
-    return sha256(b"\0".join([one.name.encode() + b"\0" + one.read_bytes() for one in sources])).hexdigest()
+    """What kernels and records of the room say, and those of rooms that they import from, as one number."""
+    sources = [one.name.encode() + b"\0" + one.read_bytes() for one in sorted([*room.glob(KERNELS), *room.glob(RECORDS)])]
+    others = sorted(set(_OTHER_ROOM.findall(b"\n".join(sources))) - {room.name.encode()})
+    return sha256(b"\0".join([*sources, *(room_stamp(room.parent / one.decode()).encode() for one in others)])).hexdigest()
 
 
 lean = partial(compiled, _nrt=False)

@@ -1,0 +1,191 @@
+"""The compiled beam that feels the feet: how it answers their forces within a step, and what they leave in its modes.
+
+Forces of points act on the polynomials of the pieces they stand on: a coefficient's share of a force is what the
+coefficient adds to the way that the force goes along. So much for the modes as the step begins; within it the surface
+has, on the average, half of what the forces give it.
+"""
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.models.kernels import FAST, part
+from verify.motion.records import OMEGA, Z_IM
+from verify.motor.records import (
+    AT,
+    FACE,
+    GRIP,
+    IMAGE,
+    PUSH,
+    RUB,
+    SLOPE,
+    STUCK,
+    SURFACE,
+    Beamed,
+    Feet,
+    Rubbing,
+    V,
+)
+
+SWEEPS = 400
+ENOUGH = 1e-13
+"""Of mu N: as far as sweeps go on changing a force, they go on."""
+
+
+@part()
+def _lever(d: int, at: float, slope: float, lever: float, length: float) -> float:
+    """What coefficient d adds to the surface's way along the tangent."""
+    value = at**d
+    first = d * at ** (d - 1) / length if d > 0 else 0.0
+    return float((slope * value - lever * first) / np.sqrt(1.0 + slope * slope))
+
+
+@part()
+def _add(i: int, along: float, across: float, dt: float, length: float, half: float, feet: Feet, beam: Beamed) -> None:
+    """Forces of point i on the surface, newton: half of what they give is added to the rates, all of it to the load."""
+    touch, piece = feet.touch, feet.piece[i]
+    lever, degree = half * feet.points[i, FACE], beam.load.shape[1]
+    at, slope = touch[i, AT], touch[i, SLOPE]
+    for d in range(degree):
+        impulse = dt * (along * _lever(d, at, slope, lever, length) + across * at**d)
+        beam.load[piece, d] += impulse
+        _spread(0.5 * impulse, piece * degree + d, beam)
+
+
+@part(fastmath=FAST)
+def _spread(impulse: float, column: int, beam: Beamed) -> None:
+    """What an impulse on one coefficient adds to all rates."""
+    degree, row = beam.load.shape[1], beam.span[0] * beam.load.shape[1]
+    for p in range(beam.span[0], beam.span[1] + 1):
+        for d in range(degree):
+            beam.added[p, d] += impulse * beam.answer[column, row]
+            row += 1
+
+
+@part()
+def clear(feet: Feet, beam: Beamed) -> None:
+    """Nothing is pushed yet, on the pieces from the first to the last that a point stands on."""
+    first = last = feet.piece[0]
+    for piece in feet.piece:
+        first, last = piece if piece < first else first, piece if piece > last else last
+    beam.span[0], beam.span[1] = first, last
+    for p in range(first, last + 1):
+        for d in range(beam.load.shape[1]):
+            beam.load[p, d], beam.added[p, d] = 0.0, 0.0
+
+
+@part()
+def bear(dt: float, edges: Array, half: float, feet: Feet, beam: Beamed) -> None:
+    """The surface takes the normal forces, and those of friction that are known."""
+    for i in range(feet.points.shape[0]):
+        force = feet.touch[i, PUSH]
+        if force > 0.0 and feet.points[i, IMAGE] > 0.0:
+            length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
+            along = -feet.touch[i, RUB] if feet.points[i, GRIP] > 0.0 else 0.0
+            _add(i, along, -feet.points[i, FACE] * force, dt, length, half, feet, beam)
+
+
+@part()
+def _given(i: int, length: float, half: float, feet: Feet, beam: Beamed) -> float:
+    """What the forces so far add to the mean speed of the surface under point i, m/s."""
+    lever, piece, total = half * feet.points[i, FACE], feet.piece[i], 0.0
+    for d in range(beam.load.shape[1]):
+        total += _lever(d, feet.touch[i, AT], feet.touch[i, SLOPE], lever, length) * beam.added[piece, d]
+    return total
+
+
+@part()
+def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: Beamed) -> float:
+    """What a unit force along the surface at point i adds to its mean speed there, m/s per newton."""
+    lever, degree, total = half * feet.points[i, FACE], beam.load.shape[1], 0.0
+    at, slope, first = feet.touch[i, AT], feet.touch[i, SLOPE], feet.piece[i] * beam.load.shape[1]
+    for d in range(degree):
+        own = _lever(d, at, slope, lever, length)
+        for e in range(degree):
+            total += own * beam.answer[first + d, first + e] * _lever(e, at, slope, lever, length)
+    return 0.5 * dt * total
+
+
+@part()
+def match(dt: float, held: float, edges: Array, feet: Feet, rubbing: Rubbing, slope: float | None, beam: Beamed) -> float:
+    """The mean speed of the stage at which every point's friction suits its own slip: sweeps from point to point.
+
+    The surface has half of what all forces give it. Each point's rule is kept exactly in its turn; the sweeps are those
+    of a symmetric problem and come to rest.
+    """
+    touch, points, gain = feet.touch, feet.points, 0.5 * dt * rubbing.lightness
+    mean, largest = feet.body[V] + gain * (rubbing.pull + held), 0.0
+    for i in range(points.shape[0]):
+        if points[i, GRIP] == 0.0:
+            touch[i, RUB], touch[i, STUCK] = 0.0, 0.0
+            most = rubbing.mu * touch[i, PUSH]
+            largest = most if most > largest else largest
+    for _ in range(SWEEPS):
+        changed = 0.0
+        for i in range(points.shape[0]):
+            if touch[i, PUSH] > 0.0 and points[i, GRIP] == 0.0:
+                length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
+                felt = points[i, IMAGE] > 0.0
+                slip = touch[i, SURFACE] - mean + (_given(i, length, rubbing.half, feet, beam) if felt else 0.0)
+                ease = gain + (_ease(i, dt, length, rubbing.half, feet, beam) if felt else 0.0)
+                force = _suited(i, slip + ease * touch[i, RUB], ease, feet, rubbing, slope)
+                more = force - touch[i, RUB]
+                touch[i, RUB] = force
+                mean += gain * more
+                if felt:
+                    _add(i, -more, 0.0, dt, length, rubbing.half, feet, beam)
+                changed = abs(more) if abs(more) > changed else changed
+        if changed <= ENOUGH * largest:
+            break
+    return mean
+
+
+@part()
+def _suited(i: int, slip: float, ease: float, feet: Feet, rubbing: Rubbing, slope: float | None) -> float:
+    """Friction of point i where `slip` is what the surface is ahead by without it and `ease` what it takes of that."""
+    most = rubbing.mu * feet.touch[i, PUSH]
+    if slope is not None:
+        return _by_tanh(most, slip, ease, slope)
+    feet.touch[i, STUCK] = 1.0 if abs(slip) < ease * most else 0.0
+    if slip >= ease * most:
+        return float(most)
+    return float(-most if slip <= -ease * most else slip / ease)
+
+
+@part()
+def _by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
+    """Force = most tanh(slope (slip - ease force)), which falls as the force rises."""
+    low, high, force = -most, most, 0.0
+    for _ in range(60):
+        share = np.tanh(slope * (slip - ease * force))
+        miss = force - most * share
+        if miss > 0.0:
+            high = force
+        else:
+            low = force
+        after = force - miss / (1.0 + most * slope * ease * (1.0 - share * share))
+        if not low < after < high:
+            after = 0.5 * (low + high)
+        if abs(after - force) <= 1e-15 * most:
+            return float(after)
+        force = after
+    return float(force)
+
+
+@part()
+def leave(table: Array, modes: Array, beam: Beamed) -> None:
+    """Give the step's impulses to the modes, in its middle."""
+    for p in range(beam.span[0], beam.span[1] + 1):
+        for d in range(beam.load.shape[1]):
+            impulse = beam.load[p, d]
+            if impulse != 0.0:
+                for j in range(modes.shape[1]):
+                    modes[Z_IM, j] -= table[p, d, j] * impulse / modes[OMEGA, j]
+
+
+@part()
+def moved(i: int, length: float, half: float, feet: Feet, beam: Beamed) -> tuple[float, float]:
+    """What all forces of a step add to the mean rates under point i: (along, across), m/s."""
+    piece, across = feet.piece[i], 0.0
+    for d in range(beam.load.shape[1]):
+        across += feet.touch[i, AT] ** d * beam.added[piece, d]
+    return _given(i, length, half, feet, beam), across

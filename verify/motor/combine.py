@@ -1,0 +1,80 @@
+"""What combines with what under a slider that may leave the surface; the rest is refused by name."""
+
+from verify.errors import InputError
+from verify.slider import Slider
+
+CHAIN = "chain"
+"""The nonlinear chain as a field under a slider, beside the linear models by their names."""
+
+
+def check_combines(model: str, start: str, slider: Slider) -> None:
+    """Raise InputError, saying what to change, for a slider, a field and a coupling that are not run together."""
+    contact = slider.contact
+    if contact is None:
+        raise InputError(
+            "slider.contact is missing: a slider that may leave the surface needs it; one that never does is run by "
+            "simulate"
+        )
+    if contact.hard:
+        _check_hard(model, start, slider)
+    if model == CHAIN and slider.coupling != "one-way":
+        raise InputError(
+            f"slider.coupling = {slider.coupling!r} on a nonlinear chain, which carries a slider one way: give 'one-way'"
+        )
+    mirrored = any(foot.mirrored for foot in slider.feet)
+    if mirrored and contact.hard:
+        raise InputError("slider.foot.mirrored with a hard contact: give slider.contact.stiffness")
+    if mirrored and slider.coupling != "one-way":
+        raise InputError(
+            f"slider.coupling = {slider.coupling!r} with slider.foot.mirrored: the second beam is a mirror image that "
+            "feels nothing, give 'one-way'"
+        )
+
+
+def _check_hard(model: str, start: str, slider: Slider) -> None:
+    """Raise InputError for what a hard contact is not run with."""
+    if slider.coupling != "one-way":
+        raise InputError(
+            f"slider.coupling = {slider.coupling!r} with a hard contact, whose blows a beam of rigid parts answers "
+            "without end: give 'one-way', or slider.contact.stiffness"
+        )
+    if model == CHAIN or start != "steady":
+        raise InputError(
+            f"start = {start!r} on model = {model!r} with a hard contact, which needs the surface between steps: give "
+            "start = 'steady' of a linear model, or slider.contact.stiffness"
+        )
+    if slider.preload_stiffness:
+        raise InputError(
+            f"slider.preload_stiffness = {slider.preload_stiffness!r} with a hard contact, which flies under a constant "
+            "force: give preload alone, or slider.contact.stiffness"
+        )
+    if slider.feet[0].face != "upper" or slider.feet[0].length or slider.feet[0].offset:
+        raise InputError("slider.foot with a hard contact is a point on the upper face: leave slider.foot out")
+
+
+def combinations() -> tuple[tuple[str, str, str, str, str, str], ...]:
+    """Every cell: (field, friction, normal, slider, coupling, how it is run or why it is not)."""
+    rows = []
+    for field in ("analytic", "segment", "fem", CHAIN):
+        for friction in ("tanh", "coulomb"):
+            for normal in ("always on", "springs", "hard"):
+                for shape in ("point", "foot", "layer"):
+                    for coupling in ("one-way", "two-way"):
+                        cell = (field, friction, normal, shape, coupling)
+                        rows.append((*cell, _run_by(*cell)))
+    return tuple(rows)
+
+
+def _run_by(field: str, friction: str, normal: str, shape: str, coupling: str) -> str:
+    if field == CHAIN and coupling == "two-way":
+        return "refused: a nonlinear chain carries a slider one way"
+    if normal == "springs":
+        return "run_motor"
+    if shape != "point":
+        held = "stays on a curved surface at one point alone" if normal == "always on" else "lands at one point alone"
+        return f"refused: a rigid foot {held}"
+    if normal == "always on":
+        return "chain.ride" if field == CHAIN else "simulate"
+    if field == CHAIN or coupling == "two-way":
+        return "refused: a hard contact is of a steady linear beam that does not feel it"
+    return "run_motor"

@@ -1,0 +1,184 @@
+"""The compiled feet: what their points see of the surface, how they press on it, what it gives them in a step."""
+
+import numpy as np
+
+from verify.models.kernels import part
+from verify.motion.records import MOVING, STILL
+from verify.motor.records import (
+    ACROSS,
+    ARM,
+    AT,
+    CLIMB,
+    CLOSING,
+    DAMPED,
+    DASHPOT,
+    DEPTH,
+    EASE,
+    FACE,
+    HEIGHT,
+    IMAGE,
+    INSET,
+    LIFT,
+    LIFTED,
+    LIGHTNESS,
+    OFFSET,
+    PITCH,
+    PRESS,
+    PRESSED,
+    PUSH,
+    PUSH_BEFORE,
+    SLOPE,
+    SPRING,
+    STIFF,
+    STORED,
+    SURFACE,
+    SURFACE_BEFORE,
+    TURN,
+    Feet,
+    Line,
+    V,
+    X,
+)
+
+
+@part()
+def drift(t: float, free: float, feet: Feet) -> None:
+    """Stage and feet move on with their speeds; `free` is 0 where the stage stays at its place."""
+    body, state = feet.body, feet.state
+    body[X] += t * body[V] * free
+    for f in range(state.shape[0]):
+        state[f, HEIGHT] += t * state[f, CLIMB]
+        state[f, PITCH] += t * state[f, TURN]
+
+
+@part()
+def see(i: int, x: float, edge: float, length: float, v: float, half: float, line: Line, feet: Feet) -> None:
+    """What point i sees of the surface under x, of its material there: speed along, height and rate, slope.
+
+    The material over x stands at X = x + face (h/2) w'(X) of the mid-line and moves with (-face (h/2) dw'/dt, dw/dt).
+    """
+    touch, points, local, piece = feet.touch, feet.points, line.local, feet.piece[i]
+    lever = half * points[i, FACE] * points[i, IMAGE]
+    xi = (x - edge) / length
+    value, first = 0.0, 0.0
+    for d in range(local.shape[2] - 1, 0, -1):
+        value = value * xi + local[piece, STILL, d]
+        first = first * xi + value
+    at = xi + lever * first / (length * length)
+    level, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[2] - 1, -1, -1):
+        bend = bend * at + slope
+        slope = slope * at + level
+        level = level * at + local[piece, STILL, d]
+        turn = turn * at + rise
+        rise = rise * at + local[piece, MOVING, d]
+    slope, bend, turn = slope / length, 2.0 * bend / (length * length), turn / length
+    touch[i, SURFACE_BEFORE] = touch[i, SURFACE]
+    touch[i, SURFACE] = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
+    touch[i, AT], touch[i, SLOPE] = at, slope
+    image, face, foot = points[i, IMAGE], points[i, FACE], feet.foot[i]
+    lift = image * (rise + slope * (v + lever * (turn + bend * v)))
+    state, arm = feet.state, points[i, ARM]
+    touch[i, LIFT] = lift
+    touch[i, DEPTH] = points[i, INSET] + face * (image * level - state[foot, HEIGHT] - arm * state[foot, PITCH])
+    touch[i, CLOSING] = face * (lift - state[foot, CLIMB] - arm * state[foot, TURN])
+
+
+@part()
+def press(dt: float, feet: Feet) -> float:
+    """Normal forces in mid-step and what they give to the feet; all of them together, newton.
+
+    Dashpots see the mean speed of the step: twice, the second time with half of what the first has given.
+    """
+    total = 0.0
+    _fall_free(dt, feet)
+    damped = _push(feet)
+    for _ in range(2 if damped else 0):
+        total = _gather(dt, feet)
+        _push(feet)
+    total = _gather(dt, feet)
+    return total
+
+
+@part()
+def _fall_free(dt: float, feet: Feet) -> None:
+    """What presses the feet, given for the step."""
+    for f in range(feet.state.shape[0]):
+        given = feet.given
+        feet.kick[f, 0] = dt * given[f, LIGHTNESS] * (given[f, PRESS] - given[f, SPRING] * feet.state[f, HEIGHT])
+        feet.kick[f, 1] = 0.0
+
+
+@part()
+def _push(feet: Feet) -> bool:
+    """Normal force of every point at its depth and mean speed; whether any has a dashpot."""
+    touch, points, damped = feet.touch, feet.points, False
+    for i in range(points.shape[0]):
+        depth, force = touch[i, DEPTH], 0.0
+        if depth > 0.0:
+            force = points[i, STIFF] * depth
+            if points[i, DASHPOT] > 0.0:
+                foot, damped = feet.foot[i], True
+                given = points[i, FACE] * (feet.kick[foot, 0] + points[i, ARM] * feet.kick[foot, 1])
+                force += points[i, DASHPOT] * (touch[i, CLOSING] - 0.5 * given)
+            force = force if force > 0.0 else 0.0
+        touch[i, PUSH] = force
+    return damped
+
+
+@part()
+def _gather(dt: float, feet: Feet) -> float:
+    """Give the normal forces to the feet; their sum."""
+    _fall_free(dt, feet)
+    touch, points, total = feet.touch, feet.points, 0.0
+    for i in range(points.shape[0]):
+        force = touch[i, PUSH]
+        if force > 0.0:
+            foot, way = feet.foot[i], dt * points[i, FACE] * force
+            feet.kick[foot, 0] += way * feet.given[foot, LIGHTNESS]
+            feet.kick[foot, 1] += way * points[i, ARM] * feet.given[foot, EASE]
+            total += force
+    return total
+
+
+@part()
+def kick(dt: float, feet: Feet) -> None:
+    """The feet take what the step gives them; its works."""
+    state, sums, touch, points = feet.state, feet.sums, feet.touch, feet.points
+    for i in range(points.shape[0]):
+        force = touch[i, PUSH]
+        if touch[i, DEPTH] > 0.0:
+            foot = feet.foot[i]
+            given = feet.kick[foot, 0] + points[i, ARM] * feet.kick[foot, 1]
+            closing = touch[i, CLOSING] - 0.5 * points[i, FACE] * given
+            work = dt * force * points[i, FACE] * touch[i, LIFT]
+            sums[ACROSS] += work
+            sums[DAMPED] += dt * (force - points[i, STIFF] * touch[i, DEPTH]) * closing
+            if points[i, IMAGE] > 0.0:
+                sums[LIFTED] -= work
+        touch[i, PUSH_BEFORE] = force
+    for f in range(state.shape[0]):
+        given = feet.given
+        force = given[f, PRESS] - given[f, SPRING] * state[f, HEIGHT]
+        sums[PRESSED] += dt * force * (state[f, CLIMB] + 0.5 * feet.kick[f, 0])
+        state[f, CLIMB] += feet.kick[f, 0]
+        state[f, TURN] += feet.kick[f, 1]
+
+
+@part()
+def stored(dt: float, feet: Feet) -> None:
+    """Energy in the springs at the end of a step, at the depths of its middle drawn on."""
+    total, state = 0.0, feet.state
+    for i in range(feet.points.shape[0]):
+        foot = feet.foot[i]
+        climb = state[foot, CLIMB] + feet.points[i, ARM] * state[foot, TURN]
+        depth = feet.touch[i, DEPTH] + 0.5 * dt * feet.points[i, FACE] * (feet.touch[i, LIFT] - climb)
+        if depth > 0.0:
+            total += 0.5 * feet.points[i, STIFF] * depth * depth
+    feet.sums[STORED] = total
+
+
+@part()
+def place(i: int, feet: Feet) -> float:
+    """Where point i stands, metres from where the slider started."""
+    return float(feet.body[X] + feet.points[i, OFFSET])

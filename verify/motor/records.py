@@ -1,0 +1,138 @@
+"""What the compiled loop of a slider on feet sees, by name. SI; frozen but for the arrays in it.
+
+A stage carries any number of feet, each with a height and a pitch of its own; every foot has points, which press on the
+surface under them and leave it. A point's face is +1 on the upper face of the beam, -1 on the lower one; a mirrored
+point touches the mirror image of the beam, above it.
+"""
+
+from typing import NamedTuple
+
+from verify.models.arrays import Array, Indices
+
+X, V = range(2)
+"""Entries of `Feet.body`: distance travelled, speed."""
+HEIGHT, CLIMB, PITCH, TURN = range(4)
+"""Columns of `Feet.state`."""
+LIGHTNESS, EASE, PRESS, SPRING = range(4)
+"""Columns of `Feet.given`: 1/mass, 1/inertia (0: it does not pitch), force along z, stiffness of what presses."""
+OFFSET, ARM, STIFF, DASHPOT, GRIP, FACE, IMAGE, INSET = range(8)
+"""Columns of `Feet.points`: place from the stage's x and from the middle of its foot, metres; stiffness, damping and
+stiffness along the surface; on which face, +1 or -1, and of which beam, +1 or -1 for the mirror image; how deep it
+sits in the straight beam at height 0, metres."""
+PUSH, RUB, SURFACE, SURFACE_BEFORE, PUSH_BEFORE, DEPTH, STRETCH, AT, SLOPE, CLOSING, LIFT, STUCK = range(12)
+"""Columns of `Feet.touch`: normal force, friction on the stage, speed of the surface; the last two a step before; how
+deep it is pressed in (below 0: the gap), how far it is stretched along; where on its piece the material under it lies,
+its slope; how fast the gap closes, how fast the surface rises, both without the foot's own kick; whether it sticks."""
+(
+    ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED
+) = range(13)  # fmt: skip
+"""Entries of `Feet.sums`: work of the surface on the feet across and on the stage along it, of the pull, rubbed away, lost
+in dashpots, work of what presses; integrals over time of friction, normal force, share of points that touch and stick;
+energy in the springs now; integral of the speed; work of the feet on the beam."""
+KEPT_X, KEPT_V, KEPT_RUB, KEPT_PUSH, KEPT_TOUCHING, KEPT_STICKING, KEPT_RUBBED, KEPT_ALONG, KEPT_SURFACE = range(9)
+"""Columns of `Log.kept`; friction, normal force, shares, works and the surface's speed under what touches are means, or
+sums, over the interval that ends there."""
+STEP, SAMPLES, EVENTS = range(3)
+"""Entries of `Log.tally`."""
+DONE, OFF_BEAM, NOT_FINITE, GONE = range(4)
+"""Why the loop came back. GONE: a hard slider that does not come down again within the run."""
+STICKS, SLIPS, LANDS, LEAVES = 1.0, 2.0, 4.0, 5.0
+"""Kinds of events."""
+EVENT_TIME, EVENT_KIND, EVENT_POINT, EVENT_X = range(4)
+"""Columns of `Log.events`."""
+
+
+class Rubbing(NamedTuple):
+    """Friction and the stage that it carries."""
+
+    mu: float
+    slope: float | None
+    """K of Eq. (3), s/m; None: Coulomb's law, and no other law is compiled."""
+    lightness: float
+    """1/mass of the stage, 1/kg; 0: its speed is held."""
+    pull: float
+    """Newton along x."""
+    half: float
+    """Half the thickness, metres."""
+    frozen: bool
+    """Whether the stage stays at its place, whatever its speed."""
+
+
+class Feet(NamedTuple):
+    """The stage, its feet and their points; advanced in place."""
+
+    body: Array
+    """(2,)"""
+    state: Array
+    """(feet, 4)"""
+    given: Array
+    """(feet, 4)"""
+    points: Array
+    """(points, 8)"""
+    touch: Array
+    """(points, 12)"""
+    foot: Indices
+    """(points,), the foot of each."""
+    piece: Indices
+    """(points,), the piece of the beam under each."""
+    kick: Array
+    """(feet, 2), what the step gives to height and pitch, m/s and 1/s."""
+    sums: Array
+    """(13,)"""
+
+
+class Beamed(NamedTuple):
+    """The beam's answer where it feels the feet."""
+
+    answer: Array
+    """(k, k) with k = pieces (degree + 1): what a unit impulse on one coefficient adds to the rate of another."""
+    load: Array
+    """(pieces, degree + 1): impulses of a step on the coefficients."""
+    added: Array
+    """(pieces, degree + 1): what half of them adds to the rates."""
+    span: Indices
+    """(2,), the first and the last piece that a point stands on."""
+
+
+class Line(NamedTuple):
+    """The surface in mid-step, on every piece that a point stands on."""
+
+    local: Array
+    """(pieces, 2, degree + 1), polynomials of deflection and velocity."""
+    stamp: Indices
+    """(pieces,), the step for which they were made."""
+    factors: Array
+    """(2, rows)"""
+
+
+class Moved(NamedTuple):
+    """A surface that is given in the middle of every step."""
+
+    local: Array
+    """(n, pieces, 2, degree + 1), polynomials of deflection and velocity."""
+    along: Array
+    """(n, pieces), a speed of the whole surface along x, m/s."""
+    edges: Array
+    """(pieces + 1,), metres from where the slider started."""
+
+
+class Log(NamedTuple):
+    """What is written down on the way."""
+
+    every: int
+    kept: Array
+    """(samples, 9)"""
+    heights: Array
+    """(samples, feet, 2), height and pitch."""
+    pressures: Array
+    """(samples, points), normal force in the middle of the step before."""
+    points: Array
+    """(n, rows), where the deflection is kept."""
+    deflections: Array
+    """(samples, n)"""
+    events: Array
+    """(capacity, 4)"""
+    tally: Indices
+    """(3,)"""
+    before: Array
+    """(13,), the sums at the last sample."""

@@ -1,0 +1,160 @@
+"""The compiled loop of a slider on feet, fed stage by stage."""
+
+from collections.abc import Callable, Sequence
+
+import msgspec
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.motion import records as beam_records
+from verify.motion.forcing import turns
+from verify.motion.records import Drive, Surface
+from verify.motion.request import Request
+from verify.motion.stepping import CHUNK
+from verify.motion.surface import Stage
+from verify.motor import records
+from verify.motor.laid import feet_of, fresh_log, rubbing_of
+from verify.motor.records import Beamed, Feet, Line, Log, Rubbing
+from verify.slider import Slider
+
+
+class Riding(msgspec.Struct, eq=False, kw_only=True):
+    """What grows while a slider runs."""
+
+    feet: Feet
+    rubbing: Rubbing
+    log: Log
+    before: Array
+    """(points, 2), depth and sticking at the last mid-step."""
+    start: float
+    points: Array
+    """(p,), metres: where the deflection is kept."""
+    two_way: bool
+    held_speed: float | None
+    stage_mass: float
+    steps_before: int = 0
+    first: Array | None = None
+    """(p,), the deflection at the start."""
+
+    @classmethod
+    def fresh(
+        cls, slider: Slider, request: Request, start: float, two_way: bool, held_speed: float | None, frozen: bool
+    ) -> "Riding":
+        """Room for a run."""
+        samples = sum(piece.steps.n // piece.steps.every for piece in request.pieces)
+        feet = feet_of(slider, slider.speed if held_speed is None else held_speed)
+        return cls(
+            feet=feet,
+            rubbing=rubbing_of(slider, request.beam, held_speed, frozen),
+            log=fresh_log(samples, feet, np.zeros((len(request.points), 0)), 1),
+            before=np.full((len(feet.points), 2), -1.0),
+            start=start,
+            points=request.points,
+            two_way=two_way,
+            held_speed=held_speed,
+            stage_mass=slider.mass,
+        )
+
+    @property
+    def steps(self) -> int:
+        """Of all stages so far."""
+        return self.steps_before + int(self.log.tally[records.STEP])
+
+    def seconds(self, steps: int) -> float:
+        """An estimate from above of the time the loop takes."""
+        points = len(self.feet.points)
+        return steps * (1e-6 + 1e-7 * points) * (8.0 if self.two_way else 1.0)
+
+    def set_touch(self, levels: Array) -> None:
+        """Depths as the slider is put down on these heights of the surface, (points,)."""
+        feet = self.feet
+        z = feet.state[feet.foot, records.HEIGHT]
+        p = feet.points
+        depth = p[:, records.INSET] + p[:, records.FACE] * (p[:, records.IMAGE] * levels - z)
+        feet.touch[:, records.DEPTH] = depth
+        self.before[:, 0] = depth
+
+    def energy(self) -> tuple[float, float]:
+        """(kinetic, in the springs across) now, joules; the springs' at the depths that the touch says."""
+        feet, p, touch = self.feet, self.feet.points, self.feet.touch
+        masses = 1.0 / feet.given[:, records.LIGHTNESS]
+        eases = feet.given[:, records.EASE]
+        inertias = np.divide(1.0, eases, out=np.zeros_like(eases), where=eases > 0.0)
+        kinetic = 0.5 * self.stage_mass * feet.body[records.V] ** 2 + 0.5 * float(
+            masses @ feet.state[:, records.CLIMB] ** 2 + inertias @ feet.state[:, records.TURN] ** 2
+        )
+        depth = np.maximum(touch[:, records.DEPTH], 0.0)
+        return float(kinetic), 0.5 * float(p[:, records.STIFF] @ depth**2)
+
+
+def run_stages(
+    stages: Sequence[Stage], z: Array, riding: Riding, tell: Callable[[int], None]
+) -> tuple[str, Array, Array]:
+    """Run through all stages from free modes z; (why it stopped, q, dq/dt of the modes then)."""
+    stopped, state = "end", (np.empty(0), np.empty(0))
+    for i, stage in enumerate(stages):
+        z = z if i == 0 else stage.start(*state)
+        surface = _surface(stage, z, riding.start)
+        if i == 0:
+            riding.first = stage.deflection(z, np.zeros(1), riding.points)[0]
+            riding.feet.piece[:] = np.searchsorted(surface.edges[1:-1], riding.feet.points[:, records.OFFSET])
+        riding.steps_before, riding.log.tally[records.STEP] = riding.steps, 0
+        rows = np.ascontiguousarray(stage.rows(riding.points).T)
+        riding.log = riding.log._replace(every=stage.every, points=rows)
+        try:
+            stopped = _run_stage(stage, surface, riding, tell)
+        except KeyboardInterrupt:
+            stopped = "interrupted"
+        state = stage.state(surface.modes[:2].copy(), int(riding.log.tally[records.STEP]) * stage.dt)
+        if stopped != "end":
+            break
+    return stopped, *state
+
+
+def _surface(stage: Stage, z: Array, start: float) -> Surface:
+    """The whole beam as the loop sees it."""
+    modes = np.zeros((beam_records.READ + 1, z.shape[1]))
+    modes[[beam_records.Z_RE, beam_records.Z_IM]] = z
+    modes[beam_records.SIGMA], modes[beam_records.OMEGA] = stage.modal.sigmas, stage.modal.omegas
+    modes[[beam_records.HALF_RE, beam_records.HALF_IM]] = turns(stage.modal, 0.5 * stage.dt)
+    drive = Drive(
+        omega=float(stage.omega),
+        origin=float(stage.origin),
+        unit=float(stage.unit_s),
+        growth=np.array(stage.growth, dtype=float),
+    )
+    return Surface(modes, drive, stage.table(0, len(stage.edges) - 1), stage.edges - start)
+
+
+def beam_answer(surface: Surface) -> Beamed:
+    """What unit impulses on the polynomials' coefficients add to their rates, through all free modes."""
+    n, (pieces, terms, _) = surface.modes.shape[1], surface.table.shape
+    free = surface.table[:, :, :n].reshape(pieces * terms, n)
+    return Beamed(
+        answer=np.ascontiguousarray(free @ free.T),
+        load=np.zeros((pieces, terms)),
+        added=np.zeros((pieces, terms)),
+        span=np.zeros(2, dtype=np.int64),
+    )
+
+
+def _run_stage(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[int], None]) -> str:
+    """One stage in chunks; why it ended."""
+    from verify.motor import kernels
+
+    pieces, terms, rows = surface.table.shape
+    line = Line(
+        local=np.zeros((pieces, 2, terms)), stamp=np.full(pieces, -1, dtype=np.int64), factors=np.zeros((2, rows))
+    )
+    beam, done = beam_answer(surface) if riding.two_way else None, riding.log.tally
+    while done[records.STEP] < stage.n_steps:
+        steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
+        why = kernels.ride(steps, stage.dt, surface, riding.feet, riding.rubbing, beam, line, riding.before, riding.log)
+        tell(riding.steps)
+        if why != records.DONE:
+            return WHY[why]
+    return "end"
+
+
+WHY = {records.OFF_BEAM: "left the beam", records.NOT_FINITE: "diverged", records.GONE: "left the surface for good"}
+"""Why a run stopped early."""
