@@ -8,6 +8,7 @@ What there is (`help` of each says its fields, shapes and units; everything is S
   sweep_harmonic, sweep_modes of each                          many frequencies (HarmonicSweep) or beams in one call
   travelling_wave                                              what kind of wave a field carries: measure, WaveMeasures
   simulate, Motion                                             a driven beam in time, with a slider or without
+  run_motor, MotorRun, Contact, Foot                           a slider that may leave the beam, on feet of many points
   free_vibration, FreeVibration                                a beam let go from a shape, without forces
   bend, Bent                                                   a chain under a large load at its tip
   load_scene, run_scene                                        a scene file, and what its gates and studies find
@@ -33,21 +34,26 @@ if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration, free_vibration
     from verify.motion.result import Motion
     from verify.motion.simulate import simulate
+    from verify.motor.result import MotorRun
+    from verify.motor.run import run_motor
     from verify.run.runner import run_scene
     from verify.scenes.scene import load_scene
     from verify.section import Section
-    from verify.slider import Slider
+    from verify.slider import Contact, Foot, Slider
     from verify.waves.measures import WaveMeasures
 
 __all__ = [
     "Beam",
     "Bent",
+    "Contact",
+    "Foot",
     "FreeVibration",
     "HarmonicField",
     "HarmonicSweep",
     "InputError",
     "Modes",
     "Motion",
+    "MotorRun",
     "PointForce",
     "PointMass",
     "PointSpring",
@@ -60,6 +66,7 @@ __all__ = [
     "fem_beam",
     "free_vibration",
     "load_scene",
+    "run_motor",
     "run_scene",
     "segment_model",
     "simulate",
@@ -70,12 +77,15 @@ __version__ = "0.1.0"
 _HOME = {
     "Beam": "verify.beam",
     "Bent": "verify.chain.bending",
+    "Contact": "verify.slider",
+    "Foot": "verify.slider",
     "FreeVibration": "verify.motion.free_vibration",
     "HarmonicField": "verify.models.fields",
     "HarmonicSweep": "verify.models.sweeps",
     "InputError": "verify.errors",
     "Modes": "verify.models.modes",
     "Motion": "verify.motion.result",
+    "MotorRun": "verify.motor.result",
     "PointForce": "verify.beam",
     "PointMass": "verify.attached",
     "PointSpring": "verify.attached",
@@ -85,6 +95,7 @@ _HOME = {
     "bend": "verify.chain.bending",
     "free_vibration": "verify.motion.free_vibration",
     "load_scene": "verify.scenes.scene",
+    "run_motor": "verify.motor.run",
     "run_scene": "verify.run.runner",
 }
 _FACES = {"analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"}

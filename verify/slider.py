@@ -54,7 +54,7 @@ class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 )
         if not self.hard and self.restitution:
             raise InputError(
-                f"slider.contact.restitution = {self.restitution!r} is of a hard contact: on springs a landing loses by "
+                f"slider.contact.restitution = {self.restitution!r} is of a hard contact: springs lose by "
                 "damping, leave one out"
             )
         for name in ("damping", "tangential_stiffness", "layer_tangential_stiffness"):
@@ -83,7 +83,7 @@ class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     length: float = 0.0
     """Along the beam, metres."""
     points: int = 1
-    """At which it touches, at the middles of as many equal cells of the length, each with an equal share of stiffness."""
+    """At which it touches, in the middles of as many equal cells of its length, with equal shares of the stiffness."""
     offset: float = 0.0
     """Of its middle from the slider's position, metres."""
     mass: float | None = None
@@ -205,7 +205,7 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for name, fixed in (("mu_static", None), ("line", "spline"), ("kinematics", "tangential"), ("normal", "held")):
             if getattr(self, name) != fixed:
                 raise InputError(
-                    f"slider.{name} = {getattr(self, name)!r} is of a slider that stays on the surface: leave it out, or "
+                    f"slider.{name} = {getattr(self, name)!r} is of a slider that never leaves: leave it out, or "
                     "slider.contact"
                 )
         lengths = [foot.length for foot in self.foot] or [0.0]
@@ -213,6 +213,14 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise InputError("slider.contact.layer_stiffness is for each metre of foot: give slider.foot.length")
         if self.contact.hard and (len(self.foot) > 1 or any(foot.points > 1 for foot in self.foot)):
             raise InputError("slider.foot: a hard contact is of one point, give slider.contact.stiffness or one point")
+
+    def check_stays(self) -> None:
+        """Raise InputError for one that may leave the surface, where nothing is made for that."""
+        if self.contact is not None:
+            raise InputError(
+                "slider.contact is of a slider that may leave the surface, which run_motor and [motor] run: leave it "
+                "out for one that always stays on"
+            )
 
     @property
     def feet(self) -> tuple[Foot, ...]:

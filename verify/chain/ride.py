@@ -125,6 +125,7 @@ def _check_times(times: Array) -> None:
 
 def check_rideable(system: ChainSystem, beam: Beam, slider: Slider) -> None:
     """Raise InputError for a slider that is felt or on the links' edges, and for a turned chain or another beam's."""
+    slider.check_stays()
     if slider.coupling == "two-way":
         raise InputError("slider.coupling = 'two-way': a nonlinear chain carries a slider one way, give 'one-way'")
     if slider.line != "spline":

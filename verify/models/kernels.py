@@ -211,9 +211,13 @@ event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]
 @cache
 def room_stamp(room: Path) -> str:
     """What kernels and records of the room say, and those of rooms that they import from, as one number."""
-    sources = [one.name.encode() + b"\0" + one.read_bytes() for one in sorted([*room.glob(KERNELS), *room.glob(RECORDS)])]
+    sources = [
+        one.name.encode() + b"\n" + one.read_bytes() for one in sorted([*room.glob(KERNELS), *room.glob(RECORDS)])
+    ]
     others = sorted(set(_OTHER_ROOM.findall(b"\n".join(sources))) - {room.name.encode()})
-    return sha256(b"\0".join([*sources, *(room_stamp(room.parent / one.decode()).encode() for one in others)])).hexdigest()
+    return sha256(
+        b"\0".join([*sources, *(room_stamp(room.parent / one.decode()).encode() for one in others)])
+    ).hexdigest()
 
 
 lean = partial(compiled, _nrt=False)

@@ -30,6 +30,8 @@ class MotionCase(msgspec.Struct, frozen=True, kw_only=True):
 
     def check(self, *, slider: Slider | None, step: float | None, steps_per_period: int) -> None:
         """Raise InputError for what `run` refuses before anything is solved."""
+        if slider is not None:
+            slider.check_stays()
         requested(
             Driven(self.beam, self.forces, self.frequency_hz, self.duration),
             Modelled(self.model, self.count, self.modes, self.modal_damping),

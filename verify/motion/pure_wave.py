@@ -61,6 +61,7 @@ def terminal_speed(beam: Beam, slider: Slider, amplitude: float, frequency_hz: f
     from scipy.optimize import brentq
 
     check_number("amplitude", amplitude, "metres", above=0)
+    slider.check_stays()
     law, start, mean = law_of(slider, beam), slider.start_on(beam), 0.0
     for _ in range(3):
         stage = wave_stage(beam, amplitude, frequency_hz, mean)

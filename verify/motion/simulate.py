@@ -64,6 +64,8 @@ def simulate(
     a slider's run longer than is waited for (`patience`) is refused. Raises InputError.
     """
     began = perf_counter()
+    if slider is not None:
+        slider.check_stays()
     request = requested(
         Driven(beam, as_forces(forces), frequency_hz, duration),
         Modelled(model, count, modes, modal_damping),

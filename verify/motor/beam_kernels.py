@@ -106,7 +106,9 @@ def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: Beame
 
 
 @part()
-def match(dt: float, held: float, edges: Array, feet: Feet, rubbing: Rubbing, slope: float | None, beam: Beamed) -> float:
+def match(
+    dt: float, held: float, edges: Array, feet: Feet, rubbing: Rubbing, slope: float | None, beam: Beamed
+) -> float:
     """The mean speed of the stage at which every point's friction suits its own slip: sweeps from point to point.
 
     The surface has half of what all forces give it. Each point's rule is kept exactly in its turn; the sweeps are those
@@ -136,7 +138,7 @@ def match(dt: float, held: float, edges: Array, feet: Feet, rubbing: Rubbing, sl
                 changed = abs(more) if abs(more) > changed else changed
         if changed <= ENOUGH * largest:
             break
-    return mean
+    return float(mean)
 
 
 @part()
@@ -144,7 +146,7 @@ def _suited(i: int, slip: float, ease: float, feet: Feet, rubbing: Rubbing, slop
     """Friction of point i where `slip` is what the surface is ahead by without it and `ease` what it takes of that."""
     most = rubbing.mu * feet.touch[i, PUSH]
     if slope is not None:
-        return _by_tanh(most, slip, ease, slope)
+        return slide_by_tanh(most, slip, ease, slope)
     feet.touch[i, STUCK] = 1.0 if abs(slip) < ease * most else 0.0
     if slip >= ease * most:
         return float(most)
@@ -152,7 +154,7 @@ def _suited(i: int, slip: float, ease: float, feet: Feet, rubbing: Rubbing, slop
 
 
 @part()
-def _by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
+def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
     """Force = most tanh(slope (slip - ease force)), which falls as the force rises."""
     low, high, force = -most, most, 0.0
     for _ in range(60):

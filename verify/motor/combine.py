@@ -19,7 +19,7 @@ def check_combines(model: str, start: str, slider: Slider) -> None:
         _check_hard(model, start, slider)
     if model == CHAIN and slider.coupling != "one-way":
         raise InputError(
-            f"slider.coupling = {slider.coupling!r} on a nonlinear chain, which carries a slider one way: give 'one-way'"
+            f"slider.coupling = {slider.coupling!r} on a nonlinear chain, which moves first: give 'one-way'"
         )
     mirrored = any(foot.mirrored for foot in slider.feet)
     if mirrored and contact.hard:
@@ -45,7 +45,7 @@ def _check_hard(model: str, start: str, slider: Slider) -> None:
         )
     if slider.preload_stiffness:
         raise InputError(
-            f"slider.preload_stiffness = {slider.preload_stiffness!r} with a hard contact, which flies under a constant "
+            f"slider.preload_stiffness = {slider.preload_stiffness!r} with a hard contact, it flies under a constant "
             "force: give preload alone, or slider.contact.stiffness"
         )
     if slider.feet[0].face != "upper" or slider.feet[0].length or slider.feet[0].offset:

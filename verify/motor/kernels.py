@@ -2,36 +2,20 @@
 
 import numpy as np
 
-from verify.models.arrays import Array, Indices
+from verify.models.arrays import Array
 from verify.models.kernels import FAST, lean, part
 from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import find_piece, rotate_half, set_factors
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
 from verify.motor.feet_kernels import drift, kick, place, press, see, stored
+from verify.motor.logging_kernels import keep, note
 from verify.motor.records import (
     ALONG,
     CLOSING,
-    DEPTH,
     DONE,
-    EVENT_KIND,
-    EVENT_POINT,
-    EVENT_TIME,
-    EVENT_X,
-    EVENTS,
     FACE,
     HEIGHT,
     IMAGE,
-    KEPT_ALONG,
-    KEPT_PUSH,
-    KEPT_RUB,
-    KEPT_RUBBED,
-    KEPT_STICKING,
-    KEPT_SURFACE,
-    KEPT_TOUCHING,
-    KEPT_V,
-    KEPT_X,
-    LANDS,
-    LEAVES,
     LIFT,
     LIFTED,
     MEAN_PUSH,
@@ -39,16 +23,12 @@ from verify.motor.records import (
     MEAN_SPEED,
     NOT_FINITE,
     OFF_BEAM,
-    PITCH,
     PULLED,
     PUSH,
     RUB,
     RUBBED,
-    SAMPLES,
-    SLIPS,
     STEP,
     STICKING,
-    STICKS,
     STUCK,
     SURFACE,
     TOUCHING,
@@ -59,7 +39,6 @@ from verify.motor.records import (
     Moved,
     Rubbing,
     V,
-    X,
 )
 from verify.motor.rub_kernels import agree, hold, settle, share, stretch
 
@@ -103,7 +82,9 @@ def _rub(dt: float, feet: Feet, rubbing: Rubbing, slope: float | None) -> tuple[
 
 
 @part()
-def _rub_back(dt: float, surface: Surface, feet: Feet, rubbing: Rubbing, slope: float | None, beam: Beamed) -> tuple[float, float]:
+def _rub_back(
+    dt: float, surface: Surface, feet: Feet, rubbing: Rubbing, slope: float | None, beam: Beamed
+) -> tuple[float, float]:
     """The same where the beam feels it; what points see of the surface is its mean then."""
     held = hold(dt, feet, rubbing)
     clear(feet, beam)
@@ -137,60 +118,6 @@ def _book(dt: float, mean: float, feet: Feet, rubbing: Rubbing) -> None:
             sums[STICKING] += dt * touch[i, STUCK] / n
     sums[PULLED] += dt * rubbing.pull * mean
     sums[MEAN_SPEED] += dt * mean
-
-
-@part()
-def _note(time: float, dt: float, before: Array, feet: Feet, log: Log) -> None:
-    """Write down who landed, left, stuck or slipped since the mid-step before; `before` are depths and sticking then."""
-    touch, tally = feet.touch, log.tally
-    for i in range(touch.shape[0]):
-        depth, was = touch[i, DEPTH], before[i, 0]
-        if (depth > 0.0) != (was > 0.0):
-            kind = LANDS if depth > 0.0 else LEAVES
-            _write(time - dt * depth / (depth - was), kind, i, feet.body[X], log.events, tally)
-        elif depth > 0.0 and (touch[i, STUCK] > 0.0) != (before[i, 1] > 0.0):
-            _write(time - 0.5 * dt, STICKS if touch[i, STUCK] > 0.0 else SLIPS, i, feet.body[X], log.events, tally)
-        before[i, 0], before[i, 1] = depth, touch[i, STUCK]
-
-
-@part()
-def _write(time: float, kind: float, point: int, x: float, events: Array, tally: Indices) -> None:
-    row = tally[EVENTS]
-    if row < len(events):
-        events[row, EVENT_TIME], events[row, EVENT_KIND] = time, kind
-        events[row, EVENT_POINT], events[row, EVENT_X] = point, x
-    tally[EVENTS] += 1
-
-
-@part()
-def _keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
-    """Write one sample: the state now, means and sums since the last."""
-    row, sums, before, span = log.tally[SAMPLES], feet.sums, log.before, dt * log.every
-    kept, touched = log.kept, sums[MEAN_PUSH] - before[MEAN_PUSH]
-    kept[row, KEPT_X], kept[row, KEPT_V] = feet.body[X], feet.body[V]
-    kept[row, KEPT_RUB] = (sums[MEAN_RUB] - before[MEAN_RUB]) / span
-    kept[row, KEPT_PUSH] = touched / span
-    kept[row, KEPT_TOUCHING] = (sums[TOUCHING] - before[TOUCHING]) / span
-    kept[row, KEPT_STICKING] = (sums[STICKING] - before[STICKING]) / span
-    kept[row, KEPT_RUBBED] = sums[RUBBED] - before[RUBBED]
-    kept[row, KEPT_ALONG] = sums[ALONG] - before[ALONG]
-    speed, n = 0.0, 0
-    for i in range(feet.points.shape[0]):
-        log.pressures[row, i] = feet.touch[i, PUSH]
-        if feet.touch[i, PUSH] > 0.0:
-            speed += feet.touch[i, SURFACE]
-            n += 1
-    kept[row, KEPT_SURFACE] = speed / n if n > 0 else np.nan
-    for f in range(feet.state.shape[0]):
-        log.heights[row, f, 0], log.heights[row, f, 1] = feet.state[f, HEIGHT], feet.state[f, PITCH]
-    for p in range(log.points.shape[0]):
-        total = 0.0
-        for j in range(log.points.shape[1]):
-            total += log.points[p, j] * line.factors[STILL, j]
-        log.deflections[row, p] = total
-    for s in range(len(sums)):
-        before[s] = sums[s]
-    log.tally[SAMPLES] += 1
 
 
 @lean()
@@ -230,14 +157,14 @@ def ride(
         drift(0.5 * dt, free, feet)
         rotate_half(modes)
         tally[STEP] += 1
-        _note(surface.drive.origin + (number + 0.5) * dt, dt, before, feet, log)
+        note(surface.drive.origin + (number + 0.5) * dt, dt, before, feet, log)
         if not np.isfinite(feet.body[V] + feet.state[0, HEIGHT]):
             return NOT_FINITE
         if tally[STEP] % log.every == 0:
             if len(log.points) > 0:
                 set_factors((number + 1.0) * dt, modes, surface.drive, line.factors)
             stored(dt, feet)
-            _keep(dt, feet, line, log)
+            keep(dt, feet, line, log)
     stored(dt, feet)
     return DONE
 
@@ -271,11 +198,11 @@ def ride_given(
         feet.body[V] = after
         drift(0.5 * dt, free, feet)
         tally[STEP] += 1
-        _note((number + 0.5) * dt, dt, before, feet, log)
+        note((number + 0.5) * dt, dt, before, feet, log)
         if not np.isfinite(feet.body[V] + feet.state[0, HEIGHT]):
             return NOT_FINITE
         if tally[STEP] % log.every == 0:
             stored(dt, feet)
-            _keep(dt, feet, line, log)
+            keep(dt, feet, line, log)
     stored(dt, feet)
     return DONE

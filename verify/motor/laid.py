@@ -7,7 +7,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
-from verify.motor.records import Feet, Log, Rubbing
+from verify.motor.records import Feet, Hard, Log, Rubbing
 from verify.slider import Foot, Slider
 
 EVENTS = 20_000
@@ -33,6 +33,14 @@ def rubbing_of(slider: Slider, beam: Beam, held_speed: float | None, frozen: boo
         half=float(beam.surface_distance),
         frozen=frozen,
     )
+
+
+def hard_of(slider: Slider) -> Hard | None:
+    """A hard contact; None of one on springs."""
+    if slider.contact is None or not slider.contact.hard:
+        return None
+    mass = shared_mass(slider, slider.feet[0])
+    return Hard(mass, slider.normal_force / mass, float(slider.contact.restitution))
 
 
 def feet_of(slider: Slider, speed: float) -> Feet:

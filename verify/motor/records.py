@@ -26,8 +26,8 @@ its slope; how fast the gap closes, how fast the surface rises, both without the
 (
     ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED
 ) = range(13)  # fmt: skip
-"""Entries of `Feet.sums`: work of the surface on the feet across and on the stage along it, of the pull, rubbed away, lost
-in dashpots, work of what presses; integrals over time of friction, normal force, share of points that touch and stick;
+"""Entries of `Feet.sums`: work of the surface on the feet across and on the stage along it, of the pull, rubbed away,
+lost in dashpots, of what presses; integrals over time of friction, normal force, share of points that touch and stick;
 energy in the springs now; integral of the speed; work of the feet on the beam."""
 KEPT_X, KEPT_V, KEPT_RUB, KEPT_PUSH, KEPT_TOUCHING, KEPT_STICKING, KEPT_RUBBED, KEPT_ALONG, KEPT_SURFACE = range(9)
 """Columns of `Log.kept`; friction, normal force, shares, works and the surface's speed under what touches are means, or
@@ -79,6 +79,15 @@ class Feet(NamedTuple):
     """(feet, 2), what the step gives to height and pitch, m/s and 1/s."""
     sums: Array
     """(13,)"""
+
+
+class Hard(NamedTuple):
+    """A hard point."""
+
+    mass: float
+    press: float
+    """What presses it on over its mass, m/s^2."""
+    restitution: float
 
 
 class Beamed(NamedTuple):

@@ -17,8 +17,8 @@ class MotorMargins(Value, frozen=True, kw_only=True):
     """2 mu kappa / (kappa_t k h): how little the contact slips before it has given way. 0 where it does not give way,
     which is Coulomb's law at every point; None of a hard contact."""
     step: float
-    """Natural frequency of the contact times the step, radians: below 2 or it grows without bound. Its square over 24 is
-    the error of a swing on the springs."""
+    """Natural frequency of the contact times the step, radians: from 2 on it grows without bound. Its square over
+    24 is the error of a swing on the springs."""
     sag: float
     """Static deflection of the beam under what presses the slider on, metres; one way it is left out."""
     sag_taken: bool
@@ -74,7 +74,7 @@ class MotorState(Value, frozen=True, eq=False, kw_only=True):
 
 
 class MotorRun(Ride, frozen=True, eq=False, kw_only=True):
-    """What a slider that may leave the beam did. Friction, shares and normal force are means over the interval before."""
+    """What a slider that may leave the beam did: friction, shares, normal force are means over the interval before."""
 
     model: str
     """Of the beam; 'chain' for the nonlinear chain."""

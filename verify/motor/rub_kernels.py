@@ -55,7 +55,7 @@ def hold(dt: float, feet: Feet, rubbing: Rubbing) -> float:
 
 @part()
 def _even(mean: float, feet: Feet, rubbing: Rubbing, slope: float | None) -> tuple[float, float]:
-    """Friction of the points that do not give way at a speed of the stage: (their sum, what those at that speed can do)."""
+    """Friction at a speed of the stage of the points that do not give way: (sum, what those at that speed can)."""
     touch, points, total, reserve = feet.touch, feet.points, 0.0, 0.0
     for i in range(points.shape[0]):
         if touch[i, PUSH] > 0.0 and points[i, GRIP] == 0.0:
@@ -94,7 +94,9 @@ def agree(dt: float, held: float, feet: Feet, rubbing: Rubbing, slope: float | N
 
 
 @part()
-def _by_points(low: float, high: float, free: float, gain: float, feet: Feet, rubbing: Rubbing, slope: float | None) -> float:
+def _by_points(
+    low: float, high: float, free: float, gain: float, feet: Feet, rubbing: Rubbing, slope: float | None
+) -> float:
     """Coulomb: surface speeds between low and high are tried until one holds the stage or none is left between."""
     touch, points = feet.touch, feet.points
     for i in range(points.shape[0]):
@@ -173,8 +175,8 @@ def share(dt: float, mean: float, held: float, feet: Feet, rubbing: Rubbing, slo
 def settle(dt: float, mean: float, feet: Feet, rubbing: Rubbing) -> float:
     """The speed at the end of a step: that of the point that holds the stage, drawn on; otherwise by the mean.
 
-    What was off when the stick began would otherwise swing on about the surface from step to step. It is bounded by what
-    the point that holds can do.
+    What was off when the stick began would otherwise swing on about the surface from step to step. It is bounded by
+    what the point that holds can do.
     """
     touch, v = feet.touch, feet.body[V]
     after, gain = 2.0 * mean - v, dt * rubbing.lightness

@@ -23,7 +23,7 @@ from verify.motion.surface import Stage, basis_of, stages_from_rest, steady_stag
 from verify.motor.combine import check_combines
 from verify.motor.laid import check_on_beam, feet_of, put_down
 from verify.motor.result import MotorRun, MotorState
-from verify.motor.stepping import Riding, run_stages
+from verify.motor.stepping import RIDES_FROM_HERE, Riding, run_stages
 from verify.motor.told import told
 from verify.options import Start
 from verify.patience import check_work
@@ -85,11 +85,11 @@ def run_motor(
 ) -> MotorRun:
     """A slider with `slider.contact` on a driven beam, steady or from rest, for `duration` seconds.
 
-    It is put down level where its springs carry what presses it on, at rest across the beam. `held_speed` (m/s) keeps it
-    at one speed whatever friction does, as a force-speed curve needs; `frozen` keeps it at its place whatever its speed,
-    so that its motion is periodic. Steps are at most a `steps_per_period`-th of the drive's period and shorter where the
-    contact is stiff, unless `step` is given; forces act in mid-step, of second order. Coupled two-way, every force of
-    every point acts on the modes. Otherwise as `simulate`. Raises InputError, also for what does not combine.
+    It is put down level where its springs carry what presses it on, at rest across the beam. `held_speed` (m/s) keeps
+    it at one speed whatever friction does, as a force-speed curve needs; `frozen` keeps it at its place whatever its
+    speed, so that its motion is periodic. Steps are at most a `steps_per_period`-th of the drive's period, and shorter
+    where the contact is stiff, unless `step` is given; forces act in mid-step, of second order. Coupled two-way, every
+    force of every point acts on the modes. Otherwise as `simulate`. Raises InputError, also for what does not combine.
     """
     began = perf_counter()
     check_combines(model, start, slider)
@@ -168,7 +168,7 @@ def _stages(request: Request, basis: TimeBasis | None, origin: float) -> list[St
 
 
 def _coupling(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None, x: float) -> Coupling:
-    """One-way or two-way by size, unless the slider says which: what its whole load moves, over what the drive moves."""
+    """One-way or two-way by size, unless the slider says which: what its load moves, over what the drive moves."""
     from verify.beam import PointForce
 
     beam, omega = request.beam, request.omega
@@ -223,7 +223,7 @@ def contact_rate(slider: Slider, basis: TimeBasis | None, x: float) -> float:
         along = along + lever**2 * (basis.shapes(x + feet.points[:, 0], 1) ** 2).sum(axis=0)
     sums = [np.sqrt((feet.points[:, 2] * ease)[feet.foot == f].sum()) for f in range(len(feet.state))]
     damped = [(feet.points[:, 3] * ease)[feet.foot == f].sum() for f in range(len(feet.state))]
-    return float(max(*sums, *damped, np.sqrt((feet.points[:, 4] * along).sum())))
+    return float(max([*sums, *damped, np.sqrt((feet.points[:, 4] * along).sum())]))
 
 
 def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:
@@ -234,8 +234,8 @@ def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:
         for field, turns, most in (("contact", rate, UNSTABLE), ("fastest mode", fastest, np.pi)):
             if turns * request.step >= most:
                 raise InputError(
-                    f"step = {request.step!r} s is {turns * request.step:.3g} radians of the {field}'s own motion, which "
-                    f"grows without bound from {most:.3g} on: give at most {RESOLVED / turns:.3g} s"
+                    f"step = {request.step!r} s is {turns * request.step:.3g} radians of the {field}'s own motion, and "
+                    f"that grows without bound from {most:.3g} on: give at most {RESOLVED / turns:.3g} s"
                 )
         return longest
     return min(longest, RESOLVED / rate if rate else longest, SHARP / fastest if fastest else longest)
@@ -266,11 +266,10 @@ def carry_out(
     if not patient:
         check_work("duration", plan.request.pieces, riding.seconds(n_steps), "shorten it or lengthen the step")
     _begin(plan, riding, before)
-    at_start = riding.energy()
     ready = perf_counter()
     stopped, q, rates = run_stages(plan.stages, plan.z, riding, lambda n: progress(n / n_steps))
     clock = (began, ready, perf_counter())
-    return told(plan, riding, stopped, (q, rates), at_start, clock)
+    return told(plan, riding, stopped, (q, rates), clock)
 
 
 def _begin(plan: Plan, riding: Riding, before: MotorState | None) -> None:
@@ -282,6 +281,9 @@ def _begin(plan: Plan, riding: Riding, before: MotorState | None) -> None:
         feet.body[:], feet.state[:], feet.touch[:] = (before.travelled, feet.body[1]), before.feet, before.touch
         if riding.held_speed is None:
             feet.body[1] = before.speed
+        return
+    if riding.hard is not None:
+        riding.before[0, 0] = RIDES_FROM_HERE
         return
     levels = stage.deflection(plan.z, np.zeros(1), plan.start + feet.points[:, 0])[0]
     put_down(feet, levels)

@@ -13,8 +13,8 @@ from verify.motion.request import Request
 from verify.motion.stepping import CHUNK
 from verify.motion.surface import Stage
 from verify.motor import records
-from verify.motor.laid import feet_of, fresh_log, rubbing_of
-from verify.motor.records import Beamed, Feet, Line, Log, Rubbing
+from verify.motor.laid import feet_of, fresh_log, hard_of, rubbing_of
+from verify.motor.records import Beamed, Feet, Hard, Line, Log, Rubbing
 from verify.slider import Slider
 
 
@@ -32,6 +32,10 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     two_way: bool
     held_speed: float | None
     stage_mass: float
+    hard: Hard | None
+    """None of a contact on springs."""
+    at_start: tuple[float, float] = (0.0, 0.0)
+    """`energy` before the first step."""
     steps_before: int = 0
     first: Array | None = None
     """(p,), the deflection at the start."""
@@ -53,6 +57,7 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
             two_way=two_way,
             held_speed=held_speed,
             stage_mass=slider.mass,
+            hard=hard_of(slider),
         )
 
     @property
@@ -97,6 +102,7 @@ def run_stages(
         surface = _surface(stage, z, riding.start)
         if i == 0:
             riding.first = stage.deflection(z, np.zeros(1), riding.points)[0]
+            riding.at_start = riding.energy()
             riding.feet.piece[:] = np.searchsorted(surface.edges[1:-1], riding.feet.points[:, records.OFFSET])
         riding.steps_before, riding.log.tally[records.STEP] = riding.steps, 0
         rows = np.ascontiguousarray(stage.rows(riding.points).T)
@@ -147,6 +153,8 @@ def _run_stage(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[i
         local=np.zeros((pieces, 2, terms)), stamp=np.full(pieces, -1, dtype=np.int64), factors=np.zeros((2, rows))
     )
     beam, done = beam_answer(surface) if riding.two_way else None, riding.log.tally
+    if riding.hard is not None:
+        return _run_hard(stage, surface, riding, line, riding.hard, tell)
     while done[records.STEP] < stage.n_steps:
         steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
         why = kernels.ride(steps, stage.dt, surface, riding.feet, riding.rubbing, beam, line, riding.before, riding.log)
@@ -156,5 +164,27 @@ def _run_stage(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[i
     return "end"
 
 
+def _run_hard(
+    stage: Stage, surface: Surface, riding: Riding, line: Line, hard: Hard, tell: Callable[[int], None]
+) -> str:
+    """The same of a hard point."""
+    from verify.motor import hop_kernels
+
+    done, feet = riding.log.tally, riding.feet
+    if riding.before[0, 0] == RIDES_FROM_HERE:
+        added = hop_kernels.put(0.0, surface, feet, riding.rubbing, line)
+        riding.before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
+        riding.at_start = riding.energy()
+    while done[records.STEP] < stage.n_steps:
+        steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
+        why = hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, riding.before, riding.log)
+        tell(riding.steps)
+        if why != records.DONE:
+            return WHY[why]
+    return "end"
+
+
+RIDES_FROM_HERE = 2.0
+"""In place of a depth: a hard point is put on the surface with the first step."""
 WHY = {records.OFF_BEAM: "left the beam", records.NOT_FINITE: "diverged", records.GONE: "left the surface for good"}
 """Why a run stopped early."""

@@ -22,7 +22,6 @@ def told(
     riding: Riding,
     stopped: str,
     modes: tuple[Array, Array],
-    at_start: tuple[float, float],
     clock: tuple[float, float, float],
 ) -> MotorRun:
     """The run, with its first sample as the slider was put down; `clock` is at request, first step and end, seconds."""
@@ -69,7 +68,7 @@ def told(
         events=log.events[: int(log.tally[records.EVENTS])],
         beam_margins=margins_of(request, plan.stages[-1]),
         motor_margins=motor_margins(plan),
-        ledger=ledger(riding, at_start),
+        ledger=ledger(riding),
         state=MotorState(
             time=float(times[-1]),
             q=modes[0],
@@ -118,11 +117,11 @@ def layer_epsilon(slider: Slider, wavenumber: float, thickness: float) -> float 
     return 2.0 * slider.mu * across / (along * wavenumber * thickness) if along else 0.0
 
 
-def ledger(riding: Riding, at_start: tuple[float, float]) -> MotorLedger:
+def ledger(riding: Riding) -> MotorLedger:
     """Where the energy went."""
     sums = riding.feet.sums
-    kinetic = riding.energy()[0] - at_start[0]
-    stored = float(sums[records.STORED]) - at_start[1]
+    kinetic = riding.energy()[0] - riding.at_start[0]
+    stored = float(sums[records.STORED]) - riding.at_start[1]
     names = {"across": records.ACROSS, "along": records.ALONG, "pressed": records.PRESSED, "pulled": records.PULLED}
     given = {name: float(sums[column]) for name, column in names.items()}
     rubbed, damped = float(sums[records.RUBBED]), float(sums[records.DAMPED])
@@ -131,8 +130,8 @@ def ledger(riding: Riding, at_start: tuple[float, float]) -> MotorLedger:
         stored=stored,
         **given,
         rubbed=rubbed,
-        damped=damped,
-        impacts=0.0,
+        damped=damped if riding.hard is None else 0.0,
+        impacts=0.0 if riding.hard is None else damped,
         on_beam=float(sums[records.LIFTED]),
         residual=sum(given.values()) - rubbed - damped - kinetic - stored,
     )

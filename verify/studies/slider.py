@@ -30,7 +30,7 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
 
     def asked(self, scene: "Scene") -> MotionAsk | None:
         """The scene's [motion], where there is a slider to move."""
-        return scene.motion if scene.slider is not None else None
+        return scene.motion if scene.slider is not None and scene.slider.contact is None else None
 
     def skipped(self, scene: "Scene") -> str:
         """Without [motion], or without a slider."""

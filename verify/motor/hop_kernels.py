@@ -1,0 +1,316 @@
+"""The compiled hard slider: a point that flies in parabolas, lands with restitution, and rides until it leaves again.
+
+On a steady beam that does not feel it, so that the surface is known at every instant: landings and leavings are found
+by halving, wherever in a step they fall.
+"""
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.models.kernels import lean, part
+from verify.motion.records import MOVING, STILL, Surface
+from verify.motion.surface_kernels import find_piece, set_factors
+from verify.motor.beam_kernels import slide_by_tanh
+from verify.motor.logging_kernels import keep, write
+from verify.motor.records import (
+    ACROSS,
+    ALONG,
+    CLIMB,
+    DAMPED,
+    DONE,
+    HEIGHT,
+    LANDS,
+    LEAVES,
+    LIFT,
+    LIFTED,
+    MEAN_PUSH,
+    MEAN_RUB,
+    MEAN_SPEED,
+    NOT_FINITE,
+    OFF_BEAM,
+    PRESSED,
+    PULLED,
+    PUSH,
+    RUB,
+    RUBBED,
+    SLOPE,
+    STEP,
+    STICKING,
+    STUCK,
+    SURFACE,
+    TOUCHING,
+    Feet,
+    Hard,
+    Line,
+    Log,
+    Rubbing,
+    V,
+    X,
+)
+
+HALVINGS = 100
+BLOWS = 10_000
+"""In a step, at most; a bounce that dies away has far fewer."""
+SETTLED = 1e-6
+"""Of a step: a bounce that lasts no longer is a rest."""
+
+
+@part()
+def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Line, feet: Feet) -> float:
+    """The surface under x at a time: its height, NaN off the beam; sets its speed, its slope and how fast it rises.
+
+    Its acceleration across, as a point that rides on it has it, goes to `kick`: of second order in the wave.
+    """
+    touch, local = feet.touch, line.local
+    piece = find_piece(surface.edges, x, feet.piece[0])
+    if piece < 0:
+        return np.nan
+    feet.piece[0] = piece
+    length = surface.edges[piece + 1] - surface.edges[piece]
+    set_factors(t, surface.modes, surface.drive, line.factors)
+    for d in range(surface.table.shape[1]):
+        still, moving = 0.0, 0.0
+        for j in range(surface.table.shape[2]):
+            still += surface.table[piece, d, j] * line.factors[STILL, j]
+            moving += surface.table[piece, d, j] * line.factors[MOVING, j]
+        local[piece, STILL, d], local[piece, MOVING, d] = still, moving
+    xi = (x - surface.edges[piece]) / length
+    value, first = 0.0, 0.0
+    for d in range(local.shape[2] - 1, 0, -1):
+        value = value * xi + local[piece, STILL, d]
+        first = first * xi + value
+    at = xi + half * first / (length * length)
+    level, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
+    for d in range(local.shape[2] - 1, -1, -1):
+        bend = bend * at + slope
+        slope = slope * at + level
+        level = level * at + local[piece, STILL, d]
+        turn = turn * at + rise
+        rise = rise * at + local[piece, MOVING, d]
+    slope, bend, turn = slope / length, 2.0 * bend / (length * length), turn / length
+    touch[0, SURFACE] = (rise * slope - half * turn) / np.sqrt(1.0 + slope * slope)
+    touch[0, SLOPE] = slope
+    passed, square = v + half * (turn + bend * v), surface.drive.omega * surface.drive.omega
+    touch[0, LIFT] = rise + slope * passed
+    feet.kick[0, 0] = -square * (level + half * slope * slope) + (2.0 * turn + bend * passed) * passed
+    return level
+
+
+@part()
+def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
+    """How far the flying point is above the surface, s seconds after t."""
+    body, state, along = feet.body, feet.state, rubbing.lightness * rubbing.pull
+    free = 0.0 if rubbing.frozen else 1.0
+    v = body[V] + along * s
+    x = body[X] + free * (body[V] + 0.5 * along * s) * s
+    z = state[0, HEIGHT] + (state[0, CLIMB] - 0.5 * hard.press * s) * s
+    return float(z - _under(t + s, x, v, surface, rubbing.half, line, feet))
+
+
+@part()
+def _fly(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
+    """How long the point flies on, at most h seconds: until the gap closes, sought on both halves of h."""
+    if _gap(t, 0.5 * h, surface, rubbing, hard, line, feet) < 0.0:
+        low, high = 0.0, 0.5 * h
+    elif _gap(t, h, surface, rubbing, hard, line, feet) < 0.0:
+        low, high = 0.5 * h, h
+    else:
+        return h
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if _gap(t, middle, surface, rubbing, hard, line, feet) < 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@part()
+def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
+    """The point flies for s seconds."""
+    body, state, sums = feet.body, feet.state, feet.sums
+    along, free = rubbing.lightness * rubbing.pull, 0.0 if rubbing.frozen else 1.0
+    way, rise = (body[V] + 0.5 * along * s) * s, (state[0, CLIMB] - 0.5 * hard.press * s) * s
+    body[X] += free * way
+    body[V] += along * s
+    state[0, HEIGHT] += rise
+    state[0, CLIMB] -= hard.press * s
+    sums[PULLED] += rubbing.pull * way
+    sums[MEAN_SPEED] += way
+    sums[PRESSED] -= hard.mass * hard.press * rise
+
+
+@part()
+def _suit(most: float, ahead: float, ease: float, slope: float | None) -> float:
+    """What friction gives, at most `most`, where the surface is ahead and each unit takes `ease` of that."""
+    if slope is not None:
+        return slide_by_tanh(most, ahead, ease, slope)
+    if ease == 0.0:
+        return most if ahead > 0.0 else -most if ahead < 0.0 else 0.0
+    given = ahead / ease
+    return most if given > most else -most if given < -most else given
+
+
+@part()
+def _land(rubbing: Rubbing, hard: Hard, feet: Feet, slope: float | None) -> float:
+    """A blow: restitution across, friction along; the speed away from the surface after it, m/s."""
+    body, state, touch, sums = feet.body, feet.state, feet.touch, feet.sums
+    into = touch[0, LIFT] - state[0, CLIMB]
+    into = into if into > 0.0 else 0.0
+    blow = hard.mass * (1.0 + hard.restitution) * into
+    state[0, CLIMB] += blow / hard.mass
+    ahead = touch[0, SURFACE] - body[V]
+    rub = _suit(rubbing.mu * blow, ahead, rubbing.lightness, slope)
+    mean = body[V] + 0.5 * rubbing.lightness * rub
+    body[V] += rubbing.lightness * rub
+    sums[ACROSS] += blow * touch[0, LIFT]
+    sums[LIFTED] -= blow * touch[0, LIFT]
+    sums[DAMPED] += 0.5 * blow * into * (1.0 - hard.restitution)
+    sums[ALONG] += rub * touch[0, SURFACE]
+    sums[RUBBED] += rub * (touch[0, SURFACE] - mean)
+    sums[MEAN_RUB] += rub
+    sums[MEAN_PUSH] += blow
+    return hard.restitution * into
+
+
+@part()
+def _pushed(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
+    """What the surface presses the riding point with, over its mass, s seconds after t."""
+    free = 0.0 if rubbing.frozen else 1.0
+    _under(t + s, feet.body[X] + free * feet.body[V] * s, feet.body[V], surface, rubbing.half, line, feet)
+    return float(hard.press + feet.kick[0, 0])
+
+
+@part()
+def _stay(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
+    """How long the point rides on, at most h seconds: until nothing presses it, sought on both halves of h."""
+    if _pushed(t, 0.5 * h, surface, rubbing, hard, line, feet) < 0.0:
+        low, high = 0.0, 0.5 * h
+    elif _pushed(t, h, surface, rubbing, hard, line, feet) < 0.0:
+        low, high = 0.5 * h, h
+    else:
+        return h
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if _pushed(t, middle, surface, rubbing, hard, line, feet) < 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@part()
+def _move_riding(
+    t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet, slope: float | None
+) -> bool:
+    """The point rides for s seconds, friction taken in their middle; whether it is still on the beam."""
+    body, state, touch, sums = feet.body, feet.state, feet.touch, feet.sums
+    free = 0.0 if rubbing.frozen else 1.0
+    push = hard.mass * _pushed(t, 0.5 * s, surface, rubbing, hard, line, feet)
+    push = push if push > 0.0 else 0.0
+    gain = 0.5 * s * rubbing.lightness
+    ahead, v = touch[0, SURFACE] - body[V] - gain * rubbing.pull, body[V]
+    rub = _suit(rubbing.mu * push, ahead, gain, slope)
+    surface_mean = touch[0, SURFACE]
+    after = v + 2.0 * gain * (rubbing.pull + rub)
+    stuck = slope is None and gain > 0.0 and abs(rub) < rubbing.mu * push
+    x = body[X] + free * 0.5 * (v + after) * s
+    level = _under(t + s, x, after, surface, rubbing.half, line, feet)
+    if not np.isfinite(level):
+        return False
+    if stuck:
+        most, wanted = rubbing.mu * push, rub + (touch[0, SURFACE] - after) / (2.0 * gain)
+        rub = most if wanted > most else -most if wanted < -most else wanted
+        after = v + 2.0 * gain * (rubbing.pull + rub)
+    mean = 0.5 * (v + after)
+    body[X] += free * mean * s
+    body[V] = after
+    rise = level - state[0, HEIGHT]
+    gained = 0.5 * hard.mass * (touch[0, LIFT] ** 2 - state[0, CLIMB] ** 2)
+    state[0, HEIGHT], state[0, CLIMB] = level, touch[0, LIFT]
+    touch[0, PUSH], touch[0, RUB], touch[0, STUCK] = push, rub, 1.0 if stuck else 0.0
+    sums[ACROSS] += gained + hard.mass * hard.press * rise
+    sums[LIFTED] -= gained + hard.mass * hard.press * rise
+    sums[PRESSED] -= hard.mass * hard.press * rise
+    sums[ALONG] += s * rub * surface_mean
+    sums[RUBBED] += s * rub * (surface_mean - mean)
+    sums[MEAN_RUB] += s * rub
+    sums[MEAN_PUSH] += s * push
+    sums[PULLED] += s * rubbing.pull * mean
+    sums[MEAN_SPEED] += s * mean
+    sums[TOUCHING] += s
+    sums[STICKING] += s * touch[0, STUCK]
+    return True
+
+
+@part()
+def _step(
+    t: float, dt: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, before: Array, feet: Feet, log: Log
+) -> bool:
+    """One step, cut wherever the point leaves or lands; whether it is still on the beam."""
+    done, x = 0.0, feet.body[X]
+    origin = surface.drive.origin
+    for _ in range(BLOWS):
+        left = dt - done
+        if left <= 1e-15 * dt:
+            break
+        if before[0, 0] > 0.0:
+            s = _stay(t + done, left, surface, rubbing, hard, line, feet)
+            if not _move_riding(t + done, s, surface, rubbing, hard, line, feet, rubbing.slope):
+                return False
+            if s < left:
+                before[0, 0] = -1.0
+                write(origin + t + done + s, LEAVES, 0, x, log.events, log.tally)
+        else:
+            s = _fly(t + done, left, surface, rubbing, hard, line, feet)
+            _move_flying(s, rubbing, hard, feet)
+            feet.touch[0, PUSH] = 0.0
+            level = _under(t + done + s, feet.body[X], feet.body[V], surface, rubbing.half, line, feet)
+            if not np.isfinite(level):
+                return False
+            if s < left:
+                feet.state[0, HEIGHT] = level
+                away = _land(rubbing, hard, feet, rubbing.slope)
+                presses = hard.press + feet.kick[0, 0]
+                write(origin + t + done + s, LANDS, 0, x, log.events, log.tally)
+                if presses > 0.0 and 2.0 * away <= SETTLED * dt * presses:
+                    before[0, 0] = 1.0
+        done += s
+    return True
+
+
+@lean()
+def hop(
+    n_steps: int,
+    dt: float,
+    surface: Surface,
+    feet: Feet,
+    rubbing: Rubbing,
+    hard: Hard,
+    line: Line,
+    before: Array,
+    log: Log,
+) -> int:
+    """Advance a hard point by n_steps from step tally[STEP]; why it came back. `before` is (1, 2): above 0 it rides."""
+    tally = log.tally
+    for _ in range(n_steps):
+        if not _step(tally[STEP] * dt, dt, surface, rubbing, hard, line, before, feet, log):
+            return OFF_BEAM
+        tally[STEP] += 1
+        if not np.isfinite(feet.body[V] + feet.state[0, HEIGHT]):
+            return NOT_FINITE
+        if tally[STEP] % log.every == 0:
+            keep(dt, feet, line, log)
+    return DONE
+
+
+@lean()
+def put(t: float, surface: Surface, feet: Feet, rubbing: Rubbing, line: Line) -> float:
+    """Put a hard point on the surface, with its rate of rise; what presses it on less gravity's part, m/s^2."""
+    feet.state[0, HEIGHT] = _under(t, feet.body[X], feet.body[V], surface, rubbing.half, line, feet)
+    feet.state[0, CLIMB] = feet.touch[0, LIFT]
+    return float(feet.kick[0, 0])

@@ -1,0 +1,100 @@
+"""The compiled log of a slider on feet: events between two mid-steps, samples with the means since the last."""
+
+import numpy as np
+
+from verify.models.arrays import Array, Indices
+from verify.models.kernels import part
+from verify.motion.records import STILL
+from verify.motor.records import (
+    ALONG,
+    DEPTH,
+    EVENT_KIND,
+    EVENT_POINT,
+    EVENT_TIME,
+    EVENT_X,
+    EVENTS,
+    HEIGHT,
+    KEPT_ALONG,
+    KEPT_PUSH,
+    KEPT_RUB,
+    KEPT_RUBBED,
+    KEPT_STICKING,
+    KEPT_SURFACE,
+    KEPT_TOUCHING,
+    KEPT_V,
+    KEPT_X,
+    LANDS,
+    LEAVES,
+    MEAN_PUSH,
+    MEAN_RUB,
+    PITCH,
+    PUSH,
+    RUBBED,
+    SAMPLES,
+    SLIPS,
+    STICKING,
+    STICKS,
+    STUCK,
+    SURFACE,
+    TOUCHING,
+    Feet,
+    Line,
+    Log,
+    V,
+    X,
+)
+
+
+@part()
+def note(time: float, dt: float, before: Array, feet: Feet, log: Log) -> None:
+    """Write down who landed, left, stuck or slipped since the mid-step before, with `before` depth and sticking."""
+    touch, tally = feet.touch, log.tally
+    for i in range(touch.shape[0]):
+        depth, was = touch[i, DEPTH], before[i, 0]
+        if (depth > 0.0) != (was > 0.0):
+            kind = LANDS if depth > 0.0 else LEAVES
+            write(time - dt * depth / (depth - was), kind, i, feet.body[X], log.events, tally)
+        elif depth > 0.0 and (touch[i, STUCK] > 0.0) != (before[i, 1] > 0.0):
+            write(time - 0.5 * dt, STICKS if touch[i, STUCK] > 0.0 else SLIPS, i, feet.body[X], log.events, tally)
+        before[i, 0], before[i, 1] = depth, touch[i, STUCK]
+
+
+@part()
+def write(time: float, kind: float, point: int, x: float, events: Array, tally: Indices) -> None:
+    """One event, as long as there is room; all are counted."""
+    row = tally[EVENTS]
+    if row < len(events):
+        events[row, EVENT_TIME], events[row, EVENT_KIND] = time, kind
+        events[row, EVENT_POINT], events[row, EVENT_X] = point, x
+    tally[EVENTS] += 1
+
+
+@part()
+def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
+    """Write one sample: the state now, means and sums since the last."""
+    row, sums, before, span = log.tally[SAMPLES], feet.sums, log.before, dt * log.every
+    kept, touched = log.kept, sums[MEAN_PUSH] - before[MEAN_PUSH]
+    kept[row, KEPT_X], kept[row, KEPT_V] = feet.body[X], feet.body[V]
+    kept[row, KEPT_RUB] = (sums[MEAN_RUB] - before[MEAN_RUB]) / span
+    kept[row, KEPT_PUSH] = touched / span
+    kept[row, KEPT_TOUCHING] = (sums[TOUCHING] - before[TOUCHING]) / span
+    kept[row, KEPT_STICKING] = (sums[STICKING] - before[STICKING]) / span
+    kept[row, KEPT_RUBBED] = sums[RUBBED] - before[RUBBED]
+    kept[row, KEPT_ALONG] = sums[ALONG] - before[ALONG]
+    speed, n = 0.0, 0
+    for i in range(feet.points.shape[0]):
+        log.pressures[row, i] = feet.touch[i, PUSH]
+        if feet.touch[i, PUSH] > 0.0:
+            speed += feet.touch[i, SURFACE]
+            n += 1
+    kept[row, KEPT_SURFACE] = speed / n if n > 0 else np.nan
+    for f in range(feet.state.shape[0]):
+        log.heights[row, f, 0], log.heights[row, f, 1] = feet.state[f, HEIGHT], feet.state[f, PITCH]
+    for p in range(log.points.shape[0]):
+        total = 0.0
+        for j in range(log.points.shape[1]):
+            total += log.points[p, j] * line.factors[STILL, j]
+        log.deflections[row, p] = total
+    for s in range(len(sums)):
+        before[s] = sums[s]
+    log.tally[SAMPLES] += 1
