@@ -1,12 +1,12 @@
 """What a motor does by other means: exact parabolas, event-driven DOP853, springs in a row. Nothing of the suite.
 
-A surface moves as w(x, t); a body above it has the place x and the speed v along it, the height z across. It is pressed
-by `load`, its contact pushes back with k pen + c pen' while both are positive, pen = w - z, and friction drags it by the
-surface's own speed u = (w_t w' - (h/2) w_t') / sqrt(1 + w'^2) at the material point x + (h/2) w'.
+A mid-line moves as w(x, t); a body above it has the place x and the speed v along it, the height z across. Below it is
+the material X = x + (h/2) w'(x), whose surface is at w(X) and runs along with u = (w_t w' - (h/2) w_t') / sqrt(1 + w'^2)
+there. The body is pressed by `load`, its contact pushes back with k pen + c pen' while both are positive, pen = w(X) - z,
+and friction drags it by u - v.
 """
 
-from cmath import exp
-from math import asin, cos, hypot, inf, pi, sin, tanh
+from math import asin, cos, inf, pi, sin, tanh
 from typing import NamedTuple
 
 import numpy as np
@@ -81,18 +81,11 @@ class Waves(NamedTuple):
     omega: float
 
     def at(self, x, t):
-        """w, w_t, w', w_t'."""
-        turn = exp(1j * self.omega * t)
-        ahead, back = self.forward * exp(-1j * self.k * x) * turn, self.backward * exp(1j * self.k * x) * turn
-        both, tilt = ahead + back, 1j * self.k * (back - ahead)
-        return both.real, -self.omega * both.imag, tilt.real, -self.omega * tilt.imag
-
-    def many(self, x, t):
-        """The same of an array of places."""
+        """w, w_t, w', w_t', w''."""
         turn = np.exp(1j * self.omega * t)
         ahead, back = self.forward * np.exp(-1j * self.k * x) * turn, self.backward * np.exp(1j * self.k * x) * turn
         both, tilt = ahead + back, 1j * self.k * (back - ahead)
-        return both.real, -self.omega * both.imag, tilt.real, -self.omega * tilt.imag
+        return both.real, -self.omega * both.imag, tilt.real, -self.omega * tilt.imag, -(self.k**2) * both.real
 
 
 def waves_of(shapes, k, omega, near, half_length=0.02):
@@ -103,11 +96,12 @@ def waves_of(shapes, k, omega, near, half_length=0.02):
     return Waves(complex(found[0]), complex(found[1]), k, omega)
 
 
-def surface_speed(at, x, t, half):
-    """U at the material point below x."""
-    here = x + half * at(x, t)[2]
-    _, rise, tilt, turn = at(here, t)
-    return (rise * tilt - half * turn) / hypot(1.0, tilt)
+def felt(at, x, t, half):
+    """(w, its rate for v = 0, what v adds to that, u) of the surface at x."""
+    _, _, tilt, turn, bend = at(x, t)
+    w, rise, slope, twist, _ = at(x + half * tilt, t)
+    along = (rise * slope - half * twist) / np.sqrt(1.0 + slope * slope)
+    return w, rise + slope * half * turn, slope * (1.0 + half * bend), along
 
 
 # --- a point on a spring and a dashpot, on a surface or on a beam that feels it
@@ -149,9 +143,8 @@ class OneWay:
         self.at, self.half = at, half
 
     def seen(self, t, s):
-        """(w, w_t, w', u) under the body."""
-        w, rise, tilt, _ = self.at(s[X], t)
-        return w, rise, tilt, surface_speed(self.at, s[X], t, self.half)
+        """(w, its rate for v = 0, what v adds to that, u) under the body."""
+        return felt(self.at, s[X], t, self.half)
 
     def pushed(self, t, s, normal, along):
         """Rates of the surface's own states."""
@@ -178,24 +171,25 @@ class Modes:
         return s[:m], s[m : 2 * m], s[2 * m :]
 
     def seen(self, t, s):
-        """(w, w_t, w', u) under the body."""
+        """(w, its rate for v = 0, what v adds to that, u) under the body."""
         q, qd, body = self.split(s)
-        flat, tilted = self.shape(body[X], 0), self.shape(body[X], 1)
-        return q @ flat, qd @ flat, q @ tilted, qd @ self.along(q, body[X])
 
-    def along(self, q, x):
-        """du/dq_t."""
-        here = x + self.half * (q @ self.shape(x, 1))
-        tilt = q @ self.shape(here, 1)
-        return (tilt * self.shape(here, 0) - self.half * self.shape(here, 1)) / hypot(1.0, tilt)
+        def at(x, t):
+            flat, tilted = self.shape(x, 0), self.shape(x, 1)
+            return q @ flat, qd @ flat, q @ tilted, qd @ tilted, q @ self.shape(x, 2)
+
+        return felt(at, body[X], t, self.half)
 
     def pushed(self, t, s, normal, along):
-        """Rates of q and q_t under the body's reaction."""
+        """Rates of q and q_t under the body's reaction, which acts on the material below it."""
         q, qd, body = self.split(s)
+        here = body[X] + self.half * (q @ self.shape(body[X], 1))
+        flat, tilt = self.shape(here, 0), q @ self.shape(here, 1)
+        dragged = (tilt * flat - self.half * self.shape(here, 1)) / np.sqrt(1.0 + tilt * tilt)
         p = min(t / self.grow, 1.0) if self.grow else 1.0
         push = p * p * (3.0 - 2.0 * p) * sum(f * cos(self.omega * t + turn) * load for f, turn, load in self.forces)
         push = push - 2.0 * self.damping * self.own * qd - self.own**2 * q
-        return np.concatenate([qd, push - normal * self.shape(body[X], 0) - along * self.along(q, body[X])])
+        return np.concatenate([qd, push - normal * flat - along * dragged])
 
 
 class Ridden(NamedTuple):
@@ -433,14 +427,11 @@ def foot_ridden(foot, waves, x, start, times, rtol=1e-9, max_step=np.inf, moving
 
     def rates(t, y):
         at = x + moving * foot.speed * t + s
-        w, rise, tilt, _ = waves.many(at, t)
+        w, rise, tilt, u = felt(waves.at, at, t, foot.half)
         pen = w - y[0] - y[2] * s
         closing = rise + moving * tilt * foot.speed - y[1] - y[3] * s
         push = (foot.stiffness * pen + foot.damping * closing) / n
         push = np.where(pen > 0.0, np.maximum(push, 0.0), 0.0)
-        here = at + foot.half * tilt
-        _, lift, lean, turn = waves.many(here, t)
-        u = (lift * lean - foot.half * turn) / np.hypot(1.0, lean)
         drag = foot.mu * push * np.sign(u - foot.speed)
         turned = push @ s / foot.inertia if foot.pitches else 0.0
         return [

@@ -3,13 +3,12 @@
 from functools import cache
 
 import numpy as np
-from motor_references import BODY, V, X, Z, Waves, body, waves_of
+from motor_references import Waves, waves_of
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.exact.harmonic import solve_harmonic
 from verify.motor.run import run_motor
-from verify.slider import Contact, Slider
 
 STRIP = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
 HERTZ = 4276.0
