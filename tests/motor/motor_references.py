@@ -19,21 +19,20 @@ TIGHT = {"method": "DOP853", "rtol": 1e-11}
 # --- a mass on a surface that shakes as A sin theta; heights over A, speeds over A omega, times in radians
 
 
-def next_landing(ratio, theta, speed, looks=400):
-    """(phase, speed of the mass) where a mass that leaves the surface at theta comes down on it again."""
+def next_landing(ratio, theta, speed, after=1e-7, looks=400):
+    """(phase, speed of the mass) where a mass that leaves the surface at theta comes down, `after` it has left."""
 
-    def gap(after):
-        t = after - theta
-        return sin(theta) + speed * t - 0.5 * t * t / ratio - sin(after)
+    def gap(phase):
+        t = phase - theta
+        return sin(theta) + speed * t - 0.5 * t * t / ratio - sin(phase)
 
-    low = theta + 1e-9
-    while gap(low) <= 0.0:  # it has hardly left
-        low += 1e-7
+    low = theta + after
+    assert gap(low) > 0.0, "it has not left"
     high = low + 2.0 * pi / looks
     while gap(high) > 0.0:
         low, high = high, high + 2.0 * pi / looks
-    after = brentq(gap, low, high, xtol=1e-15, rtol=1e-15)
-    return after, speed - (after - theta) / ratio
+    phase = brentq(gap, low, high, xtol=1e-15, rtol=1e-15)
+    return phase, speed - (phase - theta) / ratio
 
 
 class Landed(NamedTuple):
@@ -49,24 +48,23 @@ class Landed(NamedTuple):
 def bounces(ratio, restitution, turns, start=None):
     """Landings within `turns` periods, by exact parabolas: at first on the surface, or flying from (phase, speed).
 
-    Where it would leave slower than 1e-9 it stays, as a surface that presses back makes it, until sin theta = 1/ratio.
+    Where it would leave slower than 1e-6 it stays until the surface throws it off, at sin theta = 1/ratio or at once.
     """
-    theta, speed = start or (asin(1.0 / ratio), cos(asin(1.0 / ratio)))
+    off = asin(1.0 / ratio)
+    (theta, speed), after = start or (off, cos(off)), 1e-7 if start else 1e-3
     landings = []
     while True:
-        after, falling = next_landing(ratio, theta, speed)
-        if after > 2.0 * pi * turns:
+        phase, falling = next_landing(ratio, theta, speed, after)
+        if phase > 2.0 * pi * turns:
             return landings
-        closing = cos(after) - falling
-        if restitution * closing > 1e-9:
-            theta, speed = after, cos(after) + restitution * closing
+        closing = cos(phase) - falling
+        if restitution * closing > 1e-6:
+            theta, speed, after = phase, cos(phase) + restitution * closing, 1e-7
         else:
-            turn = 2.0 * pi * np.ceil((after - asin(1.0 / ratio)) / (2.0 * pi))
-            own = after % (2.0 * pi)
-            inside = asin(1.0 / ratio) <= own <= pi - asin(1.0 / ratio)  # it is thrown off at once
-            theta = after if inside else asin(1.0 / ratio) + turn
-            speed = cos(theta)
-        landings.append(Landed(after, closing, theta))
+            own = (phase - off) % (2.0 * pi)
+            theta = phase if own < pi - 2.0 * off else phase + 2.0 * pi - own
+            speed, after = cos(theta), 1e-3
+        landings.append(Landed(phase, closing, theta))
 
 
 # --- surfaces
@@ -379,11 +377,12 @@ class Rider:
             return ("free", None), s
         if self.p.give is not None:
             return ("pressed", "stuck" if mode[1] != "stuck" else 1 if hits[1] else -1), s
+        if self.p.held is not None:
+            return ("pressed", -mode[1]), s
         needed = self.needed(t, s, self.force(t, s))
         if mode[1] == "stuck":
             return ("pressed", 1 if needed > 0.0 else -1), s
-        holds = self.p.held is None and abs(needed) <= self.p.mu * self.force(t, s)
-        return ("pressed", "stuck" if holds else -mode[1]), s
+        return ("pressed", "stuck" if abs(needed) <= self.p.mu * self.force(t, s) else -mode[1]), s
 
 
 def body(x=0.0, v=0.0, z=0.0, zd=0.0, beam=0):
