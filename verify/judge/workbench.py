@@ -152,6 +152,7 @@ class Workbench:
         self.sweeps: dict[Any, HarmonicSweep] = {}
         """Harmonic fields over frequencies, likewise."""
         self.motions: dict[Any, Motion] = {}
+        self.motors: dict[Any, Any] = {}
         """Simulations by everything that makes them."""
         self.others: dict[str, int] = {}
         """Work of other kinds that was done for figures, on other beams, by name in the plural."""
@@ -161,7 +162,7 @@ class Workbench:
     @property
     def n_motions(self) -> int:
         """How many simulations were done for figures."""
-        return len(self.motions) + self.n_unkept_motions
+        return len(self.motions) + len(self.motors) + self.n_unkept_motions
 
     def modes(self, model: str, count: int, n_modes: int, settings: Settings = ()) -> "Modes":
         """At least `n_modes` modes of a discrete model. Raises InputError."""

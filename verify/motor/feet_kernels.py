@@ -26,7 +26,6 @@ from verify.motor.records import (
     PRESS,
     PRESSED,
     PUSH,
-    PUSH_BEFORE,
     SLOPE,
     SPRING,
     STIFF,
@@ -156,7 +155,6 @@ def kick(dt: float, feet: Feet) -> None:
             sums[DAMPED] += dt * (force - points[i, STIFF] * touch[i, DEPTH]) * closing
             if points[i, IMAGE] > 0.0:
                 sums[LIFTED] -= work
-        touch[i, PUSH_BEFORE] = force
     for f in range(state.shape[0]):
         given = feet.given
         force = given[f, PRESS] - given[f, SPRING] * state[f, HEIGHT]

@@ -106,17 +106,21 @@ def _rub_back(
 @part()
 def _book(dt: float, mean: float, feet: Feet, rubbing: Rubbing) -> None:
     """What a step adds to the sums; shares are of all points."""
-    touch, sums, n = feet.touch, feet.sums, feet.touch.shape[0]
+    touch, sums, n, rubbed = feet.touch, feet.sums, feet.touch.shape[0], 0.0
     for i in range(n):
         push, rub = touch[i, PUSH], touch[i, RUB]
         if push > 0.0:
             sums[ALONG] += dt * rub * touch[i, SURFACE]
             sums[RUBBED] += dt * rub * (touch[i, SURFACE] - mean)
             sums[MEAN_RUB] += dt * rub
+            rubbed += rub
             sums[MEAN_PUSH] += dt * push
             sums[TOUCHING] += dt / n
             sums[STICKING] += dt * touch[i, STUCK] / n
-    sums[PULLED] += dt * rubbing.pull * mean
+    if rubbing.lightness == 0.0:
+        sums[PULLED] -= dt * rubbed * mean
+    else:
+        sums[PULLED] += dt * rubbing.pull * mean
     sums[MEAN_SPEED] += dt * mean
 
 

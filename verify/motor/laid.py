@@ -52,7 +52,7 @@ def feet_of(slider: Slider, speed: float) -> Feet:
         state=np.zeros((n, 4)),
         given=np.array([_given(slider, foot) for foot in slider.feet]),
         points=points,
-        touch=np.zeros((len(points), 12)),
+        touch=np.zeros((len(points), 11)),
         foot=_whole(np.repeat(np.arange(n), [len(sheet) for sheet in sheets])),
         piece=_whole(np.zeros(len(points))),
         kick=np.zeros((n, 2)),

@@ -41,7 +41,7 @@ class MotorLedger(Value, frozen=True, kw_only=True):
     pressed: float
     """Work of weight and preload."""
     pulled: float
-    """Work of `slider.pull`."""
+    """Work of `slider.pull`, and of what holds a held speed."""
     rubbed: float
     """Lost in friction, and put into what gives way along the surface."""
     damped: float
@@ -70,7 +70,7 @@ class MotorState(Value, frozen=True, eq=False, kw_only=True):
     feet: Array
     """(feet, 4): height, its rate, pitch, its rate."""
     touch: Array
-    """(points, 12), as the compiled loop keeps them: forces, speeds and stretch of the last mid-step."""
+    """(points, 11), as the compiled loop keeps them: forces, speeds and stretch of the last mid-step."""
 
 
 class MotorRun(Ride, frozen=True, eq=False, kw_only=True):

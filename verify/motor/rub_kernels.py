@@ -4,10 +4,11 @@ import numpy as np
 
 from verify.models.kernels import part
 from verify.motor.records import (
+    CLOSING,
     GRIP,
     PUSH,
-    PUSH_BEFORE,
     RUB,
+    STIFF,
     STRETCH,
     STUCK,
     SURFACE,
@@ -25,12 +26,12 @@ ROUNDS = 100
 def stretch(dt: float, mean: float, feet: Feet, rubbing: Rubbing) -> None:
     """Points that give way are stretched on by the end of the step, as far as friction there lets them.
 
-    The normal force at the end is that of the last two mid-steps, drawn on.
+    The normal force at the end is that of mid-step, drawn on as the gap closes.
     """
     touch, points = feet.touch, feet.points
     for i in range(points.shape[0]):
         if points[i, GRIP] > 0.0:
-            push = 1.5 * touch[i, PUSH] - 0.5 * touch[i, PUSH_BEFORE]
+            push = touch[i, PUSH] + 0.5 * dt * points[i, STIFF] * touch[i, CLOSING]
             most = rubbing.mu * (push if push > 0.0 else 0.0) / points[i, GRIP]
             most = most if touch[i, PUSH] > 0.0 else 0.0
             far = touch[i, STRETCH] + dt * (touch[i, SURFACE] - mean)

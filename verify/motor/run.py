@@ -20,18 +20,19 @@ from verify.motion.moving_mass import receptance
 from verify.motion.request import Driven, Modelled, Request, Started, Watched, requested
 from verify.motion.step_size import stepped
 from verify.motion.surface import Stage, basis_of, stages_from_rest, steady_stage
-from verify.motor.combine import check_combines
+from verify.motor.combine import CHAIN, check_combines
 from verify.motor.laid import check_on_beam, feet_of, put_down
 from verify.motor.result import MotorRun, MotorState
 from verify.motor.stepping import RIDES_FROM_HERE, Riding, run_stages
 from verify.motor.told import told
-from verify.options import Start
+from verify.options import Links, Start
 from verify.patience import check_work
 from verify.slider import Slider
 
 MODES = 80
 """Of the exact beam, unless asked for otherwise."""
-STEPS_PER_PERIOD = 64
+STEPS_PER_PERIOD = 61
+"""A prime: points that stand evenly in a wave do not all meet the turn of friction at the same phases of it."""
 RESOLVED = 0.5
 """Radians of the contact's own swing in a step, unless a step is given: an error of 1 % of its period."""
 UNSTABLE = 2.0
@@ -79,11 +80,14 @@ def run_motor(
     steps_per_period: int = STEPS_PER_PERIOD,
     held_speed: float | None = None,
     frozen: bool = False,
+    links: Links = "rigid",
     continue_from: MotorRun | None = None,
     progress: Callable[[float], None] = lambda part: None,
     patient: bool = True,
 ) -> MotorRun:
     """A slider with `slider.contact` on a driven beam, steady or from rest, for `duration` seconds.
+
+    `model` = 'chain' is the nonlinear chain of `count` links, rigid or stretching, from rest and undamped.
 
     It is put down level where its springs carry what presses it on, at rest across the beam. `held_speed` (m/s) keeps
     it at one speed whatever friction does, as a force-speed curve needs; `frozen` keeps it at its place whatever its
@@ -93,18 +97,26 @@ def run_motor(
     """
     began = perf_counter()
     check_combines(model, start, slider)
+    held = Held(held_speed, frozen)
     if held_speed is not None:
         check_number("held_speed", held_speed, "m/s")
     request = requested(
         Driven(beam, as_forces(forces), frequency_hz, duration),
-        Modelled(model, count, modes, modal_damping),
+        Modelled("segment" if model == CHAIN else model, count, modes, modal_damping),
         Started(start, soft_start_periods, (), None),
         Watched(at, samples, step, steps_per_period, False),
         slider,
     )
+    if model == CHAIN:
+        from verify.motor.on_chain import check_chain, run_on_chain
+
+        check_chain(request, soft_start_periods)
+        return run_on_chain(request, slider, links, held, began, progress)
+    if links != "rigid":
+        raise InputError(f"links = {links!r} is of model = 'chain': leave it out on {model}")
     before = continue_from.state if continue_from is not None else None
     plan = lay_out(request, slider, before)
-    return carry_out(plan, before, Held(held_speed, frozen), began, progress, patient)
+    return carry_out(plan, before, held, began, progress, patient)
 
 
 class Held(msgspec.Struct, frozen=True):
@@ -265,14 +277,14 @@ def carry_out(
     riding = Riding.fresh(plan.slider, plan.request, plan.start, plan.coupling.two_way, held.speed, held.frozen)
     if not patient:
         check_work("duration", plan.request.pieces, riding.seconds(n_steps), "shorten it or lengthen the step")
-    _begin(plan, riding, before)
+    begin(plan, riding, before)
     ready = perf_counter()
     stopped, q, rates = run_stages(plan.stages, plan.z, riding, lambda n: progress(n / n_steps))
     clock = (began, ready, perf_counter())
     return told(plan, riding, stopped, (q, rates), clock)
 
 
-def _begin(plan: Plan, riding: Riding, before: MotorState | None) -> None:
+def begin(plan: Plan, riding: Riding, before: MotorState | None) -> None:
     """Put the slider down, or go on from where a run has left it."""
     feet, stage = riding.feet, plan.stages[0]
     if before is not None:

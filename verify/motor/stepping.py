@@ -36,6 +36,12 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     """None of a contact on springs."""
     at_start: tuple[float, float] = (0.0, 0.0)
     """`energy` before the first step."""
+    put_down: Array
+    """(feet, 4), their state before the first step."""
+    set_off: Array
+    """(2,), distance travelled and speed then."""
+    pressed: Array
+    """(points,), normal force of the springs then, newton."""
     steps_before: int = 0
     first: Array | None = None
     """(p,), the deflection at the start."""
@@ -58,6 +64,9 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
             held_speed=held_speed,
             stage_mass=slider.mass,
             hard=hard_of(slider),
+            put_down=feet.state.copy(),
+            set_off=feet.body.copy(),
+            pressed=np.zeros(len(feet.points)),
         )
 
     @property
@@ -79,17 +88,26 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         feet.touch[:, records.DEPTH] = depth
         self.before[:, 0] = depth
 
+    def look(self) -> None:
+        """Remember how it stands before the first step."""
+        self.at_start, self.put_down = self.energy(), self.feet.state.copy()
+        self.set_off = self.feet.body.copy()
+        self.pressed = self.feet.points[:, records.STIFF] * np.maximum(self.feet.touch[:, records.DEPTH], 0.0)
+
     def energy(self) -> tuple[float, float]:
         """(kinetic, in the springs across) now, joules; the springs' at the depths that the touch says."""
         feet, p, touch = self.feet, self.feet.points, self.feet.touch
-        masses = 1.0 / feet.given[:, records.LIGHTNESS]
-        eases = feet.given[:, records.EASE]
-        inertias = np.divide(1.0, eases, out=np.zeros_like(eases), where=eases > 0.0)
+        masses, inertias = (_turned(feet.given[:, one]) for one in (records.LIGHTNESS, records.EASE))
         kinetic = 0.5 * self.stage_mass * feet.body[records.V] ** 2 + 0.5 * float(
             masses @ feet.state[:, records.CLIMB] ** 2 + inertias @ feet.state[:, records.TURN] ** 2
         )
         depth = np.maximum(touch[:, records.DEPTH], 0.0)
         return float(kinetic), 0.5 * float(p[:, records.STIFF] @ depth**2)
+
+
+def _turned(eases: Array) -> Array:
+    """One over each; 0, in place of what has no end, where nothing moves."""
+    return np.divide(1.0, eases, out=np.zeros_like(eases), where=eases > 0.0)
 
 
 def run_stages(
@@ -102,7 +120,7 @@ def run_stages(
         surface = _surface(stage, z, riding.start)
         if i == 0:
             riding.first = stage.deflection(z, np.zeros(1), riding.points)[0]
-            riding.at_start = riding.energy()
+            riding.look()
             riding.feet.piece[:] = np.searchsorted(surface.edges[1:-1], riding.feet.points[:, records.OFFSET])
         riding.steps_before, riding.log.tally[records.STEP] = riding.steps, 0
         rows = np.ascontiguousarray(stage.rows(riding.points).T)
@@ -174,7 +192,7 @@ def _run_hard(
     if riding.before[0, 0] == RIDES_FROM_HERE:
         added = hop_kernels.put(0.0, surface, feet, riding.rubbing, line)
         riding.before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
-        riding.at_start = riding.energy()
+        riding.look()
     while done[records.STEP] < stage.n_steps:
         steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
         why = hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, riding.before, riding.log)

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.motion.carried import times_of
 from verify.motion.margins import margins_of
 from verify.motion.result import Statistics
 from verify.motor import records
@@ -27,19 +26,19 @@ def told(
     """The run, with its first sample as the slider was put down; `clock` is at request, first step and end, seconds."""
     request, log, feet = plan.request, riding.log, riding.feet
     n = int(log.tally[records.SAMPLES])
-    times = times_of(request, plan.stages)[: n + 1]
+    origin = plan.stages[0].origin
+    times = np.concatenate([[origin], *(stage.origin + stage.sample_times for stage in plan.stages)])[: n + 1]
     columns = log.kept[:n].T
     lost = int(log.tally[records.EVENTS]) - len(log.events)
     notes = (f"events: the first {len(log.events)} of {len(log.events) + lost}",) * (lost > 0)
     began, ready, end = clock
     assert riding.first is not None
-    first = log.heights[:n], log.pressures[:n]
     return MotorRun(
         times=times,
         slider=plan.slider,
         start=plan.start,
-        travelled=_led(0.0, columns[records.KEPT_X]),
-        speed=_led(_speed(plan.slider, riding), columns[records.KEPT_V]),
+        travelled=_led(float(riding.set_off[0]), columns[records.KEPT_X]),
+        speed=_led(float(riding.set_off[1]), columns[records.KEPT_V]),
         friction=_led(0.0, columns[records.KEPT_RUB]),
         surface_speed=_led(np.nan, columns[records.KEPT_SURFACE]),
         coupling=plan.coupling,
@@ -61,9 +60,9 @@ def told(
         stuck_share=_led(0.0, columns[records.KEPT_STICKING]),
         rubbed=_led(0.0, columns[records.KEPT_RUBBED]),
         carried=_led(0.0, columns[records.KEPT_ALONG]),
-        height=_before(first[0][:, :, 0]),
-        pitch=_before(first[0][:, :, 1]),
-        pressures=_before(first[1]),
+        height=np.concatenate([riding.put_down[None, :, 0], log.heights[:n, :, 0]]),
+        pitch=np.concatenate([riding.put_down[None, :, 2], log.heights[:n, :, 1]]),
+        pressures=np.concatenate([riding.pressed[None], log.pressures[:n]]),
         point_offsets=feet.points[:, records.OFFSET],
         events=log.events[: int(log.tally[records.EVENTS])],
         beam_margins=margins_of(request, plan.stages[-1]),
@@ -81,17 +80,8 @@ def told(
     )
 
 
-def _speed(slider: Slider, riding: Riding) -> float:
-    return slider.speed if riding.held_speed is None else riding.held_speed
-
-
 def _led(first: float, values: Array) -> Array:
     return np.concatenate([[first], values])
-
-
-def _before(values: Array) -> Array:
-    """The same with its first row twice: what a slider does before it moves is not kept."""
-    return np.concatenate([values[:1], values]) if len(values) else values
 
 
 def motor_margins(plan: "Plan") -> MotorMargins:

@@ -20,6 +20,7 @@ from verify.quantities.energies import ENERGY_QUANTITIES
 from verify.quantities.kind import A, Arguments, Figure, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
 from verify.quantities.motion import MOTION_QUANTITIES
+from verify.quantities.motor import MOTOR_QUANTITIES
 from verify.quantities.statics import STATIC_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
 from verify.registry import Registry
@@ -41,6 +42,7 @@ QUANTITIES: Registry[Quantity[Any]] = Registry(
         *CHAIN_QUANTITIES,
         *STATIC_QUANTITIES,
         *CONTACT_QUANTITIES,
+        *MOTOR_QUANTITIES,
     ),
     homes={"stress.share": "verify.stress.quantity:SHARE"},
 )

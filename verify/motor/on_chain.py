@@ -1,0 +1,134 @@
+"""A slider that may leave the surface, on the nonlinear chain, which moves first, kept in the middle of every step."""
+
+from collections.abc import Callable
+from time import perf_counter
+
+import numpy as np
+from msgspec.structs import replace
+
+from verify.chain.dynamics import at_rest
+from verify.chain.result import ChainMotion
+from verify.chain.ride import check_moved
+from verify.chain.stepping import simulate
+from verify.chain.stretching import ElasticMotion, simulate_elastic
+from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
+from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
+from verify.errors import InputError
+from verify.models.arrays import Array
+from verify.motion.request import Request
+from verify.motion.stepping import CHUNK
+from verify.motor import records
+from verify.motor.combine import CHAIN
+from verify.motor.records import Line, Moved
+from verify.motor.result import MotorRun
+from verify.motor.run import Held, Plan, begin, lay_out
+from verify.motor.stepping import WHY, Riding
+from verify.motor.told import told
+from verify.options import Links
+from verify.segments.reading import contact_line
+from verify.slider import Slider
+
+BESIDE = 2
+"""Links beside those under the feet on which the slider may run."""
+TOLERANCE = 1e-9
+
+
+def check_chain(request: Request, soft_start_periods: float) -> None:
+    """Raise InputError for a start that a chain does not make: it is at rest, undamped, under forces of full size."""
+    given = {"start": request.start, "soft_start_periods": soft_start_periods, "modal_damping": request.damping}
+    for name, rest in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
+        if given[name] != rest:
+            raise InputError(
+                f"{name} = {given[name]!r}: a nonlinear chain starts at rest, undamped, under forces of full size; "
+                f"give {rest!r}"
+            )
+
+
+def run_on_chain(
+    request: Request,
+    slider: Slider,
+    links: Links,
+    held: Held,
+    began: float,
+    progress: Callable[[float], None],
+) -> MotorRun:
+    """`request` is that of a linear chain from rest: its margins and steps are taken. Raises InputError."""
+    plan = lay_out(request, slider, None)
+    assert request.count is not None
+    check_links(request.count, 2, STATIC_LINKS, "a slider's contact line goes through two links or more")
+    stage = plan.stages[0]
+    times: Array = np.linspace(0.0, stage.duration, 2 * stage.n_steps + 1)
+    check_kept(len(times), request.count, f"duration = {stage.duration!r} s in steps of {stage.dt:.3g} s")
+    system = build_system(request.beam, request.count, request.forces, request.frequency_hz, load="reciprocal")
+    moved: ChainMotion | ElasticMotion = (
+        simulate_elastic(system, axial_stiffness(request.beam, request.count), times, most=MOST)
+        if links == "stretching"
+        else simulate(system, at_rest(system), times, tolerance=TOLERANCE, ledger=False, most=MOST, progress=progress)
+    )
+    check_moved(moved)
+    riding = Riding.fresh(slider, request, plan.start, False, held.speed, held.frozen)
+    riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
+    begin(plan, riding, None)
+    riding.look()
+    riding.first = np.zeros(0)
+    given = surface_given(moved, plan)
+    riding.feet.piece[:] = np.clip(
+        np.searchsorted(given.edges[1:-1], riding.feet.points[:, records.OFFSET]), 0, len(given.edges) - 2
+    )
+    ready = perf_counter()
+    stopped = _run(given, stage.n_steps, stage.dt, riding, progress)
+    state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
+    run = told(plan, riding, stopped, state, (began, ready, perf_counter()))
+    note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
+    return replace(run, model=CHAIN, notes=(note, *run.notes[1:]))
+
+
+def _run(given: Moved, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
+    from verify.motor import kernels
+
+    pieces, terms = given.local.shape[1], given.local.shape[3]
+    line = Line(local=np.zeros((pieces, 2, terms)), stamp=np.full(pieces, -1, dtype=np.int64), factors=np.zeros((2, 0)))
+    done = riding.log.tally
+    while done[records.STEP] < n_steps:
+        steps = min(CHUNK, n_steps - int(done[records.STEP]))
+        why = kernels.ride_given(steps, dt, given, riding.feet, riding.rubbing, line, riding.before, riding.log)
+        progress(riding.steps / n_steps)
+        if why != records.DONE:
+            return "left the links that it was put on" if why == records.OFF_BEAM else WHY[why]
+    return "end"
+
+
+def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> Moved:
+    """The contact line on the links under the feet and beside them, at every other time kept: in mid-steps."""
+    system, slider = moved.system, plan.slider
+    ends = [plan.start + foot.offset + side * 0.5 * foot.length for foot in slider.feet for side in (-1.0, 1.0)]
+    first = max(_link_at(system, min(ends)) - BESIDE, 0)
+    last = min(_link_at(system, max(ends)) + BESIDE, system.n_links - 1)
+    heights, rises, along = (part[1::2] for part in _moved(moved))
+    rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
+    local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)
+    edges = system.nodes[first : last + 2] - plan.start
+    return Moved(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 1]), edges)
+
+
+def _link_at(system: ChainSystem, x: float) -> int:
+    return int(np.clip(np.searchsorted(system.nodes, x, side="right") - 1, 0, system.n_links - 1))
+
+
+def _line_rows(system: ChainSystem) -> Array:
+    """What a step up at each joint adds to the line's polynomials, (N, pieces, 4), powers of the local coordinate."""
+    up = np.triu(np.ones((system.n_links, system.n_links + 1)), 1)
+    powers = contact_line(straight_chain(system), up).c[::-1]  # (4, pieces, N)
+    lengths = np.diff(system.nodes)
+    return np.asarray(np.moveaxis(powers * lengths[None, :, None] ** np.arange(4)[:, None, None], 0, 2).swapaxes(0, 1))
+
+
+def _moved(moved: ChainMotion | ElasticMotion) -> tuple[Array, Array, Array]:
+    """Steps across from joint to joint, their rates, and the speed of links' middles along x, (n, N) each."""
+    if isinstance(moved, ElasticMotion):
+        heights, rises = (np.diff(parts[:, :, 1], axis=1) for parts in (moved.displacements, moved.velocities))
+        ends = moved.velocities[:, :, 0]
+        return heights, rises, np.asarray(0.5 * (ends[:, 1:] + ends[:, :-1]))
+    theta, lengths, spins = moved.directions(), moved.system.lengths, np.cumsum(moved.rates, axis=1)
+    back = -lengths * np.sin(theta) * spins
+    return lengths * np.sin(theta), lengths * np.cos(theta) * spins, np.cumsum(back, axis=1) - 0.5 * back

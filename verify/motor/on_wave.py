@@ -1,0 +1,117 @@
+"""A rigid foot of one wavelength at a fixed height over a pure travelling wave, on springs or a layer of them.
+
+What the closed forms of a driving layer are about, by the compiled loop of `run_motor`: points, steps and all.
+"""
+
+from math import cos, pi
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.checks import check_number, check_whole
+from verify.models.arrays import Array
+from verify.motion.pure_wave import wave_stage
+from verify.motion.surface import Stage, cut
+from verify.motor import records
+from verify.motor.figures import AtSpeed
+from verify.motor.laid import feet_of, fresh_log, rubbing_of
+from verify.motor.stepping import Riding, run_stages
+from verify.slider import Contact, Foot, Slider
+
+WARM = 2
+"""Periods before the one that counts: what gives way along the surface forgets how it began."""
+
+
+def over_a_wave(
+    beam: Beam,
+    frequency_hz: float,
+    *,
+    speed_ratio: float,
+    contact_half_angle: float,
+    epsilon: float = 0.0,
+    mu: float = 0.2,
+    points: int = 61,
+    steps_per_period: int = 256,
+    amplitude: float = 1e-9,
+) -> tuple[AtSpeed, float]:
+    """(means over a period, speed of the crests in m/s) of a slider held at `speed_ratio` times that speed.
+
+    The foot spans one wavelength of amplitude cos(omega t - k x), towards +x, at the height at which a half angle of
+    every crest presses into it. `epsilon` = 2 mu kappa/(kappa_t k h) is its give along the surface. Friction is
+    Coulomb's. Raises InputError.
+    """
+    check_number("contact_half_angle", contact_half_angle, "radians of the wave", above=0, below=pi)
+    check_number("speed_ratio", speed_ratio, "over the speed of the crests")
+    check_number("epsilon", epsilon, "2 mu kappa / (kappa_t k h)", at_least=0)
+    check_whole("points", points, 2)
+    check_whole("steps_per_period", steps_per_period, 4)
+    stage = _stage(beam, amplitude, frequency_hz, steps_per_period)
+    k = float(np.sqrt(stage.omega / beam.wave_constant))
+    crest = beam.surface_distance * k * stage.omega * amplitude
+    slider = _slider(mu, epsilon, k, 2.0 * beam.surface_distance, 2.0 * pi / k, points)
+    riding = _riding(slider, beam, -speed_ratio * crest, amplitude * cos(contact_half_angle), WARM + 1)
+    run_stages([stage], np.zeros((2, 0)), riding, lambda n: None)
+    return _means(riding, stage, -speed_ratio * crest), crest
+
+
+def _stage(beam: Beam, amplitude: float, frequency_hz: float, steps: int) -> Stage:
+    """Some periods of the wave, sampled once in each."""
+    from msgspec.structs import replace
+
+    one = wave_stage(beam, amplitude, frequency_hz)
+    length = 2.0 * pi / float(np.sqrt(one.omega / beam.wave_constant))
+    cells = int(np.ceil(2.0 * pi / 0.3))
+    laid = cut((WARM + 1) * one.duration, one.duration / steps * (1.0 + 1e-9), WARM + 1)
+    edges: Array = np.linspace(-0.01 * length, 1.01 * length, cells + 2)
+    return replace(one, edges=edges, n_steps=laid.n, dt=laid.dt, every=laid.every)
+
+
+def _slider(mu: float, epsilon: float, k: float, thickness: float, length: float, points: int) -> Slider:
+    """Of unit stiffness for each metre, and what follows along the surface."""
+    along = 2.0 * mu / (epsilon * k * thickness) if epsilon else None
+    return Slider(
+        mass=1.0,
+        mu=mu,
+        law="coulomb",
+        contact=Contact(layer_stiffness=1.0, layer_tangential_stiffness=along),
+        foot=(Foot(length=length, points=points, offset=0.5 * length, pitches=False),),
+    )
+
+
+def _riding(slider: Slider, beam: Beam, speed: float, height: float, samples: int) -> Riding:
+    """The foot at its height, which nothing changes."""
+    feet = feet_of(slider, speed)
+    feet.given[:, records.LIGHTNESS] = 0.0
+    feet.state[:, records.HEIGHT] = height
+    return Riding(
+        feet=feet,
+        rubbing=rubbing_of(slider, beam, speed, True),
+        log=fresh_log(samples, feet, np.zeros((0, 2)), 1),
+        before=np.full((len(feet.points), 2), -1.0),
+        start=0.0,
+        points=np.empty(0),
+        two_way=False,
+        held_speed=speed,
+        stage_mass=slider.mass,
+        hard=None,
+        put_down=feet.state.copy(),
+        set_off=feet.body.copy(),
+        pressed=np.zeros(len(feet.points)),
+    )
+
+
+def _means(riding: Riding, stage: Stage, speed: float) -> AtSpeed:
+    """Of the last period, the way of the wave's crests being -x."""
+    last, before = riding.log.kept[-1], riding.log.kept[-2]
+    seconds = stage.duration / (WARM + 1)
+    return AtSpeed(
+        speed=speed,
+        force=float(last[records.KEPT_RUB]),
+        normal_force=float(last[records.KEPT_PUSH]),
+        contact_share=float(last[records.KEPT_TOUCHING]),
+        stuck_share=float(last[records.KEPT_STICKING]),
+        given=float(last[records.KEPT_ALONG]) / seconds,
+        rubbed=float(last[records.KEPT_RUBBED]) / seconds,
+        spread=float(abs(last[records.KEPT_RUB] - before[records.KEPT_RUB])),
+        periods=WARM + 1,
+    )

@@ -1,0 +1,103 @@
+"""A motor's periodic motion by shooting: the state that a period gives back, by Newton's method on the period's map."""
+
+import numpy as np
+from msgspec.structs import replace
+
+from verify.errors import InputError
+from verify.field_docs import Value
+from verify.models.arrays import Array, ComplexArray
+from verify.motion.request import Driven, Modelled, Started, Watched, requested
+from verify.motor.case import MotorCase
+from verify.motor.result import MotorRun, MotorState
+from verify.motor.run import Held, carry_out, lay_out
+
+MOST = 12
+SMALL = 1e-4
+"""Of a coordinate's own size: the difference by which the map's slopes are taken."""
+REPEATS = 1e-3
+"""Of its own size: what is off by more after a period does not repeat itself. Landings on dashpots jump by steps."""
+
+
+class Periodic(Value, frozen=True, eq=False, kw_only=True):
+    """A motion that repeats itself."""
+
+    run: MotorRun
+    """One period of it, from its start."""
+    state: MotorState
+    """At its start."""
+    missed: float
+    """How far the state is off after a period, over its own size."""
+    multipliers: ComplexArray
+    """Eigenvalues of the period's map, (n,) complex: stable where all are below 1 in size."""
+    rounds: int
+    """Of Newton's method."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether small departures die away."""
+        return bool(np.abs(self.multipliers).max() < 1.0)
+
+
+def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, settle: int = 100) -> Periodic:
+    """The periodic motion across of a slider held at a speed (m/s) and at its place, one-way on a steady beam.
+
+    After `settle` periods of running, heights, pitches and their rates are sought that a period gives back. Raises
+    InputError where they are not found, as of a slider that bounces without a pattern.
+    """
+    if case.slider.coupling != "one-way" or case.start != "steady":
+        raise InputError(
+            f"slider.coupling = {case.slider.coupling!r}, start = {case.start!r}: shooting is of a steady beam that "
+            "does not feel its slider, give 'one-way' and 'steady'"
+        )
+    run = case.run(settle * case.period, held_speed=speed, frozen=True, samples=2)
+    state, size, best = run.state, _size(run), None
+    for rounds in range(1, MOST + 1):
+        run = _period(case, state, speed)
+        missed = (run.state.feet - state.feet).ravel() / size
+        slopes = _slopes(case, state, run, speed, size)
+        off, multipliers = float(np.abs(missed).max()), np.asarray(np.linalg.eigvals(slopes), dtype=np.complex128)
+        if best is None or off < best.missed:
+            best = Periodic(run=run, state=state, missed=off, multipliers=multipliers, rounds=rounds)
+        if off <= tolerance:
+            break
+        step = np.linalg.lstsq(slopes - np.eye(len(size)), -missed, rcond=None)[0] * size
+        state = replace(state, feet=state.feet + step.reshape(state.feet.shape), touch=run.state.touch)
+    if best is not None and best.missed <= REPEATS:
+        return best
+    raise InputError(
+        f"no periodic motion was found in {MOST} rounds: it does not repeat after one period; take means over many "
+        "periods instead"
+    )
+
+
+def _period(case: MotorCase, state: MotorState, speed: float) -> MotorRun:
+    """One period from a state, its clock set back so that the drive is met at the same phase."""
+    request = requested(
+        Driven(case.beam, case.forces, case.frequency_hz, case.period),
+        Modelled(case.model, case.count, case.modes, case.modal_damping),
+        Started(case.start, 0.0, (), None),
+        Watched((), 2, None, case.steps_per_period, False),
+        case.slider,
+    )
+    plan = lay_out(request, case.slider, replace(state, time=0.0))
+    return carry_out(plan, replace(state, time=0.0), Held(speed, True), 0.0, lambda part: None, True)
+
+
+def _size(run: MotorRun) -> Array:
+    """Of each coordinate, to which differences are taken: amplitude of the height, per foot and its rates."""
+    omega = 2.0 * np.pi / max(run.duration, 1e-300)
+    height = float(np.ptp(run.height)) + float(np.abs(run.state.feet[:, 0]).max()) + 1e-12
+    arm = float(np.abs(run.point_offsets).max()) or 1.0
+    row = np.array([height, height * omega, height / arm, height * omega / arm])
+    return np.tile(row, len(run.state.feet))
+
+
+def _slopes(case: MotorCase, state: MotorState, run: MotorRun, speed: float, size: Array) -> Array:
+    """The period's map by differences, (n, n), in units of `size`; a foot that does not turn keeps its pitch."""
+    base, columns = run.state.feet.ravel(), []
+    for j in range(len(size)):
+        moved = state.feet.ravel().copy()
+        moved[j] += SMALL * size[j]
+        after = _period(case, replace(state, feet=moved.reshape(state.feet.shape)), speed).state.feet.ravel()
+        columns.append((after - base) / SMALL / size)
+    return np.array(columns).T

@@ -1,0 +1,386 @@
+"""Named figures of a motor: a slider that may leave the beam, held at a speed, without load, under way."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from msgspec import Meta
+from msgspec.structs import replace
+
+from verify import options
+from verify.checks import Relative
+from verify.errors import InputError
+from verify.judge.workbench import Workbench
+from verify.quantities.cases import drive_forces, drive_frequency
+from verify.quantities.kind import WHAT_EXISTS, AtFrequency, DriveArguments, MovingModel, Quantity, Size, check_count
+
+if TYPE_CHECKING:
+    from verify.motor.case import MotorCase
+    from verify.motor.figures import AtSpeed
+    from verify.scenes.scene import Scene
+    from verify.slider import Slider
+
+Positive = Annotated[float, Meta(gt=0)]
+
+
+class Motor(DriveArguments, frozen=True, kw_only=True):
+    """The scene's motor, one model's beam in its steady state, with what is given instead."""
+
+    reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
+    slides: ClassVar[bool] = True
+
+    model: MovingModel = "segment"
+    count: Size | None = None
+    force: Annotated[float, Meta(ge=0, description="of every force, newton; default: the scene's")] | None = None
+    modal_damping: Annotated[Relative, Meta(ge=0, lt=1, description="ratio of every mode")] | None = None
+    steps_per_period: Annotated[int, Meta(ge=4, description="at least; more where the contact is stiff")] = 61
+    mu: Annotated[float, Meta(gt=0, description="coefficient of friction")] | None = None
+    slope: Annotated[float, Meta(gt=0, description="K of Eq. (3), s/m")] | None = None
+    mass: Annotated[float, Meta(gt=0, description="kg")] | None = None
+    law: Annotated[options.Law, Meta(description="Eq. (3), or true sticking")] | None = None
+    coupling: Annotated[options.CouplingChoice, Meta(description="whether the beam feels it")] | None = None
+    preload: Annotated[float, Meta(ge=0, description="newton pressing it on beside its weight")] | None = None
+    slider_position: Annotated[float, Meta(description="where it is put, metres")] | None = None
+    stiffness: Annotated[float, Meta(gt=0, description="of each foot's contact, N/m")] | None = None
+    damping: Annotated[float, Meta(ge=0, description="of each foot's contact, N s/m")] | None = None
+    tangential_stiffness: Annotated[float, Meta(gt=0, description="of each foot along the surface, N/m")] | None = None
+    restitution: Annotated[float, Meta(ge=0, le=1, description="of a hard contact")] | None = None
+    points: Annotated[int, Meta(ge=1, description="of every foot")] | None = None
+    foot_length: Annotated[float, Meta(gt=0, description="of every foot, metres")] | None = None
+
+    def __post_init__(self) -> None:
+        check_count(self.model, self.count)
+
+
+class AtSpeedOf(Motor, frozen=True, kw_only=True):
+    """Its slider held at a speed, at its place."""
+
+    speed: Annotated[float, Meta(description="along +x, m/s")] = 0.0
+
+
+class ForceAt(Motor, frozen=True, kw_only=True):
+    """The same at a speed that has to be said."""
+
+    speed: Annotated[float, Meta(description="along +x, m/s")]
+
+
+class UnderWay(Motor, frozen=True, kw_only=True):
+    """Its slider free, from rest."""
+
+    periods: Annotated[int, Meta(ge=2, description="of the drive, that are run")] = 2000
+    last: Annotated[int, Meta(ge=2, description="periods at the end of which the mean is taken")] = 200
+    pull: Annotated[float, Meta(description="on the slider along +x, newton")] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.last >= self.periods:
+            raise InputError(f"last = {self.last!r} of periods = {self.periods!r}: take the mean of fewer than all")
+
+
+class OfRun(UnderWay, frozen=True, kw_only=True):
+    """A line of its energy books over the work of the surface on it."""
+
+    of: Annotated[
+        Literal["damped", "impacts", "rubbed", "residual"],
+        Meta(description="lost in dashpots, in hard landings, in friction; what the books miss"),
+    ]
+
+
+class _OverWave(AtFrequency, frozen=True, kw_only=True):
+    """A rigid foot of one wavelength of springs at a fixed height over a pure travelling wave."""
+
+    contact_half_angle: Annotated[float, Meta(gt=0, lt=3.14159, description="of the wave's phase, radians")]
+    speed_ratio: Annotated[float, Meta(description="over the speed of the surface at the crests")]
+    epsilon: Annotated[float, Meta(ge=0, description="2 mu kappa/(kappa_t k h); 0 is Coulomb's")] = 0.0
+    mu: Annotated[float, Meta(gt=0, description="coefficient of friction")] = 0.2
+    steps_per_period: Annotated[int, Meta(ge=4, description="of the wave")] = 256
+    amplitude: Annotated[float, Meta(gt=0, description="of the wave, metres")] = 1e-9
+
+
+class OverWave(_OverWave, frozen=True, kw_only=True):
+    """So many of them."""
+
+    points: Annotated[int, Meta(ge=2, description="springs in a wavelength")] = 61
+
+
+class OverWaveOrder(_OverWave, frozen=True, kw_only=True):
+    """Several numbers of them, with steps in proportion to the first."""
+
+    counts: Annotated[tuple[int, ...], Meta(min_length=3, description="three or more numbers of points")]
+
+
+def slider_on_feet(a: Motor, scene: "Scene") -> "Slider":
+    """The scene's slider with what is given instead of its own. Raises InputError where it never leaves the beam."""
+    if scene.slider is None:
+        raise InputError("the scene has no slider: add [slider] with mass, mu and [slider.contact]")
+    if scene.slider.contact is None:
+        raise InputError("slider.contact is missing: a motor's slider may leave the beam, add [slider.contact]")
+    own = {name: getattr(a, name) for name in ("mu", "slope", "mass", "law", "coupling", "preload")}
+    own |= {"position": a.slider_position, "pull": getattr(a, "pull", None)}
+    touching = {name: getattr(a, name) for name in ("stiffness", "damping", "tangential_stiffness", "restitution")}
+    contact = replace(scene.slider.contact, **_given(touching))
+    standing = _given({"points": a.points, "length": a.foot_length})
+    feet = tuple(replace(foot, **standing) for foot in scene.slider.feet) if standing else scene.slider.foot
+    return replace(scene.slider, contact=contact, foot=feet, **_given(own))
+
+
+def _given(settings: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in settings.items() if value is not None}
+
+
+def motor_case(a: Motor, scene: "Scene") -> "MotorCase":
+    """The motor that arguments and a scene describe. Raises InputError."""
+    from verify.motor.case import MotorCase
+    from verify.quantities.simulated import check_forced
+
+    check_forced(scene, "a motor")
+    forces = drive_forces(a, scene)
+    return MotorCase(
+        beam=scene.beam,
+        forces=forces if a.force is None else tuple(replace(one, amplitude=a.force) for one in forces),
+        frequency_hz=drive_frequency(a, scene),
+        slider=slider_on_feet(a, scene),
+        model=a.model,
+        count=a.count,
+        modal_damping=a.modal_damping,
+        steps_per_period=a.steps_per_period,
+    )
+
+
+def _needs(a: Motor, scene: "Scene") -> tuple[()]:
+    """Raise InputError for a motor that is not run."""
+    from verify.motor.combine import check_combines
+    from verify.motor.laid import check_on_beam
+
+    case = motor_case(a, scene)
+    check_combines(case.model, case.start, case.slider)
+    check_on_beam(case.slider, case.beam, case.slider.start_on(case.beam))
+    return ()
+
+
+def _held(a: "AtSpeedOf | ForceAt | Motor", scene: "Scene", bench: Workbench) -> "AtSpeed":
+    """The motor at the speed that is asked for, solved once."""
+    from verify.motor.figures import at_speed
+
+    case, speed = motor_case(a, scene), float(getattr(a, "speed", 0.0))
+    key = ("motor", case, speed)
+    if key not in bench.motors:
+        bench.motors[key] = at_speed(case, speed)
+    found: AtSpeed = bench.motors[key]
+    return found
+
+
+def _of_held(figure: "Callable[[AtSpeed], float]") -> "Callable[[Any, Scene, Workbench], float]":
+    def evaluate(a: Motor, scene: "Scene", bench: Workbench) -> float:
+        return figure(_held(a, scene, bench))
+
+    return evaluate
+
+
+def _efficiency(found: "AtSpeed") -> float:
+    """Raises InputError where the slider drives the surface."""
+    if found.efficiency is None:
+        raise InputError(f"speed = {found.speed!r} m/s: there the slider drives the surface, give a speed in between")
+    return found.efficiency
+
+
+def _no_load(a: Motor, scene: "Scene", bench: Workbench) -> float:
+    from verify.motor.figures import no_load
+
+    return no_load(motor_case(a, scene)).speed
+
+
+def _free_speed(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
+    from verify.motor.figures import mean_speed
+
+    return mean_speed(_free(a, scene, bench), a.last)[0]
+
+
+def _free(a: UnderWay, scene: "Scene", bench: Workbench) -> Any:
+    """The free run, sampled once a period, solved once. Raises InputError where it does not reach its end."""
+    case = motor_case(a, scene)
+    key = ("motor free", case, a.periods)
+    if key not in bench.motors:
+        bench.motors[key] = case.run(a.periods * case.period, samples=a.periods + 1, patient=False)
+    run = bench.motors[key]
+    if run.statistics.interrupted:
+        raise KeyboardInterrupt
+    if not run.statistics.finished:
+        raise InputError(
+            f"the slider {run.statistics.stopped} after {run.state.time:.6g} s: ask for fewer periods, or put it "
+            "elsewhere"
+        )
+    return run
+
+
+def _start_time(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
+    """Raises InputError where it is not under way by then."""
+    from verify.motor.figures import mean_speed, started_of
+
+    run = _free(a, scene, bench)
+    found = started_of(run, mean_speed(run, a.last)[0])
+    if found is None:
+        raise InputError(f"periods = {a.periods!r}: the slider is not under way by then, give more")
+    return found
+
+
+def _booked(a: OfRun, scene: "Scene", bench: Workbench) -> float:
+    books = _free(a, scene, bench).ledger
+    return float(getattr(books, a.of) / (abs(books.across) + abs(books.along)))
+
+
+def _over_wave(a: OverWave, scene: "Scene", bench: Workbench) -> float:
+    """F/(mu N), along the way of the crests."""
+    from verify.motor.on_wave import over_a_wave
+
+    found, _ = over_a_wave(
+        scene.beam,
+        drive_frequency(a, scene),
+        speed_ratio=a.speed_ratio,
+        contact_half_angle=a.contact_half_angle,
+        epsilon=a.epsilon,
+        mu=a.mu,
+        points=a.points,
+        steps_per_period=a.steps_per_period,
+        amplitude=a.amplitude,
+    )
+    return -found.force / (a.mu * found.normal_force)
+
+
+def _over_wave_order(a: OverWaveOrder, scene: "Scene", bench: Workbench) -> float:
+    """Against the closed form of the layer."""
+    from verify.contact.layer import force
+    from verify.judge.compare import observed_order
+
+    exact = force(a.contact_half_angle, a.speed_ratio, a.epsilon)
+    own = {name: getattr(a, name) for name in _OverWave.__struct_fields__}
+    steps = [round(a.steps_per_period * n / a.counts[0]) for n in a.counts]
+    cases = [OverWave(**{**own, "points": n, "steps_per_period": s}) for n, s in zip(a.counts, steps, strict=True)]
+    return observed_order(a.counts, [abs(_over_wave(one, scene, bench) - exact) for one in cases])
+
+
+MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
+    Quantity(
+        "slider.stall_force",
+        "N",
+        "Mean friction on a slider that may leave the beam, held still.",
+        Motor,
+        "in time",
+        _of_held(lambda found: found.force),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.force_speed",
+        "N",
+        "The same at a speed.",
+        ForceAt,
+        "in time",
+        _of_held(lambda found: found.force),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.normal_mean",
+        "N",
+        "Mean normal force on that slider.",
+        AtSpeedOf,
+        "in time",
+        _of_held(lambda found: found.normal_force),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.contact_share",
+        "1",
+        "Share of its points and of time that touch.",
+        AtSpeedOf,
+        "in time",
+        _of_held(lambda found: found.contact_share),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.stuck_share",
+        "1",
+        "Share of its points and of time that stick.",
+        AtSpeedOf,
+        "in time",
+        _of_held(lambda found: found.stuck_share),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.power",
+        "W",
+        "Mean power on that slider at a speed.",
+        ForceAt,
+        "in time",
+        _of_held(lambda found: found.power),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.efficiency",
+        "1",
+        "That power over what the surface gives along the beam.",
+        ForceAt,
+        "in time",
+        _of_held(_efficiency),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.wear_power",
+        "W",
+        "What friction takes at a speed, and what gives way along the surface.",
+        AtSpeedOf,
+        "in time",
+        _of_held(lambda found: found.rubbed),
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.no_load_speed",
+        "m/s",
+        "Speed along +x at which the mean friction on that slider is nought.",
+        Motor,
+        "in time",
+        _no_load,
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.free_speed",
+        "m/s",
+        "Mean speed of that slider at the end of a free run.",
+        UnderWay,
+        "in time",
+        _free_speed,
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.start_time",
+        "s",
+        "Until 1 - 1/e of that speed is reached from rest.",
+        UnderWay,
+        "in time",
+        _start_time,
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.contact_energy",
+        "1",
+        "A line of the books of that run over the work of the surface.",
+        OfRun,
+        "in time",
+        _booked,
+        needs=_needs,
+    ),
+    Quantity(
+        "slider.wave_force",
+        "1",
+        "F/(mu N) of a rigid foot of springs at a fixed height over a pure wave, stepped.",
+        OverWave,
+        "in time",
+        _over_wave,
+    ),
+    Quantity(
+        "slider.wave_force_order",
+        "1",
+        "Observed order of that figure in the number of points, against the layer's closed form.",
+        OverWaveOrder,
+        "in time",
+        _over_wave_order,
+    ),
+)
