@@ -260,7 +260,7 @@ class Rider:
         out = np.zeros(BODY)
         out[X], out[Z] = b[V], b[ZD]
         out[V] = 0.0 if p.held is not None else (friction + p.pull) / p.mass
-        out[ZD] = (normal - p.load + p.load_stiffness * b[Z]) / p.across
+        out[ZD] = (normal - p.load - p.load_stiffness * b[Z]) / p.across
         touches = mode[0] == "pressed"
         out[PRESSED], out[DRAGGED], out[TOUCHED] = normal, friction, float(touches)
         out[STUCK] = float(touches and mode[1] == "stuck")
