@@ -17,13 +17,13 @@ HEIGHT = 1e-8
 WAVE = drive(HEIGHT)[1]
 LENGTH = 2.0 * pi / WAVE.k
 CRESTS = HALF * WAVE.k * OMEGA * HEIGHT
-KAPPA, MU = 2e9, 0.2
-FEET = [(0.31, 5, 0.0, True), (1.0, 8, 0.0, True), (1.37, 9, 3.0, True), (0.31, 5, 0.0, False), (0.83, 4, 5.0, False)]
+KAPPA, MU, PERIODS = 2e9, 0.2, 2
+FEET = [(0.31, 5, 0.0, True), (1.0, 8, 0.0, True), (1.37, 9, 3.0, True), (0.31, 5, 0.0, False)]
 
 
 @cache
 def followed(spans, n, damping, pitches):
-    """(wave lengths, DOP853's rows at each of five periods) of a foot held at a speed."""
+    """(wave lengths, DOP853's rows at each period) of a foot held at a speed."""
     wave = drive(1e-6, 0.1)[1]
     length, mass, load, stiffness = spans * LENGTH, 4e-3, 3.0, 6e6
     arms = by.cells(length, n)
@@ -40,7 +40,7 @@ def followed(spans, n, damping, pitches):
         pitches=pitches,
     )
     level = by.lain_on(by.felt(wave.at, MIDDLE + arms, 0.0, HALF)[0], load / stiffness)
-    times = np.arange(1, 6) * PERIOD
+    times = np.arange(1, PERIODS + 1) * PERIOD
     rows = by.foot_ridden(foot, wave, MIDDLE, [level, 0.0, 0.0, 0.0], times, rtol=1e-8, max_step=0.02 * PERIOD)
     return foot, rows
 
@@ -57,7 +57,7 @@ def foot_run(spans, n, damping, pitches, step):
         contact=Contact(stiffness=foot.stiffness, damping=damping),
         foot=(Foot(length=spans * LENGTH, points=n, pitches=pitches),),
     )
-    return ridden(slider, 1e-6, 0.1, 5, step, held_speed=foot.speed, samples=6)
+    return ridden(slider, 1e-6, 0.1, PERIODS, step, held_speed=foot.speed, samples=PERIODS + 1)
 
 
 def foot_misses(case, step):
@@ -66,7 +66,7 @@ def foot_misses(case, step):
     heights = np.abs(run.height[1:, 0] - rows[:, 0]).max() / 1e-6
     turns = np.abs(run.pitch[1:, 0] - rows[:, 2]).max() * case[0] * LENGTH / 1e-6
     impulses = np.array([run.normal_force[1:].sum(), run.friction[1:].sum(), run.contact_share[1:].sum()]) * PERIOD
-    scales = 5.0 * PERIOD * np.array([foot.load, foot.load, 1.0])
+    scales = PERIODS * PERIOD * np.array([foot.load, foot.load, 1.0])
     return max(heights, turns), *np.abs((impulses - rows[-1, 4:7]) / scales)
 
 
@@ -79,10 +79,10 @@ def test_a_foot_rises_turns_and_rubs_as_dop853_says(case):
     assert touched < 3e-4
 
 
-@pytest.mark.parametrize("case", [FEET[1], FEET[3]])
+@pytest.mark.parametrize("case", [FEET[0], FEET[1], FEET[3]])
 def test_a_foot_is_of_second_order_in_the_step(case):
-    coarse, fine = (np.mean([foot_misses(case, step)[0] for step in steps]) for steps in ((250, 266), (4000, 4256)))
-    assert 1.4 < np.log2(coarse / fine) / 4.0 < 2.6
+    coarse, fine = (np.mean([foot_misses(case, step)[0] for step in steps]) for steps in ((125, 133), (4000, 4256)))
+    assert 1.4 < np.log2(coarse / fine) / 5.0 < 2.6
 
 
 def slid(phi, r, epsilon=0.0, n=61, step=127, periods=3, **asked):
@@ -132,13 +132,14 @@ def test_power_and_efficiency_are_the_layers(phi, r):
     assert run.rubbed[-1] / PERIOD / (MU * load * CRESTS) == pytest.approx(given - r * layer.force(phi, r), abs=1e-3)
 
 
-@pytest.mark.parametrize(("phi", "r", "epsilon"), [(1.0, 0.87, 0.1), (1.0, 0.0, 3.0), (1.4, 0.5, 0.7)])
-def test_a_layer_that_gives_way_is_of_second_order_in_the_step(phi, r, epsilon):
-    """Against the same foot in steps that are finer by far, so that the number of points does not tell."""
-    best = dragged(phi, r, epsilon, step=4999)
-    off = [abs(np.mean([dragged(phi, r, epsilon, step=n) for n in steps]) - best) for steps in ((31, 37), (251, 257))]
-    assert 1.4 < np.log2(off[0] / off[1]) / 3.0 < 2.8
-    assert off[1] < 3e-4
+def test_a_layer_that_gives_way_is_of_second_order_in_the_step():
+    """Root mean square over cases, against the same foot in steps finer by far: the number of points does not tell."""
+    cases = [(1.0, 0.87, 0.1), (1.0, 0.0, 3.0), (1.4, 0.5, 0.7), (0.7, 0.9, 1.0), (1.9, 0.3, 0.4)]
+    best = np.array([dragged(*case, step=4999) for case in cases])
+    off = [[np.subtract([dragged(*case, step=n) for case in cases], best) for n in s] for s in ((31, 37), (251, 257))]
+    coarse, fine = np.sqrt(np.mean(np.square(off), axis=(1, 2)))
+    assert 1.5 < np.log2(coarse / fine) / 3.0 < 2.5
+    assert fine < 3e-4
 
 
 def test_points_become_a_layer_as_the_square_of_their_distance_or_faster():
@@ -171,21 +172,21 @@ def test_the_papers_figures_of_a_stuck_layer_and_of_coulombs_are_eleven_per_cent
 
 @pytest.mark.parametrize("waves", [0.15, 0.3, 0.42, 0.5])
 def test_a_short_foot_drives_by_its_length_and_has_a_dead_band(waves):
-    """Upright and so light and pressed so hard that it never leaves; indentation is a thousandth of the wave's height."""
-    span, n = pi * waves, 41
+    """Upright, so light and pressed so hard that it never leaves; a point gives way by a hundredth of the height."""
+    span, n, pressed = pi * waves, 41, 0.01
     for r in (0.0, 0.3):
         slider = Slider(
             mass=1.0,
             mu=MU,
             law="coulomb",
             gravity=0.0,
-            preload=1.0,
+            preload=pressed,
             coupling="one-way",
             contact=Contact(stiffness=3e9, damping=40.0),
-            foot=(Foot(length=waves * LENGTH * n / (n - 1.0), points=n, pitches=False, mass=2e-4),),
+            foot=(Foot(length=waves * LENGTH * n / (n - 1.0), points=n, pitches=False, mass=2e-6),),
         )
         run = ridden(slider, HEIGHT, periods=2, step=16000, held_speed=-r * CRESTS, frozen=True, samples=3)
-        assert -run.friction[-1] / MU == pytest.approx(lying.short_foot_force(span, r), abs=0.02)
+        assert -run.friction[-1] / (MU * pressed) == pytest.approx(lying.short_foot_force(span, r), abs=0.02)
     assert lying.dead_band(span) == pytest.approx(min(2.0 * waves, 1.0), rel=1e-12)
 
 
