@@ -8,7 +8,7 @@ What there is (`help` of each says its fields, shapes and units; everything is S
   sweep_harmonic, sweep_modes of each                          many frequencies (HarmonicSweep) or beams in one call
   travelling_wave                                              what kind of wave a field carries: measure, WaveMeasures
   simulate, Motion                                             a driven beam in time, with a slider or without
-  run_motor, MotorRun, Contact, Foot                           a slider that may leave the beam, on feet of many points
+  run_motor, run_motors, MotorRun, Contact, Foot               sliders that may leave the beam, on feet of many points
   free_vibration, FreeVibration                                a beam let go from a shape, without forces
   bend, Bent                                                   a chain under a large load at its tip
   load_scene, run_scene                                        a scene file, and what its gates and studies find
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from verify.motion.result import Motion
     from verify.motion.simulate import simulate
     from verify.motor.result import MotorRun
-    from verify.motor.run import run_motor
+    from verify.motor.run import run_motor, run_motors
     from verify.run.runner import run_scene
     from verify.scenes.scene import load_scene
     from verify.section import Section
@@ -67,6 +67,7 @@ __all__ = [
     "free_vibration",
     "load_scene",
     "run_motor",
+    "run_motors",
     "run_scene",
     "segment_model",
     "simulate",
@@ -96,6 +97,7 @@ _HOME = {
     "free_vibration": "verify.motion.free_vibration",
     "load_scene": "verify.scenes.scene",
     "run_motor": "verify.motor.run",
+    "run_motors": "verify.motor.run",
     "run_scene": "verify.run.runner",
 }
 _FACES = {"analytic_modes", "fem_beam", "segment_model", "simulate", "travelling_wave"}

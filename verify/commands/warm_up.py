@@ -60,8 +60,9 @@ def _folders() -> list[str]:
 def _calls() -> list[tuple[Any, tuple[Any, ...]]]:
     from verify.chain import warm as chain
     from verify.motion import warm as motion
+    from verify.motor import warm as motor
 
-    return [*motion.calls(), *chain.calls()]
+    return [*motion.calls(), *chain.calls(), *motor.calls()]
 
 
 def _compile_all() -> None:

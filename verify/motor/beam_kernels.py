@@ -11,10 +11,16 @@ from verify.models.arrays import Array
 from verify.models.kernels import FAST, part
 from verify.motion.records import OMEGA, Z_IM
 from verify.motor.records import (
+    AFTER,
     AT,
     FACE,
     GRIP,
+    HELD,
     IMAGE,
+    LIGHT,
+    MEAN,
+    MU,
+    PULL,
     PUSH,
     RUB,
     SLOPE,
@@ -22,7 +28,6 @@ from verify.motor.records import (
     SURFACE,
     Beamed,
     Feet,
-    Rubbing,
     V,
 )
 
@@ -106,45 +111,45 @@ def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: Beame
 
 
 @part()
-def match(
-    dt: float, held: float, edges: Array, feet: Feet, rubbing: Rubbing, slope: float | None, beam: Beamed
-) -> float:
-    """The mean speed of the stage at which every point's friction suits its own slip: sweeps from point to point.
+def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None, beam: Beamed) -> None:
+    """The mean speeds of the sliders at which every point's friction suits its own slip: sweeps from point to point.
 
     The surface has half of what all forces give it. Each point's rule is kept exactly in its turn; the sweeps are those
     of a symmetric problem and come to rest.
     """
-    touch, points, gain = feet.touch, feet.points, 0.5 * dt * rubbing.lightness
-    mean, largest = feet.body[V] + gain * (rubbing.pull + held), 0.0
+    touch, points, riders, means, largest = feet.touch, feet.points, feet.riders, feet.means, 0.0
+    for b in range(feet.body.shape[0]):
+        means[b, MEAN] = feet.body[b, V] + 0.5 * dt * riders[b, LIGHT] * (riders[b, PULL] + means[b, HELD])
     for i in range(points.shape[0]):
         if points[i, GRIP] == 0.0:
             touch[i, RUB], touch[i, STUCK] = 0.0, 0.0
-            most = rubbing.mu * touch[i, PUSH]
+            most = riders[feet.owner[i], MU] * touch[i, PUSH]
             largest = most if most > largest else largest
     for _ in range(SWEEPS):
         changed = 0.0
         for i in range(points.shape[0]):
             if touch[i, PUSH] > 0.0 and points[i, GRIP] == 0.0:
-                length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
-                felt = points[i, IMAGE] > 0.0
-                slip = touch[i, SURFACE] - mean + (_given(i, length, rubbing.half, feet, beam) if felt else 0.0)
-                ease = gain + (_ease(i, dt, length, rubbing.half, feet, beam) if felt else 0.0)
-                force = _suited(i, slip + ease * touch[i, RUB], ease, feet, rubbing, slope)
+                length, b = edges[feet.piece[i] + 1] - edges[feet.piece[i]], feet.owner[i]
+                felt, gain = points[i, IMAGE] > 0.0, 0.5 * dt * riders[b, LIGHT]
+                slip = touch[i, SURFACE] - means[b, MEAN] + (_given(i, length, half, feet, beam) if felt else 0.0)
+                ease = gain + (_ease(i, dt, length, half, feet, beam) if felt else 0.0)
+                force = _suited(i, slip + ease * touch[i, RUB], ease, feet, slope)
                 more = force - touch[i, RUB]
                 touch[i, RUB] = force
-                mean += gain * more
+                means[b, MEAN] += gain * more
                 if felt:
-                    _add(i, -more, 0.0, dt, length, rubbing.half, feet, beam)
+                    _add(i, -more, 0.0, dt, length, half, feet, beam)
                 changed = abs(more) if abs(more) > changed else changed
         if changed <= ENOUGH * largest:
             break
-    return float(mean)
+    for b in range(feet.body.shape[0]):
+        means[b, AFTER] = 2.0 * means[b, MEAN] - feet.body[b, V]
 
 
 @part()
-def _suited(i: int, slip: float, ease: float, feet: Feet, rubbing: Rubbing, slope: float | None) -> float:
+def _suited(i: int, slip: float, ease: float, feet: Feet, slope: float | None) -> float:
     """Friction of point i where `slip` is what the surface is ahead by without it and `ease` what it takes of that."""
-    most = rubbing.mu * feet.touch[i, PUSH]
+    most = feet.riders[feet.owner[i], MU] * feet.touch[i, PUSH]
     if slope is not None:
         return slide_by_tanh(most, slip, ease, slope)
     feet.touch[i, STUCK] = 1.0 if abs(slip) < ease * most else 0.0

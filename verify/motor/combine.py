@@ -1,10 +1,26 @@
 """What combines with what under a slider that may leave the surface; the rest is refused by name."""
 
+from collections.abc import Sequence
+
 from verify.errors import InputError
 from verify.slider import Slider
 
 CHAIN = "chain"
 """The nonlinear chain as a field under a slider, beside the linear models by their names."""
+
+
+def check_together(model: str, start: str, sliders: Sequence[Slider]) -> None:
+    """Raise InputError for no slider, one that does not combine with the field, or several that do not go together."""
+    if not sliders:
+        raise InputError("sliders is empty: give one or more")
+    for slider in sliders:
+        check_combines(model, start, slider)
+    for name in ("law", "slope", "coupling"):
+        found = {getattr(slider, name) for slider in sliders}
+        if len(found) > 1:
+            raise InputError(f"slider.{name} differs among sliders on one beam, {sorted(found)!r}: give all the same")
+    if len(sliders) > 1 and any(slider.contact and slider.contact.hard for slider in sliders):
+        raise InputError("sliders: a hard contact is of one slider by itself, give slider.contact.stiffness")
 
 
 def check_combines(model: str, start: str, slider: Slider) -> None:

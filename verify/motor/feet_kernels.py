@@ -15,6 +15,7 @@ from verify.motor.records import (
     DEPTH,
     EASE,
     FACE,
+    FREE,
     HEIGHT,
     IMAGE,
     INSET,
@@ -41,10 +42,11 @@ from verify.motor.records import (
 
 
 @part()
-def drift(t: float, free: float, feet: Feet) -> None:
-    """Stage and feet move on with their speeds; `free` is 0 where the stage stays at its place."""
+def drift(t: float, feet: Feet) -> None:
+    """Sliders and feet move on with their speeds."""
     body, state = feet.body, feet.state
-    body[X] += t * body[V] * free
+    for b in range(body.shape[0]):
+        body[b, X] += t * body[b, V] * feet.riders[b, FREE]
     for f in range(state.shape[0]):
         state[f, HEIGHT] += t * state[f, CLIMB]
         state[f, PITCH] += t * state[f, TURN]
@@ -147,18 +149,18 @@ def kick(dt: float, feet: Feet) -> None:
     for i in range(points.shape[0]):
         force = touch[i, PUSH]
         if touch[i, DEPTH] > 0.0:
-            foot = feet.foot[i]
+            foot, b = feet.foot[i], feet.owner[i]
             given = feet.kick[foot, 0] + points[i, ARM] * feet.kick[foot, 1]
             closing = touch[i, CLOSING] - 0.5 * points[i, FACE] * given
             work = dt * force * points[i, FACE] * touch[i, LIFT]
-            sums[ACROSS] += work
-            sums[DAMPED] += dt * (force - points[i, STIFF] * touch[i, DEPTH]) * closing
+            sums[b, ACROSS] += work
+            sums[b, DAMPED] += dt * (force - points[i, STIFF] * touch[i, DEPTH]) * closing
             if points[i, IMAGE] > 0.0:
-                sums[LIFTED] -= work
+                sums[b, LIFTED] -= work
     for f in range(state.shape[0]):
         given = feet.given
         force = given[f, PRESS] - given[f, SPRING] * state[f, HEIGHT]
-        sums[PRESSED] += dt * force * (state[f, CLIMB] + 0.5 * feet.kick[f, 0])
+        sums[feet.keeper[f], PRESSED] += dt * force * (state[f, CLIMB] + 0.5 * feet.kick[f, 0])
         state[f, CLIMB] += feet.kick[f, 0]
         state[f, TURN] += feet.kick[f, 1]
 
@@ -166,17 +168,18 @@ def kick(dt: float, feet: Feet) -> None:
 @part()
 def stored(dt: float, feet: Feet) -> None:
     """Energy in the springs at the end of a step, at the depths of its middle drawn on."""
-    total, state = 0.0, feet.state
+    state = feet.state
+    for b in range(feet.sums.shape[0]):
+        feet.sums[b, STORED] = 0.0
     for i in range(feet.points.shape[0]):
         foot = feet.foot[i]
         climb = state[foot, CLIMB] + feet.points[i, ARM] * state[foot, TURN]
         depth = feet.touch[i, DEPTH] + 0.5 * dt * feet.points[i, FACE] * (feet.touch[i, LIFT] - climb)
         if depth > 0.0:
-            total += 0.5 * feet.points[i, STIFF] * depth * depth
-    feet.sums[STORED] = total
+            feet.sums[feet.owner[i], STORED] += 0.5 * feet.points[i, STIFF] * depth * depth
 
 
 @part()
 def place(i: int, feet: Feet) -> float:
     """Where point i stands, metres from where the slider started."""
-    return float(feet.body[X] + feet.points[i, OFFSET])
+    return float(feet.body[feet.owner[i], X] + feet.points[i, OFFSET])

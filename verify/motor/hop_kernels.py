@@ -18,17 +18,21 @@ from verify.motor.records import (
     CLIMB,
     DAMPED,
     DONE,
+    FREE,
     HEIGHT,
     LANDS,
     LEAVES,
     LIFT,
     LIFTED,
+    LIGHT,
     MEAN_PUSH,
     MEAN_RUB,
     MEAN_SPEED,
+    MU,
     NOT_FINITE,
     OFF_BEAM,
     PRESSED,
+    PULL,
     PULLED,
     PUSH,
     RUB,
@@ -99,10 +103,10 @@ def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Li
 @part()
 def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
     """How far the flying point is above the surface, s seconds after t."""
-    body, state, along = feet.body, feet.state, rubbing.lightness * rubbing.pull
-    free = 0.0 if rubbing.frozen else 1.0
-    v = body[V] + along * s
-    x = body[X] + free * (body[V] + 0.5 * along * s) * s
+    body, state, along = feet.body, feet.state, feet.riders[0, LIGHT] * feet.riders[0, PULL]
+    free = feet.riders[0, FREE]
+    v = body[0, V] + along * s
+    x = body[0, X] + free * (body[0, V] + 0.5 * along * s) * s
     z = state[0, HEIGHT] + (state[0, CLIMB] - 0.5 * hard.press * s) * s
     return float(z - _under(t + s, x, v, surface, rubbing.half, line, feet))
 
@@ -131,15 +135,15 @@ def _fly(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, lin
 def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
     """The point flies for s seconds."""
     body, state, sums = feet.body, feet.state, feet.sums
-    along, free = rubbing.lightness * rubbing.pull, 0.0 if rubbing.frozen else 1.0
-    way, rise = (body[V] + 0.5 * along * s) * s, (state[0, CLIMB] - 0.5 * hard.press * s) * s
-    body[X] += free * way
-    body[V] += along * s
+    along, free = feet.riders[0, LIGHT] * feet.riders[0, PULL], feet.riders[0, FREE]
+    way, rise = (body[0, V] + 0.5 * along * s) * s, (state[0, CLIMB] - 0.5 * hard.press * s) * s
+    body[0, X] += free * way
+    body[0, V] += along * s
     state[0, HEIGHT] += rise
     state[0, CLIMB] -= hard.press * s
-    sums[PULLED] += rubbing.pull * way
-    sums[MEAN_SPEED] += way
-    sums[PRESSED] -= hard.mass * hard.press * rise
+    sums[0, PULLED] += feet.riders[0, PULL] * way
+    sums[0, MEAN_SPEED] += way
+    sums[0, PRESSED] -= hard.mass * hard.press * rise
 
 
 @part()
@@ -161,25 +165,25 @@ def _land(rubbing: Rubbing, hard: Hard, feet: Feet, slope: float | None) -> floa
     into = into if into > 0.0 else 0.0
     blow = hard.mass * (1.0 + hard.restitution) * into
     state[0, CLIMB] += blow / hard.mass
-    ahead = touch[0, SURFACE] - body[V]
-    rub = _suit(rubbing.mu * blow, ahead, rubbing.lightness, slope)
-    mean = body[V] + 0.5 * rubbing.lightness * rub
-    body[V] += rubbing.lightness * rub
-    sums[ACROSS] += blow * touch[0, LIFT]
-    sums[LIFTED] -= blow * touch[0, LIFT]
-    sums[DAMPED] += 0.5 * blow * into * (1.0 - hard.restitution)
-    sums[ALONG] += rub * touch[0, SURFACE]
-    sums[RUBBED] += rub * (touch[0, SURFACE] - mean)
-    sums[MEAN_RUB] += rub
-    sums[MEAN_PUSH] += blow
+    ahead = touch[0, SURFACE] - body[0, V]
+    rub = _suit(feet.riders[0, MU] * blow, ahead, feet.riders[0, LIGHT], slope)
+    mean = body[0, V] + 0.5 * feet.riders[0, LIGHT] * rub
+    body[0, V] += feet.riders[0, LIGHT] * rub
+    sums[0, ACROSS] += blow * touch[0, LIFT]
+    sums[0, LIFTED] -= blow * touch[0, LIFT]
+    sums[0, DAMPED] += 0.5 * blow * into * (1.0 - hard.restitution)
+    sums[0, ALONG] += rub * touch[0, SURFACE]
+    sums[0, RUBBED] += rub * (touch[0, SURFACE] - mean)
+    sums[0, MEAN_RUB] += rub
+    sums[0, MEAN_PUSH] += blow
     return hard.restitution * into
 
 
 @part()
 def _pushed(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
     """What the surface presses the riding point with, over its mass, s seconds after t."""
-    free = 0.0 if rubbing.frozen else 1.0
-    _under(t + s, feet.body[X] + free * feet.body[V] * s, feet.body[V], surface, rubbing.half, line, feet)
+    free = feet.riders[0, FREE]
+    _under(t + s, feet.body[0, X] + free * feet.body[0, V] * s, feet.body[0, V], surface, rubbing.half, line, feet)
     return float(hard.press + feet.kick[0, 0])
 
 
@@ -209,41 +213,41 @@ def _move_riding(
 ) -> bool:
     """The point rides for s seconds, friction taken in their middle; whether it is still on the beam."""
     body, state, touch, sums = feet.body, feet.state, feet.touch, feet.sums
-    free = 0.0 if rubbing.frozen else 1.0
+    free = feet.riders[0, FREE]
     push = hard.mass * _pushed(t, 0.5 * s, surface, rubbing, hard, line, feet)
     push = push if push > 0.0 else 0.0
-    gain = 0.5 * s * rubbing.lightness
-    ahead, v = touch[0, SURFACE] - body[V] - gain * rubbing.pull, body[V]
-    rub = _suit(rubbing.mu * push, ahead, gain, slope)
+    gain = 0.5 * s * feet.riders[0, LIGHT]
+    ahead, v = touch[0, SURFACE] - body[0, V] - gain * feet.riders[0, PULL], body[0, V]
+    rub = _suit(feet.riders[0, MU] * push, ahead, gain, slope)
     surface_mean = touch[0, SURFACE]
-    after = v + 2.0 * gain * (rubbing.pull + rub)
-    stuck = slope is None and gain > 0.0 and abs(rub) < rubbing.mu * push
-    x = body[X] + free * 0.5 * (v + after) * s
+    after = v + 2.0 * gain * (feet.riders[0, PULL] + rub)
+    stuck = slope is None and gain > 0.0 and abs(rub) < feet.riders[0, MU] * push
+    x = body[0, X] + free * 0.5 * (v + after) * s
     level = _under(t + s, x, after, surface, rubbing.half, line, feet)
     if not np.isfinite(level):
         return False
     if stuck:
-        most, wanted = rubbing.mu * push, rub + (touch[0, SURFACE] - after) / (2.0 * gain)
+        most, wanted = feet.riders[0, MU] * push, rub + (touch[0, SURFACE] - after) / (2.0 * gain)
         rub = most if wanted > most else -most if wanted < -most else wanted
-        after = v + 2.0 * gain * (rubbing.pull + rub)
+        after = v + 2.0 * gain * (feet.riders[0, PULL] + rub)
     mean = 0.5 * (v + after)
-    body[X] += free * mean * s
-    body[V] = after
+    body[0, X] += free * mean * s
+    body[0, V] = after
     rise = level - state[0, HEIGHT]
     gained = 0.5 * hard.mass * (touch[0, LIFT] ** 2 - state[0, CLIMB] ** 2)
     state[0, HEIGHT], state[0, CLIMB] = level, touch[0, LIFT]
     touch[0, PUSH], touch[0, RUB], touch[0, STUCK] = push, rub, 1.0 if stuck else 0.0
-    sums[ACROSS] += gained + hard.mass * hard.press * rise
-    sums[LIFTED] -= gained + hard.mass * hard.press * rise
-    sums[PRESSED] -= hard.mass * hard.press * rise
-    sums[ALONG] += s * rub * surface_mean
-    sums[RUBBED] += s * rub * (surface_mean - mean)
-    sums[MEAN_RUB] += s * rub
-    sums[MEAN_PUSH] += s * push
-    sums[PULLED] += s * rubbing.pull * mean
-    sums[MEAN_SPEED] += s * mean
-    sums[TOUCHING] += s
-    sums[STICKING] += s * touch[0, STUCK]
+    sums[0, ACROSS] += gained + hard.mass * hard.press * rise
+    sums[0, LIFTED] -= gained + hard.mass * hard.press * rise
+    sums[0, PRESSED] -= hard.mass * hard.press * rise
+    sums[0, ALONG] += s * rub * surface_mean
+    sums[0, RUBBED] += s * rub * (surface_mean - mean)
+    sums[0, MEAN_RUB] += s * rub
+    sums[0, MEAN_PUSH] += s * push
+    sums[0, PULLED] += s * feet.riders[0, PULL] * mean
+    sums[0, MEAN_SPEED] += s * mean
+    sums[0, TOUCHING] += s
+    sums[0, STICKING] += s * touch[0, STUCK]
     return True
 
 
@@ -252,7 +256,7 @@ def _step(
     t: float, dt: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, before: Array, feet: Feet, log: Log
 ) -> bool:
     """One step, cut wherever the point leaves or lands; whether it is still on the beam."""
-    done, x = 0.0, feet.body[X]
+    done, x = 0.0, feet.body[0, X]
     origin = surface.drive.origin
     for _ in range(BLOWS):
         left = dt - done
@@ -269,7 +273,7 @@ def _step(
             s = _fly(t + done, left, surface, rubbing, hard, line, feet)
             _move_flying(s, rubbing, hard, feet)
             feet.touch[0, PUSH] = 0.0
-            level = _under(t + done + s, feet.body[X], feet.body[V], surface, rubbing.half, line, feet)
+            level = _under(t + done + s, feet.body[0, X], feet.body[0, V], surface, rubbing.half, line, feet)
             if not np.isfinite(level):
                 return False
             if s < left:
@@ -301,7 +305,7 @@ def hop(
         if not _step(tally[STEP] * dt, dt, surface, rubbing, hard, line, before, feet, log):
             return OFF_BEAM
         tally[STEP] += 1
-        if not np.isfinite(feet.body[V] + feet.state[0, HEIGHT]):
+        if not np.isfinite(feet.body[0, V] + feet.state[0, HEIGHT]):
             return NOT_FINITE
         if tally[STEP] % log.every == 0:
             keep(dt, feet, line, log)
@@ -311,6 +315,6 @@ def hop(
 @lean()
 def put(t: float, surface: Surface, feet: Feet, rubbing: Rubbing, line: Line) -> float:
     """Put a hard point on the surface, with its rate of rise; what presses it on less gravity's part, m/s^2."""
-    feet.state[0, HEIGHT] = _under(t, feet.body[X], feet.body[V], surface, rubbing.half, line, feet)
+    feet.state[0, HEIGHT] = _under(t, feet.body[0, X], feet.body[0, V], surface, rubbing.half, line, feet)
     feet.state[0, CLIMB] = feet.touch[0, LIFT]
     return float(feet.kick[0, 0])

@@ -10,6 +10,7 @@ from verify.motor.beam_kernels import bear, clear, leave, match, moved
 from verify.motor.feet_kernels import drift, kick, place, press, see, stored
 from verify.motor.logging_kernels import keep, note
 from verify.motor.records import (
+    AFTER,
     ALONG,
     CLOSING,
     DONE,
@@ -18,11 +19,14 @@ from verify.motor.records import (
     IMAGE,
     LIFT,
     LIFTED,
+    LIGHT,
+    MEAN,
     MEAN_PUSH,
     MEAN_RUB,
     MEAN_SPEED,
     NOT_FINITE,
     OFF_BEAM,
+    PULL,
     PULLED,
     PUSH,
     RUB,
@@ -67,61 +71,71 @@ def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet
         if line.stamp[piece] != number:
             _lay(table, piece, line)
             line.stamp[piece] = number
-        see(i, x, edges[piece], edges[piece + 1] - edges[piece], feet.body[V], half, line, feet)
+        see(i, x, edges[piece], edges[piece + 1] - edges[piece], feet.body[feet.owner[i], V], half, line, feet)
     return True
 
 
 @part()
-def _rub(dt: float, feet: Feet, rubbing: Rubbing, slope: float | None) -> tuple[float, float]:
-    """Friction where the beam does not feel it: (mean speed of the stage, its speed at the end)."""
-    held = hold(dt, feet, rubbing)
-    mean = agree(dt, held, feet, rubbing, slope)
-    share(dt, mean, held, feet, rubbing, slope)
-    after = settle(dt, mean, feet, rubbing)
-    return 0.5 * (feet.body[V] + after), after
+def _rub(dt: float, feet: Feet, slope: float | None) -> None:
+    """Friction where the beam does not feel it, and what speeds the sliders have by it."""
+    hold(dt, feet)
+    for b in range(feet.body.shape[0]):
+        mean = agree(b, dt, feet, slope)
+        share(b, dt, mean, feet, slope)
+        settle(b, dt, mean, feet)
 
 
 @part()
-def _rub_back(
-    dt: float, surface: Surface, feet: Feet, rubbing: Rubbing, slope: float | None, beam: Beamed
-) -> tuple[float, float]:
+def _rub_back(dt: float, surface: Surface, feet: Feet, half: float, slope: float | None, beam: Beamed) -> None:
     """The same where the beam feels it; what points see of the surface is its mean then."""
-    held = hold(dt, feet, rubbing)
+    hold(dt, feet)
     clear(feet, beam)
-    bear(dt, surface.edges, rubbing.half, feet, beam)
-    mean = match(dt, held, surface.edges, feet, rubbing, slope, beam)
+    bear(dt, surface.edges, half, feet, beam)
+    match(dt, surface.edges, half, feet, slope, beam)
     for i in range(feet.points.shape[0]):
         if feet.touch[i, PUSH] > 0.0 and feet.points[i, IMAGE] > 0.0:
             piece = feet.piece[i]
             length = surface.edges[piece + 1] - surface.edges[piece]
-            along, across = moved(i, length, rubbing.half, feet, beam)
+            along, across = moved(i, length, half, feet, beam)
             feet.touch[i, SURFACE] += along
             feet.touch[i, LIFT] += across
             feet.touch[i, CLOSING] += feet.points[i, FACE] * across
-            feet.sums[LIFTED] -= dt * feet.touch[i, RUB] * feet.touch[i, SURFACE]
+            feet.sums[feet.owner[i], LIFTED] -= dt * feet.touch[i, RUB] * feet.touch[i, SURFACE]
     leave(surface.table, surface.modes, beam)
-    return mean, 2.0 * mean - feet.body[V]
 
 
 @part()
-def _book(dt: float, mean: float, feet: Feet, rubbing: Rubbing) -> None:
-    """What a step adds to the sums; shares are of all points."""
-    touch, sums, n, rubbed = feet.touch, feet.sums, feet.touch.shape[0], 0.0
-    for i in range(n):
-        push, rub = touch[i, PUSH], touch[i, RUB]
-        if push > 0.0:
-            sums[ALONG] += dt * rub * touch[i, SURFACE]
-            sums[RUBBED] += dt * rub * (touch[i, SURFACE] - mean)
-            sums[MEAN_RUB] += dt * rub
-            rubbed += rub
-            sums[MEAN_PUSH] += dt * push
-            sums[TOUCHING] += dt / n
-            sums[STICKING] += dt * touch[i, STUCK] / n
-    if rubbing.lightness == 0.0:
-        sums[PULLED] -= dt * rubbed * mean
-    else:
-        sums[PULLED] += dt * rubbing.pull * mean
-    sums[MEAN_SPEED] += dt * mean
+def _book(dt: float, feet: Feet) -> None:
+    """What a step adds to the sums; shares are of all points of a slider. Then it has its speed at the end."""
+    touch, sums, means, riders = feet.touch, feet.sums, feet.means, feet.riders
+    for b in range(feet.body.shape[0]):
+        mean, rubbed, n = means[b, MEAN], 0.0, 0
+        for i in range(touch.shape[0]):
+            n += 1 if feet.owner[i] == b else 0
+        for i in range(touch.shape[0]):
+            push, rub = touch[i, PUSH], touch[i, RUB]
+            if push > 0.0 and feet.owner[i] == b:
+                sums[b, ALONG] += dt * rub * touch[i, SURFACE]
+                sums[b, RUBBED] += dt * rub * (touch[i, SURFACE] - mean)
+                sums[b, MEAN_RUB] += dt * rub
+                sums[b, MEAN_PUSH] += dt * push
+                sums[b, TOUCHING] += dt / n
+                sums[b, STICKING] += dt * touch[i, STUCK] / n
+                rubbed += rub
+        sums[b, PULLED] += dt * mean * (riders[b, PULL] if riders[b, LIGHT] > 0.0 else -rubbed)
+        sums[b, MEAN_SPEED] += dt * mean
+        feet.body[b, V] = means[b, AFTER]
+
+
+@part()
+def _finite(feet: Feet) -> bool:
+    """Whether every slider is where a number says."""
+    total = 0.0
+    for b in range(feet.body.shape[0]):
+        total += feet.body[b, V]
+    for f in range(feet.state.shape[0]):
+        total += feet.state[f, HEIGHT]
+    return bool(np.isfinite(total))
 
 
 @lean()
@@ -141,28 +155,26 @@ def ride(
     `before` is (points, 2), depth and sticking at the last mid-step. All arrays are advanced in place, together.
     """
     modes, tally = surface.modes, log.tally
-    free = 0.0 if rubbing.frozen else 1.0
     for _ in range(n_steps):
         number = tally[STEP]
-        drift(0.5 * dt, free, feet)
+        drift(0.5 * dt, feet)
         rotate_half(modes)
         set_factors((number + 0.5) * dt, modes, surface.drive, line.factors)
         if not _look(number, surface.table, surface.edges, rubbing.half, line, feet):
             return OFF_BEAM
         press(dt, feet)
         if beam is None:
-            mean, after = _rub(dt, feet, rubbing, rubbing.slope)
+            _rub(dt, feet, rubbing.slope)
         else:
-            mean, after = _rub_back(dt, surface, feet, rubbing, rubbing.slope, beam)
-        _book(dt, mean, feet, rubbing)
+            _rub_back(dt, surface, feet, rubbing.half, rubbing.slope, beam)
         kick(dt, feet)
-        stretch(dt, mean, feet, rubbing)
-        feet.body[V] = after
-        drift(0.5 * dt, free, feet)
+        stretch(dt, feet)
+        _book(dt, feet)
+        drift(0.5 * dt, feet)
         rotate_half(modes)
         tally[STEP] += 1
         note(surface.drive.origin + (number + 0.5) * dt, dt, before, feet, log)
-        if not np.isfinite(feet.body[V] + feet.state[0, HEIGHT]):
+        if not _finite(feet):
             return NOT_FINITE
         if tally[STEP] % log.every == 0:
             if len(log.points) > 0:
@@ -178,10 +190,10 @@ def ride_given(
     n_steps: int, dt: float, given: Moved, feet: Feet, rubbing: Rubbing, line: Line, before: Array, log: Log
 ) -> int:
     """The same on a surface that is given in the middle of every step, which does not feel the stage."""
-    tally, free = log.tally, 0.0 if rubbing.frozen else 1.0
+    tally = log.tally
     for _ in range(n_steps):
         number = tally[STEP]
-        drift(0.5 * dt, free, feet)
+        drift(0.5 * dt, feet)
         for i in range(feet.points.shape[0]):
             x = place(i, feet)
             piece = find_piece(given.edges, x, feet.piece[i])
@@ -192,18 +204,17 @@ def ride_given(
                 line.local[piece, STILL, d] = given.local[number, piece, STILL, d]
                 line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]
             length = given.edges[piece + 1] - given.edges[piece]
-            see(i, x, given.edges[piece], length, feet.body[V], rubbing.half, line, feet)
+            see(i, x, given.edges[piece], length, feet.body[feet.owner[i], V], rubbing.half, line, feet)
             feet.touch[i, SURFACE] += given.along[number, piece]
         press(dt, feet)
-        mean, after = _rub(dt, feet, rubbing, rubbing.slope)
-        _book(dt, mean, feet, rubbing)
+        _rub(dt, feet, rubbing.slope)
         kick(dt, feet)
-        stretch(dt, mean, feet, rubbing)
-        feet.body[V] = after
-        drift(0.5 * dt, free, feet)
+        stretch(dt, feet)
+        _book(dt, feet)
+        drift(0.5 * dt, feet)
         tally[STEP] += 1
         note((number + 0.5) * dt, dt, before, feet, log)
-        if not np.isfinite(feet.body[V] + feet.state[0, HEIGHT]):
+        if not _finite(feet):
             return NOT_FINITE
         if tally[STEP] % log.every == 0:
             stored(dt, feet)

@@ -1,7 +1,8 @@
 """A slider on feet as the compiled loop sees it: arrays of its feet and points, laid on a beam."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
+import msgspec
 import numpy as np
 
 from verify.beam import Beam
@@ -23,16 +24,27 @@ def shared_mass(slider: Slider, foot: Foot) -> float:
     return slider.mass / len(slider.feet) if foot.mass is None else foot.mass
 
 
-def rubbing_of(slider: Slider, beam: Beam, held_speed: float | None, frozen: bool) -> Rubbing:
-    """Friction and stage."""
-    return Rubbing(
-        mu=float(slider.mu),
-        slope=None if slider.law == "coulomb" else float(slider.slope),
-        lightness=0.0 if held_speed is not None else 1.0 / slider.mass,
-        pull=float(slider.pull),
-        half=float(beam.surface_distance),
-        frozen=frozen,
-    )
+class Onto(msgspec.Struct, frozen=True):
+    """A slider and how it is put on."""
+
+    slider: Slider
+    start: float
+    """Metres from the left end."""
+    held_speed: float | None = None
+    """m/s; None: friction moves it."""
+    frozen: bool = False
+    """Whether it stays at its place, whatever its speed."""
+
+    @property
+    def speed(self) -> float:
+        """At the start, m/s."""
+        return self.slider.speed if self.held_speed is None else self.held_speed
+
+
+def rubbing_of(slider: Slider, beam: Beam) -> Rubbing:
+    """The law of friction, all sliders'."""
+    slope = None if slider.law == "coulomb" else float(slider.slope)
+    return Rubbing(slope=slope, half=float(beam.surface_distance))
 
 
 def hard_of(slider: Slider) -> Hard | None:
@@ -43,21 +55,33 @@ def hard_of(slider: Slider) -> Hard | None:
     return Hard(mass, slider.normal_force / mass, float(slider.contact.restitution))
 
 
-def feet_of(slider: Slider, speed: float) -> Feet:
-    """The feet at height 0, with their points."""
-    sheets = [_points(slider, foot) for foot in slider.feet]
-    points, n = np.concatenate(sheets), len(slider.feet)
+def feet_of(onto: Sequence[Onto]) -> Feet:
+    """The feet at height 0, with their points; distances are from where the first slider is put."""
+    feet = [(b, foot) for b, one in enumerate(onto) for foot in one.slider.feet]
+    sheets = [_points(onto[b].slider, foot, onto[b].start - onto[0].start) for b, foot in feet]
+    points, lengths = np.concatenate(sheets), [len(sheet) for sheet in sheets]
+    keeper = _whole(np.array([b for b, _ in feet]))
     return Feet(
-        body=np.array([0.0, speed]),
-        state=np.zeros((n, 4)),
-        given=np.array([_given(slider, foot) for foot in slider.feet]),
+        body=np.array([[0.0, one.speed] for one in onto]),
+        riders=np.array([_rider(one) for one in onto]),
+        means=np.zeros((len(onto), 3)),
+        state=np.zeros((len(feet), 4)),
+        given=np.array([_given(onto[b].slider, foot) for b, foot in feet]),
         points=points,
         touch=np.zeros((len(points), 11)),
-        foot=_whole(np.repeat(np.arange(n), [len(sheet) for sheet in sheets])),
+        foot=_whole(np.repeat(np.arange(len(feet)), lengths)),
+        owner=_whole(np.repeat(keeper, lengths)),
+        keeper=keeper,
         piece=_whole(np.zeros(len(points))),
-        kick=np.zeros((n, 2)),
-        sums=np.zeros(13),
+        kick=np.zeros((len(feet), 2)),
+        sums=np.zeros((len(onto), 13)),
     )
+
+
+def _rider(one: Onto) -> tuple[float, float, float, float]:
+    """(mu, 1/mass, pull, whether it moves along) of a slider."""
+    light = 0.0 if one.held_speed is not None else 1.0 / one.slider.mass
+    return float(one.slider.mu), light, float(one.slider.pull), 0.0 if one.frozen else 1.0
 
 
 def _whole(values: Array) -> Indices:
@@ -74,7 +98,7 @@ def _given(slider: Slider, foot: Foot) -> tuple[float, float, float, float]:
     return 1.0 / mass, 1.0 / inertia if turns else 0.0, pressed - weight, float(slider.preload_stiffness)
 
 
-def _points(slider: Slider, foot: Foot) -> Array:
+def _points(slider: Slider, foot: Foot, beyond: float) -> Array:
     """(points, 8): the columns of `Feet.points`; of a foot between two beams those below, then those above."""
     contact = slider.contact
     assert contact is not None
@@ -84,7 +108,7 @@ def _points(slider: Slider, foot: Foot) -> Array:
     face = -1.0 if foot.face == "lower" else 1.0
     sheet = np.zeros((foot.points, 8))
     sheet[:, 1] = arms(foot)
-    sheet[:, 0] = foot.offset + sheet[:, 1]
+    sheet[:, 0] = beyond + foot.offset + sheet[:, 1]
     sheet[:, 2:5], sheet[:, 5], sheet[:, 6], sheet[:, 7] = shares, face, 1.0, inset
     if not foot.mirrored:
         return sheet
@@ -140,12 +164,12 @@ def fresh_log(samples: int, feet: Feet, rows: Array, every: int) -> Log:
     """Room for a run; `rows` (n, rows) read the deflection where it is kept."""
     return Log(
         every=every,
-        kept=np.zeros((samples, 9)),
+        kept=np.zeros((samples, len(feet.body), 9)),
         heights=np.zeros((samples, len(feet.state), 2)),
         pressures=np.zeros((samples, len(feet.points))),
         points=rows,
         deflections=np.zeros((samples, len(rows))),
         events=np.zeros((EVENTS, 4)),
         tally=np.zeros(3, dtype=np.int64),
-        before=np.zeros(13),
+        before=np.zeros((len(feet.body), 13)),
     )

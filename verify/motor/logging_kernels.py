@@ -50,12 +50,13 @@ def note(time: float, dt: float, before: Array, feet: Feet, log: Log) -> None:
     """Write down who landed, left, stuck or slipped since the mid-step before, with `before` depth and sticking."""
     touch, tally = feet.touch, log.tally
     for i in range(touch.shape[0]):
-        depth, was = touch[i, DEPTH], before[i, 0]
+        depth, was, x = touch[i, DEPTH], before[i, 0], feet.body[feet.owner[i], X]
         if (depth > 0.0) != (was > 0.0):
             kind = LANDS if depth > 0.0 else LEAVES
-            write(time - dt * depth / (depth - was), kind, i, feet.body[X], log.events, tally)
+            write(time - dt * depth / (depth - was), kind, i, x, log.events, tally)
         elif depth > 0.0 and (touch[i, STUCK] > 0.0) != (before[i, 1] > 0.0):
-            write(time - 0.5 * dt, STICKS if touch[i, STUCK] > 0.0 else SLIPS, i, feet.body[X], log.events, tally)
+            kind = STICKS if touch[i, STUCK] > 0.0 else SLIPS
+            write(time - 0.5 * dt, kind, i, x, log.events, tally)
         before[i, 0], before[i, 1] = depth, touch[i, STUCK]
 
 
@@ -72,22 +73,11 @@ def write(time: float, kind: float, point: int, x: float, events: Array, tally: 
 @part()
 def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
     """Write one sample: the state now, means and sums since the last."""
-    row, sums, before, span = log.tally[SAMPLES], feet.sums, log.before, dt * log.every
-    kept, touched = log.kept, sums[MEAN_PUSH] - before[MEAN_PUSH]
-    kept[row, KEPT_X], kept[row, KEPT_V] = feet.body[X], feet.body[V]
-    kept[row, KEPT_RUB] = (sums[MEAN_RUB] - before[MEAN_RUB]) / span
-    kept[row, KEPT_PUSH] = touched / span
-    kept[row, KEPT_TOUCHING] = (sums[TOUCHING] - before[TOUCHING]) / span
-    kept[row, KEPT_STICKING] = (sums[STICKING] - before[STICKING]) / span
-    kept[row, KEPT_RUBBED] = sums[RUBBED] - before[RUBBED]
-    kept[row, KEPT_ALONG] = sums[ALONG] - before[ALONG]
-    speed, n = 0.0, 0
+    row, span = log.tally[SAMPLES], dt * log.every
+    for b in range(feet.body.shape[0]):
+        _keep_slider(row, b, span, feet, log)
     for i in range(feet.points.shape[0]):
         log.pressures[row, i] = feet.touch[i, PUSH]
-        if feet.touch[i, PUSH] > 0.0:
-            speed += feet.touch[i, SURFACE]
-            n += 1
-    kept[row, KEPT_SURFACE] = speed / n if n > 0 else np.nan
     for f in range(feet.state.shape[0]):
         log.heights[row, f, 0], log.heights[row, f, 1] = feet.state[f, HEIGHT], feet.state[f, PITCH]
     for p in range(log.points.shape[0]):
@@ -95,6 +85,25 @@ def keep(dt: float, feet: Feet, line: Line, log: Log) -> None:
         for j in range(log.points.shape[1]):
             total += log.points[p, j] * line.factors[STILL, j]
         log.deflections[row, p] = total
-    for s in range(len(sums)):
-        before[s] = sums[s]
     log.tally[SAMPLES] += 1
+
+
+@part()
+def _keep_slider(row: int, b: int, span: float, feet: Feet, log: Log) -> None:
+    """One slider's state, means and sums since the last sample."""
+    kept, sums, before = log.kept, feet.sums, log.before
+    kept[row, b, KEPT_X], kept[row, b, KEPT_V] = feet.body[b, X], feet.body[b, V]
+    kept[row, b, KEPT_RUB] = (sums[b, MEAN_RUB] - before[b, MEAN_RUB]) / span
+    kept[row, b, KEPT_PUSH] = (sums[b, MEAN_PUSH] - before[b, MEAN_PUSH]) / span
+    kept[row, b, KEPT_TOUCHING] = (sums[b, TOUCHING] - before[b, TOUCHING]) / span
+    kept[row, b, KEPT_STICKING] = (sums[b, STICKING] - before[b, STICKING]) / span
+    kept[row, b, KEPT_RUBBED] = sums[b, RUBBED] - before[b, RUBBED]
+    kept[row, b, KEPT_ALONG] = sums[b, ALONG] - before[b, ALONG]
+    speed, n = 0.0, 0
+    for i in range(feet.points.shape[0]):
+        if feet.owner[i] == b and feet.touch[i, PUSH] > 0.0:
+            speed += feet.touch[i, SURFACE]
+            n += 1
+    kept[row, b, KEPT_SURFACE] = speed / n if n > 0 else np.nan
+    for s in range(sums.shape[1]):
+        before[b, s] = sums[b, s]

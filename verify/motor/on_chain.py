@@ -19,14 +19,14 @@ from verify.motion.request import Request
 from verify.motion.stepping import CHUNK
 from verify.motor import records
 from verify.motor.combine import CHAIN
+from verify.motor.laid import Onto
 from verify.motor.records import Line, Moved
 from verify.motor.result import MotorRun
-from verify.motor.run import Held, Plan, begin, lay_out
+from verify.motor.run import Plan, begin, lay_out
 from verify.motor.stepping import WHY, Riding
 from verify.motor.told import told
 from verify.options import Links
 from verify.segments.reading import contact_line
-from verify.slider import Slider
 
 BESIDE = 2
 """Links beside those under the feet on which the slider may run."""
@@ -46,14 +46,13 @@ def check_chain(request: Request, soft_start_periods: float) -> None:
 
 def run_on_chain(
     request: Request,
-    slider: Slider,
+    onto: tuple[Onto, ...],
     links: Links,
-    held: Held,
     began: float,
     progress: Callable[[float], None],
-) -> MotorRun:
+) -> tuple[MotorRun, ...]:
     """`request` is that of a linear chain from rest: its margins and steps are taken. Raises InputError."""
-    plan = lay_out(request, slider, None)
+    plan = lay_out(request, onto, ())
     assert request.count is not None
     check_links(request.count, 2, STATIC_LINKS, "a slider's contact line goes through two links or more")
     stage = plan.stages[0]
@@ -66,9 +65,9 @@ def run_on_chain(
         else simulate(system, at_rest(system), times, tolerance=TOLERANCE, ledger=False, most=MOST, progress=progress)
     )
     check_moved(moved)
-    riding = Riding.fresh(slider, request, plan.start, False, held.speed, held.frozen)
+    riding = Riding.fresh(onto, request, False)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
-    begin(plan, riding, None)
+    begin(plan, riding, ())
     riding.look()
     riding.first = np.zeros(0)
     given = surface_given(moved, plan)
@@ -78,9 +77,10 @@ def run_on_chain(
     ready = perf_counter()
     stopped = _run(given, stage.n_steps, stage.dt, riding, progress)
     state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
-    run = told(plan, riding, stopped, state, (began, ready, perf_counter()))
+    clock = (began, ready, perf_counter())
+    runs = [told(b, plan, riding, stopped, state, clock) for b in range(len(onto))]
     note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
-    return replace(run, model=CHAIN, notes=(note, *run.notes[1:]))
+    return tuple(replace(run, model=CHAIN, notes=(note, *run.notes[1:])) for run in runs)
 
 
 def _run(given: Moved, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
@@ -100,14 +100,15 @@ def _run(given: Moved, n_steps: int, dt: float, riding: Riding, progress: Callab
 
 def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> Moved:
     """The contact line on the links under the feet and beside them, at every other time kept: in mid-steps."""
-    system, slider = moved.system, plan.slider
-    ends = [plan.start + foot.offset + side * 0.5 * foot.length for foot in slider.feet for side in (-1.0, 1.0)]
+    system, ends = moved.system, []
+    for one in plan.onto:
+        ends += [one.start + foot.offset + side * 0.5 * foot.length for foot in one.slider.feet for side in (-1.0, 1.0)]
     first = max(_link_at(system, min(ends)) - BESIDE, 0)
     last = min(_link_at(system, max(ends)) + BESIDE, system.n_links - 1)
     heights, rises, along = (part[1::2] for part in _moved(moved))
     rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
     local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)
-    edges = system.nodes[first : last + 2] - plan.start
+    edges = system.nodes[first : last + 2] - plan.onto[0].start
     return Moved(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 1]), edges)
 
 

@@ -14,7 +14,7 @@ from verify.motion.pure_wave import wave_stage
 from verify.motion.surface import Stage, cut
 from verify.motor import records
 from verify.motor.figures import AtSpeed
-from verify.motor.laid import feet_of, fresh_log, rubbing_of
+from verify.motor.laid import Onto, feet_of, fresh_log
 from verify.motor.stepping import Riding, run_stages
 from verify.slider import Contact, Foot, Slider
 
@@ -80,29 +80,16 @@ def _slider(mu: float, epsilon: float, k: float, thickness: float, length: float
 
 def _riding(slider: Slider, beam: Beam, speed: float, height: float, samples: int) -> Riding:
     """The foot at its height, which nothing changes."""
-    feet = feet_of(slider, speed)
+    onto = (Onto(slider, 0.0, speed, True),)
+    feet = feet_of(onto)
     feet.given[:, records.LIGHTNESS] = 0.0
     feet.state[:, records.HEIGHT] = height
-    return Riding(
-        feet=feet,
-        rubbing=rubbing_of(slider, beam, speed, True),
-        log=fresh_log(samples, feet, np.zeros((0, 2)), 1),
-        before=np.full((len(feet.points), 2), -1.0),
-        start=0.0,
-        points=np.empty(0),
-        two_way=False,
-        held_speed=speed,
-        stage_mass=slider.mass,
-        hard=None,
-        put_down=feet.state.copy(),
-        set_off=feet.body.copy(),
-        pressed=np.zeros(len(feet.points)),
-    )
+    return Riding.of(feet, onto, beam, fresh_log(samples, feet, np.zeros((0, 2)), 1), np.empty(0), False)
 
 
 def _means(riding: Riding, stage: Stage, speed: float) -> AtSpeed:
     """Of the last period, the way of the wave's crests being -x."""
-    last, before = riding.log.kept[-1], riding.log.kept[-2]
+    last, before = riding.log.kept[-1, 0], riding.log.kept[-2, 0]
     seconds = stage.duration / (WARM + 1)
     return AtSpeed(
         speed=speed,

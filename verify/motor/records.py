@@ -10,7 +10,12 @@ from typing import NamedTuple
 from verify.models.arrays import Array, Indices
 
 X, V = range(2)
-"""Entries of `Feet.body`: distance travelled, speed."""
+"""Columns of `Feet.body`: distance travelled, speed."""
+MU, LIGHT, PULL, FREE = range(4)
+"""Columns of `Feet.riders`: coefficient of friction; 1/mass, 0 where the speed is held; newton along x; 0 where the
+slider stays at its place, whatever its speed, otherwise 1."""
+MEAN, AFTER, HELD = range(3)
+"""Columns of `Feet.means`: speed in the middle of the step and at its end, friction of what gives way."""
 HEIGHT, CLIMB, PITCH, TURN = range(4)
 """Columns of `Feet.state`."""
 LIGHTNESS, EASE, PRESS, SPRING = range(4)
@@ -26,7 +31,7 @@ its slope; how fast the gap closes, how fast the surface rises, both without the
 (
     ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED
 ) = range(13)  # fmt: skip
-"""Entries of `Feet.sums`: work of the surface across on the feet, along on the stage, of the pull and of what holds
+"""Columns of `Feet.sums`: work of the surface across on the feet, along on the stage, of the pull and of what holds
 a speed, rubbed away,
 lost in dashpots, of what presses; integrals over time of friction, normal force, share of points that touch and stick;
 energy in the springs now; integral of the speed; work of the feet on the beam."""
@@ -44,26 +49,23 @@ EVENT_TIME, EVENT_KIND, EVENT_POINT, EVENT_X = range(4)
 
 
 class Rubbing(NamedTuple):
-    """Friction and the stage that it carries."""
+    """Friction's law, of all sliders."""
 
-    mu: float
     slope: float | None
     """K of Eq. (3), s/m; None: Coulomb's law, and no other law is compiled."""
-    lightness: float
-    """1/mass of the stage, 1/kg; 0: its speed is held."""
-    pull: float
-    """Newton along x."""
     half: float
     """Half the thickness, metres."""
-    frozen: bool
-    """Whether the stage stays at its place, whatever its speed."""
 
 
 class Feet(NamedTuple):
-    """The stage, its feet and their points; advanced in place."""
+    """Sliders, their feet and points; advanced in place."""
 
     body: Array
-    """(2,)"""
+    """(sliders, 2)"""
+    riders: Array
+    """(sliders, 4)"""
+    means: Array
+    """(sliders, 3)"""
     state: Array
     """(feet, 4)"""
     given: Array
@@ -74,12 +76,16 @@ class Feet(NamedTuple):
     """(points, 11)"""
     foot: Indices
     """(points,), the foot of each."""
+    owner: Indices
+    """(points,), the slider of each."""
+    keeper: Indices
+    """(feet,), the slider of each."""
     piece: Indices
     """(points,), the piece of the beam under each."""
     kick: Array
     """(feet, 2), what the step gives to height and pitch, m/s and 1/s."""
     sums: Array
-    """(13,)"""
+    """(sliders, 13)"""
 
 
 class Hard(NamedTuple):
@@ -131,7 +137,7 @@ class Log(NamedTuple):
 
     every: int
     kept: Array
-    """(samples, 9)"""
+    """(samples, sliders, 9)"""
     heights: Array
     """(samples, feet, 2), height and pitch."""
     pressures: Array
@@ -145,4 +151,4 @@ class Log(NamedTuple):
     tally: Indices
     """(3,)"""
     before: Array
-    """(13,), the sums at the last sample."""
+    """(sliders, 13), the sums at the last sample."""

@@ -1,13 +1,12 @@
 """A slider that may leave the surface, on a linear beam in time: laid out, stepped, told."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from time import perf_counter
 
 import msgspec
 import numpy as np
-from msgspec.structs import replace
 
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
 from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.arrays import Array
@@ -20,8 +19,10 @@ from verify.motion.moving_mass import receptance
 from verify.motion.request import Driven, Modelled, Request, Started, Watched, requested
 from verify.motion.step_size import stepped
 from verify.motion.surface import Stage, basis_of, stages_from_rest, steady_stage
-from verify.motor.combine import CHAIN, check_combines
-from verify.motor.laid import check_on_beam, feet_of, put_down
+from verify.motor import records
+from verify.motor.combine import CHAIN, check_together
+from verify.motor.laid import Onto, check_on_beam, feet_of, put_down
+from verify.motor.records import Feet
 from verify.motor.result import MotorRun, MotorState
 from verify.motor.stepping import RIDES_FROM_HERE, Riding, run_stages
 from verify.motor.told import told
@@ -36,6 +37,10 @@ STEPS_PER_PERIOD = 61
 RESOLVED = 0.5
 """Radians of the contact's own swing in a step, unless a step is given: an error of 1 % of its period."""
 UNSTABLE = 2.0
+PASSES = 4
+"""Each shortens what is left of the way to the material under a point by (h/2) w'' and more."""
+SAGGING = 20
+"""Modes that a static deflection is read from."""
 SHARP = 0.5 * np.pi
 """Radians of the fastest mode in a step of a beam that feels its slider."""
 
@@ -44,9 +49,7 @@ class Plan(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """A run laid out, before its first step."""
 
     request: Request
-    slider: Slider
-    start: float
-    """Metres from the left end."""
+    onto: tuple[Onto, ...]
     stages: list[Stage]
     basis: TimeBasis | None
     """None where no mode is free."""
@@ -95,9 +98,63 @@ def run_motor(
     where the contact is stiff, unless `step` is given; forces act in mid-step, of second order. Coupled two-way, every
     force of every point acts on the modes. Otherwise as `simulate`. Raises InputError, also for what does not combine.
     """
+    given = run_motors(
+        beam,
+        forces,
+        frequency_hz,
+        duration,
+        sliders=(slider,),
+        model=model,
+        count=count,
+        modes=modes,
+        start=start,
+        soft_start_periods=soft_start_periods,
+        modal_damping=modal_damping,
+        at=at,
+        samples=samples,
+        step=step,
+        steps_per_period=steps_per_period,
+        held_speed=held_speed,
+        frozen=frozen,
+        links=links,
+        continue_from=() if continue_from is None else (continue_from,),
+        progress=progress,
+        patient=patient,
+    )
+    return given[0]
+
+
+@as_typed
+def run_motors(
+    beam: Beam,
+    forces: Forces,
+    frequency_hz: float,
+    duration: float,
+    *,
+    sliders: Sequence[Slider],
+    model: str = "segment",
+    count: int | None = None,
+    modes: int = MODES,
+    start: Start = "steady",
+    soft_start_periods: float = 0.0,
+    modal_damping: float | None = None,
+    at: Numbers = (),
+    samples: int = 201,
+    step: float | None = None,
+    steps_per_period: int = STEPS_PER_PERIOD,
+    held_speed: float | None = None,
+    frozen: bool = False,
+    links: Links = "rigid",
+    continue_from: Sequence[MotorRun] = (),
+    progress: Callable[[float], None] = lambda part: None,
+    patient: bool = True,
+) -> tuple[MotorRun, ...]:
+    """Several sliders on one beam, one run for each: coupled two-way they feel each other through it.
+
+    They rub by one law of one slope and are coupled alike; otherwise as `run_motor`. Raises InputError.
+    """
     began = perf_counter()
-    check_combines(model, start, slider)
-    held = Held(held_speed, frozen)
+    check_together(model, start, sliders)
     if held_speed is not None:
         check_number("held_speed", held_speed, "m/s")
     request = requested(
@@ -105,62 +162,57 @@ def run_motor(
         Modelled("segment" if model == CHAIN else model, count, modes, modal_damping),
         Started(start, soft_start_periods, (), None),
         Watched(at, samples, step, steps_per_period, False),
-        slider,
+        sliders[0],
     )
+    onto = tuple(Onto(slider, slider.start_on(beam), held_speed, frozen) for slider in sliders)
     if model == CHAIN:
         from verify.motor.on_chain import check_chain, run_on_chain
 
         check_chain(request, soft_start_periods)
-        return run_on_chain(request, slider, links, held, began, progress)
+        return run_on_chain(request, onto, links, began, progress)
     if links != "rigid":
         raise InputError(f"links = {links!r} is of model = 'chain': leave it out on {model}")
-    before = continue_from.state if continue_from is not None else None
-    plan = lay_out(request, slider, before)
-    return carry_out(plan, before, held, began, progress, patient)
+    before = tuple(run.state for run in continue_from)
+    return carry_out(lay_out(request, onto, before), before, began, progress, patient)
 
 
-class Held(msgspec.Struct, frozen=True):
-    """What is kept of a stage's motion along the beam."""
-
-    speed: float | None = None
-    """m/s; None: friction moves it."""
-    frozen: bool = False
-    """Whether it stays at its place."""
-
-
-def lay_out(request: Request, slider: Slider, before: MotorState | None) -> Plan:
-    """The stages of a run, its modes, and how the slider is coupled. Raises InputError."""
-    request, x = replace(request, before=None), slider.start_on(request.beam)
-    check_on_beam(slider, request.beam, x)
-    origin = before.time if before else 0.0
-    basis, two_way = _basis(request), slider.coupling == "two-way"
+def lay_out(request: Request, onto: tuple[Onto, ...], before: Sequence[MotorState]) -> Plan:
+    """The stages of a run, its modes, and how the sliders are coupled. Raises InputError."""
+    if before and len(before) != len(onto):
+        raise InputError(f"continue_from has {len(before)} runs for {len(onto)} sliders: give one for each")
+    for one in onto:
+        check_on_beam(one.slider, request.beam, one.start)
+    origin, basis = before[0].time if before else 0.0, _basis(request)
     stages = _stages(request, basis, origin)
-    coupling = _coupling(request, slider, stages[-1], basis, x)
-    two_way = coupling.two_way
-    if two_way and basis is None:
+    coupling = _coupling(request, onto, stages[-1], basis)
+    if coupling.two_way and basis is None:
         basis = basis_of(request.beam, request.model, request.count, request.modes, "spline")
         stages = _stages(request, basis, origin)
-    sagging = _weighed(basis, slider, x) if basis else np.zeros(0)
-    n = len(stages[0].modal.squares)
-    q, rates = (sagging if two_way else np.zeros(n)), np.zeros(n)
-    if before is not None:
-        if len(before.q) != n:
-            raise InputError(f"continue_from has {len(before.q)} modes and this run {n}: give both the same model")
-        q, rates = before.q, before.rates
-    rate = contact_rate(slider, basis if two_way else None, x)
-    stages = stepped(stages, _step(request, rate, stages[0], two_way))
+    rate = max(contact_rate(one, basis if coupling.two_way else None) for one in onto)
+    stages = stepped(stages, _step(request, rate, stages[0], coupling.two_way))
     return Plan(
         request=request,
-        slider=slider,
-        start=x,
+        onto=onto,
         stages=stages,
         basis=basis,
-        z=stages[0].start(q, rates),
+        z=stages[0].start(*_at_start(stages[0], basis if coupling.two_way else None, onto, before)),
         coupling=coupling,
         contact_rate=rate,
-        sag=_sag(request, slider, x),
+        sag=_sag(request, onto),
         notes=_notes(request, basis, coupling),
     )
+
+
+def _at_start(
+    stage: Stage, basis: TimeBasis | None, onto: Sequence[Onto], before: Sequence[MotorState]
+) -> tuple[Array, Array]:
+    """(q, dq/dt) of every mode: as the run before left them, else at rest, or bent by what presses the sliders on."""
+    n = len(stage.modal.squares)
+    if not before:
+        return (_weighed(basis, onto) if basis else np.zeros(n)), np.zeros(n)
+    if len(before[0].q) != n:
+        raise InputError(f"continue_from has {len(before[0].q)} modes and this run {n}: give both the same model")
+    return before[0].q, before[0].rates
 
 
 def _basis(request: Request) -> TimeBasis | None:
@@ -179,63 +231,72 @@ def _stages(request: Request, basis: TimeBasis | None, origin: float) -> list[St
     return [steady_stage(field, request.pieces[-1].steps, origin, basis, request.damping)]
 
 
-def _coupling(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None, x: float) -> Coupling:
-    """One-way or two-way by size, unless the slider says which: what its load moves, over what the drive moves."""
-    from verify.beam import PointForce
+def _coupling(request: Request, onto: Sequence[Onto], stage: Stage, basis: TimeBasis | None) -> Coupling:
+    """One-way or two-way by size, unless the sliders say which: what their load moves, over what the drive moves."""
+    sizes = [_sizes(request, one, stage, basis) for one in onto]
+    across = max(size for size, _ in sizes)
+    along = None if any(size is None for _, size in sizes) else max(size or 0.0 for _, size in sizes)
+    choice = onto[0].slider.coupling
+    return Coupling(
+        two_way=choice == "two-way" if choice != "auto" else along is None or max(along, across) > FELT,
+        friction_size=along,
+        normal_size=float(across),
+        normal="held",
+        forced=choice != "auto",
+    )
 
-    beam, omega = request.beam, request.omega
-    moved, turned = (float(np.hypot(*stage.drive_shapes(np.array([x]), d)[:2, 0])) for d in (0, 1))
+
+def _sizes(request: Request, one: Onto, stage: Stage, basis: TimeBasis | None) -> tuple[float, float | None]:
+    """What all that presses a slider on moves the surface by, over its own motion: (across, by friction along)."""
+    beam, omega, slider, x = request.beam, request.omega, one.slider, np.array([one.start])
+    moved, turned = (float(np.hypot(*stage.drive_shapes(x, d)[:2, 0])) for d in (0, 1))
     felt = (
-        receptance(basis, x, omega, request.damping)
+        receptance(basis, one.start, omega, request.damping)
         if basis
-        else complex(steady_field(request, (PointForce(position=x),)).deflection([x])[0])
+        else complex(steady_field(request, (PointForce(position=one.start),)).deflection(x)[0])
     )
     lever, k = beam.surface_distance, float(np.sqrt(omega / beam.wave_constant))
     rub = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
     across = slider.normal_force * abs(felt) / moved if moved else np.inf
-    along = rub / (lever * omega * turned) if turned else None
-    forced = slider.coupling != "auto"
-    return Coupling(
-        two_way=slider.coupling == "two-way" if forced else along is None or max(along, across) > FELT,
-        friction_size=along,
-        normal_size=float(across),
-        normal="held",
-        forced=forced,
-    )
+    return float(across), float(rub / (lever * omega * turned)) if turned else None
 
 
-def _weighed(basis: TimeBasis, slider: Slider, x: float) -> Array:
+def _weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
     """Modes at rest under what presses the feet on, shared by their points, (n,)."""
-    feet, still = feet_of(slider, 0.0), np.zeros(len(basis.omegas))
+    feet, still = feet_of(onto), np.zeros(len(basis.omegas))
     for f, given in enumerate(feet.given):
-        own = feet.points[(feet.foot == f) & (feet.points[:, 6] > 0.0)]
-        still += given[2] / len(own) * basis.shapes(x + own[:, 0], 0).sum(axis=1)
+        own = feet.points[(feet.foot == f) & (feet.points[:, records.IMAGE] > 0.0)]
+        places = onto[0].start + own[:, records.OFFSET]
+        still += given[records.PRESS] / len(own) * basis.shapes(places, 0).sum(axis=1)
     return np.asarray(still / basis.omegas**2)
 
 
-def _sag(request: Request, slider: Slider, x: float) -> float:
-    """Static deflection of the beam under the net load at the slider, metres, by the first modes of its own model."""
-    feet = feet_of(slider, 0.0)
-    load = abs(float(feet.given[:, 2].sum()))
-    basis = basis_of(request.beam, request.model, request.count, min(request.modes, 20), "spline")
-    return load * float((basis.shapes(np.array([x]), 0)[:, 0] ** 2 / basis.omegas**2).sum())
+def _sag(request: Request, onto: Sequence[Onto]) -> float:
+    """Largest static deflection under the net loads at the sliders, metres, by the first modes of the model."""
+    basis = basis_of(request.beam, request.model, request.count, min(request.modes, SAGGING), "spline")
+    places = np.array([one.start for one in onto])
+    still = _weighed(basis, onto)
+    return float(np.abs(still @ basis.shapes(places, 0)).max())
 
 
-def contact_rate(slider: Slider, basis: TimeBasis | None, x: float) -> float:
+def contact_rate(one: Onto, basis: TimeBasis | None) -> float:
     """The fastest natural frequency that the contact may have, rad/s, every point pressed; with the beam's own ease.
 
     Also at least what a dashpot turns into one: half its rate is as much as a step bears of it.
     """
-    feet = feet_of(slider, 0.0)
-    ease = np.array([feet.given[f, 0] for f in feet.foot]) + feet.points[:, 1] ** 2 * feet.given[feet.foot, 1]
-    along = np.full(len(ease), 1.0 / slider.mass)
+    feet = feet_of((one,))
+    p, given = feet.points, feet.given[feet.foot]
+    ease = given[:, records.LIGHTNESS] + p[:, records.ARM] ** 2 * given[:, records.EASE]
+    along = np.full(len(ease), 1.0 / one.slider.mass)
     if basis is not None:
-        ease = ease + (basis.shapes(x + feet.points[:, 0], 0) ** 2).sum(axis=0)
-        lever = basis.beam.surface_distance
-        along = along + lever**2 * (basis.shapes(x + feet.points[:, 0], 1) ** 2).sum(axis=0)
-    sums = [np.sqrt((feet.points[:, 2] * ease)[feet.foot == f].sum()) for f in range(len(feet.state))]
-    damped = [(feet.points[:, 3] * ease)[feet.foot == f].sum() for f in range(len(feet.state))]
-    return float(max([*sums, *damped, np.sqrt((feet.points[:, 4] * along).sum())]))
+        places, lever = one.start + p[:, records.OFFSET], basis.beam.surface_distance
+        ease = ease + (basis.shapes(places, 0) ** 2).sum(axis=0)
+        along = along + lever**2 * (basis.shapes(places, 1) ** 2).sum(axis=0)
+    rates = [np.sqrt(p[:, records.GRIP] @ along)]
+    for f in range(len(feet.state)):
+        own = feet.foot == f
+        rates += [np.sqrt(p[own, records.STIFF] @ ease[own]), p[own, records.DASHPOT] @ ease[own]]
+    return float(max(rates))
 
 
 def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:
@@ -266,37 +327,49 @@ def _notes(request: Request, basis: TimeBasis | None, coupling: Coupling) -> tup
 
 def carry_out(
     plan: Plan,
-    before: MotorState | None,
-    held: Held,
+    before: Sequence[MotorState],
     began: float,
     progress: Callable[[float], None],
     patient: bool,
-) -> MotorRun:
+) -> tuple[MotorRun, ...]:
     """Step a run that is laid out. Raises InputError where that takes too long."""
     n_steps = sum(stage.n_steps for stage in plan.stages)
-    riding = Riding.fresh(plan.slider, plan.request, plan.start, plan.coupling.two_way, held.speed, held.frozen)
+    riding = Riding.fresh(plan.onto, plan.request, plan.coupling.two_way)
     if not patient:
-        check_work("duration", plan.request.pieces, riding.seconds(n_steps), "shorten it or lengthen the step")
+        seconds = sum(stage.duration for stage in plan.stages)
+        check_work("duration", seconds, riding.seconds(n_steps), "shorten it or lengthen the step")
     begin(plan, riding, before)
     ready = perf_counter()
     stopped, q, rates = run_stages(plan.stages, plan.z, riding, lambda n: progress(n / n_steps))
     clock = (began, ready, perf_counter())
-    return told(plan, riding, stopped, (q, rates), clock)
+    return tuple(told(b, plan, riding, stopped, (q, rates), clock) for b in range(len(plan.onto)))
 
 
-def begin(plan: Plan, riding: Riding, before: MotorState | None) -> None:
-    """Put the slider down, or go on from where a run has left it."""
+def begin(plan: Plan, riding: Riding, before: Sequence[MotorState]) -> None:
+    """Put the sliders down, or go on from where runs have left them."""
     feet, stage = riding.feet, plan.stages[0]
-    if before is not None:
-        if before.feet.shape != feet.state.shape or before.touch.shape != feet.touch.shape:
+    for b, state in enumerate(before):
+        own, own_feet = feet.owner == b, feet.keeper == b
+        if state.feet.shape != feet.state[own_feet].shape or state.touch.shape != feet.touch[own].shape:
             raise InputError("continue_from has other feet than slider.foot: give both runs the same slider")
-        feet.body[:], feet.state[:], feet.touch[:] = (before.travelled, feet.body[1]), before.feet, before.touch
-        if riding.held_speed is None:
-            feet.body[1] = before.speed
+        feet.body[b, records.X], feet.state[own_feet], feet.touch[own] = state.travelled, state.feet, state.touch
+        if plan.onto[b].held_speed is None:
+            feet.body[b, records.V] = state.speed
+    if before:
         return
     if riding.hard is not None:
         riding.before[0, 0] = RIDES_FROM_HERE
         return
-    levels = stage.deflection(plan.z, np.zeros(1), plan.start + feet.points[:, 0])[0]
+    levels = _levels(stage, plan, feet)
     put_down(feet, levels)
     riding.set_touch(levels)
+
+
+def _levels(stage: Stage, plan: Plan, feet: Feet) -> Array:
+    """The surface under every point at the start, (points,), metres: of the material X = x + face (h/2) w' there."""
+    x, p, beam = plan.onto[0].start + feet.points[:, records.OFFSET], feet.points, plan.request.beam
+    lever, at = beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE], x
+    factors = np.concatenate([plan.z[0], stage.drive_factors(np.zeros(1))[0]])
+    for _ in range(PASSES):
+        at = np.clip(x + lever * (factors @ stage.rows(at, 1)), 0.0, beam.length)
+    return np.asarray(factors @ stage.rows(at))

@@ -8,8 +8,9 @@ from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 from verify.motion.request import Driven, Modelled, Started, Watched, requested
 from verify.motor.case import MotorCase
+from verify.motor.laid import Onto
 from verify.motor.result import MotorRun, MotorState
-from verify.motor.run import Held, carry_out, lay_out
+from verify.motor.run import carry_out, lay_out
 
 MOST = 12
 SMALL = 1e-4
@@ -79,8 +80,9 @@ def _period(case: MotorCase, state: MotorState, speed: float) -> MotorRun:
         Watched((), 2, None, case.steps_per_period, False),
         case.slider,
     )
-    plan = lay_out(request, case.slider, replace(state, time=0.0))
-    return carry_out(plan, replace(state, time=0.0), Held(speed, True), 0.0, lambda part: None, True)
+    before = (replace(state, time=0.0),)
+    plan = lay_out(request, (Onto(case.slider, case.slider.start_on(case.beam), speed, True),), before)
+    return carry_out(plan, before, 0.0, lambda part: None, True)[0]
 
 
 def _size(run: MotorRun) -> Array:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import msgspec
 import numpy as np
 
+from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.motion import records as beam_records
 from verify.motion.forcing import turns
@@ -13,9 +14,8 @@ from verify.motion.request import Request
 from verify.motion.stepping import CHUNK
 from verify.motion.surface import Stage
 from verify.motor import records
-from verify.motor.laid import feet_of, fresh_log, hard_of, rubbing_of
+from verify.motor.laid import Onto, feet_of, fresh_log, hard_of, rubbing_of
 from verify.motor.records import Beamed, Feet, Hard, Line, Log, Rubbing
-from verify.slider import Slider
 
 
 class Riding(msgspec.Struct, eq=False, kw_only=True):
@@ -30,16 +30,15 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     points: Array
     """(p,), metres: where the deflection is kept."""
     two_way: bool
-    held_speed: float | None
-    stage_mass: float
+    onto: tuple[Onto, ...]
     hard: Hard | None
     """None of a contact on springs."""
-    at_start: tuple[float, float] = (0.0, 0.0)
+    at_start: Array | None = None
     """`energy` before the first step."""
     put_down: Array
     """(feet, 4), their state before the first step."""
     set_off: Array
-    """(2,), distance travelled and speed then."""
+    """(sliders, 2), distance travelled and speed then."""
     pressed: Array
     """(points,), normal force of the springs then, newton."""
     steps_before: int = 0
@@ -47,23 +46,24 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     """(p,), the deflection at the start."""
 
     @classmethod
-    def fresh(
-        cls, slider: Slider, request: Request, start: float, two_way: bool, held_speed: float | None, frozen: bool
-    ) -> "Riding":
+    def fresh(cls, onto: Sequence[Onto], request: Request, two_way: bool) -> "Riding":
         """Room for a run."""
-        samples = sum(piece.steps.n // piece.steps.every for piece in request.pieces)
-        feet = feet_of(slider, slider.speed if held_speed is None else held_speed)
+        samples, feet = sum(piece.steps.n // piece.steps.every for piece in request.pieces), feet_of(onto)
+        return cls.of(feet, onto, request.beam, fresh_log(samples, feet, np.zeros((0, 0)), 1), request.points, two_way)
+
+    @classmethod
+    def of(cls, feet: Feet, onto: Sequence[Onto], beam: Beam, log: Log, points: Array, two_way: bool) -> "Riding":
+        """The same with what is at hand."""
         return cls(
             feet=feet,
-            rubbing=rubbing_of(slider, request.beam, held_speed, frozen),
-            log=fresh_log(samples, feet, np.zeros((len(request.points), 0)), 1),
+            rubbing=rubbing_of(onto[0].slider, beam),
+            log=log,
             before=np.full((len(feet.points), 2), -1.0),
-            start=start,
-            points=request.points,
+            start=onto[0].start,
+            points=points,
             two_way=two_way,
-            held_speed=held_speed,
-            stage_mass=slider.mass,
-            hard=hard_of(slider),
+            onto=tuple(onto),
+            hard=hard_of(onto[0].slider),
             put_down=feet.state.copy(),
             set_off=feet.body.copy(),
             pressed=np.zeros(len(feet.points)),
@@ -94,15 +94,17 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         self.set_off = self.feet.body.copy()
         self.pressed = self.feet.points[:, records.STIFF] * np.maximum(self.feet.touch[:, records.DEPTH], 0.0)
 
-    def energy(self) -> tuple[float, float]:
-        """(kinetic, in the springs across) now, joules; the springs' at the depths that the touch says."""
+    def energy(self) -> Array:
+        """(sliders, 2): kinetic and in the springs across now, joules; these at the depths that the touch says."""
         feet, p, touch = self.feet, self.feet.points, self.feet.touch
+        found = np.zeros((len(self.onto), 2))
+        found[:, 0] = 0.5 * np.array([one.slider.mass for one in self.onto]) * feet.body[:, records.V] ** 2
         masses, inertias = (_turned(feet.given[:, one]) for one in (records.LIGHTNESS, records.EASE))
-        kinetic = 0.5 * self.stage_mass * feet.body[records.V] ** 2 + 0.5 * float(
-            masses @ feet.state[:, records.CLIMB] ** 2 + inertias @ feet.state[:, records.TURN] ** 2
-        )
+        across = 0.5 * (masses * feet.state[:, records.CLIMB] ** 2 + inertias * feet.state[:, records.TURN] ** 2)
+        np.add.at(found[:, 0], feet.keeper, across)
         depth = np.maximum(touch[:, records.DEPTH], 0.0)
-        return float(kinetic), 0.5 * float(p[:, records.STIFF] @ depth**2)
+        np.add.at(found[:, 1], feet.owner, 0.5 * p[:, records.STIFF] * depth**2)
+        return found
 
 
 def _turned(eases: Array) -> Array:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Indices
 from verify.motion.margins import margins_of
 from verify.motion.result import Statistics
 from verify.motor import records
@@ -17,28 +17,33 @@ if TYPE_CHECKING:
 
 
 def told(
+    b: int,
     plan: "Plan",
     riding: Riding,
     stopped: str,
     modes: tuple[Array, Array],
     clock: tuple[float, float, float],
 ) -> MotorRun:
-    """The run, with its first sample as the slider was put down; `clock` is at request, first step and end, seconds."""
-    request, log, feet = plan.request, riding.log, riding.feet
+    """The run of slider b, with its first sample as it was put down.
+
+    `clock` is at request, first step and end, seconds.
+    """
+    request, log, feet, one = plan.request, riding.log, riding.feet, plan.onto[b]
+    own, feet_own = feet.owner == b, feet.keeper == b
     n = int(log.tally[records.SAMPLES])
     origin = plan.stages[0].origin
     times = np.concatenate([[origin], *(stage.origin + stage.sample_times for stage in plan.stages)])[: n + 1]
-    columns = log.kept[:n].T
+    columns = log.kept[:n, b].T
     lost = int(log.tally[records.EVENTS]) - len(log.events)
     notes = (f"events: the first {len(log.events)} of {len(log.events) + lost}",) * (lost > 0)
     began, ready, end = clock
     assert riding.first is not None
     return MotorRun(
         times=times,
-        slider=plan.slider,
-        start=plan.start,
-        travelled=_led(float(riding.set_off[0]), columns[records.KEPT_X]),
-        speed=_led(float(riding.set_off[1]), columns[records.KEPT_V]),
+        slider=one.slider,
+        start=one.start,
+        travelled=_led(float(riding.set_off[b, 0]), columns[records.KEPT_X]),
+        speed=_led(float(riding.set_off[b, 1]), columns[records.KEPT_V]),
         friction=_led(0.0, columns[records.KEPT_RUB]),
         surface_speed=_led(np.nan, columns[records.KEPT_SURFACE]),
         coupling=plan.coupling,
@@ -55,27 +60,27 @@ def told(
         count=request.count,
         points=request.points,
         deflection=np.concatenate([riding.first[None], log.deflections[:n]]),
-        normal_force=_led(plan.slider.normal_force, columns[records.KEPT_PUSH]),
+        normal_force=_led(one.slider.normal_force, columns[records.KEPT_PUSH]),
         contact_share=_led(1.0, columns[records.KEPT_TOUCHING]),
         stuck_share=_led(0.0, columns[records.KEPT_STICKING]),
         rubbed=_led(0.0, columns[records.KEPT_RUBBED]),
         carried=_led(0.0, columns[records.KEPT_ALONG]),
-        height=np.concatenate([riding.put_down[None, :, 0], log.heights[:n, :, 0]]),
-        pitch=np.concatenate([riding.put_down[None, :, 2], log.heights[:n, :, 1]]),
-        pressures=np.concatenate([riding.pressed[None], log.pressures[:n]]),
-        point_offsets=feet.points[:, records.OFFSET],
-        events=log.events[: int(log.tally[records.EVENTS])],
+        height=np.concatenate([riding.put_down[None, feet_own, 0], log.heights[:n, feet_own, 0]]),
+        pitch=np.concatenate([riding.put_down[None, feet_own, 2], log.heights[:n, feet_own, 1]]),
+        pressures=np.concatenate([riding.pressed[None, own], log.pressures[:n, own]]),
+        point_offsets=feet.points[own, records.OFFSET] - (one.start - plan.onto[0].start),
+        events=_events(log.events[: int(log.tally[records.EVENTS])], np.flatnonzero(own)),
         beam_margins=margins_of(request, plan.stages[-1]),
-        motor_margins=motor_margins(plan),
-        ledger=ledger(riding),
+        motor_margins=motor_margins(plan, one.slider),
+        ledger=ledger(riding, b),
         state=MotorState(
             time=float(times[-1]),
             q=modes[0],
             rates=modes[1],
-            travelled=float(feet.body[records.X]),
-            speed=float(feet.body[records.V]),
-            feet=feet.state.copy(),
-            touch=feet.touch.copy(),
+            travelled=float(feet.body[b, records.X]),
+            speed=float(feet.body[b, records.V]),
+            feet=feet.state[feet_own].copy(),
+            touch=feet.touch[own].copy(),
         ),
     )
 
@@ -84,9 +89,16 @@ def _led(first: float, values: Array) -> Array:
     return np.concatenate([[first], values])
 
 
-def motor_margins(plan: "Plan") -> MotorMargins:
+def _events(events: Array, points: Indices) -> Array:
+    """Those of a slider's points, numbered from its first."""
+    found = events[np.isin(events[:, records.EVENT_POINT], points)].copy()
+    found[:, records.EVENT_POINT] -= points[0]
+    return found
+
+
+def motor_margins(plan: "Plan", slider: Slider) -> MotorMargins:
     """What the contact's assumptions leave out."""
-    slider, beam = plan.slider, plan.request.beam
+    beam = plan.request.beam
     k = float(np.sqrt(plan.request.omega / beam.wave_constant))
     thickness = 2.0 * beam.surface_distance
     return MotorMargins(
@@ -107,11 +119,12 @@ def layer_epsilon(slider: Slider, wavenumber: float, thickness: float) -> float 
     return 2.0 * slider.mu * across / (along * wavenumber * thickness) if along else 0.0
 
 
-def ledger(riding: Riding) -> MotorLedger:
-    """Where the energy went."""
-    sums = riding.feet.sums
-    kinetic = riding.energy()[0] - riding.at_start[0]
-    stored = float(sums[records.STORED]) - riding.at_start[1]
+def ledger(riding: Riding, b: int) -> MotorLedger:
+    """Where slider b's energy went."""
+    sums, before = riding.feet.sums[b], riding.at_start
+    assert before is not None
+    kinetic = float(riding.energy()[b, 0] - before[b, 0])
+    stored = float(sums[records.STORED] - before[b, 1])
     names = {"across": records.ACROSS, "along": records.ALONG, "pressed": records.PRESSED, "pulled": records.PULLED}
     given = {name: float(sums[column]) for name, column in names.items()}
     rubbed, damped = float(sums[records.RUBBED]), float(sums[records.DAMPED])

@@ -10,6 +10,7 @@ from verify.run.asks import asks_of
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
+    from verify.slider import Slider
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 """A kernel and what it is called with."""
@@ -23,6 +24,9 @@ def kernels_asked(scene: "Scene") -> Iterator[Call]:
     in_time = [ask for ask in asks_of(scene) if ask.work in ("in time", "equilibrium") and not ask.problem]
     carried = any(ask.slides for ask in in_time)
     alone = any(not ask.slides for ask in in_time)
+    if scene.slider and scene.slider.contact is not None and carried:
+        yield from _motors(scene.slider)
+        return
     if scene.slider and carried:
         if alone:
             yield from motion.on_belt()
@@ -31,3 +35,11 @@ def kernels_asked(scene: "Scene") -> Iterator[Call]:
         yield from chain.rigid()
         yield from motion.on_chain(scene.slider.law) if scene.slider and carried else chain.modal()
         yield from chain.stretching()
+
+
+def _motors(slider: "Slider") -> Iterator[Call]:
+    """Those of a slider that may leave the beam."""
+    from verify.motor import warm
+
+    assert slider.contact is not None
+    yield from warm.hard(slider.law) if slider.contact.hard else warm.on_springs(slider.law, slider.coupling)

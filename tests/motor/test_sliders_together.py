@@ -1,0 +1,115 @@
+"""Several feet, both faces, a slider between two beams, several sliders on one beam."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import Beam, Contact, Foot, PointForce, Slider, run_motor, run_motors
+
+BEAM = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
+FORCES = [PointForce(position=0.0116, amplitude=2.1), PointForce(position=0.4884, amplitude=1.9, phase_deg=83.0)]
+HERTZ = 4276.0
+SLIDER = Slider(
+    mass=0.21,
+    mu=0.17,
+    law="coulomb",
+    preload=23.0,
+    position=0.237,
+    coupling="one-way",
+    contact=Contact(stiffness=5e7, damping=900.0),
+    foot=(Foot(length=0.044, points=23),),
+)
+
+
+def moved(slider, seconds=4e-3, **given):
+    kept = {"model": "segment", "count": 49, "samples": 18, **given}
+    return run_motor(BEAM, FORCES, HERTZ, seconds, slider=slider, **kept)
+
+
+def test_feet_on_both_faces_are_driven_the_same_way_and_do_not_bend_the_beam():
+    """At a crest the upper surface runs back, and the lower one where the beam is lowest, half a wave on."""
+    upper = moved(SLIDER)
+    clasp = moved(replace(SLIDER, gravity=0.0, foot=(SLIDER.foot[0], replace(SLIDER.foot[0], face="lower"))))
+    lower = moved(replace(SLIDER, gravity=0.0, foot=(replace(SLIDER.foot[0], face="lower"),)))
+    assert np.sign(upper.speed[-1]) == np.sign(clasp.speed[-1]) == np.sign(lower.speed[-1]) != 0.0
+    assert clasp.motor_margins.sag < 1e-12
+    assert upper.motor_margins.sag > 0.1
+    assert clasp.normal_force[-9:].mean() == pytest.approx(23.0, rel=0.2)
+
+
+def test_weight_presses_an_upper_foot_on_and_a_lower_one_off():
+    stiff = replace(SLIDER, gravity=9.81, contact=Contact(stiffness=5e7))
+    still = [replace(one, amplitude=1e-9) for one in FORCES]
+    for face, load in (("upper", 23.0 + 0.21 * 9.81), ("lower", 23.0 - 0.21 * 9.81)):
+        slider = replace(stiff, foot=(replace(SLIDER.foot[0], face=face),))
+        found = run_motor(BEAM, still, HERTZ, 1e-3, slider=slider, model="segment", count=49, samples=5)
+        assert found.normal_force[1:] == pytest.approx(load, rel=1e-6)
+        assert found.height[0, 0] == pytest.approx((-load if face == "upper" else load) / 5e7, rel=1e-6)
+
+
+def test_a_slider_between_two_beams_stays_in_the_middle_and_is_pressed_alike_from_both():
+    between = replace(SLIDER, gravity=0.0, foot=(replace(SLIDER.foot[0], mirrored=True),))
+    found = moved(between)
+    points = found.pressures.shape[1] // 2
+    assert np.abs(found.height).max() < 1e-12
+    assert found.pressures[:, :points] == pytest.approx(found.pressures[:, points:], rel=1e-9, abs=1e-9)
+    assert found.pressures[5:].sum(axis=1).min() > 0.0
+    assert np.sign(found.speed[-1]) == np.sign(moved(SLIDER).speed[-1])
+
+
+def test_weight_sinks_a_slider_between_two_beams_by_what_both_springs_bear():
+    still = [replace(one, amplitude=1e-9) for one in FORCES]
+    between = replace(SLIDER, contact=Contact(stiffness=5e7), foot=(replace(SLIDER.foot[0], mirrored=True),))
+    found = run_motor(BEAM, still, HERTZ, 1e-3, slider=between, model="segment", count=49, samples=5)
+    assert found.height[:, 0] == pytest.approx(-0.21 * 9.81 / 1e8, rel=1e-6)
+
+
+def test_sliders_that_the_beam_does_not_feel_move_as_each_by_itself():
+    other = replace(SLIDER, mass=0.34, mu=0.11, preload=31.0, position=0.331, foot=(Foot(length=0.03, points=11),))
+    kept = {"model": "segment", "count": 49, "samples": 18}
+    both = run_motors(BEAM, FORCES, HERTZ, 4e-3, sliders=[SLIDER, other], **kept)
+    for slider, found in zip((SLIDER, other), both, strict=True):
+        alone = moved(slider)
+        assert found.start == alone.start
+        assert found.travelled == pytest.approx(alone.travelled, rel=1e-6, abs=1e-12)
+        assert found.height == pytest.approx(alone.height, rel=1e-6, abs=1e-12)
+        assert found.pressures.shape == alone.pressures.shape
+        assert found.point_offsets == pytest.approx(alone.point_offsets, abs=1e-15)
+        assert found.ledger.residual == pytest.approx(alone.ledger.residual, abs=1e-6)
+
+
+def test_sliders_on_a_beam_that_feels_them_feel_each_other_the_less_the_less_presses_the_other_on():
+    first = replace(SLIDER, coupling="two-way", preload=0.3, mass=0.01, foot=(), contact=Contact(stiffness=4e5))
+    kept = {"model": "segment", "count": 49, "samples": 18}
+    alone = moved(first)
+    apart = []
+    for share in (1.0, 1e-2, 1e-4):
+        second = replace(first, preload=0.3 * share, mass=0.01 * share, contact=Contact(stiffness=4e5 * share))
+        second = replace(second, position=0.331)
+        found = run_motors(BEAM, FORCES, HERTZ, 4e-3, sliders=[first, second], **kept)
+        apart.append(float(np.abs(found[0].height - alone.height).max()))
+    assert apart[0] > 10.0 * apart[1] > 100.0 * apart[2] > 0.0
+
+
+def test_a_run_in_two_halves_is_the_whole_run():
+    for coupling in ("one-way", "two-way"):
+        slider = replace(
+            SLIDER, coupling=coupling, preload=1.3, mass=0.03, contact=Contact(stiffness=3e6, damping=30.0)
+        )
+        period = 1.0 / HERTZ
+        whole = moved(slider, 12 * period, samples=13)
+        first = moved(slider, 6 * period, samples=7)
+        second = moved(slider, 6 * period, samples=7, continue_from=first)
+        assert second.times[0] == pytest.approx(first.times[-1])
+        assert second.travelled[-1] == pytest.approx(whole.travelled[-1], rel=1e-7)
+        assert second.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)
+
+
+def test_books_of_every_slider_close_and_what_a_slider_gets_the_beam_has_lost():
+    first = replace(SLIDER, coupling="two-way", preload=0.3, mass=0.01, foot=(), contact=Contact(stiffness=4e5))
+    second = replace(first, position=0.331, mu=0.4, contact=Contact(stiffness=3e5, damping=3.0))
+    kept = {"model": "segment", "count": 49, "samples": 18, "steps_per_period": 509}
+    for found in run_motors(BEAM, FORCES, HERTZ, 4e-3, sliders=[first, second], **kept):
+        books = found.ledger
+        assert abs(books.residual) < 1e-3 * (abs(books.across) + abs(books.along))
+        assert books.on_beam == pytest.approx(-(books.across + books.along), rel=1e-9)

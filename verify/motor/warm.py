@@ -1,0 +1,75 @@
+"""The calls for which the kernels of a slider on feet are compiled, with values of the right kinds."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from verify.motion.records import Drive, Surface
+from verify.motor.laid import Onto, feet_of, fresh_log
+from verify.motor.records import Beamed, Feet, Hard, Line, Log, Moved, Rubbing
+from verify.slider import Contact, Slider
+
+Call = tuple[Callable[..., Any], tuple[Any, ...]]
+"""A kernel and what it is called with."""
+SLOPES = {"coulomb": None, "tanh": 1.0}
+
+
+def calls() -> Iterator[Call]:
+    """Springs and hard landings, on a beam and on a chain, each law and coupling."""
+    for law in SLOPES:
+        yield from on_springs(law, "auto")
+        yield from on_chain(law)
+        yield from hard(law)
+
+
+def on_springs(law: str, coupling: str) -> Iterator[Call]:
+    """On a beam; both couplings where it is left open which one it is."""
+    from verify.motor import kernels
+
+    for name, beam in (("one-way", None), ("two-way", _beamed())):
+        if coupling in (name, "auto"):
+            feet, log = _ridden()
+            yield kernels.ride, (1, 0.0, _surface(), feet, _rubbing(law), beam, _line(), np.zeros((1, 2)), log)
+
+
+def on_chain(law: str) -> Iterator[Call]:
+    """On a surface that is given."""
+    from verify.motor import kernels
+
+    feet, log = _ridden()
+    given = Moved(np.zeros((1, 1, 2, 4)), np.zeros((1, 1)), np.zeros(2))
+    yield kernels.ride_given, (1, 0.0, given, feet, _rubbing(law), _line(), np.zeros((1, 2)), log)
+
+
+def hard(law: str) -> Iterator[Call]:
+    """A point that lands hard."""
+    from verify.motor import hop_kernels
+
+    feet, log = _ridden()
+    yield hop_kernels.put, (0.0, _surface(), feet, _rubbing(law), _line())
+    point = Hard(1.0, 1.0, 0.0)
+    yield hop_kernels.hop, (1, 0.0, _surface(), feet, _rubbing(law), point, _line(), np.zeros((1, 2)), log)
+
+
+def _ridden() -> tuple[Feet, Log]:
+    feet = feet_of((Onto(Slider(mass=1.0, mu=1.0, contact=Contact(stiffness=1.0)), 0.0),))
+    return feet, fresh_log(1, feet, np.zeros((0, 1)), 1)
+
+
+def _rubbing(law: str) -> Rubbing:
+    return Rubbing(slope=SLOPES[law], half=0.0)
+
+
+def _surface() -> Surface:
+    drive = Drive(omega=0.0, origin=0.0, unit=1.0, growth=np.zeros(1))
+    return Surface(modes=np.zeros((1, 1)), drive=drive, table=np.zeros((1, 1, 1)), edges=np.zeros(2))
+
+
+def _line() -> Line:
+    return Line(local=np.zeros((1, 2, 1)), stamp=np.zeros(1, dtype=np.int64), factors=np.zeros((2, 1)))
+
+
+def _beamed() -> Beamed:
+    flat = np.zeros((1, 1))
+    return Beamed(answer=flat, load=flat, added=flat, span=np.zeros(2, dtype=np.int64))
