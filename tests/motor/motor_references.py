@@ -150,18 +150,21 @@ class OneWay:
 
 
 class Modes:
-    """A pinned beam by its first modes, which feels the body: mass 1 in each, forces F cos(omega t + phase)."""
+    """A beam of a few modes that feels the body: mass 1 in each, forces F cos(omega t + phase) at places.
 
-    def __init__(self, length, line, own, damping, forces, omega, half, grow=0.0):
-        self.own, self.damping, self.omega, self.half, self.grow = np.asarray(own), damping, omega, half, grow
-        self.n = np.arange(1, len(own) + 1) * pi / length
-        self.size = (2.0 / (line * length)) ** 0.5
-        self.forces = [(f, phase, self.shape(place, 0)) for f, phase, place in forces]
+    `shape` gives all modes at a place, or a derivative of them.
+    """
+
+    def __init__(self, own, shape, damping, forces, omega, half, grow=0.0):
+        self.own, self.shape, self.damping, self.omega = np.asarray(own), shape, damping, omega
+        self.half, self.grow = half, grow
+        self.forces = [(f, phase, shape(place, 0)) for f, phase, place in forces]
         self.beam = 2 * len(own)
 
-    def shape(self, x, derivative):
-        """Of each mode."""
-        return self.size * self.n**derivative * np.sin(self.n * x + 0.5 * pi * derivative)
+    def lying(self, x, load):
+        """(q, deflection of the material below x) at rest under a load at x."""
+        q = -load * self.shape(x, 0) / self.own**2
+        return q, q @ self.shape(x + self.half * (q @ self.shape(x, 1)), 0)
 
     def split(self, s):
         """(q, q_t, the body's)."""
