@@ -13,7 +13,7 @@ from verify.models.arrays import Array
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.time_basis import TimeBasis
 from verify.motion.carried import steady_field
-from verify.motion.contact import FELT, Coupling
+from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance
 from verify.motion.moving_mass import receptance
 from verify.motion.request import Driven, Modelled, Request, Started, Watched, requested
@@ -21,6 +21,7 @@ from verify.motion.step_size import stepped
 from verify.motion.surface import Stage, basis_of, stages_from_rest, steady_stage
 from verify.motor import records
 from verify.motor.combine import CHAIN, check_together
+from verify.motor.coupling import coupled, in_words, sizes
 from verify.motor.laid import Onto, check_on_beam, feet_of, put_down
 from verify.motor.records import Feet
 from verify.motor.result import MotorRun, MotorState
@@ -236,14 +237,7 @@ def _coupling(request: Request, onto: Sequence[Onto], stage: Stage, basis: TimeB
     sizes = [_sizes(request, one, stage, basis) for one in onto]
     across = max(size for size, _ in sizes)
     along = None if any(size is None for _, size in sizes) else max(size or 0.0 for _, size in sizes)
-    choice = onto[0].slider.coupling
-    return Coupling(
-        two_way=choice == "two-way" if choice != "auto" else along is None or max(along, across) > FELT,
-        friction_size=along,
-        normal_size=float(across),
-        normal="held",
-        forced=choice != "auto",
-    )
+    return coupled(onto[0].slider, across, along)
 
 
 def _sizes(request: Request, one: Onto, stage: Stage, basis: TimeBasis | None) -> tuple[float, float | None]:
@@ -255,10 +249,7 @@ def _sizes(request: Request, one: Onto, stage: Stage, basis: TimeBasis | None) -
         if basis
         else complex(steady_field(request, (PointForce(position=one.start),)).deflection(x)[0])
     )
-    lever, k = beam.surface_distance, float(np.sqrt(omega / beam.wave_constant))
-    rub = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
-    across = slider.normal_force * abs(felt) / moved if moved else np.inf
-    return float(across), float(rub / (lever * omega * turned)) if turned else None
+    return sizes(slider, beam, omega, moved, turned, felt)
 
 
 def _weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
@@ -316,13 +307,7 @@ def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:
 
 def _notes(request: Request, basis: TimeBasis | None, coupling: Coupling) -> tuple[str, ...]:
     modes = f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"
-    felt = "" if coupling.friction_size is None else f"its friction by {coupling.friction_size:.1e} of its speed and "
-    way = "two" if coupling.two_way else "one"
-    return (
-        modes,
-        f"coupling: {way}-way; all that presses the slider on moves the surface by {coupling.normal_size:.1e} of its "
-        f"motion, {felt or 'the drive does not move the surface along'}".rstrip(" and"),
-    )
+    return modes, f"coupling: {'two' if coupling.two_way else 'one'}-way; {in_words(coupling)}"
 
 
 def carry_out(
