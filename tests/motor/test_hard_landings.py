@@ -5,7 +5,7 @@ from math import asin, cos, pi, sin, sqrt
 import numpy as np
 import pytest
 from motor_references import bounces
-from motor_setups import MIDDLE, OMEGA, drive, ridden
+from motor_setups import MIDDLE, OMEGA, STRIP, drive, ridden
 from msgspec.structs import replace
 
 from verify.contact import bouncing, landing
@@ -63,12 +63,12 @@ def test_blows_lose_what_restitution_leaves_out_and_the_books_close(ratio, resti
     assert abs(run.ledger.residual) < 1e-10 * run.ledger.impacts
 
 
-def thrown(ratio, restitution, off, periods):
-    """Phases of landings of a point that has just left in step, but for `off` of its speed."""
+def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
+    """(phases of landings, the bounce, run) of a point that has left in step, but for `off` of its speed."""
     amplitude, bounce = ratio * GRAVITY / OMEGA**2, bouncing.bounce_in_step(ratio, restitution)
     slider = Slider(
         mass=MASS,
-        mu=0.2,
+        mu=mu,
         law="coulomb",
         gravity=GRAVITY,
         coupling="one-way",
@@ -82,18 +82,19 @@ def thrown(ratio, restitution, off, periods):
     feet[0, 1] = amplitude * OMEGA * (speed - flown / ratio)
     assert feet[0, 0] > amplitude * sin(lead)
     went = replace(before, state=replace(before.state, feet=feet))
-    run = ridden(slider, amplitude, periods=periods, step=64, held_speed=0.0, continue_from=went)
-    return run.events[run.events[:, 1] == LANDS, 0] * OMEGA + lead, bounce
+    asked = {"held_speed": held, "samples": periods + 1, "continue_from": went}
+    run = ridden(slider, amplitude, periods=periods, step=64, **asked)
+    return run.events[run.events[:, 1] == LANDS, 0] * OMEGA + lead, bounce, run
 
 
 @pytest.mark.parametrize("restitution", [0.35, 0.6])
 def test_in_step_between_its_limits_a_point_comes_back_into_step_and_above_them_it_does_not(restitution):
     low, high = bouncing.bouncing_limits(restitution)
-    phases, bounce = thrown(0.4 * low + 0.6 * high, restitution, 1e-3, 60)
+    phases, bounce, _ = thrown(0.4 * low + 0.6 * high, restitution, 1e-3, 60)
     turns = np.diff(phases)[-12:]
     assert turns == pytest.approx(2.0 * pi, abs=1e-7)
     assert phases[-1] % (2.0 * pi) == pytest.approx(bounce.phase, abs=1e-7)
-    phases, bounce = thrown(1.05 * high, restitution, 1e-3, 60)
+    phases, bounce, _ = thrown(1.05 * high, restitution, 1e-3, 60)
     assert max(abs(one) for one in bounce.multipliers) > 1.05
     assert np.abs(np.diff(phases)[-12:] - 2.0 * pi).max() > 1e-2
 
@@ -102,7 +103,7 @@ def test_a_deviation_dies_out_by_the_multipliers_of_the_bounce():
     """At e = 0.35 near the upper limit both are real, and the larger one tells."""
     restitution = 0.35
     ratio = 0.97 * bouncing.bouncing_limits(restitution)[1]
-    phases, bounce = thrown(ratio, restitution, 1e-3, 20)
+    phases, bounce, _ = thrown(ratio, restitution, 1e-3, 20)
     away = phases % (2.0 * pi) - bounce.phase
     largest = max(bounce.multipliers, key=abs)
     assert largest.imag == 0.0
@@ -124,3 +125,32 @@ def test_a_stiff_contact_with_a_dashpot_bounces_as_a_hard_one_of_its_restitution
     orders = np.log2(np.array(off)[:-1] / np.array(off)[1:])
     assert off[-1] < 0.03
     assert np.all((orders > 0.7) & (orders < 1.4))
+
+
+@pytest.mark.parametrize("ratio", [0.35, 0.8])
+def test_a_point_that_never_leaves_is_driven_by_troughs_that_press_harder(ratio):
+    """N = P (1 - Gamma sin theta) and u = -V sin theta: 2 Gamma/pi of mu P in the mean, against the crests."""
+    amplitude = ratio * GRAVITY / OMEGA**2
+    slider = Slider(mass=MASS, mu=0.2, law="coulomb", gravity=GRAVITY, coupling="one-way", contact=Contact())
+    run = ridden(slider, amplitude, periods=3, step=1000, held_speed=0.0, frozen=True, samples=4)
+    assert len(run.events) == 0
+    assert run.normal_force[-1] == pytest.approx(MASS * GRAVITY, rel=1e-5)
+    assert run.friction[-1] / (0.2 * MASS * GRAVITY) == pytest.approx(2.0 * ratio / pi, abs=1e-5)
+
+
+def test_a_bouncing_point_is_thrown_along_by_mu_of_every_blow_until_it_runs_as_the_surface_where_it_lands():
+    """By mu (1 + e) times the speed of landing each time; then by what is left to u = -V sin(phase)."""
+    restitution, mu = 0.35, 4e-4
+    low, high = bouncing.bouncing_limits(restitution)
+    ratio = 0.7 * low + 0.3 * high
+    _, bounce, run = thrown(ratio, restitution, 0.0, 40, held=None, mu=mu)
+    amplitude = ratio * GRAVITY / OMEGA**2
+    blow = mu * (1.0 + restitution) * amplitude * OMEGA * (bounce.speed + cos(bounce.phase))
+    last = -0.5 * STRIP.thickness * drive(amplitude)[1].k * OMEGA * amplitude * sin(bounce.phase)
+    assert run.speed[-1] == pytest.approx(last, rel=1e-6)
+    gained = -np.diff(run.speed)
+    ramp = gained[gained > 0.999 * blow]
+    assert ramp == pytest.approx(blow, rel=1e-6)
+    assert len(ramp) == int(abs(last) / blow) > 3
+    assert run.ledger.rubbed > 0.0
+    assert abs(run.ledger.residual) < 1e-9 * run.ledger.impacts
