@@ -68,7 +68,13 @@ def test_a_contact_that_cannot_be_is_refused_by_field_value_and_remedy(make, fie
         ({}, {"model": "chain", "count": 9, "start": "rest"}, "modal_damping = 0.005", "0.0"),
         ({"contact": Contact(), "coupling": "two-way"}, {}, "slider.coupling = 'two-way'", "one-way"),
         ({"contact": Contact(), "preload_stiffness": 3.0}, {}, "slider.preload_stiffness = 3.0", "preload alone"),
-        ({"foot": (Foot(mirrored=True),), "coupling": "two-way"}, {}, "slider.coupling = 'two-way'", "one-way"),
+        ({"foot": (Foot(mirrored=True),), "coupling": "two-way"}, {}, "slider.gravity = 9.81", "one-way"),
+        (
+            {"foot": (Foot(mirrored=True), Foot(offset=0.01)), "coupling": "two-way", "gravity": 0.0},
+            {},
+            "slider.foot: some are mirrored",
+            "one-way",
+        ),
     ],
 )
 def test_a_run_that_cannot_be_is_refused_before_it_begins(slider, given, field, remedy):

@@ -57,6 +57,26 @@ def test_a_slider_between_two_beams_stays_in_the_middle_and_is_pressed_alike_fro
     assert np.sign(found.speed[-1]) == np.sign(moved(SLIDER).speed[-1])
 
 
+@pytest.mark.parametrize("law", ["coulomb", "tanh"])
+def test_two_beams_that_feel_the_slider_between_them_move_as_one_that_feels_half_of_it(law):
+    """By symmetry: half the mass along the beam, and a foot that stays where it is."""
+    stiff = replace(BEAM, thickness=0.004, loss_factor=0.02)
+    own = {"mu": 0.17, "law": law, "slope": 80.0, "gravity": 0.0, "position": 0.237, "coupling": "two-way"}
+    contact = Contact(stiffness=4e5, damping=8.0)
+    between = Slider(mass=0.06, preload=3.0, contact=contact, foot=(Foot(length=0.03, points=7, mirrored=True),), **own)
+    half = Slider(
+        mass=0.03, preload=3.0, contact=contact, foot=(Foot(length=0.03, points=7, mass=1e12, pitches=False),), **own
+    )
+    kept = {"model": "fem", "count": 30, "samples": 30, "start": "rest", "soft_start_periods": 2.0}
+    forces = [replace(one, amplitude=60.0) for one in FORCES]
+    two, one = (run_motor(stiff, forces, HERTZ, 4e-3, slider=slider, **kept) for slider in (between, half))
+    assert two.speed[-1] == pytest.approx(one.speed[-1], rel=2e-3)
+    assert two.normal_force[5:] == pytest.approx(2.0 * one.normal_force[5:], rel=2e-3, abs=2e-3)
+    assert two.contact_share[1:].min() < 0.9 * two.contact_share[1:].max()
+    alone = run_motor(stiff, forces, HERTZ, 4e-3, slider=replace(between, coupling="one-way"), **kept)
+    assert abs(alone.speed[-1] / two.speed[-1] - 1.0) > 0.05
+
+
 def test_weight_sinks_a_slider_between_two_beams_by_what_both_springs_bear():
     still = [replace(one, amplitude=1e-9) for one in FORCES]
     between = replace(SLIDER, contact=Contact(stiffness=5e7), foot=(replace(SLIDER.foot[0], mirrored=True),))

@@ -26,6 +26,7 @@ from verify.motor.records import (
     SLOPE,
     STUCK,
     SURFACE,
+    WEIGHT,
     Beamed,
     Feet,
     V,
@@ -46,12 +47,15 @@ def _lever(d: int, at: float, slope: float, lever: float, length: float) -> floa
 
 @part()
 def _add(i: int, along: float, across: float, dt: float, length: float, half: float, feet: Feet, beam: Beamed) -> None:
-    """Forces of point i on the surface, newton: half of what they give is added to the rates, all of it to the load."""
+    """Forces of point i on its beam, newton: half of what they give is added to the rates, all of it to the load.
+
+    Of two beams that are each other's mirror image one is kept, with the mean of what points below and above give.
+    """
     touch, piece = feet.touch, feet.piece[i]
-    lever, degree = half * feet.points[i, FACE], beam.load.shape[1]
+    lever, degree = half * feet.points[i, FACE] * feet.points[i, IMAGE], beam.load.shape[1]
     at, slope = touch[i, AT], touch[i, SLOPE]
     for d in range(degree):
-        impulse = dt * (along * _lever(d, at, slope, lever, length) + across * at**d)
+        impulse = feet.points[i, WEIGHT] * dt * (along * _lever(d, at, slope, lever, length) + across * at**d)
         beam.load[piece, d] += impulse
         _spread(0.5 * impulse, piece * degree + d, beam)
 
@@ -83,16 +87,16 @@ def bear(dt: float, edges: Array, half: float, feet: Feet, beam: Beamed) -> None
     """The surface takes the normal forces, and those of friction that are known."""
     for i in range(feet.points.shape[0]):
         force = feet.touch[i, PUSH]
-        if force > 0.0 and feet.points[i, IMAGE] > 0.0:
+        if force > 0.0:
             length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
             along = -feet.touch[i, RUB] if feet.points[i, GRIP] > 0.0 else 0.0
-            _add(i, along, -feet.points[i, FACE] * force, dt, length, half, feet, beam)
+            _add(i, along, -feet.points[i, FACE] * feet.points[i, IMAGE] * force, dt, length, half, feet, beam)
 
 
 @part()
 def _given(i: int, length: float, half: float, feet: Feet, beam: Beamed) -> float:
     """What the forces so far add to the mean speed of the surface under point i, m/s."""
-    lever, piece, total = half * feet.points[i, FACE], feet.piece[i], 0.0
+    lever, piece, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], feet.piece[i], 0.0
     for d in range(beam.load.shape[1]):
         total += _lever(d, feet.touch[i, AT], feet.touch[i, SLOPE], lever, length) * beam.added[piece, d]
     return total
@@ -101,13 +105,13 @@ def _given(i: int, length: float, half: float, feet: Feet, beam: Beamed) -> floa
 @part()
 def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: Beamed) -> float:
     """What a unit force along the surface at point i adds to its mean speed there, m/s per newton."""
-    lever, degree, total = half * feet.points[i, FACE], beam.load.shape[1], 0.0
+    lever, degree, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], beam.load.shape[1], 0.0
     at, slope, first = feet.touch[i, AT], feet.touch[i, SLOPE], feet.piece[i] * beam.load.shape[1]
     for d in range(degree):
         own = _lever(d, at, slope, lever, length)
         for e in range(degree):
             total += own * beam.answer[first + d, first + e] * _lever(e, at, slope, lever, length)
-    return 0.5 * dt * total
+    return float(0.5 * dt * feet.points[i, WEIGHT] * total)
 
 
 @part()
@@ -130,15 +134,14 @@ def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None,
         for i in range(points.shape[0]):
             if touch[i, PUSH] > 0.0 and points[i, GRIP] == 0.0:
                 length, b = edges[feet.piece[i] + 1] - edges[feet.piece[i]], feet.owner[i]
-                felt, gain = points[i, IMAGE] > 0.0, 0.5 * dt * riders[b, LIGHT]
-                slip = touch[i, SURFACE] - means[b, MEAN] + (_given(i, length, half, feet, beam) if felt else 0.0)
-                ease = gain + (_ease(i, dt, length, half, feet, beam) if felt else 0.0)
+                gain = 0.5 * dt * riders[b, LIGHT]
+                slip = touch[i, SURFACE] - means[b, MEAN] + _given(i, length, half, feet, beam)
+                ease = gain + _ease(i, dt, length, half, feet, beam)
                 force = _suited(i, slip + ease * touch[i, RUB], ease, feet, slope)
                 more = force - touch[i, RUB]
                 touch[i, RUB] = force
                 means[b, MEAN] += gain * more
-                if felt:
-                    _add(i, -more, 0.0, dt, length, half, feet, beam)
+                _add(i, -more, 0.0, dt, length, half, feet, beam)
                 changed = abs(more) if abs(more) > changed else changed
         if changed <= ENOUGH * largest:
             break

@@ -15,6 +15,9 @@ def check_together(model: str, start: str, sliders: Sequence[Slider]) -> None:
         raise InputError("sliders is empty: give one or more")
     for slider in sliders:
         check_combines(model, start, slider)
+    kinds = {any(foot.mirrored for foot in slider.feet) for slider in sliders}
+    if len(kinds) > 1 and sliders[0].coupling != "one-way":
+        raise InputError("sliders: some are between two beams and some on one, which feels them: give all the same")
     for name in ("law", "slope", "coupling"):
         found = {getattr(slider, name) for slider in sliders}
         if len(found) > 1:
@@ -37,13 +40,25 @@ def check_combines(model: str, start: str, slider: Slider) -> None:
         raise InputError(
             f"slider.coupling = {slider.coupling!r} on a nonlinear chain, which moves first: give 'one-way'"
         )
-    mirrored = any(foot.mirrored for foot in slider.feet)
-    if mirrored and contact.hard:
+    mirrored = [foot.mirrored for foot in slider.feet]
+    if any(mirrored) and contact.hard:
         raise InputError("slider.foot.mirrored with a hard contact: give slider.contact.stiffness")
-    if mirrored and slider.coupling != "one-way":
+    if any(mirrored) and slider.coupling != "one-way":
+        _check_symmetric(slider, all(mirrored))
+
+
+def _check_symmetric(slider: Slider, all_mirrored: bool) -> None:
+    """Raise InputError for two beams that feel a slider between them and would not stay each other's mirror image."""
+    for name, value, right in (("gravity", slider.gravity, 0.0), ("preload_stiffness", slider.preload_stiffness, 0.0)):
+        if value != right:
+            raise InputError(
+                f"slider.{name} = {value!r} with slider.foot.mirrored and beams that feel the slider: they would not "
+                "stay each other's mirror image, give 0, or coupling = 'one-way'"
+            )
+    if not all_mirrored:
         raise InputError(
-            f"slider.coupling = {slider.coupling!r} with slider.foot.mirrored: the second beam is a mirror image that "
-            "feels nothing, give 'one-way'"
+            f"slider.foot: some are mirrored and some are not, with coupling = {slider.coupling!r}: make all of them "
+            "mirrored, or give 'one-way'"
         )
 
 

@@ -155,8 +155,7 @@ def kick(dt: float, feet: Feet) -> None:
             work = dt * force * points[i, FACE] * touch[i, LIFT]
             sums[b, ACROSS] += work
             sums[b, DAMPED] += dt * (force - points[i, STIFF] * touch[i, DEPTH]) * closing
-            if points[i, IMAGE] > 0.0:
-                sums[b, LIFTED] -= work
+            sums[b, LIFTED] -= work
     for f in range(state.shape[0]):
         given = feet.given
         force = given[f, PRESS] - given[f, SPRING] * state[f, HEIGHT]

@@ -60,9 +60,13 @@ class AtSpeed(Value, frozen=True, kw_only=True):
         return self.power / self.given if self.given > 0.0 and self.power >= 0.0 else None
 
 
-def at_speed(case: MotorCase, speed: float) -> AtSpeed:
+def at_speed(case: MotorCase, speed: float, before: MotorRun | None = None) -> AtSpeed:
     """The motor with its slider held at a speed, m/s, at the place where it is put. Raises InputError."""
-    before: MotorRun | None = None
+    return held(case, speed, before)[0]
+
+
+def held(case: MotorCase, speed: float, before: MotorRun | None = None) -> tuple[AtSpeed, MotorRun]:
+    """The same with the last block of periods; `before`, a run held at its place too, is settled already."""
     force, found = np.inf, None
     for block in range(1, MOST_BLOCKS + 1):
         before = case.run(BLOCK * case.period, held_speed=speed, frozen=True, samples=BLOCK + 1, continue_from=before)
@@ -71,7 +75,8 @@ def at_speed(case: MotorCase, speed: float) -> AtSpeed:
         if found.spread <= SETTLED * case.slider.mu * max(found.normal_force, case.slider.normal_force):
             break
     assert found is not None
-    return found
+    assert before is not None
+    return found, before
 
 
 def _means(run: MotorRun, speed: float, spread: float, periods: int) -> AtSpeed:
@@ -100,25 +105,25 @@ def force_speed(case: MotorCase, speeds: Sequence[float]) -> tuple[AtSpeed, ...]
     return tuple(at_speed(case, float(speed)) for speed in speeds)
 
 
-def no_load(case: MotorCase, reach: float | None = None) -> AtSpeed:
+def no_load(case: MotorCase, reach: float | None = None, before: MotorRun | None = None) -> AtSpeed:
     """The speed at which friction gives nothing on the average, by halving up to `reach` either way (m/s).
 
-    Unless given, `reach` is twice the largest speed of the surface at the slider. Raises InputError where the force has
-    the same sign at both ends.
+    Unless given, `reach` is twice the largest speed of the surface at the slider; `before` as for `held`. Raises
+    InputError where the force has the same sign at both ends.
     """
     wide = 2.0 * crest_speed(case) if reach is None else reach
     low, high = -wide, wide
-    if at_speed(case, low).force <= 0.0 or at_speed(case, high).force >= 0.0:
+    if at_speed(case, low, before).force <= 0.0 or at_speed(case, high, before).force >= 0.0:
         raise InputError(
             f"reach = {wide!r} m/s: friction does not change its way up to there, so that no speed without load is "
             "between: press the slider on more, or give a larger reach"
         )
-    found = at_speed(case, 0.0)
+    found = at_speed(case, 0.0, before)
     for _ in range(HALVINGS):
         low, high = (found.speed, high) if found.force > 0.0 else (low, found.speed)
         if found.force == 0.0 or high - low <= 1e-6 * wide:
             break
-        found = at_speed(case, 0.5 * (low + high))
+        found = at_speed(case, 0.5 * (low + high), before)
     return found
 
 

@@ -93,13 +93,14 @@ def _rub_back(dt: float, surface: Surface, feet: Feet, half: float, slope: float
     bear(dt, surface.edges, half, feet, beam)
     match(dt, surface.edges, half, feet, slope, beam)
     for i in range(feet.points.shape[0]):
-        if feet.touch[i, PUSH] > 0.0 and feet.points[i, IMAGE] > 0.0:
+        if feet.touch[i, PUSH] > 0.0:
             piece = feet.piece[i]
             length = surface.edges[piece + 1] - surface.edges[piece]
             along, across = moved(i, length, half, feet, beam)
             feet.touch[i, SURFACE] += along
-            feet.touch[i, LIFT] += across
-            feet.touch[i, CLOSING] += feet.points[i, FACE] * across
+            image = feet.points[i, IMAGE]
+            feet.touch[i, LIFT] += image * across
+            feet.touch[i, CLOSING] += image * feet.points[i, FACE] * across
             feet.sums[feet.owner[i], LIFTED] -= dt * feet.touch[i, RUB] * feet.touch[i, SURFACE]
     leave(surface.table, surface.modes, beam)
 

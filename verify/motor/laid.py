@@ -99,17 +99,18 @@ def _given(slider: Slider, foot: Foot) -> tuple[float, float, float, float]:
 
 
 def _points(slider: Slider, foot: Foot, beyond: float) -> Array:
-    """(points, 8): the columns of `Feet.points`; of a foot between two beams those below, then those above."""
+    """(points, 9): the columns of `Feet.points`; of a foot between two beams those below, then those above."""
     contact = slider.contact
     assert contact is not None
     across = contact.across(foot.length)
     inset = slider.preload / len(slider.feet) / across if foot.mirrored else 0.0
     shares = np.array([across, contact.damping, contact.along(foot.length)]) / foot.points
     face = -1.0 if foot.face == "lower" else 1.0
-    sheet = np.zeros((foot.points, 8))
+    sheet = np.zeros((foot.points, 9))
     sheet[:, 1] = arms(foot)
     sheet[:, 0] = beyond + foot.offset + sheet[:, 1]
     sheet[:, 2:5], sheet[:, 5], sheet[:, 6], sheet[:, 7] = shares, face, 1.0, inset
+    sheet[:, 8] = 0.5 if foot.mirrored else 1.0
     if not foot.mirrored:
         return sheet
     above = sheet.copy()

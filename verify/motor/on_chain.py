@@ -52,6 +52,10 @@ def run_on_chain(
     progress: Callable[[float], None],
 ) -> tuple[MotorRun, ...]:
     """`request` is that of a linear chain from rest: its margins and steps are taken. Raises InputError."""
+    if len(request.points):
+        raise InputError(
+            f"at = {request.points.tolist()!r}: under a slider on a nonlinear chain no deflections are kept, leave it out"
+        )
     plan = lay_out(request, onto, ())
     assert request.count is not None
     check_links(request.count, 2, STATIC_LINKS, "a slider's contact line goes through two links or more")

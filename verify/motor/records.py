@@ -20,10 +20,10 @@ HEIGHT, CLIMB, PITCH, TURN = range(4)
 """Columns of `Feet.state`."""
 LIGHTNESS, EASE, PRESS, SPRING = range(4)
 """Columns of `Feet.given`: 1/mass, 1/inertia (0: it does not pitch), force along z, stiffness of what presses."""
-OFFSET, ARM, STIFF, DASHPOT, GRIP, FACE, IMAGE, INSET = range(8)
+OFFSET, ARM, STIFF, DASHPOT, GRIP, FACE, IMAGE, INSET, WEIGHT = range(9)
 """Columns of `Feet.points`: place from the stage's x and from the middle of its foot, metres; stiffness, damping and
 stiffness along the surface; on which face, +1 or -1, and of which beam, +1 or -1 for the mirror image; how deep it
-sits in the straight beam at height 0, metres."""
+sits in the straight beam at height 0, metres; 1/2 of a point between two beams, which stand for each other, else 1."""
 PUSH, RUB, SURFACE, SURFACE_BEFORE, DEPTH, STRETCH, AT, SLOPE, CLOSING, LIFT, STUCK = range(11)
 """Columns of `Feet.touch`: normal force, friction on the stage, speed of the surface, now and a step before; how
 deep it is pressed in (below 0: the gap), how far it is stretched along; where on its piece the material under it lies,
@@ -71,7 +71,7 @@ class Feet(NamedTuple):
     given: Array
     """(feet, 4)"""
     points: Array
-    """(points, 8)"""
+    """(points, 9)"""
     touch: Array
     """(points, 11)"""
     foot: Indices

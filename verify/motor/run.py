@@ -258,8 +258,19 @@ def _weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
     for f, given in enumerate(feet.given):
         own = feet.points[(feet.foot == f) & (feet.points[:, records.IMAGE] > 0.0)]
         places = onto[0].start + own[:, records.OFFSET]
-        still += given[records.PRESS] / len(own) * basis.shapes(places, 0).sum(axis=1)
+        apart = own[:, records.INSET] @ own[:, records.STIFF]  # of a foot between two beams
+        still += (given[records.PRESS] - apart) / len(own) * basis.shapes(places, 0).sum(axis=1)
     return np.asarray(still / basis.omegas**2)
+
+
+def _press_apart(plan: Plan, basis: TimeBasis, feet: Feet) -> None:
+    """A foot between two beams sits deeper by as much as its preload has bent the beam away, on the average."""
+    still = _weighed(basis, plan.onto)
+    bent = still @ basis.shapes(plan.onto[0].start + feet.points[:, records.OFFSET], 0)
+    for f in range(len(feet.state)):
+        between = (feet.foot == f) & (feet.points[:, records.WEIGHT] < 1.0)
+        if between.any():
+            feet.points[between, records.INSET] -= bent[between].mean()
 
 
 def _sag(request: Request, onto: Sequence[Onto]) -> float:
@@ -345,6 +356,8 @@ def begin(plan: Plan, riding: Riding, before: Sequence[MotorState]) -> None:
     if riding.hard is not None:
         riding.before[0, 0] = RIDES_FROM_HERE
         return
+    if plan.coupling.two_way and plan.basis is not None:
+        _press_apart(plan, plan.basis, feet)
     levels = _levels(stage, plan, feet)
     put_down(feet, levels)
     riding.set_touch(levels)

@@ -49,7 +49,8 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     def fresh(cls, onto: Sequence[Onto], request: Request, two_way: bool) -> "Riding":
         """Room for a run."""
         samples, feet = sum(piece.steps.n // piece.steps.every for piece in request.pieces), feet_of(onto)
-        return cls.of(feet, onto, request.beam, fresh_log(samples, feet, np.zeros((0, 0)), 1), request.points, two_way)
+        rows = np.zeros((len(request.points), 0))  # laid out with every stage
+        return cls.of(feet, onto, request.beam, fresh_log(samples, feet, rows, 1), request.points, two_way)
 
     @classmethod
     def of(cls, feet: Feet, onto: Sequence[Onto], beam: Beam, log: Log, points: Array, two_way: bool) -> "Riding":

@@ -58,6 +58,7 @@ SECTIONS: Registry[Section] = Registry(
         "sensitivity": "verify.studies.sensitivity:SensitivityStudy",
         "wave": "verify.studies.wave:WaveStudy",
         "motion": "verify.studies.slider:SliderStudy",
+        "motor": "verify.studies.motor:MotorStudy",
         "readings": "verify.studies.readings:ReadingsStudy",
         "claims": "verify.studies.claims:ClaimsStudy",
         "axial_inertia": "verify.studies.axial_inertia:AxialInertiaStudy",

@@ -1,0 +1,140 @@
+"""What a motor's figures say in sentences, and which of them are withheld."""
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from verify.motion.contact import FELT
+from verify.motion.validity import NONLINEAR
+from verify.words import seconds_in_words
+
+if TYPE_CHECKING:
+    from verify.slider import Slider
+    from verify.studies.motor_figures import FieldFound, MotorFound
+
+SAGS = 0.1
+"""Of the wave's amplitude: a static deflection that is felt."""
+COARSE = 1e-3
+"""Relative error of a swing on the springs, which steps leave."""
+LAYER = 6.0
+"""Stiffness of a confined layer of nu = 0.4 across over along, 2 (1 - nu)/(1 - 2 nu)."""
+
+
+def in_short_of(found: "MotorFound") -> str:
+    """Speed without load and stall force on the first field."""
+    one = found.fields[0]
+    return (
+        f"The motor runs at {100 * one.free.speed:+.4g} cm/s without load and pushes with {1e3 * one.stall.force:+.4g} "
+        f"mN standing still, on the {one.title}."
+    )
+
+
+def facts_of(found: "MotorFound") -> tuple[str, ...]:
+    """Speeds, forces, times, agreement of ways to the same figure, cost."""
+    from verify.studies.motor_rest import what_stands
+
+    told = [line for one in found.fields for line in _of_field(one)]
+    rest = tuple(what_stands(found.rest)) if found.rest else ()
+    return (*told, *rest, *_fields_agree(found.fields), *found.doubts)
+
+
+def _of_field(one: "FieldFound") -> Iterator[str]:
+    where = f"on the {one.title}"
+    free = one.free
+    if free.stopped != "end":
+        yield f"free run {where}: the slider {free.stopped} before its end"
+    yield f"speed without load {where}: {_two_ways(one)}"
+    yield f"standing still {where}: {_stall(one)}"
+    times = {"start": one.start_time, "stop": one.stop_time, "turning round": one.reversal_time}
+    words = ", ".join(f"{name} {seconds_in_words(value)}" for name, value in times.items() if value is not None)
+    yield f"time constants {where}: {words or 'none, the speed is not reached within the run'}"
+    yield f"one second of motor {where}: {free.ratio:.2g} s of run time"
+
+
+def _two_ways(one: "FieldFound") -> str:
+    """Held and free, with what tells them apart."""
+    free = f"{100 * one.free.speed:+.5g} cm/s in the free run (its last quarter's halves differ by {_small(one)})"
+    if one.no_load is None:
+        return f"{free}; none of the held speeds is without force"
+    apart = abs(one.no_load.speed - one.free.speed)
+    spread = one.free.spread
+    meant = (
+        f"they differ by {apart / abs(one.free.speed):.2g} of it, more than that"
+        if apart > spread
+        else "whether they differ is withheld, the spread is larger"
+    )
+    return f"{free}, {100 * one.no_load.speed:+.5g} cm/s held at its place: {meant}"
+
+
+def _small(one: "FieldFound") -> str:
+    return f"{100 * one.free.spread:.1g} cm/s"
+
+
+def _stall(one: "FieldFound") -> str:
+    held = f"{1e3 * one.stall.force:+.5g} mN as a mean over periods (blocks differ by {1e3 * one.stall.spread:.1g} mN)"
+    if one.shooting is None:
+        return f"{held}; no motion that repeats itself after a period was found"
+    apart = abs(one.shooting.force - one.stall.force)
+    said = "more than that" if apart > one.stall.spread else "no more than that"
+    return (
+        f"{held}, {1e3 * one.shooting.force:+.5g} mN in the motion that repeats itself: {1e3 * apart:.1g} mN apart, "
+        f"{said}"
+    )
+
+
+def _fields_agree(fields: "Sequence[FieldFound]") -> Iterator[str]:
+    """How far apart the fields' free speeds lie."""
+    whole = [one for one in fields if one.free.stopped == "end"]
+    if len(whole) < 2:
+        return
+    speeds = [one.free.speed for one in whole]
+    apart, spread = max(speeds) - min(speeds), max(one.free.spread for one in whole)
+    if apart <= spread:
+        yield "fields: whether they differ in speed is withheld, each is known to less than that"
+        return
+    yield f"fields: their free speeds lie within {apart / max(abs(v) for v in speeds):.2g} of the largest"
+
+
+def doubts(fields: "Sequence[FieldFound]", slider: "Slider", wavenumber: float, thickness: float) -> tuple[str, ...]:
+    """A sentence for every margin that is not small, of the first field unless fields differ in it."""
+    one = fields[0]
+    margins = one.margins
+    told = [*_of_epsilon(margins.epsilon, slider.mu, wavenumber, thickness)]
+    if not margins.sag_taken and margins.sag > SAGS * one.amplitude:
+        told.append(
+            f"sag: the net load bends the beam by {1e6 * margins.sag:.3g} um, {margins.sag / one.amplitude:.2g} times "
+            "the wave's amplitude, which a one-way run leaves out"
+        )
+    worst = max(field.margins.step**2 / 24.0 for field in fields)
+    if worst > COARSE:
+        told.append(f"step: a swing on the contact's springs is {worst:.1e} off in its period; raise steps_per_period")
+    chain = max(field.margins.chain or 0.0 for field in fields)
+    if chain > NONLINEAR:
+        told.append(
+            f"chain: the axial inertia of a roller-ended chain of rigid links, (kL)^2 <theta^2> = {chain:.2g} of the "
+            "motion, is left out by every linear field"
+        )
+    size = max(one.coupling.normal_size, one.coupling.friction_size or 0.0)
+    if not one.coupling.two_way and size > FELT:
+        told.append(
+            f"coupling: one-way as slider.coupling says, although what presses the feet on moves the surface by "
+            f"{size:.2g} of its motion (felt from {FELT:g} on)"
+        )
+    return tuple(told)
+
+
+def _of_epsilon(epsilon: float | None, mu: float, wavenumber: float, thickness: float) -> Iterator[str]:
+    """What the contact's give along the surface leaves of Coulomb's law at every point."""
+    if epsilon is None:
+        return
+    layer = 2.0 * mu * LAYER / (wavenumber * thickness)
+    if not epsilon:
+        if layer > SAGS:
+            yield (
+                f"epsilon: 0, the contact does not give way along the surface, as the scene says; a confined layer of "
+                f"nu = 0.4 would have 2 mu kappa/(kappa_t k h) = {layer:.2g} and stick nearly everywhere"
+            )
+    elif epsilon > SAGS:
+        yield (
+            f"epsilon: 2 mu kappa/(kappa_t k h) = {epsilon:.3g}, so that points give way before they slip; the runs "
+            "have that, Coulomb's closed forms of a layer do not"
+        )
