@@ -3,6 +3,7 @@
 What there is (`help` of each says its fields, shapes and units; everything is SI):
 
   Beam, Section, PointMass, PointSpring, PointForce, Slider    what exists
+  Device                                                       what takes up a wave, or drives it, beside the forces
   analytic_modes, fem_beam, segment_model                      the three models: solve_modes, solve_harmonic, ...
   Modes, HarmonicField                                         what those return
   sweep_harmonic, sweep_modes of each                          many frequencies (HarmonicSweep) or beams in one call
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from verify.attached import PointMass, PointSpring
     from verify.beam import Beam, PointForce
     from verify.chain.bending import Bent, bend
+    from verify.device import Device
     from verify.errors import InputError
     from verify.models.fields import HarmonicField
     from verify.models.modes import Modes
@@ -46,6 +48,7 @@ __all__ = [
     "Beam",
     "Bent",
     "Contact",
+    "Device",
     "Foot",
     "FreeVibration",
     "HarmonicField",
@@ -79,6 +82,7 @@ _HOME = {
     "Beam": "verify.beam",
     "Bent": "verify.chain.bending",
     "Contact": "verify.slider",
+    "Device": "verify.device",
     "Foot": "verify.slider",
     "FreeVibration": "verify.motion.free_vibration",
     "HarmonicField": "verify.models.fields",

@@ -1,5 +1,7 @@
-"""A field in, wave measures and surface ellipses out. The room is `verify.waves`."""
+"""A field in, wave measures and surface ellipses out; fields with devices. The room is `verify.waves`."""
 
+from verify.waves.absorber import matched_device
+from verify.waves.devices import field_with_devices
 from verify.waves.measures import (
     TwoWaves,
     WaveMeasures,
@@ -16,7 +18,9 @@ __all__ = [
     "TwoWaves",
     "WaveMeasures",
     "ellipse",
+    "field_with_devices",
     "fit_waves",
+    "matched_device",
     "measure",
     "measure_series",
     "middle_half",

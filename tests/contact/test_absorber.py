@@ -7,28 +7,38 @@ from hypothesis import strategies as st
 
 from verify import Beam, PointForce, PointMass, analytic_modes, fem_beam, segment_model, travelling_wave
 from verify.errors import InputError
-from verify.waves.absorber import beam_impedance, field_with_device, matched_impedance, reflection
+from verify.waves.absorber import beam_impedance, best_dashpot, matched_device, matched_impedance, reflection
+from verify.waves.devices import field_with_devices
 
-STRIP = Beam(length=0.9, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
+SIZES = {"length": 0.9, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
+STRIP = Beam(**SIZES)
 
 
-def solved(beam, hertz, d, impedance):
-    """|Gamma| from the waves on both sides: (reflected, near field) left, four waves between device and pin.
+ENDS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 
-    x = 0 at the device, the pin at x = d; e^{+i omega t}, a wave from the left of size one.
+
+def solved(beam, hertz, d, impedance, support="pinned", turning=False):
+    """|Gamma| from the waves on both sides: (reflected, near field) left, four waves between device and end.
+
+    x = 0 at the device, the end at x = d; e^{+i omega t}, a wave from the left of size one.
     """
     omega = 2.0 * np.pi * hertz
     k = (beam.mass_per_length * omega**2 / beam.bending_stiffness) ** 0.25
     ei, z = beam.bending_stiffness, 1j * omega * impedance
-    a = np.zeros((6, 6), dtype=complex)  # r, n | A e^{-ikx}, B e^{ikx}, C e^{-kx}, D e^{kx}
+    a = np.zeros((6, 6), dtype=complex)  # r, n | A e^{-ikx}, B e^{ikx}, C e^{-kx}, D e^{k(x - d)}
     q = np.array([1j * k, k, -1j * k, 1j * k, -k, k])
-    for row, power in enumerate((0, 1, 2)):
-        a[row] = q**power * np.array([1, 1, -1, -1, -1, -1])
-    a[3] = ei * q**3 * np.array([-1, -1, 1, 1, 1, 1])
-    a[3, :2] += z
-    a[4, 2:], a[5, 2:] = np.exp(q[2:] * d), q[2:] ** 2 * np.exp(q[2:] * d)
-    rows = [-((-1j * k) ** power) for power in (0, 1, 2)]
-    return abs(np.linalg.solve(a, np.array([*rows, ei * (-1j * k) ** 3 - z, 0, 0]))[0])
+    size = np.array([1, 1, 1, 1, 1, np.exp(-k * d)])
+    gain, jumps, reads = (z, 2, 1) if turning else (-z, 3, 0)
+    right = np.zeros(6, dtype=complex)
+    for row in range(4):
+        a[row] = q**row * size * np.array([-1, -1, 1, 1, 1, 1])
+        right[row] = (-1j * k) ** row
+    a[jumps, :2] -= gain / ei * q[:2] ** reads
+    right[jumps] += gain / ei * (-1j * k) ** reads
+    for row, order in enumerate(ENDS[support], start=4):
+        a[row, 2:] = q[2:] ** order * size[2:] * np.exp(q[2:] * d)
+    scale = abs(a).max(axis=1)
+    return abs(np.linalg.solve(a / scale[:, None], right / scale)[0])
 
 
 @given(
@@ -36,11 +46,40 @@ def solved(beam, hertz, d, impedance):
     d=st.floats(1e-3, 0.2),
     resistance=st.floats(0.1, 300.0),
     reactance=st.floats(-200.0, 200.0),
+    support=st.sampled_from(list(ENDS)),
+    turning=st.booleans(),
 )
-def test_a_device_reflects_what_waves_say(hertz, d, resistance, reactance):
-    impedance = complex(resistance, reactance)
-    found = reflection(impedance, beam_impedance(STRIP, hertz, d))
-    assert found == pytest.approx(solved(STRIP, hertz, d, impedance), abs=1e-7)
+def test_a_device_reflects_what_waves_say(hertz, d, resistance, reactance, support, turning):
+    """Against turning impedances of that size: EI k / omega beside EI k^3 / omega."""
+    omega = 2.0 * np.pi * hertz
+    k = (STRIP.mass_per_length * omega**2 / STRIP.bending_stiffness) ** 0.25
+    impedance = complex(resistance, reactance) / (k**2 if turning else 1.0)
+    found = reflection(impedance, beam_impedance(STRIP, hertz, d, support, turning=turning))
+    assert found == pytest.approx(solved(STRIP, hertz, d, impedance, support, turning), abs=3e-7)
+
+
+def test_ends_that_are_known_by_heart():
+    """Free: a dashpot EI k^3/(2 omega) with a spring EI k^3/2. Pinned, turning: EI k/omega with EI k/omega^2."""
+    hertz = 1873.0
+    omega = 2.0 * np.pi * hertz
+    k = (STRIP.mass_per_length * omega**2 / STRIP.bending_stiffness) ** 0.25
+    ei = STRIP.bending_stiffness
+    free = Beam(**SIZES, supports=("pinned", "free"))
+    across, turning = matched_device(free, hertz, 0.9), matched_device(STRIP, hertz, 0.9, turning=True)
+    assert across.dashpot == pytest.approx(ei * k**3 / (2 * omega), rel=1e-12)
+    assert (across.stiffness, across.mass) == (pytest.approx(ei * k**3 / 2, rel=1e-12), 0.0)
+    assert turning.rotational_dashpot == pytest.approx(ei * k / omega, rel=1e-12)
+    assert (turning.rotary_inertia, turning.rotational) == (pytest.approx(ei * k / omega**2, rel=1e-12), 0.0)
+    for own in (beam_impedance(free, hertz, 0.0, "free"), beam_impedance(STRIP, hertz, 0.0, turning=True)):
+        assert best_dashpot(own)[1] == pytest.approx(np.sqrt(2) - 1, rel=1e-12)
+
+
+@given(hertz=st.floats(300.0, 9000.0), d=st.floats(2e-3, 0.1), s=st.floats(0.2, 5.0))
+def test_no_dashpot_alone_leaves_less_than_the_best(hertz, d, s):
+    own = beam_impedance(STRIP, hertz, d)
+    resistance, left = best_dashpot(own)
+    assert reflection(resistance + 0j, own) == pytest.approx(left, rel=1e-9)
+    assert reflection(s * resistance + 0j, own) >= left * (1 - 1e-9)
 
 
 def test_the_closed_form_as_it_is_published():
@@ -53,24 +92,32 @@ def test_the_closed_form_as_it_is_published():
     assert beam_impedance(STRIP, hertz, d) == pytest.approx(1.0 / mobility, rel=1e-12)
 
 
+FREE = Beam(**SIZES, supports=("pinned", "free"))
+MODELS = {
+    "exact": (analytic_modes.solve_harmonic, 1e-7),
+    "segments": (lambda b, f, hz: segment_model.solve_harmonic(b, f, hz, n_segments=480), 3e-4),
+    "elements": (lambda b, f, hz: fem_beam.solve_harmonic(b, f, hz, n_elements=480), 2e-5),
+}
+
+
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize(
-    ("solve", "error"),
-    [
-        (lambda f, hz: analytic_modes.solve_harmonic(STRIP, f, hz), 1e-7),
-        (lambda f, hz: segment_model.solve_harmonic(STRIP, f, hz, n_segments=480), 2e-4),
-        (lambda f, hz: fem_beam.solve_harmonic(STRIP, f, hz, n_elements=480), 2e-5),
-    ],
-    ids=["exact", "segments", "elements"],
+    ("beam", "d", "turning"), [(STRIP, 0.0171, False), (STRIP, 0.0, True), (FREE, 0.0, False), (FREE, 0.033, True)]
 )
-def test_a_matched_device_takes_up_the_wave_of_every_model(solve, error):
-    hertz, d = 9_000.0, 0.0171
-    field = field_with_device(
-        solve, [PointForce(position=0.03)], hertz, STRIP.length - d, matched_impedance(STRIP, hertz, d)
-    )
-    measured = travelling_wave.measure(field, window=(0.25 * STRIP.length, 0.75 * STRIP.length))
+def test_a_matched_device_takes_up_the_wave_of_every_model(model, beam, d, turning):
+    (solve, error), hertz = MODELS[model], 7_000.0
+    device = matched_device(beam, hertz, beam.length - d, turning=turning)
+    field = field_with_devices(solve, beam, [PointForce(position=0.03)], hertz, [device])
+    measured = travelling_wave.measure(field, window=(0.25 * beam.length, 0.75 * beam.length))
     assert measured.reflection < error
     assert measured.waves.direction == 1
-    assert len(field.forces) == 2
+    assert len(field.forces) == 2 - turning
+
+
+@pytest.mark.parametrize(("place", "d"), [(0.0171, 0.0171), (0.9 - 0.0171, 0.0171)])
+def test_the_matched_device_knows_which_end_is_beyond_it(place, d):
+    device, omega = matched_device(STRIP, 3000.0, place), 2 * np.pi * 3000.0
+    assert device.impedance(omega) == pytest.approx(matched_impedance(STRIP, 3000.0, d), rel=1e-9)
 
 
 def test_a_resistance_off_by_a_factor_reflects_by_that_factor_alone():
@@ -86,7 +133,7 @@ def test_a_device_on_a_support_is_refused_and_so_is_a_beam_that_is_not_uniform()
     stepped = Beam(length=0.9, bending_stiffness=3.0, mass_per_length=0.3, mass=[PointMass(position=0.2, mass=0.1)])
     with pytest.raises(InputError, match=r"beam\.mass"):
         matched_impedance(stepped, 3000.0, 0.02)
-    with pytest.raises(InputError, match="stands on a support"):
-        field_with_device(
-            lambda f, hz: analytic_modes.solve_harmonic(STRIP, f, hz), [PointForce(position=0.03)], 3000.0, 0.9, 3 + 0j
-        )
+    with pytest.raises(InputError, match=r"position = 0\.0 m stands on a clamped support"):
+        beam_impedance(STRIP, 3000.0, 0.0, "clamped", turning=True)
+    with pytest.raises(InputError, match="stands on a pinned support"):
+        matched_device(STRIP, 3000.0, 0.9)

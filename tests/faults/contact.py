@@ -3,7 +3,8 @@
 from math import cos, pi, sqrt
 
 from verify.contact import bouncing, landing, layer
-from verify.waves import absorber
+from verify.device import Device
+from verify.waves import absorber, devices, lumped
 
 
 def contact_as_deep_everywhere(patch):
@@ -39,8 +40,8 @@ def a_dashpot_against_all_of_critical(patch):
 def near_field_of_the_pin_forgotten(patch):
     true = absorber.beam_impedance
 
-    def without(beam, frequency_hz, distance):
-        mobility = 1.0 / true(beam, frequency_hz, distance)
+    def without(*given, **named):
+        mobility = 1.0 / true(*given, **named)
         return 1.0 / (mobility + 0.01j * abs(mobility))
 
     patch.setattr(absorber, "beam_impedance", without)
@@ -51,8 +52,35 @@ def reflection_of_a_string(patch):
 
 
 def device_a_quarter_too_stiff(patch):
-    true = absorber.field_with_device
-    patch.setattr(absorber, "field_with_device", lambda *given: true(*given[:4], 1.25 * given[4]))
+    true = Device.impedance
+    patch.setattr(Device, "impedance", lambda self, omega: 1.25 * true(self, omega))
+
+
+def device_that_turns_without_its_inertia(patch):
+    patch.setattr(Device, "turning_impedance", lambda self, omega: complex(self.rotational_dashpot))
+
+
+def springs_against_turning_half_as_stiff(patch):
+    true = devices._sprung
+    patch.setattr(devices, "_sprung", lambda beam, position, spring: true(beam, position, 0.5 * spring))
+
+
+def a_pin_taken_for_a_free_end(patch):
+    patch.setitem(absorber._ENDS, "pinned", absorber._ENDS["free"])
+
+
+def modes_that_swing_together(patch):
+    patch.setattr(lumped.TwoModes, "_second", property(lambda self: complex(self.ratio)))
+
+
+def curvature_forgotten_in_one_wave(patch):
+    """Of both waves the even part alone is taken from the deflection as it is."""
+
+    def waves(shapes, k, x):
+        even, odd = shapes(x, 0), 0.5j * (shapes(x, 1) - shapes(x, 3) / k**2) / k
+        return 0.5 * (even + 1.1 * odd), 0.5 * (even - 1.1 * odd)
+
+    patch.setattr(lumped, "_waves_of", waves)
 
 
 FAULTS = {
@@ -73,7 +101,24 @@ FAULTS = {
             "exact-beam-with-its-device",
             "segments-with-a-device",
             "elements-with-a-device",
+            "wave-with-its-device",
+            "wave-with-its-device-on-segments",
+            "wave-with-its-device-on-elements",
+            "power-that-runs-to-the-device",
         },
+        device_that_turns_without_its_inertia: {
+            "exact-beam-against-turning",
+            "segments-against-turning",
+            "elements-against-turning",
+        },
+        springs_against_turning_half_as_stiff: {
+            "exact-beam-against-turning",
+            "segments-against-turning",
+            "elements-against-turning",
+        },
+        a_pin_taken_for_a_free_end: {"matched-against-turning", "best-dashpot-against-turning"},
+        modes_that_swing_together: {"lumped-at-a-quarter", "lumped-at-mid-span", "lumped-of-other-modes"},
+        curvature_forgotten_in_one_wave: {"lumped-of-other-modes"},
     },
 }
 """By scene: each fault with gates that it turns red."""

@@ -125,6 +125,19 @@ def test_a_run_in_two_halves_is_the_whole_run():
         assert second.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)
 
 
+def test_a_hard_slider_flies_on_where_a_run_has_left_it():
+    light = Slider(mass=1e-3, mu=0.3, law="tanh", slope=300.0, preload=0.4, coupling="one-way", contact=Contact())
+    slider, period = replace(light, contact=Contact(restitution=0.35)), 1.0 / HERTZ
+    whole = moved(slider, 9 * period, samples=10)
+    run, lands = None, 0
+    for _ in range(9):
+        run = moved(slider, period, samples=2, continue_from=run)
+        lands += int((run.events[:, 1] == 4.0).sum())
+    assert lands == int((whole.events[:, 1] == 4.0).sum()) > 2
+    assert run.travelled[-1] == pytest.approx(whole.travelled[-1], rel=1e-6)
+    assert run.height[-1] == pytest.approx(whole.height[-1], rel=1e-6)
+
+
 def test_books_of_every_slider_close_and_what_a_slider_gets_the_beam_has_lost():
     first = replace(SLIDER, coupling="two-way", preload=0.3, mass=0.01, foot=(), contact=Contact(stiffness=4e5))
     second = replace(first, position=0.331, mu=0.4, contact=Contact(stiffness=3e5, damping=3.0))

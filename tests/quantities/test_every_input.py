@@ -165,6 +165,27 @@ RIDDEN = {
     "motion": {**AT_ONCE["motion"], "duration": 7e-4, "steps_per_period": 40},
 }
 """On a chain that moves enough to draw in, and does not feel the slider."""
+DEVICED = {
+    **dict.fromkeys(("motion", "spectrum", "convergence", "sensitivity", "wave")),
+    "claim": [],
+    "drive": {
+        "device": [
+            {
+                "position": 0.083,
+                "measured_from": "right",
+                "stiffness": 910.0,
+                "mass": 0.0071,
+                "dashpot": 1.3,
+                "rotational": 2.9,
+                "rotary_inertia": 1.7e-5,
+                "rotational_dashpot": 0.0113,
+                "amplitude": 0.37,
+                "phase_deg": 71.0,
+            }
+        ]
+    },
+}
+"""A device with everything, in the steady state alone."""
 FEM, SEGMENT = {"model": "fem", "count": 9}, {"model": "segment", "count": 9}
 SETTINGS = {"wall": "third-order", "grading": 1.3, "joints": "printed"}
 FIELDS = ("standing_wave_ratio", "reflection", "envelope", "travelling_index", "signed_area_spread", "crest_speed")
@@ -255,6 +276,9 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "segment", "count": 24, "x": 0.323, "attachment": "lever", "theory": "timoshenko"}, SPRUNG),
         Case({"x": 0.31}, CARRIED),
         Case({"x": 0.31, "theory": "timoshenko"}, PLAIN),
+        Case({"x": 0.31}, DEVICED),
+        Case({"model": "segment", "count": 24, "x": 0.323}, DEVICED),
+        Case({"model": "fem", "count": 24, "x": 0.323}, DEVICED),
     ],
     "wave.slope": [
         Case({"x": 0.31}),
@@ -280,8 +304,18 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "segment", "count": 12, "position": 0.11, "x": 0.37}, CARRIED),
         Case({"model": "fem", "count": 12, "position": 0.11, "x": 0.37, "theory": "timoshenko"}, PLAIN),
     ],
+    "wave.lumped_swr": [
+        Case({"x": 0.31, "modes": [5, 7], "ratio": 1.3, "phase_deg": 71.0}),
+        Case({"x": 0.31, "modes": [1, 3], "ratio": 1.3}, on("clamped", "free")),
+    ],
     "wave.absorber_impedance": [Case({"position": 0.0573})],
+    "wave.absorber_turning_impedance": [Case({"position": 0.0573}), Case({"position": 0.0573}, on("free", "guided"))],
     "wave.absorber_reflection": [
+        Case({"position": 0.0573, "resistance": 3.1, "mass": 0.0037}),
+        Case(
+            {"position": 0.0573, "resistance": 3.1, "mass": 0.0037, "model": "segment", "count": 24}, on("free", "free")
+        ),
+        Case({"position": 0.0573, "resistance": 3.1e-3, "mass": 3.7e-6, "stiffness": 0.7, "turning": True}),
         Case({"position": 0.0573, "ratio": 1.7}),
         Case({"position": 0.0573, "resistance": 3.1, "stiffness": 5100.0}),
         Case({"position": 0.0573, "ratio": 1.7, "model": "analytic"}),
@@ -651,7 +685,12 @@ DEAD = [
         "nothing pulls and nothing is thick",
         lambda a: (uniform(a) or a.arguments["joints"] == "series") and not pulled(a) and euler(a),
     ),
-    Dead("mode.* wave.* beam.buckling_load", "arguments.attachment", "nothing stands on the beam", bare),
+    Dead(
+        "mode.* wave.* beam.buckling_load",
+        "arguments.attachment",
+        "nothing stands on the beam",
+        lambda a: bare(a) and not a.scene["drive"]["device"],
+    ),
     Dead(
         "mode.shape* mode.curvature_error mode.node_position mode.deflection mode.slope",
         "beam.foundation",
@@ -721,14 +760,25 @@ DEAD = [
     ),
     Dead("contact.landing_phase contact.restitution", "beam.* drive.* slider.* motion.*", "a surface of its own"),
     Dead("wave.absorber_*", "drive.kind drive.force.*", "one wave from the left, whatever makes it", half_infinite),
-    Dead("wave.absorber_*", "beam.extreme_fibre", "no surface"),
+    Dead("wave.absorber_* wave.lumped_swr", "beam.extreme_fibre", "no surface"),
+    Dead(
+        "wave.lumped_swr",
+        "beam.supports.*",
+        "an end shifts both waves alike, but for the lowest modes, whose near fields reach the other end",
+        lambda a: a.arguments["modes"] == [5, 7],
+    ),
+    Dead(
+        "wave.lumped_swr",
+        "beam.width beam.thickness beam.youngs_modulus beam.density beam.loss_factor drive.* slider.* motion.*",
+        "two shapes, which are geometry, and nothing that drives them",
+    ),
     Dead("wave.absorber_*", "beam.length beam.supports.0", "half-infinite: the left end is far away", half_infinite),
     Dead(
         "wave.absorber_reflection", "drive.force.*.amplitude drive.force.*.phase_deg", "one force is left, and a ratio"
     ),
     Dead(
         "wave.absorber_reflection",
-        "beam.* drive.frequency_hz arguments.frequency_hz arguments.position",
+        "beam.* drive.frequency_hz arguments.frequency_hz arguments.position arguments.turning",
         "|s - 1|/(s + 1) of a resistance off by a factor s, of any beam",
         lambda asked: half_infinite(asked) and asked.arguments.get("ratio") is not None,
     ),
@@ -902,6 +952,8 @@ OFF: dict[str, Any] = {
     "foundation": 2.1e4,
     "stiffness": 170.0,
     "rotational": 1.3,
+    "device": [{"position": 0.31, "dashpot": 1.3}],
+    "turning": True,
 }
 """What an input is turned to that is nothing or not given."""
 WHOLE = ("gate", "claim")
@@ -1179,6 +1231,6 @@ def test_every_entry_of_the_table_speaks_of_some_input_of_some_case():
 
 def test_the_base_has_every_part_that_a_scene_can_have():
     """A new part of scenes is turned as well, or this says so."""
-    assert set(BASE) | {"title", "description", "axial_inertia", "readings", "bench", "stress"} == {
+    assert set(BASE) | {"title", "description", "axial_inertia", "readings", "methods", "bench", "stress"} == {
         f.name for f in msgspec.structs.fields(scene_type())
     }

@@ -12,7 +12,7 @@ from verify.run.gates import judge
 from verify.run.runner import workbench_for
 from verify.scenes.scene import load_scene, packaged_scenes
 
-AT_A_PLACE = ("wave.deflection", "wave.slope", "wave.curvature")
+AT_A_PLACE = ("wave.deflection", "wave.slope", "wave.curvature", "wave.lumped_swr")
 FAMILIES = (
     modes.FAULTS,
     waves.FAULTS,

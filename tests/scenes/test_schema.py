@@ -112,12 +112,21 @@ def test_the_schema_says_what_each_key_means_and_has_no_null_which_toml_has_not(
 
 def test_a_section_has_a_schema_of_its_own_beside_what_it_refers_to():
     drive = section_schema("drive")
-    assert set(drive["properties"]) == {"frequency_hz", "kind", "force"}
+    assert set(drive["properties"]) == {"frequency_hz", "kind", "force", "device"}
     assert drive["$defs"]["SceneForce"]["required"] == ["position"]
 
 
 def test_every_section_tells_its_keys_and_what_each_means():
-    assert {TOP, "beam", "beam.section", "beam.mass", "beam.spring", "drive.force", "gate.expect"} <= set(sections())
+    assert {
+        TOP,
+        "beam",
+        "beam.section",
+        "beam.mass",
+        "beam.spring",
+        "drive.force",
+        "drive.device",
+        "gate.expect",
+    } <= set(sections())
     silent = [(name, key.key) for name in sections() for key in keys_of(name) if not key.meaning]
     assert silent == []
 

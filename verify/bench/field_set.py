@@ -31,6 +31,7 @@ def forces_of(scene: "Scene", name: str) -> tuple["PointForce", ...]:
     """The scene's driving forces. Raises InputError where there are none, or displacements."""
     if scene.drive is None or not any(force.amplitude for force in scene.forces):
         raise InputError(f"{name}: nothing drives the beam, give the scene a [drive] with forces above 0")
+    scene.refuse_devices(name)
     if scene.drive.kind != "force":
         raise InputError(f"{name}: drive.kind = {scene.drive.kind!r}, and benches take imposed forces: give 'force'")
     return scene.forces

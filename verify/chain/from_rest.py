@@ -17,6 +17,7 @@ def point_forces(scene: "Scene", who: str) -> tuple[PointForce, ...]:
     """
     if scene.drive is None or scene.drive.kind != "force" or not scene.forces:
         raise InputError(f"{who}: the scene has no drive by forces; give it a [drive] of kind force")
+    scene.refuse_devices(who)
     if scene.motion is not None:
         for name, rest in (("start", "rest"), ("soft_start_periods", 0.0), ("modal_damping", 0.0)):
             if (value := getattr(scene.motion, name)) not in (rest, None):

@@ -139,6 +139,7 @@ def field_sheet(scene: Scene, wanted: Wanted) -> Sheet:
         forces=scene.forces,
         frequency_hz=scene.drive.frequency_hz,
         kind=scene.drive.kind,
+        devices=scene.devices,
     )
     field = driven(case, Workbench(scene.beam))
     x = places_of(scene, count, wanted.model)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from verify.models.arrays import Array
 from verify.models.kernels import part
 from verify.motion.records import MOVING, STILL
 from verify.motor.records import (
@@ -86,19 +87,17 @@ def see(i: int, x: float, edge: float, length: float, v: float, half: float, lin
 
 
 @part()
-def press(dt: float, feet: Feet) -> float:
-    """Normal forces in mid-step and what they give to the feet; all of them together, newton.
+def press(dt: float, feet: Feet, before: Array) -> None:
+    """Normal forces in mid-step and what they give to the feet; `before` is (points, 2), depth at the last mid-step.
 
-    Dashpots see the mean speed of the step: twice, the second time with half of what the first has given.
+    Dashpots see the mean speed of the step: twice more, with half of what the force before has given.
     """
-    total = 0.0
     _fall_free(dt, feet)
-    damped = _push(feet)
+    damped = _push(feet, before)
     for _ in range(2 if damped else 0):
-        total = _gather(dt, feet)
-        _push(feet)
-    total = _gather(dt, feet)
-    return total
+        _gather(dt, feet)
+        _push(feet, before)
+    _gather(dt, feet)
 
 
 @part()
@@ -111,8 +110,11 @@ def _fall_free(dt: float, feet: Feet) -> None:
 
 
 @part()
-def _push(feet: Feet) -> bool:
-    """Normal force of every point at its depth and mean speed; whether any has a dashpot."""
+def _push(feet: Feet, before: Array) -> bool:
+    """Normal force of every point at its depth and mean speed; whether any has a dashpot.
+
+    That of a dashpot jumps where a point lands: it counts from there on to the end of the step.
+    """
     touch, points, damped = feet.touch, feet.points, False
     for i in range(points.shape[0]):
         depth, force = touch[i, DEPTH], 0.0
@@ -121,25 +123,24 @@ def _push(feet: Feet) -> bool:
             if points[i, DASHPOT] > 0.0:
                 foot, damped = feet.foot[i], True
                 given = points[i, FACE] * (feet.kick[foot, 0] + points[i, ARM] * feet.kick[foot, 1])
-                force += points[i, DASHPOT] * (touch[i, CLOSING] - 0.5 * given)
+                share = 0.5 + depth / (depth - before[i, 0]) if before[i, 0] <= 0.0 else 1.0
+                force += share * points[i, DASHPOT] * (touch[i, CLOSING] - 0.5 * given)
             force = force if force > 0.0 else 0.0
         touch[i, PUSH] = force
     return damped
 
 
 @part()
-def _gather(dt: float, feet: Feet) -> float:
-    """Give the normal forces to the feet; their sum."""
+def _gather(dt: float, feet: Feet) -> None:
+    """Give the normal forces to the feet."""
     _fall_free(dt, feet)
-    touch, points, total = feet.touch, feet.points, 0.0
+    touch, points = feet.touch, feet.points
     for i in range(points.shape[0]):
         force = touch[i, PUSH]
         if force > 0.0:
             foot, way = feet.foot[i], dt * points[i, FACE] * force
             feet.kick[foot, 0] += way * feet.given[foot, LIGHTNESS]
             feet.kick[foot, 1] += way * points[i, ARM] * feet.given[foot, EASE]
-            total += force
-    return total
 
 
 @part()

@@ -163,7 +163,7 @@ def ride(
         set_factors((number + 0.5) * dt, modes, surface.drive, line.factors)
         if not _look(number, surface.table, surface.edges, rubbing.half, line, feet):
             return OFF_BEAM
-        press(dt, feet)
+        press(dt, feet, before)
         if beam is None:
             _rub(dt, feet, rubbing.slope)
         else:
@@ -207,7 +207,7 @@ def ride_given(
             length = given.edges[piece + 1] - given.edges[piece]
             see(i, x, given.edges[piece], length, feet.body[feet.owner[i], V], rubbing.half, line, feet)
             feet.touch[i, SURFACE] += given.along[number, piece]
-        press(dt, feet)
+        press(dt, feet, before)
         _rub(dt, feet, rubbing.slope)
         kick(dt, feet)
         stretch(dt, feet)

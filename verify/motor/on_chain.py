@@ -54,7 +54,7 @@ def run_on_chain(
     """`request` is that of a linear chain from rest: its margins and steps are taken. Raises InputError."""
     if len(request.points):
         raise InputError(
-            f"at = {request.points.tolist()!r}: under a slider on a nonlinear chain no deflections are kept, leave it out"
+            f"at = {request.points.tolist()!r}: a nonlinear chain under a slider keeps no deflections, leave it out"
         )
     plan = lay_out(request, onto, ())
     assert request.count is not None

@@ -253,14 +253,18 @@ def _sizes(request: Request, one: Onto, stage: Stage, basis: TimeBasis | None) -
 
 
 def _weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
-    """Modes at rest under what presses the feet on, shared by their points, (n,)."""
-    feet, still = feet_of(onto), np.zeros(len(basis.omegas))
-    for f, given in enumerate(feet.given):
-        own = feet.points[(feet.foot == f) & (feet.points[:, records.IMAGE] > 0.0)]
-        places = onto[0].start + own[:, records.OFFSET]
-        apart = own[:, records.INSET] @ own[:, records.STIFF]  # of a foot between two beams
-        still += (given[records.PRESS] - apart) / len(own) * basis.shapes(places, 0).sum(axis=1)
-    return np.asarray(still / basis.omegas**2)
+    """Modes at rest under what presses the feet on, shared by their points, (n,): on the material under them."""
+    feet, length, still = feet_of(onto), basis.beam.length, np.zeros(len(basis.omegas))
+    p, press = feet.points, feet.given[:, records.PRESS]
+    count = np.bincount(feet.foot, p[:, records.WEIGHT])  # of two beams one is kept
+    apart = p[:, records.INSET] * p[:, records.STIFF]  # of a foot between them
+    loads = p[:, records.WEIGHT] * (press / count)[feet.foot] - np.where(p[:, records.IMAGE] > 0.0, apart, 0.0)
+    x, lever = onto[0].start + p[:, records.OFFSET], basis.beam.surface_distance * p[:, records.FACE]
+    at = x
+    for _ in range(PASSES):
+        still = basis.shapes(at, 0) @ loads / basis.omegas**2
+        at = np.clip(x + lever * p[:, records.IMAGE] * (still @ basis.shapes(at, 1)), 0.0, length)
+    return np.asarray(still)
 
 
 def _press_apart(plan: Plan, basis: TimeBasis, feet: Feet) -> None:
@@ -352,6 +356,7 @@ def begin(plan: Plan, riding: Riding, before: Sequence[MotorState]) -> None:
         if plan.onto[b].held_speed is None:
             feet.body[b, records.V] = state.speed
     if before:
+        riding.before[:] = feet.touch[:, [records.DEPTH, records.STUCK]]
         return
     if riding.hard is not None:
         riding.before[0, 0] = RIDES_FROM_HERE

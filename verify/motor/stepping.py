@@ -199,6 +199,7 @@ def _run_hard(
     while done[records.STEP] < stage.n_steps:
         steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
         why = hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, riding.before, riding.log)
+        feet.touch[0, records.DEPTH] = riding.before[0, 0]  # from where another run goes on
         tell(riding.steps)
         if why != records.DONE:
             return WHY[why]

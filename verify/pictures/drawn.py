@@ -115,6 +115,7 @@ def _wave(scene: Scene, asked: Asked) -> Picture:
         forces=scene.forces,
         frequency_hz=scene.drive.frequency_hz,
         kind=scene.drive.kind,
+        devices=scene.devices,
     )
     joints = np.asarray(bench.modes(CHAIN, count, 1).nodes)
     turn = np.exp(2j * np.pi * np.arange(PERIOD) / PERIOD) if asked.moving else np.ones(1, dtype=complex)

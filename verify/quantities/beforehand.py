@@ -27,6 +27,7 @@ def at_frequency(a: AtFrequency, scene: "Scene") -> tuple[()]:
 def driven(a: Driven | Sensitivity, scene: "Scene") -> tuple[()]:
     """Raise InputError for a field that is not solved, or a window in which no waves are told apart."""
     case = driven_case(a, scene)
+    case.check_devices()
     if not isinstance(a, BestFrequency):  # whose search passes over a resonance
         _check_closed_form(case)
     counts = a.counts if isinstance(a, WaveOrder) else (case.count,)
@@ -53,6 +54,7 @@ def _check_window(a: Driven | Sensitivity, case: "DrivenCase") -> None:
     from verify.waves.window import check_window
 
     places = [force.position for force in case.forces]
+    places += [device.position for device in case.devices if device.across]
     check_window(case.beam, places, case.frequency_hz, given or middle_half(case.beam))
 
 
@@ -63,7 +65,7 @@ def _at_a_place(a: InWindow) -> bool:
 
 def _check_closed_form(case: "DrivenCase") -> None:
     """Raise InputError where the exact field is a closed form that says so: an undamped resonance, say."""
-    plain = case.beam.uniform and "theory" not in dict(case.settings)
+    plain = case.beam.uniform and "theory" not in dict(case.settings) and not case.devices
     if case.model == "analytic" and case.kind == "force" and plain:
         from verify.exact.harmonic import check_closed_form
 

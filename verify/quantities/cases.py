@@ -67,4 +67,5 @@ def driven_case(a: Driven | Sensitivity, scene: "Scene") -> "DrivenCase":
         frequency_hz=drive_frequency(a, scene),
         kind=drive_kind(a, scene),
         settings=a.settings if isinstance(a, Driven) else _theory_of(a),
+        devices=scene.devices,
     )

@@ -92,11 +92,19 @@ def _one_name(given: dict[str, Any], known: set[str]) -> dict[str, Any]:
 
 def needs_of(found: Quantity[A], arguments: A, scene: "Scene") -> tuple[Need, ...]:
     """The solves a figure will ask for."""
+    _check_devices(found, scene)
     return found.needs(arguments, scene)
+
+
+def _check_devices(found: Quantity[A], scene: "Scene") -> None:
+    """Raise InputError for a figure of the beam that knows no device, where the drive has one."""
+    if not found.devices and "beam" in found.arguments.reads:
+        scene.refuse_devices(found.name)
 
 
 def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Figure:
     """The figure. Raises InputError, also where the quantity gives none."""
+    _check_devices(found, scene)
     value = found.evaluate(arguments, scene, bench)
     if not isinstance(value, float | int | complex | Bracket):
         raise InputError(f"quantity = {found.name!r} gave {value!r}, which is no figure: let it give a number")

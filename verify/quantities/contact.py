@@ -73,16 +73,20 @@ class Landing(Arguments, frozen=True, kw_only=True):
 
 
 class Device(AtFrequency, frozen=True, kw_only=True):
-    """A place for a device near the right end, which is pinned."""
+    """A place for a device near the right end."""
 
-    position: Annotated[float, Meta(gt=0, description="metres from the right end")]
+    position: Annotated[float, Meta(ge=0, description="metres from the right end")]
 
 
 class Absorbing(Device, frozen=True, kw_only=True):
     """A device there: by its dashpot and spring, or by its resistance over the matched one's, its spring matched."""
 
-    resistance: Annotated[float, Meta(ge=0, description="of its dashpot, kg/s")] | None = None
-    stiffness: Annotated[float, Meta(description="of its spring, N/m; 0 unless given with resistance")] | None = None
+    turning: Annotated[bool, Meta(description="whether it acts against turning there; else across")] = False
+    resistance: Annotated[float, Meta(ge=0, description="of its dashpot, kg/s; N m s turning")] | None = None
+    stiffness: (
+        Annotated[float, Meta(ge=0, description="of its spring, N/m; N m/rad turning; with resistance")] | None
+    ) = None
+    mass: Annotated[float, Meta(ge=0, description="kg; kg m^2 turning; with resistance")] | None = None
     ratio: Annotated[float, Meta(ge=0, description="of its resistance to the matched one")] | None = None
     model: Annotated[str, model_meta(_WHOLE, "solve_harmonic")] | None = None
     count: Size | None = None
@@ -94,8 +98,9 @@ class Absorbing(Device, frozen=True, kw_only=True):
             raise InputError(f"count = {self.count!r}: a half-infinite beam has no parts, give model as well")
         if (self.ratio is None) == (self.resistance is None):
             raise InputError(f"ratio = {self.ratio!r} and resistance = {self.resistance!r}: give one of the two")
-        if self.ratio is not None and self.stiffness is not None:
-            raise InputError(f"stiffness = {self.stiffness!r}: with ratio the spring is the matched one, leave it out")
+        for name in ("stiffness", "mass"):
+            if self.ratio is not None and (value := getattr(self, name)) is not None:
+                raise InputError(f"{name} = {value!r}: with ratio spring and mass are the matched ones, leave it out")
 
 
 def _layer_speed(a: Layer, scene: "Scene", bench: Workbench) -> float:
@@ -131,41 +136,43 @@ def _restitution(a: Landing, scene: "Scene", bench: Workbench) -> float:
     return restitution(damping_ratio(a.mass, a.stiffness, a.damping))
 
 
-def _matched(a: Device, scene: "Scene") -> complex:
-    """Raises InputError where the beam ends otherwise."""
+def _matched(a: Device, scene: "Scene", *, turning: bool = False) -> complex:
+    """Raises InputError off the beam, and on a support where a device does nothing."""
     from verify.waves.absorber import matched_impedance
 
-    if scene.beam.supports[1] != "pinned":
-        raise InputError(
-            f"beam.supports ends with {scene.beam.supports[1]!r}: the impedance beside a pinned end is known, pin it"
-        )
     if a.position >= scene.beam.length:
         raise InputError(f"position = {a.position!r} lies off the beam: give less than {scene.beam.length!r} m")
-    return matched_impedance(scene.beam, drive_frequency(a, scene), a.position)
+    hertz, support = drive_frequency(a, scene), scene.beam.supports[1]
+    return matched_impedance(scene.beam, hertz, a.position, support, turning=turning)
 
 
 def _impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
     return _matched(a, scene)
 
 
+def _turning_impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
+    return _matched(a, scene, turning=True)
+
+
 def _device(a: Absorbing, scene: "Scene") -> complex:
     """Its impedance, kg/s."""
-    matched, omega = _matched(a, scene), 2.0 * pi * drive_frequency(a, scene)
+    matched, omega = _matched(a, scene, turning=a.turning), 2.0 * pi * drive_frequency(a, scene)
     if a.ratio is not None:
         return complex(a.ratio * matched.real, matched.imag)
-    return complex(a.resistance or 0.0, -(a.stiffness or 0.0) / omega)
+    return complex(a.resistance or 0.0, omega * (a.mass or 0.0) - (a.stiffness or 0.0) / omega)
 
 
 def _reflection(a: Absorbing, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.absorber import reflection
 
-    impedance, own = _device(a, scene), _matched(a, scene).conjugate()
+    impedance, own = _device(a, scene), _matched(a, scene, turning=a.turning).conjugate()
     return reflection(impedance, own) if a.model is None else _left_on_beam(a, scene, impedance)
 
 
 def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
     """The same of a model's whole beam, between its forces and the device, in the middle half."""
-    from verify.waves.absorber import field_with_device
+    from verify.device import of_impedance
+    from verify.waves.devices import field_with_devices
     from verify.waves.driven import measures
 
     assert a.model is not None
@@ -175,19 +182,26 @@ def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
         raise InputError(f"drive.kind = {scene.drive.kind!r}: beside a device forces drive the beam, give 'force'")
     if not forces:
         raise InputError("drive.force: no force is left beside the device to drive the beam, add one")
-    field = field_with_device(
-        lambda given, hertz: model.solve_harmonic(scene.beam, given, hertz, a.count),
+    hertz = drive_frequency(a, scene)
+    field = field_with_devices(
+        lambda beam, given, hertz: model.solve_harmonic(beam, given, hertz, a.count),
+        scene.beam,
         forces,
-        drive_frequency(a, scene),
-        at,
-        impedance,
+        hertz,
+        [of_impedance(at, impedance, 2.0 * pi * hertz, turning=a.turning)] if impedance else [],
     )
     return measures(field, None).reflection
 
 
 def _needs_device(a: Device, scene: "Scene") -> tuple[()]:
     """Raise InputError where no device can stand."""
-    _matched(a, scene)
+    _matched(a, scene, turning=isinstance(a, Absorbing) and a.turning)
+    return ()
+
+
+def _needs_turning(a: Device, scene: "Scene") -> tuple[()]:
+    """The same against turning."""
+    _matched(a, scene, turning=True)
     return ()
 
 
@@ -235,11 +249,22 @@ CONTACT_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "wave.absorber_impedance",
         "kg/s",
-        "Impedance of a device beside the pinned right end that reflects nothing: force over velocity.",
+        "Impedance of a device near the right end that reflects nothing: force over velocity.",
         Device,
         "harmonic",
         _impedance,
         needs=_needs_device,
+        devices=True,
+    ),
+    Quantity(
+        "wave.absorber_turning_impedance",
+        "N m s",
+        "The same of one against turning: couple over speed of turning.",
+        Device,
+        "harmonic",
+        _turning_impedance,
+        needs=_needs_turning,
+        devices=True,
     ),
     Quantity(
         "wave.absorber_reflection",
@@ -249,5 +274,6 @@ CONTACT_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _reflection,
         needs=_needs_device,
+        devices=True,
     ),
 )

@@ -262,5 +262,7 @@ class Quantity(msgspec.Struct, Generic[A], frozen=True):
     """What has to be solved for it, as far as can be known beforehand. Raises InputError where it cannot be."""
     models: tuple[str, ...] = ()
     """Models that it uses beside the one its arguments name and those of its needs."""
+    devices: bool = False
+    """Whether it knows a drive's devices; one of the beam that does not is refused beside them."""
     superposed: str = ""
     """Of a figure that a map over frequency and phase superposes from two unit drives: which of theirs it is."""

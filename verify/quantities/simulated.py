@@ -87,7 +87,8 @@ def motion_case(a: InTime, scene: "Scene") -> MotionCase:
 
 
 def check_forced(scene: "Scene", what: str) -> None:
-    """Raise InputError for a drive by displacements where forces are taken."""
+    """Raise InputError for a drive by displacements, or with devices, where forces alone are taken."""
+    scene.refuse_devices(what)
     if scene.drive is not None and scene.drive.kind != "force":
         raise InputError(f"drive.kind = {scene.drive.kind!r}: {what} takes imposed forces, give kind = 'force'")
 

@@ -1,6 +1,6 @@
 """The typed arguments of figures of the driven beam."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from msgspec import Meta
 
@@ -10,12 +10,14 @@ from verify.errors import InputError
 from verify.judge.variants import DEFAULTS
 from verify.models.catalogue import MODELS
 from verify.quantities.kind import (
+    Arguments,
     AtFrequency,
     Attachment,
     DiscreteField,
     DriveArguments,
     FieldModel,
     Joints,
+    Mode,
     Size,
     Sizes,
     Theory,
@@ -133,6 +135,18 @@ class BestFrequency(InWindow, frozen=True, kw_only=True):
     span: Annotated[Relative, Meta(gt=0, lt=0.5, description="search within this part of the drive's frequency")] = (
         0.015
     )
+
+
+class Lumped(Arguments, frozen=True, kw_only=True):
+    """Two modes of the beam as one wave, whatever drives it."""
+
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
+    x: Annotated[float, Meta(ge=0, description="metres from the left end")]
+    modes: Annotated[tuple[Mode, Mode], Meta(description="which two")] = (21, 22)
+    ratio: Annotated[float, Meta(gt=0, description="amplitude of the second over the first, both mass-normalised")] = (
+        1.0
+    )
+    phase_deg: Annotated[float, Meta(description="by which the second leads")] = 90.0
 
 
 class Receptance(AtFrequency, frozen=True, kw_only=True):

@@ -14,6 +14,7 @@ from verify.quantities.wave_arguments import (
     Driven,
     Fastest,
     InWindow,
+    Lumped,
     Power,
     Receptance,
     Sensitivity,
@@ -23,6 +24,7 @@ from verify.quantities.wave_arguments import (
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
+    from verify.waves.lumped import TwoModes
     from verify.waves.measures import WaveMeasures
 
 
@@ -108,6 +110,25 @@ def _fastest(a: Fastest, scene: "Scene", bench: Workbench) -> float:
     return fastest_point(driven_case(a, scene), a.limit).crest_speed
 
 
+def _two_modes(a: Lumped, scene: "Scene") -> "TwoModes":
+    from verify.waves.lumped import TwoModes
+
+    return TwoModes(beam=scene.beam, modes=a.modes, ratio=a.ratio, phase_deg=a.phase_deg)
+
+
+def _lumped_swr(a: Lumped, scene: "Scene", bench: Workbench) -> float:
+    return float(_two_modes(a, scene).local_swr(a.x)[0])
+
+
+def _needs_two_modes(a: Lumped, scene: "Scene") -> tuple[()]:
+    """Raise InputError for a beam that is not uniform, one mode twice, or a place off the beam."""
+    from verify.models.places import places
+
+    _two_modes(a, scene)
+    places("x", a.x, scene.beam.length)
+    return ()
+
+
 def _figure(name: str) -> Callable[[InWindow, "Scene", Workbench], float]:
     """One attribute of the measures."""
     return lambda a, scene, bench: float(getattr(measured(a, scene, bench), name))
@@ -122,6 +143,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _deflection,
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.slope",
@@ -131,6 +153,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _slope,
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.curvature",
@@ -140,6 +163,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _curvature,
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.standing_wave_ratio",
@@ -149,6 +173,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _figure("standing_wave_ratio"),
         needs=beforehand.driven,
+        devices=True,
         superposed="standing_wave_ratio",
     ),
     Quantity(
@@ -159,6 +184,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _figure("reflection"),
         needs=beforehand.driven,
+        devices=True,
         superposed="reflection",
     ),
     Quantity(
@@ -169,6 +195,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _figure("envelope"),
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.travelling_index",
@@ -178,6 +205,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _figure("travelling_index"),
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.axis_ratio",
@@ -187,6 +215,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _axis_ratio,
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.signed_area_spread",
@@ -196,6 +225,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _figure("signed_area_spread"),
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.crest_speed",
@@ -205,6 +235,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _figure("crest_speed"),
         needs=beforehand.driven,
+        devices=True,
         superposed="crest_speed",
     ),
     Quantity(
@@ -215,6 +246,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _figure("energy_flux"),
         needs=beforehand.driven,
+        devices=True,
         superposed="energy_flux",
     ),
     Quantity(
@@ -225,6 +257,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _power_imbalance,
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.best_frequency",
@@ -234,6 +267,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _best_frequency,
         needs=beforehand.driven,
+        devices=True,
     ),
     Quantity(
         "wave.order",
@@ -243,6 +277,17 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "harmonic",
         _order,
         needs=beforehand.driven,
+        devices=True,
+    ),
+    Quantity(
+        "wave.lumped_swr",
+        "1",
+        "Local standing-wave ratio of two modes that swing with a phase between them: the lumped picture of the wave.",
+        Lumped,
+        "closed form",
+        _lumped_swr,
+        needs=_needs_two_modes,
+        devices=True,
     ),
     Quantity(
         "wave.receptance",

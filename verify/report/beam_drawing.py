@@ -15,6 +15,7 @@ from verify.report.labels import Box, Label, placed, words_at
 
 if TYPE_CHECKING:
     from verify.beam import Beam
+    from verify.device import Device
     from verify.scenes.scene import Scene
     from verify.section import Piece
     from verify.slider import Slider
@@ -66,6 +67,7 @@ def _parts(scene: "Scene", view: View) -> Iterator[Drawn]:
     yield from _supports(view)
     yield from _springs(view)
     yield from _masses(view)
+    yield from _devices(scene, view)
     yield from _tension(view)
     if scene.slider is not None:
         yield from _slider(scene.slider, view)
@@ -77,6 +79,7 @@ def _told(scene: "Scene") -> str:
     beam = scene.beam
     words = [f"A beam of {_metres(beam.length)}, {beam.supports[0]} at the left and {beam.supports[1]} at the right"]
     counts = {"sections": beam.section, "bodies": beam.mass, "springs": beam.spring, "forces": scene.forces}
+    counts |= {"devices": scene.devices}
     words += [f"{len(found)} {name}" for name, found in counts.items() if found]
     return ", ".join([*words, *(["a slider"] if scene.slider else [])])
 
@@ -185,6 +188,34 @@ def _springs(view: View) -> Iterator[Drawn]:
             yield f'<path d="M{at + 12:.1f} 0a12 12 0 1 1 -12 -12" stroke="{SPRING}" stroke-width="1.6"/>'
             yield Box(at - 12, -12, at + 12, 12)
             yield Label(at, -half - 10, (f"{spring.rotational:.4g} N m/rad",))
+
+
+def _devices(scene: "Scene", view: View) -> Iterator[Drawn]:
+    """Above the beam, clear of its supports, a dashpot to the ground; what the device has in words."""
+    for device in scene.devices:
+        at, y = view.at(device.position), -_half(view.beam, device.position)
+        cup, ground = y - 12, y - 36
+        yield _line((at, y), (at, cup - 8), colour=SPRING)
+        yield _line((at - 5, cup - 8), (at + 5, cup - 8), colour=SPRING)
+        yield _line((at - 8, cup), (at - 8, cup - 16), (at + 8, cup - 16), (at + 8, cup), colour=SPRING)
+        yield _line((at, cup - 16), (at, ground), colour=SPRING)
+        yield _line((at - 12, ground), (at + 12, ground), colour=SOFT)
+        yield Box(at - 12, ground - 1, at + 12, y)
+        yield Label(at, ground - 4, (f"x = {_metres(device.position)}", *_device_words(device)))
+
+
+def _device_words(device: "Device") -> tuple[str, ...]:
+    """Each thing that it has."""
+    units = {
+        "dashpot": "N s/m",
+        "stiffness": "N/m",
+        "mass": "kg",
+        "rotational_dashpot": "N m s",
+        "rotational": "N m/rad",
+        "rotary_inertia": "kg m²",
+        "amplitude": "N",
+    }
+    return tuple(f"{value:.4g} {unit}" for name, unit in units.items() if (value := getattr(device, name)))
 
 
 def _masses(view: View) -> Iterator[Drawn]:

@@ -90,13 +90,13 @@ def _study_asks(scene: "Scene") -> Iterable[Ask]:
         try:
             study.check_run(asked, scene)
         except InputError as error:
-            yield Ask(kind="study", name=study.name, work=study.work, problem=str(error))
+            yield Ask(kind="study", name=study.name, work=study.work_on(asked, scene), problem=str(error))
             continue
         yield Ask(
             kind="study",
             name=study.name,
             told=study.told(asked, scene),
-            work=study.work,
+            work=study.work_on(asked, scene),
             needs=study.needs(asked, scene),
             models=study.models(asked, scene),
             slides=study.slides,

@@ -147,7 +147,7 @@ def _planned(scene: "Scene", key: Key, n_wanted: int, who: tuple[str, ...]) -> P
 
 def _chosen(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
     """Simpler models that will do, by size."""
-    if not scene.forces or not scene.beam.uniform:
+    if not scene.forces or not scene.beam.uniform or scene.devices:
         return ()
     chosen: list[tuple[str, str]] = []
     if scene.slider is not None and any(ask.slides for ask in asks):

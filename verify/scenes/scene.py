@@ -10,6 +10,7 @@ from msgspec import Meta
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.checks import Relative, check_number
+from verify.device import Device
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.motion.starting import soft_start
@@ -53,6 +54,27 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         return PointForce(position=x, amplitude=self.amplitude, phase_deg=self.phase_deg)
 
 
+class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A device as a scene states it: its distance from one end of the beam."""
+
+    measured_from: Literal["left", "right"] = "left"
+    """The end of the beam from which `position` counts."""
+
+    def on(self, beam: Beam) -> Device:
+        """The device in the beam's own coordinate. Raises InputError where it is off the beam or on a support."""
+        own = {name: getattr(self, name) for name in Device.__struct_fields__}
+        if not self.position <= beam.length:
+            raise InputError(
+                f"drive.device.position = {self.position!r} lies off the beam: "
+                f"give a position between 0 and {beam.length!r} m"
+            )
+        if self.measured_from == "right":
+            own["position"] = beam.length - self.position
+        found = Device(**own)
+        found.check_on(beam)
+        return found
+
+
 class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What shakes the beam at one frequency: harmonic point forces, or displacements imposed at points."""
 
@@ -62,9 +84,13 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """What the amplitudes mean: newton, or metres. The paper does not say; its frequency rule fits forces."""
     force: tuple[SceneForce, ...] = ()
     """Where it acts, how strongly and with which phase."""
+    device: tuple[SceneDevice, ...] = ()
+    """What stands on the beam beside the forces and takes up the wave, or drives it: in the steady state alone."""
 
     def __post_init__(self) -> None:
         check_number("drive.frequency_hz", self.frequency_hz, "hertz", above=0)
+        if self.device and self.kind != "force":
+            raise InputError(f"drive.kind = {self.kind!r}: beside a drive.device forces drive the beam, give 'force'")
 
 
 class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -214,16 +240,20 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Raise InputError for a drive or a slider that this beam cannot have."""
         if self.drive is not None:
             check_frequency("drive.frequency_hz", self.drive.frequency_hz, self.beam)
-        forces = self.forces  # built here, so that one off the beam is refused with the scene
+        forces, _ = self.forces, self.devices  # built here, so that one off the beam is refused with the scene
         if self.slider is not None:
             self.slider.start_on(self.beam)
         if self.motion is not None and not forces:
             raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
+        if self.motion is not None:
+            self.refuse_devices("motion: a beam in time")
 
     def _section_checks(self) -> Iterator[Callable[[], None]]:
         """What each study's section asks of the rest of the scene."""
         for name in self.__struct_fields__[len(Scene.__struct_fields__) :]:
             if (asked := getattr(self, name)) is not None:
+                if not getattr(SECTIONS[name], "devices", False):
+                    yield partial(self.refuse_devices, f"{name}: this study")
                 yield partial(SECTIONS[name].check_on, asked, self)
 
     def _check_claims(self) -> None:
@@ -245,6 +275,19 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def forces(self) -> tuple[PointForce, ...]:
         """The driving forces in the beam's own coordinate."""
         return tuple(force.on(self.beam) for force in self.drive.force) if self.drive else ()
+
+    @property
+    def devices(self) -> tuple[Device, ...]:
+        """The drive's devices in the beam's own coordinate."""
+        return tuple(device.on(self.beam) for device in self.drive.device) if self.drive else ()
+
+    def refuse_devices(self, what: str) -> None:
+        """Raise InputError, for something that knows no device on the beam, where the drive has one."""
+        for device in self.devices:
+            raise InputError(
+                f"{what} knows no drive.device, and one stands at {device.position:g} m: leave it out, or ask for "
+                "figures of the steady wave"
+            )
 
 
 def scene_type(keys: Iterable[str] | None = None) -> type[Scene]:

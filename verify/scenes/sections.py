@@ -57,6 +57,7 @@ SECTIONS: Registry[Section] = Registry(
         "convergence": "verify.studies.convergence:ConvergenceStudy",
         "sensitivity": "verify.studies.sensitivity:SensitivityStudy",
         "wave": "verify.studies.wave:WaveStudy",
+        "methods": "verify.studies.methods:MethodsStudy",
         "motion": "verify.studies.slider:SliderStudy",
         "motor": "verify.studies.motor:MotorStudy",
         "readings": "verify.studies.readings:ReadingsStudy",

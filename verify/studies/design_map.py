@@ -198,7 +198,7 @@ def design_map(
 
 def _superposes(asked: Driven, scene: "Scene") -> bool:
     """Whether the drive is two forces or displacements without settings that only a single solve knows."""
-    return not asked.settings and len(scene.forces) == 2
+    return not asked.settings and len(scene.forces) == 2 and not scene.devices
 
 
 def _whose(asked: Driven, axes: tuple[Axis, ...], scene: "Scene") -> str:

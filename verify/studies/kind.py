@@ -35,6 +35,8 @@ class Study(Generic[Asked, Out]):
     section: ClassVar[type[msgspec.Struct] | None] = None
     """The type of its section; None where it stands on what a scene has anyway."""
     work: "ClassVar[Work]" = "closed form"
+    devices: ClassVar[bool] = False
+    """Whether it takes a drive with devices; one that does not is refused beside them."""
     slides: ClassVar[bool] = False
     """Whether it runs the scene's slider."""
     listed: ClassVar[bool] = True
@@ -73,6 +75,10 @@ class Study(Generic[Asked, Out]):
     def choices(self, asked: Asked, scene: "Scene") -> tuple[tuple[str, str], ...]:
         """(which simpler model will do, why, with the size of what it neglects), for the plan."""
         return ()
+
+    def work_on(self, asked: Asked, scene: "Scene") -> "Work":
+        """What kind of work it is on this scene."""
+        return self.work
 
     def told(self, asked: Asked, scene: "Scene") -> str:
         """What it will do, in a few words, for the plan."""

@@ -112,7 +112,7 @@ def _foot(run: "MotorRun", foot: "Foot", f: int, raised: float) -> Line:
 def _bars(name: str, parts: "list[tuple[Array, Array, Array]]") -> Line:
     """All bars of one side as one broken line."""
     x = [v for places, _, _ in parts for at in places for v in (1e3 * at, 1e3 * at, None)]
-    moves: "list[Numbers]" = []
+    moves: list[Numbers] = []
     for k in range(len(parts[0][1])):
         heights: list[float | None] = []
         for _, under, tips in parts:

@@ -208,4 +208,3 @@ def _nearer(found: FromRest, one: RestField, other: RestField) -> str:
     if abs(mean) <= max(SURE * error, one.stepped + other.stepped):
         return f"which chain is nearer the {beam} is withheld ({pair}, no more than its error allows)"
     return f"{(other if mean > 0 else one).title} are nearer the {beam} ({pair} farther)"
-

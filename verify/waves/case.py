@@ -5,6 +5,8 @@ from typing import Any
 import msgspec
 
 from verify.beam import Beam, PointForce
+from verify.device import Device
+from verify.errors import InputError
 from verify.models.catalogue import MODELS
 
 
@@ -21,6 +23,23 @@ class DrivenCase(msgspec.Struct, frozen=True, kw_only=True):
     kind: str = "force"
     settings: tuple[tuple[str, Any], ...] = ()
     """Keywords of the model's `solve_harmonic` other than their defaults."""
+    devices: tuple[Device, ...] = ()
+    """What stands on the beam beside the forces."""
+
+    def check_devices(self) -> None:
+        """Raise InputError for a device that this beam cannot have, or beside displacements that are imposed."""
+        for device in self.devices:
+            device.check_on(self.beam)
+        if self.devices and self.kind != "force":
+            raise InputError(f"drive.kind = {self.kind!r}: beside a device forces drive the beam, give 'force'")
+
+    def check_no_devices(self, what: str) -> None:
+        """Raise InputError for something that knows forces alone."""
+        if self.devices:
+            raise InputError(
+                f"drive.device at {self.devices[0].position:g} m: {what} superposes two forces without a device, leave "
+                "it out"
+            )
 
     def check_carried(self) -> None:
         """Raise CutOffError where no wave of this frequency runs along the model's parts."""

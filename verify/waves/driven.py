@@ -68,9 +68,39 @@ def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
             bench.n_fields += 1
         return bench.fields[key]
 
-    field = driven_field(solve, case.forces, case.frequency_hz, case.kind)
+    case.check_devices()
+    if case.devices:
+        field = _with_devices(case, bench)
+    else:
+        field = driven_field(solve, case.forces, case.frequency_hz, case.kind)
     case.check_carried()
     return field
+
+
+def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
+    """The same with devices on the beam. Raises InputError."""
+    from verify.waves.devices import DevicesResonanceError, field_with_devices, interpolated
+
+    key = (case.model, case.count, case.beam, case.frequency_hz, case.forces, case.settings, case.devices)
+    if key in bench.fields:
+        return bench.fields[key]
+    model, settings = MODELS.named(case.model), dict(case.settings)
+
+    def solve(beam: Beam, forces: Sequence[PointForce], frequency: float) -> HarmonicField:
+        bench.n_fields += 1
+        return model.solve_harmonic(beam, forces, frequency, case.count, **settings)
+
+    def at(frequency: float) -> HarmonicField:
+        return field_with_devices(solve, case.beam, case.forces, frequency, case.devices)
+
+    try:
+        found = at(case.frequency_hz)
+    except DevicesResonanceError:
+        raise
+    except ResonanceError:  # of the beam alone, of which the field with devices knows nothing
+        found = interpolated(at, case.frequency_hz)
+    bench.fields[key] = found
+    return found
 
 
 def swept(case: DrivenCase, frequencies: Array, bench: "Workbench") -> HarmonicSweep:
@@ -173,7 +203,7 @@ def quietest_drive(case: DrivenCase, span: float, window: Window | None, bench: 
         return two_waves(field, window or middle_half(field.beam), own_wavenumber(field)).reflection
 
     def reflections(frequencies: Array) -> Array:
-        if len(frequencies) > 1 and case.kind == "force":
+        if len(frequencies) > 1 and case.kind == "force" and not case.devices:
             with suppress(ResonanceError):
                 return _swept_reflections(swept(case, frequencies, bench), window or middle_half(case.beam))
         return np.array([reflection(float(f)) for f in frequencies])

@@ -19,7 +19,7 @@ Units = Callable[[Array, Array], ComplexArray]
 
 STEP = 1e-5
 """Relative distance of the frequencies that an interpolation or a derivative takes."""
-_AROUND = ((-2.0, -1.0 / 6.0), (-1.0, 4.0 / 6.0), (1.0, 4.0 / 6.0), (2.0, -1.0 / 6.0))
+AROUND = ((-2.0, -1.0 / 6.0), (-1.0, 4.0 / 6.0), (1.0, 4.0 / 6.0), (2.0, -1.0 / 6.0))
 """(steps, weight): exact for cubics."""
 _SUSPECT, _SINGULAR = 1e-4, 1e-12
 """Least singular value of a receptance, beside a unit response, below which a resonance is looked for, and below
@@ -41,7 +41,7 @@ def driven_field(solve: Solve, drives: Sequence[PointForce], frequency_hz: float
         raise
     except ResonanceError:
         pass  # of the beam under forces: interpolated
-    fields = [(weight, _held_field(solve, drives, frequency_hz * (1.0 + s * STEP))) for s, weight in _AROUND]
+    fields = [(weight, _held_field(solve, drives, frequency_hz * (1.0 + s * STEP))) for s, weight in AROUND]
     return _combined(fields, drives, frequency_hz)
 
 
@@ -133,7 +133,7 @@ def held_units(units: Units, places: Array, beam: Beam, frequencies_hz: Array, x
     found, receptance = _solved_units(units, places, frequencies_hz, x)
     poles = np.flatnonzero(np.isnan(receptance).any(axis=(1, 2)))
     if len(poles):
-        around = [(weight, frequencies_hz[poles] * (1.0 + steps * STEP)) for steps, weight in _AROUND]
+        around = [(weight, frequencies_hz[poles] * (1.0 + steps * STEP)) for steps, weight in AROUND]
         found[poles] = sum(weight * _solved_units(units, places, f, x)[0] for weight, f in around)
     small = _SUSPECT * np.array([unit_response(beam, float(f)) for f in frequencies_hz])
     least = np.full(len(frequencies_hz), np.inf)

@@ -141,6 +141,7 @@ def driven_point(case: DrivenCase) -> OperatingPoint:
 
 def check_two(case: DrivenCase) -> None:
     """Raise InputError without two forces."""
+    case.check_no_devices("a phase between two forces")
     if len(case.forces) != 2:
         raise InputError(
             f"the reflection has a phase between two forces, the scene has {len(case.forces)}: give it two"

@@ -1,0 +1,107 @@
+"""A device on a driven beam: spring, mass and dashpot against deflection and turning, and a force of its own. Data."""
+
+from verify.beam import Beam
+from verify.checks import check_number, settle
+from verify.errors import InputError
+from verify.field_docs import Value
+
+ACROSS = ("stiffness", "mass", "dashpot", "amplitude")
+TURNING = ("rotational", "rotary_inertia", "rotational_dashpot")
+_UNITS = {
+    "stiffness": "N/m",
+    "mass": "kilograms",
+    "dashpot": "N s/m",
+    "rotational": "N m/rad",
+    "rotary_inertia": "kg m^2",
+    "rotational_dashpot": "N m s/rad",
+}
+_STILL = {"across": ("pinned", "clamped"), "turning": ("clamped", "guided")}
+"""Supports on which nothing moves across, or turns."""
+
+
+class Device(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What an actuator or an absorber is to a beam in its steady state: an impedance to the ground, and a force.
+
+    It belongs to the drive, not to the beam: harmonic fields know it; modes, motion in time and the nonlinear chain do
+    not. Raises InputError where a value is negative or none, or all are zero.
+    """
+
+    position: float
+    """x, metres from the left end."""
+    stiffness: float = 0.0
+    """Of its spring against deflection, N/m."""
+    mass: float = 0.0
+    """Kilograms, that move across with the beam."""
+    dashpot: float = 0.0
+    """Against the speed across, N s/m."""
+    rotational: float = 0.0
+    """Of its spring against turning, N m/rad."""
+    rotary_inertia: float = 0.0
+    """Kg m^2, that turn with the beam."""
+    rotational_dashpot: float = 0.0
+    """Against the speed of turning, N m s/rad."""
+    amplitude: float = 0.0
+    """Of the force that it exerts across where the beam stands still there, newton."""
+    phase_deg: float = 0.0
+    """Of that force, degrees, leading (e^{+i omega t})."""
+
+    def __post_init__(self) -> None:
+        settle(self)
+        check_number("device.position", self.position, "metres", at_least=0)
+        for name, unit in _UNITS.items():
+            check_number(f"device.{name}", getattr(self, name), unit, at_least=0)
+        check_number("device.amplitude", self.amplitude, "newton")
+        check_number("device.phase_deg", self.phase_deg, "degrees")
+        if not (self.across or self.turning):
+            raise InputError(
+                f"device at position = {self.position!r} does nothing: give it one of {', '.join((*ACROSS, *TURNING))}"
+            )
+
+    @property
+    def across(self) -> bool:
+        """Whether it acts across the beam."""
+        return any(getattr(self, name) for name in ACROSS)
+
+    @property
+    def turning(self) -> bool:
+        """Whether it resists turning."""
+        return any(getattr(self, name) for name in TURNING)
+
+    def impedance(self, omega: float) -> complex:
+        """Force over velocity, R + i (omega m - S / omega), kg/s."""
+        return complex(self.dashpot, omega * self.mass - self.stiffness / omega)
+
+    def turning_impedance(self, omega: float) -> complex:
+        """Couple over speed of turning, likewise, N m s."""
+        return complex(self.rotational_dashpot, omega * self.rotary_inertia - self.rotational / omega)
+
+    def check_on(self, beam: Beam) -> None:
+        """Raise InputError where it lies off a beam, or on a support that keeps it from doing anything."""
+        if self.position > beam.length:
+            raise InputError(
+                f"device.position = {self.position!r} lies off the beam: give a position between 0 and "
+                f"{beam.length!r} m"
+            )
+        for end, support in zip((0.0, beam.length), beam.supports, strict=True):
+            for way, names in (("across", ACROSS), ("turning", TURNING)):
+                if abs(self.position - end) <= 1e-9 * beam.length and getattr(self, way) and support in _STILL[way]:
+                    name = next(name for name in names if getattr(self, name))
+                    moves = "moves across" if way == "across" else "turns"
+                    raise InputError(
+                        f"device.position = {self.position!r} m stands on a {support} support, where nothing {moves} "
+                        f"and device.{name} = {getattr(self, name)!r} does nothing: move it, or leave that out"
+                    )
+
+
+def of_impedance(position: float, impedance: complex, omega: float, *, turning: bool = False) -> Device:
+    """The device of dashpot and spring, or of dashpot and mass, that has an impedance at a frequency.
+
+    Raises InputError for an impedance that gives energy, which no such device does.
+    """
+    if impedance.real < 0.0:
+        raise InputError(
+            f"impedance = {impedance!r} gives energy, which no dashpot does: give one whose real part is at least 0"
+        )
+    spring, mass, dashpot = TURNING if turning else ("stiffness", "mass", "dashpot")
+    reactive = {spring: -impedance.imag * omega} if impedance.imag < 0.0 else {mass: impedance.imag / omega}
+    return Device(position=position, **{dashpot: impedance.real}, **reactive)
