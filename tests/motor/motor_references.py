@@ -162,9 +162,12 @@ class Modes:
         self.beam = 2 * len(own)
 
     def lying(self, x, load):
-        """(q, deflection of the material below x) at rest under a load at x."""
-        q = -load * self.shape(x, 0) / self.own**2
-        return q, q @ self.shape(x + self.half * (q @ self.shape(x, 1)), 0)
+        """(q, deflection of the material below x) at rest under a load there."""
+        q = np.zeros(len(self.own))
+        for _ in range(60):
+            here = x + self.half * (q @ self.shape(x, 1))
+            q = -load * self.shape(here, 0) / self.own**2
+        return q, q @ self.shape(here, 0)
 
     def split(self, s):
         """(q, q_t, the body's)."""

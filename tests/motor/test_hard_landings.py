@@ -9,6 +9,7 @@ from motor_setups import MIDDLE, OMEGA, STRIP, drive, ridden
 from msgspec.structs import replace
 
 from verify.contact import bouncing, landing
+from verify.motor import records
 from verify.slider import Contact, Slider
 
 GRAVITY, MASS = 9.81e-3, 2.3e-3
@@ -81,7 +82,9 @@ def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
     feet[0, 0] = amplitude * (sin(bounce.phase) + speed * flown - 0.5 * flown**2 / ratio)
     feet[0, 1] = amplitude * OMEGA * (speed - flown / ratio)
     assert feet[0, 0] > amplitude * sin(lead)
-    went = replace(before, state=replace(before.state, feet=feet))
+    touch = before.state.touch.copy()
+    touch[0, records.DEPTH] = -1.0  # in the air
+    went = replace(before, state=replace(before.state, feet=feet, touch=touch))
     asked = {"held_speed": held, "samples": periods + 1, "continue_from": went}
     run = ridden(slider, amplitude, periods=periods, step=64, **asked)
     return run.events[run.events[:, 1] == LANDS, 0] * OMEGA + lead, bounce, run
