@@ -43,7 +43,8 @@ def facts(found: "MethodsFound") -> tuple[str, ...]:
 def _frequency(found: "MethodsFound") -> Iterator[str]:
     """Which way bears the span better, where one does."""
     device, forces = (worst(found.frequencies, way) for way in WAYS)
-    span = f"within {found.span_hz:g} Hz of {found.hertz:g} Hz, {len(found.frequencies)} frequencies, nothing retuned"
+    n, span = len(found.frequencies), f"within {found.span_hz:g} Hz of {found.hertz:g} Hz"
+    span = f"{span}, {n} frequencies, {found.damping}, nothing retuned"
     if device is None or forces is None:
         yield f"{span}: a frequency is a resonance of the undamped beam under two forces, where nothing is compared"
         return
@@ -118,7 +119,7 @@ def _lumped(found: "MethodsFound") -> Iterator[str]:
 
 def _rides(found: "MethodsFound") -> Iterator[str]:
     for ride in found.rides:
-        if ride.off_hz == 0.0:
+        if ride.off_hz == 0.0 and ride.device is not None and ride.forces is not None:
             yield (
                 f"at {found.hertz:g} Hz and {found.force:g} N the slider's mean speed is {1e6 * ride.device:.4g} µm/s "
                 f"with the device and {1e6 * ride.forces:.4g} µm/s with two forces ({found.slider})"
