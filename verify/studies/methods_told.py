@@ -58,12 +58,10 @@ def _frequency(found: "MethodsFound") -> Iterator[str]:
         )
 
 
-def _better(device: float, forces: float) -> str:
+def _better(device: float, forces: float, does: str = "bears a change of frequency better") -> str:
     if abs(device - forces) <= 0.1 * max(device, forces):
         return ", which tells neither from the other"
-    return (
-        f", so that the way with {'the device' if device < forces else 'two forces'} bears a change of frequency better"
-    )
+    return f", so that the way with {'the device' if device < forces else 'two forces'} {does}"
 
 
 def _power(found: "MethodsFound") -> Iterator[str]:
@@ -94,14 +92,15 @@ def _detuning(found: "MethodsFound") -> Iterator[str]:
 
 
 def _load(found: "MethodsFound") -> Iterator[str]:
-    heaviest, known = found.masses[-1], [row for row in found.masses if row.device and row.forces]
-    if heaviest in known:
-        assert heaviest.device is not None
-        assert heaviest.forces is not None
+    """Of the heaviest mass; which way reflects less before it, where one does."""
+    heaviest = found.masses[-1]
+    device, forces = heaviest.device, heaviest.forces
+    if device and forces:
         yield (
-            f"with {heaviest.what} on the beam at {1e3 * found.load_position:g} mm, at {found.hertz:g} Hz: the "
-            f"reflection is {heaviest.device.reflection:.3g} before it and {heaviest.device.behind:.3g} behind it with "
-            f"the device, {heaviest.forces.reflection:.3g} and {heaviest.forces.behind:.3g} with two forces"
+            f"with {heaviest.what} on the beam at {1e3 * found.load_position:g} mm, at {found.hertz:g} Hz, {found.damping}:"
+            f" behind it the reflection is {device.behind:.3g} with the device and {forces.behind:.3g} with two forces, "
+            f"before it {device.reflection:.3g} and {forces.reflection:.3g}"
+            + _better(device.reflection, forces.reflection, "sends less back there")
         )
 
 
