@@ -332,3 +332,38 @@ def test_under_a_heavy_load_two_forces_send_less_back_before_it_and_the_device_n
     assert (heaviest.device.reflection, heaviest.device.behind) == (pytest.approx(endless, abs=1e-6), 0.0)
     assert heaviest.forces.reflection == pytest.approx(heaviest.forces.behind, rel=1e-6)
     assert heaviest.forces.reflection < heaviest.device.reflection
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        ["table", "absorbing-end", "--modes", "1-3"],
+        ["picture", "absorbing-end", "--what", "modes", "--to", "x.png"],
+        ["picture", "absorbing-end", "--what", "chain", "--to", "x.webp"],
+        ["export", "absorbing-end", "--what", "modes", "--to", "x.csv"],
+        ["bench", "absorbing-end"],
+        ["table", "absorbing-end", "--sweep", "phase_deg=0:90:3"],
+    ],
+)
+def test_no_command_passes_over_a_device(asked, capsys, tmp_path, monkeypatch):
+    from verify.cli import status_of
+
+    monkeypatch.chdir(tmp_path)
+    assert status_of(asked) == 2
+    said = capsys.readouterr().err
+    assert "knows no drive.device, and one stands at 0.4884 m" in said or "for two forces, the scene has 1" in said
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_power_balance_that_cannot_count_what_turns_is_refused():
+    gate = {"id": "g", "quantity": "wave.power_imbalance", "at_most": 1.0, "why": "asked"}
+    scene = replace(scene_of(gate=[gate]), methods=None)
+    assert run_scene(scene).passed
+    turning = {"position": 0.2, "rotational_dashpot": 0.01}
+    scene = checked(
+        {"name": "t", "beam": STEEL, "gate": [gate]}
+        | {"drive": {"frequency_hz": HERTZ, "force": [{"position": 0.04}], "device": [turning]}},
+        scene_type(),
+    )
+    (judged,) = run_scene(scene).gates
+    assert "a power balance counts what acts across alone, leave rotational" in judged.reason

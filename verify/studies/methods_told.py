@@ -98,8 +98,8 @@ def _load(found: "MethodsFound") -> Iterator[str]:
     if device and forces:
         at = f"{1e3 * found.load_position:g} mm, at {found.hertz:g} Hz, {found.damping}"
         yield (
-            f"with {heaviest.what} on the beam at {at}: behind it the reflection is {device.behind:.3g} with the device and "
-            f"{forces.behind:.3g} with two forces, "
+            f"with {heaviest.what} on the beam at {at}: behind it the reflection is {device.behind:.3g} with the "
+            f"device and {forces.behind:.3g} with two forces, "
             f"before it {device.reflection:.3g} and {forces.reflection:.3g}"
             + _better(device.reflection, forces.reflection, "sends less back there")
         )
