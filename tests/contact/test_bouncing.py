@@ -2,9 +2,10 @@
 
 from math import asin, cos, pi, sin, sqrt
 
+import numpy as np
 import pytest
 
-from verify.contact.bouncing import bouncing_limits, landing_phase, leaving_phase
+from verify.contact.bouncing import bounce_in_step, bouncing_limits, landing_phase, leaving_phase
 from verify.errors import InputError
 
 
@@ -59,9 +60,50 @@ def test_a_bounce_in_step_holds_between_its_limits_and_nowhere_else(restitution)
     assert abs(bounces(beyond, restitution, start + 1e-7, 200) * beyond / pi - 1.0) > 1e-4
 
 
+def bounced(ratio, restitution, theta, speed, periods):
+    """(phase, speed) after the next landing about `periods` later, flown to by Newton."""
+    time = 2.0 * pi * periods
+    for _ in range(8):
+        gap = sin(theta) + speed * time - 0.5 * time * time / ratio - sin(theta + time)
+        time -= gap / (speed - time / ratio - cos(theta + time))
+    after = theta + time
+    return np.array([after, (1.0 + restitution) * cos(after) - restitution * (speed - time / ratio)])
+
+
+@pytest.mark.parametrize(
+    ("ratio", "restitution", "periods"), [(1.9, 0.4, 1), (0.71, 0.7, 1), (2.9, 0.25, 1), (4.1, 0.3, 2), (3.4, 0.0, 1)]
+)
+def test_a_bounce_in_step_comes_back_and_deviations_grow_as_the_map_says(ratio, restitution, periods):
+    """The map's derivative by central differences of flights."""
+    found = bounce_in_step(ratio, restitution, periods)
+    start = np.array([found.phase, found.speed])
+    again = bounced(ratio, restitution, *start, periods)
+    assert again - (2.0 * pi * periods, 0.0) == pytest.approx(start, rel=1e-11)
+    map_of = np.zeros((2, 2))
+    for k in range(2):
+        way = 1e-6 * np.eye(2)[k]
+        ahead, behind = (bounced(ratio, restitution, *(start + side * way), periods) for side in (1, -1))
+        map_of[:, k] = (ahead - behind) / 2e-6
+    wanted = sorted(np.linalg.eigvals(map_of), key=lambda one: (one.real, one.imag))
+    assert sorted(found.multipliers, key=lambda one: (one.real, one.imag)) == pytest.approx(wanted, abs=1e-7)
+
+
+@pytest.mark.parametrize("restitution", [0.15, 0.45])
+def test_a_bounce_loses_its_step_where_a_multiplier_leaves_the_unit_circle(restitution):
+    low, high = bouncing_limits(restitution)
+    assert max(abs(m) for m in bounce_in_step(1.001 * low, restitution).multipliers) < 1.0
+    assert max(abs(m) for m in bounce_in_step(0.999 * high, restitution).multipliers) < 1.0
+    assert min(m.real for m in bounce_in_step(high, restitution).multipliers) == pytest.approx(-1.0, abs=1e-9)
+    assert max(m.real for m in bounce_in_step(low, restitution).multipliers) == pytest.approx(1.0, abs=1e-6)
+    assert max(abs(m) for m in bounce_in_step(1.01 * high, restitution).multipliers) > 1.0
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
+        (lambda: bounce_in_step(1.0, 0.3), "acceleration_ratio = 1.0"),
+        (lambda: bounce_in_step(-1.0, 0.3), "acceleration_ratio = -1.0"),
+        (lambda: bounce_in_step(5.0, 0.3, 0), "periods = 0"),
         (lambda: landing_phase(1.0), "acceleration_ratio = 1.0"),
         (lambda: landing_phase(float("inf")), "acceleration_ratio = inf"),
         (lambda: bouncing_limits(1.0), "restitution = 1.0"),

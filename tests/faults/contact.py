@@ -1,8 +1,8 @@
 """Faults in contact's closed forms and in absorbing devices. Each takes a monkeypatch and plants itself."""
 
-from math import cos
+from math import cos, pi, sqrt
 
-from verify.contact import bouncing, layer
+from verify.contact import bouncing, landing, layer
 from verify.device import Device
 from verify.waves import absorber, devices, lumped
 
@@ -25,6 +25,16 @@ def power_taken_for_force(patch):
 
 def landing_where_it_left(patch):
     patch.setattr(bouncing, "leaving_phase", lambda ratio: 1.0 / ratio)
+
+
+def a_dashpot_that_pulls(patch):
+    """Until the spring is slack; above zeta = 1 it never is, and time is up."""
+    patch.setattr(landing, "contact_time", lambda zeta: pi / sqrt(1.0 - zeta**2) if zeta < 1.0 else 100.0)
+
+
+def a_dashpot_against_all_of_critical(patch):
+    true = landing.damping_ratio
+    patch.setattr(landing, "damping_ratio", lambda *given: 2.0 * true(*given))
 
 
 def near_field_of_the_pin_forgotten(patch):
@@ -80,6 +90,8 @@ FAULTS = {
         a_stuck_layer_runs_as_fast_as_its_edge: {"no-load-speed-stuck"},
         power_taken_for_force: {"efficiency"},
         landing_where_it_left: {"landing", "a-flight-of-one-period"},
+        a_dashpot_that_pulls: {"restitution-of-a-dashpot", "restitution-of-a-strong-dashpot"},
+        a_dashpot_against_all_of_critical: {"restitution-of-a-strong-dashpot"},
     },
     "absorbing-end": {
         near_field_of_the_pin_forgotten: {"matched-impedance", "best-dashpot-alone"},

@@ -329,6 +329,10 @@ CASES: dict[str, list[Case]] = {
     "slider.layer_force": [Case({"contact_half_angle": 1.1, "speed_ratio": 0.71, "epsilon": 0.3})],
     "slider.layer_efficiency": [Case({"contact_half_angle": 1.1, "speed_ratio": 0.71})],
     "contact.landing_phase": [Case({"acceleration_ratio": 1.7})],
+    "contact.restitution": [
+        Case({"damping_ratio": 0.37}),
+        Case({"mass": 0.0041, "stiffness": 7.1e4, "damping": 9.3}),
+    ],
     "wave.reflection_per_hertz": [Case({}), Case({"model": "segment", "count": 24})],
     "wave.reflection_per_degree": [Case({}), Case({"model": "fem", "count": 14})],
     "friction.free_decay": [Case({"mu": 0.23, "slope": 90.0, "speed": 0.013, "time": 0.004})],
@@ -754,7 +758,7 @@ DEAD = [
         "beam.* drive.* slider.* motion.*",
         "a layer on crests of their own",
     ),
-    Dead("contact.landing_phase", "beam.* drive.* slider.* motion.*", "a surface of its own"),
+    Dead("contact.landing_phase contact.restitution", "beam.* drive.* slider.* motion.*", "a surface of its own"),
     Dead("wave.absorber_*", "drive.kind drive.force.*", "one wave from the left, whatever makes it", half_infinite),
     Dead("wave.absorber_* wave.lumped_swr", "beam.extreme_fibre", "no surface"),
     Dead(
@@ -891,6 +895,8 @@ DEAD = [
 OFF: dict[str, Any] = {
     "epsilon": 0.13,
     "resistance": 3.7,
+    "damping_ratio": 0.43,
+    "damping": 7.7,
     "ratio": 1.3,
     "loss_factor": 0.017,
     "modal_damping": 0.019,

@@ -4,10 +4,24 @@ The surface moves as A sin theta; `ratio` is A omega^2 over what presses the mas
 P. J. Holmes's bouncing ball (J. Sound Vib. 84 (1982) 173).
 """
 
-from math import asin, cos, pi, sin, sqrt
+from cmath import sqrt as complex_sqrt
+from math import acos, asin, cos, pi, sin, sqrt
+from typing import NamedTuple
 
-from verify.checks import check_number
+from verify.checks import check_number, check_whole
 from verify.errors import InputError
+
+
+class Bounce(NamedTuple):
+    """A mass that lands at the same phase once in so many periods."""
+
+    phase: float
+    """Of its landing, radians from the surface's own zero; of the two the one that can be stable."""
+    speed: float
+    """With which it leaves, and lands the other way, over A omega."""
+    multipliers: tuple[complex, complex]
+    """Of a small deviation from landing to landing: their product is e^2, stable inside the unit circle."""
+
 
 LOOKS = 720
 """Of a turn, in which a landing is looked for."""
@@ -49,3 +63,21 @@ def bouncing_limits(restitution: float) -> tuple[float, float]:
     low = pi * (1.0 - restitution) / (1.0 + restitution)
     width = 2.0 * (1.0 + restitution**2) / (1.0 + restitution) ** 2
     return low, sqrt(low * low + width * width)
+
+
+def bounce_in_step(ratio: float, restitution: float, periods: int = 1) -> Bounce:
+    """The bounce with one landing in `periods` of the surface, stable or not. Raises InputError below its least ratio.
+
+    It leaves with periods pi / ratio, and lands where cos phase is (1-e)/(1+e) times that. One that lands d theta late
+    and leaves d v fast does so by d theta' = d theta + (1+e) ratio d v and d v' = e^2 d v - (1+e) sin(phase) d theta'
+    the next time: of this map the determinant is e^2, the trace 1 + e^2 - (1+e)^2 ratio sin(phase).
+    """
+    check_number("acceleration_ratio", ratio, "largest acceleration over that which presses", above=0)
+    check_whole("periods", periods, 1)
+    e, least = restitution, periods * bouncing_limits(restitution)[0]
+    if ratio < least:
+        raise InputError(f"acceleration_ratio = {ratio!r}: nothing bounces in step below {least!r}, raise it")
+    phase = acos(least / ratio)
+    half = 0.5 * (1.0 + e * e - (1.0 + e) ** 2 * ratio * sin(phase))
+    root = complex_sqrt(half * half - e * e)
+    return Bounce(phase, periods * pi / ratio, (half + root, half - root))

@@ -53,6 +53,25 @@ class Shaken(Arguments, frozen=True, kw_only=True):
     ]
 
 
+class Landing(Arguments, frozen=True, kw_only=True):
+    """A mass that lands on a spring beside a dashpot: by its damping ratio, or by all three."""
+
+    reads: ClassVar[tuple[str, ...]] = ()
+    damping_ratio: Annotated[float, Meta(ge=0, description="of the mass on its contact, c/(2 sqrt(k m))")] | None = None
+    mass: Annotated[float, Meta(gt=0, description="that lands, kg")] | None = None
+    stiffness: Annotated[float, Meta(gt=0, description="of the contact's spring, N/m")] | None = None
+    damping: Annotated[float, Meta(ge=0, description="of its dashpot, N s/m")] | None = None
+
+    def __post_init__(self) -> None:
+        parts = {name: getattr(self, name) for name in ("mass", "stiffness", "damping")}
+        missing = [name for name, value in parts.items() if value is None]
+        if self.damping_ratio is not None and len(missing) < len(parts):
+            name = next(name for name in parts if name not in missing)
+            raise InputError(f"{name} = {parts[name]!r}: with damping_ratio it says the same twice, leave it out")
+        if self.damping_ratio is None and missing:
+            raise InputError(f"{missing[0]} is missing: give damping_ratio, or mass, stiffness and damping")
+
+
 class Device(AtFrequency, frozen=True, kw_only=True):
     """A place for a device near the right end."""
 
@@ -106,6 +125,15 @@ def _landing(a: Shaken, scene: "Scene", bench: Workbench) -> float:
     from verify.contact.bouncing import landing_phase
 
     return landing_phase(a.acceleration_ratio)
+
+
+def _restitution(a: Landing, scene: "Scene", bench: Workbench) -> float:
+    from verify.contact.landing import damping_ratio, restitution
+
+    if a.mass is None or a.stiffness is None or a.damping is None:
+        assert a.damping_ratio is not None
+        return restitution(a.damping_ratio)
+    return restitution(damping_ratio(a.mass, a.stiffness, a.damping))
 
 
 def _matched(a: Device, scene: "Scene", *, turning: bool = False) -> complex:
@@ -209,6 +237,14 @@ CONTACT_QUANTITIES: tuple[Quantity[Any], ...] = (
         Shaken,
         "closed form",
         _landing,
+    ),
+    Quantity(
+        "contact.restitution",
+        "1",
+        "Speed after over speed before a landing on a spring beside a dashpot, which press and do not pull.",
+        Landing,
+        "closed form",
+        _restitution,
     ),
     Quantity(
         "wave.absorber_impedance",

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.quantities import beforehand
 from verify.quantities.cases import drive_frequency, driven_beam, driven_case
@@ -71,6 +72,11 @@ def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
 def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.driven import power_imbalance
 
+    if any(device.turning for device in scene.devices):
+        raise InputError(
+            "drive.device: a power balance counts what acts across alone, leave rotational, rotary_inertia and "
+            "rotational_dashpot out"
+        )
     field = field_of(a, scene, bench)
     return power_imbalance(field, measured(a, scene, bench))
 

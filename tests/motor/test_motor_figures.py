@@ -1,0 +1,142 @@
+"""Figures of a motor on a foot of one wavelength: beside the driving layer's closed forms, and its motion in time."""
+
+from math import acos, cos, exp, pi, sin, sqrt
+
+import numpy as np
+import pytest
+from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive
+from scipy.integrate import solve_ivp
+
+from verify.contact import layer
+from verify.motor.case import MotorCase
+from verify.motor.figures import force_speed, no_load, stall, started, stopped
+from verify.motor.shooting import periodic
+from verify.slider import Contact, Foot, Slider
+
+HEIGHT, KAPPA, MU = 1e-8, 2e9, 0.2
+FORCES, WAVE = drive(HEIGHT)
+CRESTS = HALF * WAVE.k * OMEGA * HEIGHT
+
+
+def motor(phi, epsilon=0.0, mass=4.0, steps=127):
+    """(case, normal force) of an upright foot of 61 points; 50 g of it move across."""
+    load = 2.0 * KAPPA * HEIGHT * layer.pressed(phi, phi) / WAVE.k
+    give = 2.0 * MU * KAPPA / (epsilon * WAVE.k * 2.0 * HALF) if epsilon else None
+    slider = Slider(
+        mass=mass,
+        mu=MU,
+        law="coulomb",
+        gravity=0.0,
+        preload=load,
+        position=MIDDLE,
+        coupling="one-way",
+        contact=Contact(layer_stiffness=KAPPA, layer_tangential_stiffness=give),
+        foot=(Foot(length=2.0 * pi / WAVE.k, points=61, pitches=False, mass=0.05),),
+    )
+    case = MotorCase(
+        beam=STRIP,
+        forces=FORCES,
+        frequency_hz=HERTZ,
+        slider=slider,
+        model="analytic",
+        count=None,
+        start="steady",
+        steps_per_period=steps,
+    )
+    return case, load
+
+
+@pytest.mark.parametrize(("phi", "epsilon"), [(1.0, 0.0), (1.3, 0.4)])
+def test_a_force_speed_curve_is_the_layers(phi, epsilon):
+    case, load = motor(phi, epsilon, steps=509)
+    ratios = (-0.6, 0.0, 0.71, 0.87, 1.1)
+    for ratio, found in zip(ratios, force_speed(case, [-r * CRESTS for r in ratios]), strict=True):
+        assert -found.force / (MU * load) == pytest.approx(layer.force(phi, ratio, epsilon), abs=3e-3)
+        assert found.normal_force == pytest.approx(load, rel=1e-3)
+        assert found.contact_share == pytest.approx(phi / pi, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("epsilon", "speed", "force"), [(0.0, 0.942089316298, 1.0), (0.1, 0.8875898055, 1.0), (3.0, sin(1.0), 0.6524603173)]
+)
+def test_no_load_speed_and_stall_force_at_a_half_angle_of_one(epsilon, speed, force):
+    case, load = motor(1.0, epsilon)
+    assert -no_load(case).speed / CRESTS == pytest.approx(speed, abs=2e-3)
+    assert -stall(case).force / (MU * load) == pytest.approx(force, abs=2e-3)
+
+
+def test_efficiency_is_best_where_the_layers_is():
+    case, load = motor(1.0)
+    ratios = np.array([0.6, 0.68561, 0.8])
+    found = force_speed(case, -ratios * CRESTS)
+    assert [one.efficiency for one in found] == pytest.approx([layer.efficiency(1.0, r) for r in ratios], abs=3e-3)
+    assert found[1].power / (MU * load * CRESTS) == pytest.approx(0.62306, abs=2e-3)
+    for one in found:
+        assert one.given == pytest.approx(one.power + one.rubbed, rel=1e-6)
+
+
+def test_a_motor_starts_by_the_layers_force_over_its_mass():
+    """M dv/dt = mu N F(v/V): to 1 - 1/e of the no-load speed; near that with a time constant in closed form."""
+    phi, mass = 1.0, 40.0
+    case, load = motor(phi, mass=mass)
+    speed = layer.no_load_speed(phi)
+    rate = MU * load / (mass * CRESTS)
+
+    def reached(t, r):
+        return r[0] - (1.0 - exp(-1.0)) * speed
+
+    reached.terminal = True
+    run = solve_ivp(
+        lambda t, r: [rate * layer.force(phi, r[0])], (0.0, 5.0 / rate), [0.0], events=reached, rtol=1e-9, max_step=0.01
+    )
+    found = started(case, -speed * CRESTS, periods=300)
+    assert found.time == pytest.approx(run.t_events[0][0], rel=5e-3)
+    assert found.time > 20.0 * PERIOD
+
+    psi = acos(speed)
+    constant = mass * CRESTS * sin(psi) * 2.0 * layer.pressed(phi, phi) / (4.0 * MU * load * (cos(psi) - cos(phi)))
+    late = found.run
+    left = speed + late.speed / CRESTS
+    last = (left > 0.005) & (left < 0.02)
+    falls = np.polyfit(late.times[last], np.log(left[last]), 1)[0]
+    assert -1.0 / falls == pytest.approx(constant, rel=0.08)
+
+
+def test_a_motor_stops_by_friction_alone():
+    """At mu N/m, once nothing drives it: 1/e of the speed is left after (1 - 1/e) m v/(mu N)."""
+    case, load = motor(1.0, mass=40.0)
+    before = case.run(3.0 * PERIOD, held_speed=-0.8 * CRESTS, samples=4)
+    found = stopped(case, before, periods=200)
+    assert found.time == pytest.approx((1.0 - exp(-1.0)) * 40.0 * 0.8 * CRESTS / (MU * load), rel=2e-2)
+    assert abs(found.end_speed) < 1e-6 * CRESTS
+
+
+@pytest.mark.parametrize(("ratio", "zeta"), [(0.6, 0.07), (1.9, 0.2)])
+def test_a_point_that_stays_on_repeats_itself_with_the_multipliers_of_its_spring(ratio, zeta):
+    """exp(omega_c T (-zeta +- i sqrt(1 - zeta^2))) over a period."""
+    mass, own = 2e-3, OMEGA / ratio
+    stiffness = mass * own**2
+    slider = Slider(
+        mass=mass,
+        mu=MU,
+        gravity=0.0,
+        preload=30.0 * mass * HEIGHT * OMEGA**2,
+        position=MIDDLE,
+        coupling="one-way",
+        contact=Contact(stiffness=stiffness, damping=2.0 * zeta * sqrt(stiffness * mass)),
+    )
+    case = MotorCase(
+        beam=STRIP,
+        forces=FORCES,
+        frequency_hz=HERTZ,
+        slider=slider,
+        model="analytic",
+        count=None,
+        start="steady",
+        steps_per_period=1000,
+    )
+    found = periodic(case)
+    assert found.missed < 1e-8
+    wanted = np.exp(own * PERIOD * (-zeta + 1j * sqrt(1.0 - zeta**2) * np.array([1.0, -1.0])))
+    moving = [one for one in found.multipliers if abs(one - 1.0) > 1e-6]  # the pitch of a point, which does not turn
+    assert sorted(moving, key=lambda one: one.imag) == pytest.approx(sorted(wanted, key=lambda one: one.imag), abs=2e-3)
