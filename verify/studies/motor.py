@@ -28,7 +28,7 @@ PER_FIELD = 2
 """Steps of progress of one field: held, free."""
 FREE_RUNS = 3
 """Under way, cut off, turned round."""
-HELD = 4
+HELD = 3
 """Speeds of the runs from rest, from standing still to that of the crests."""
 RUNS = 2 * (1 + HELD) + 2 * 2
 """From rest at each place: the wave either way, free and held; free and still in half the steps."""

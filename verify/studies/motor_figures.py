@@ -59,7 +59,7 @@ class Shooting(msgspec.Struct, frozen=True, kw_only=True):
 
     force: float
     """Newton along +x."""
-    missed: float
+    return_error: float
     """How far its state is off after a period, over its own size."""
     largest_multiplier: float
     """Of a small departure after a period: below 1 it dies away."""
@@ -80,7 +80,7 @@ class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
     damped_power: float
     """Lost in the contact's dashpots or landings, mean over all of the run, W."""
     seconds: float
-    ratio: float
+    run_ms_per_ms: float
     """Run time over simulated time."""
     stopped: str
     """'end', or why it ended before."""
@@ -287,7 +287,7 @@ def _free(under_way: Timed) -> FreeRun:
         wear_power=float(run.rubbed[-last:].sum()) / seconds,
         damped_power=(run.ledger.damped + run.ledger.impacts) / run.duration,
         seconds=run.duration,
-        ratio=run.statistics.wall_s / run.duration,
+        run_ms_per_ms=run.statistics.wall_s / run.duration,
         stopped=run.statistics.stopped,
     )
 
@@ -305,7 +305,7 @@ def _shooting(case: MotorCase, one_way: bool) -> Shooting | None:
         return None
     return Shooting(
         force=float(found.run.friction[1:].mean()),
-        missed=found.missed,
+        return_error=found.missed,
         largest_multiplier=float(np.abs(found.multipliers).max()),
     )
 

@@ -70,7 +70,7 @@ def _of_field(one: "FieldFound") -> tuple[Any, ...]:
         one.reversal_time,
         free.wear_power,
         free.damped_power,
-        free.ratio,
+        free.run_ms_per_ms,
     )
 
 
@@ -126,7 +126,7 @@ def _margins(found: "MotorFound") -> Table:
                 one.coupling.normal_size,
                 one.coupling.friction_size,
                 one.free.spread,
-                one.shooting.missed if one.shooting else None,
+                one.shooting.return_error if one.shooting else None,
                 one.shooting.largest_multiplier if one.shooting else None,
             )
             for one in found.fields
@@ -206,5 +206,6 @@ def field_as_plain(one: "FieldFound") -> dict[str, Any]:
     plain: dict[str, Any] = msgspec.to_builtins(one)
     plain["curve"] = [at_speed_as_plain(at) for at in one.curve]
     plain["no_load"] = at_speed_as_plain(one.no_load) if one.no_load else None
+    plain["margins"]["sag"] = round(one.margins.sag, 12)  # loads that balance leave rounding
     plain["title"] = MODELS[one.model].title
     return plain
