@@ -10,7 +10,7 @@ import numpy as np
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.arrays import Array, BoolArray, ComplexArray, Indices
+from verify.models.arrays import Array, BoolArray, ComplexArray, Indices, distinct
 from verify.models.fields import (
     RESONANCE,
     HarmonicField,
@@ -84,7 +84,7 @@ def resonant(beam: Beam, frequencies: Array) -> Indices:
     if beam.loss_factor:
         return np.zeros(0, dtype=int)
     turns = np.sqrt(2.0 * pi * frequencies / beam.wave_constant) * beam.length / pi
-    numbers = np.unique(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
+    numbers = distinct(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
     resonances = np.array([mode_frequency_hz(beam, int(n)) for n in numbers])
     above = np.clip(np.searchsorted(resonances, frequencies), 0, len(resonances) - 1)
     around = np.stack([np.maximum(above - 1, 0), above], axis=1)
@@ -218,7 +218,7 @@ def spliced_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable
     def shapes(x: Array, derivative: int) -> ComplexArray:
         span = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
         field = np.zeros((*each.shape, len(x)), dtype=complex)
-        for j in np.unique(span):
+        for j in distinct(span):
             parts = np.moveaxis(_exponentials(k, ends, int(j), x[span == j], derivative), 0, -2)
             field[..., span == j] = (amplitudes[..., j, :, :] @ parts)[..., 0, :]
         return field

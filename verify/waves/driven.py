@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.judge.compare import observed_order, relative_error
-from verify.models.arrays import Array
+from verify.models.arrays import Array, distinct
 from verify.models.catalogue import MODELS
 from verify.models.eigen import field_seconds
 from verify.models.fields import HarmonicField, phasor
@@ -137,7 +137,7 @@ def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
     given = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
     points, weights = np.polynomial.legendre.leggauss(8)
     cells = max(int(middle * field.wavenumber.real), 8)
-    edges = np.unique(np.concatenate([np.linspace(0.0, middle, cells), [f.position for f in left]]))
+    edges = distinct(np.concatenate([np.linspace(0.0, middle, cells), [f.position for f in left]]))
     half = 0.5 * np.diff(edges)
     x = (edges[:-1, None] + half[:, None] * (points + 1.0)).ravel()
     bending = abs(field.shapes(x, 2)) ** 2
