@@ -37,7 +37,7 @@ GATHERS: "dict[str, Homes]" = {
         **dict.fromkeys(("LinearOperator", "aslinearoperator"), "_interface"),
         **dict.fromkeys(("cg", "gmres"), "_isolve.iterative"),
     },
-    **dict.fromkeys((f"scipy.sparse.linalg.{part}" for part in ("_dsolve", "_eigen", "_eigen.arpack", "_isolve")), {}),
+    **{f"scipy.sparse.linalg.{part}": {} for part in ("_dsolve", "_eigen", "_eigen.arpack", "_isolve")},
     "skfem": {},
     "skfem.assembly": {"BilinearForm": "form.bilinear_form", "CellBasis": "basis.cell_basis"},
     "skfem.assembly.basis": {
@@ -58,7 +58,7 @@ SPARED: "dict[str, Homes]" = {
     "numpy._typing": _ANNOTATIONS,  # which numpy.linalg and scipy write and nobody reads
     "numpy.typing": _ANNOTATIONS,
     "typing_extensions": {name: f"typing:{name}" for name in ("NotRequired", "Required", "get_type_hints")},
-    **dict.fromkeys(("ctypes", "pickle", "tokenize"), {}),
+    **{name: {} for name in ("ctypes", "pickle", "tokenize")},
 }
 """Modules that are imported again by those who do without them. With what stands for some names of theirs."""
 
