@@ -1,8 +1,7 @@
 """A field in, wave measures and surface ellipses out. The room is `verify.waves`."""
 
+from verify.waves.found import TwoWaves, WaveMeasures
 from verify.waves.measures import (
-    TwoWaves,
-    WaveMeasures,
     ellipse,
     fit_waves,
     measure,

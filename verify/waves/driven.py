@@ -19,14 +19,15 @@ from verify.models.search import Least, least_over
 from verify.models.sweeps import HarmonicSweep
 from verify.patience import check_work
 from verify.waves.case import DrivenCase
+from verify.waves.found import WaveMeasures
 from verify.waves.imposed import driven_field
 from verify.waves.measures import (
-    WaveMeasures,
     amplitudes_of,
     check_moving,
     crest_speed,
     mean_axis_ratio,
     measure,
+    measured_figure,
     medium_of,
     middle_half,
     two_waves,
@@ -96,6 +97,11 @@ def check_fields(beam: Beam, name: str, counts: Sequence[int | None], times: int
 def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMeasures:
     """Measures in a window, the middle half unless given, with the model's own wavenumber stated. Raises InputError."""
     return measure(field, window or middle_half(field.beam), own_wavenumber(field))
+
+
+def measured_alone(field: HarmonicField, window: Window | None, name: str) -> float:
+    """One figure of these by its name, and nothing beside it. Raises InputError."""
+    return measured_figure(field, window or middle_half(field.beam), own_wavenumber(field), name)
 
 
 def operation(field: HarmonicField, window: Window | None = None) -> Operation:
