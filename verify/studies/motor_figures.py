@@ -180,9 +180,9 @@ class MotorFound(Found, frozen=True, eq=False, kw_only=True):
 
     def plain(self) -> Any:
         """Figures of every field, those from rest, doubts."""
-        from verify.studies.motor_tables import field_as_plain
+        from verify.studies.motor_tables import field_as_plain, rest_as_plain
 
-        rest = msgspec.to_builtins(self.rest) if self.rest else None
+        rest = rest_as_plain(self.rest) if self.rest else None
         return {"fields": [field_as_plain(one) for one in self.fields], "rest": rest, "doubts": list(self.doubts)}
 
     def motions(self) -> int:

@@ -201,6 +201,20 @@ def at_speed_as_plain(at: "AtSpeed") -> dict[str, Any]:
     return plain | {"power": at.power, "efficiency": at.efficiency}
 
 
+def rest_as_plain(rest: "FromRest") -> dict[str, Any]:
+    """For JSON, with what follows from it."""
+    plain: dict[str, Any] = msgspec.to_builtins(rest)
+    for kept, one in zip(plain["fields"], rest.fields, strict=True):
+        (push, error), (bias, _) = one.push, one.bias
+        kept |= {
+            "push": push,
+            "bias": bias,
+            "push_standard_deviation": error,
+            "apart": msgspec.to_builtins(rest.departure(one)),
+        }
+    return plain
+
+
 def field_as_plain(one: "FieldFound") -> dict[str, Any]:
     """For JSON."""
     plain: dict[str, Any] = msgspec.to_builtins(one)
