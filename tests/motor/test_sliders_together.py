@@ -47,6 +47,25 @@ def test_weight_presses_an_upper_foot_on_and_a_lower_one_off():
         assert found.height[0, 0] == pytest.approx((-load if face == "upper" else load) / 5e7, rel=1e-6)
 
 
+def test_a_preload_spring_eases_as_the_beam_it_bends_gives_way():
+    """On a soft beam that feels it: P/(1 + k_s (1/k + compliance)), and the foot rests on that from the start."""
+    still = [replace(one, amplitude=1e-9) for one in FORCES]
+    slider = Slider(
+        mass=1e-3,
+        mu=0.2,
+        law="tanh",
+        gravity=0.0,
+        preload=0.02,
+        preload_stiffness=4e4,
+        coupling="two-way",
+        position=0.237,
+        contact=Contact(stiffness=1e5),
+    )
+    found = run_motor(BEAM, still, HERTZ, 1e-3, slider=slider, model="fem", count=30, samples=5)
+    compliance = (0.237 * 0.263) ** 2 / (3.0 * BEAM.bending_stiffness * 0.5)
+    assert found.normal_force[1:] == pytest.approx(0.02 / (1.0 + 4e4 * (1e-5 + compliance)), rel=1e-3)
+
+
 def test_a_slider_between_two_beams_stays_in_the_middle_and_is_pressed_alike_from_both():
     between = replace(SLIDER, gravity=0.0, foot=(replace(SLIDER.foot[0], mirrored=True),))
     found = moved(between)

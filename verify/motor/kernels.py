@@ -76,9 +76,9 @@ def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet
 
 
 @part()
-def _rub(dt: float, feet: Feet, slope: float | None) -> None:
+def _rub(dt: float, feet: Feet, slope: float | None, before: Array) -> None:
     """Friction where the beam does not feel it, and what speeds the sliders have by it."""
-    hold(dt, feet)
+    hold(dt, feet, before)
     for b in range(feet.body.shape[0]):
         mean = agree(b, dt, feet, slope)
         share(b, dt, mean, feet, slope)
@@ -86,9 +86,11 @@ def _rub(dt: float, feet: Feet, slope: float | None) -> None:
 
 
 @part()
-def _rub_back(dt: float, surface: Surface, feet: Feet, half: float, slope: float | None, beam: Beamed) -> None:
+def _rub_back(
+    dt: float, surface: Surface, feet: Feet, half: float, slope: float | None, beam: Beamed, before: Array
+) -> None:
     """The same where the beam feels it; what points see of the surface is its mean then."""
-    hold(dt, feet)
+    hold(dt, feet, before)
     clear(feet, beam)
     bear(dt, surface.edges, half, feet, beam)
     match(dt, surface.edges, half, feet, slope, beam)
@@ -165,11 +167,11 @@ def ride(
             return OFF_BEAM
         press(dt, feet, before)
         if beam is None:
-            _rub(dt, feet, rubbing.slope)
+            _rub(dt, feet, rubbing.slope, before)
         else:
-            _rub_back(dt, surface, feet, rubbing.half, rubbing.slope, beam)
+            _rub_back(dt, surface, feet, rubbing.half, rubbing.slope, beam, before)
         kick(dt, feet)
-        stretch(dt, feet)
+        stretch(dt, feet, before)
         _book(dt, feet)
         drift(0.5 * dt, feet)
         rotate_half(modes)
@@ -208,9 +210,9 @@ def ride_given(
             see(i, x, given.edges[piece], length, feet.body[feet.owner[i], V], rubbing.half, line, feet)
             feet.touch[i, SURFACE] += given.along[number, piece]
         press(dt, feet, before)
-        _rub(dt, feet, rubbing.slope)
+        _rub(dt, feet, rubbing.slope, before)
         kick(dt, feet)
-        stretch(dt, feet)
+        stretch(dt, feet, before)
         _book(dt, feet)
         drift(0.5 * dt, feet)
         tally[STEP] += 1

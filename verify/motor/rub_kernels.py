@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from verify.models.arrays import Array
 from verify.models.kernels import part
 from verify.motor.records import (
     AFTER,
     CLOSING,
+    DEPTH,
     GRIP,
     HELD,
     LIGHT,
@@ -28,7 +30,16 @@ ROUNDS = 100
 
 
 @part()
-def stretch(dt: float, feet: Feet) -> None:
+def _touched(i: int, dt: float, gone: float, feet: Feet, before: Array) -> float:
+    """For how long point i has touched, of so much of the step: in the step of its landing, from there on."""
+    depth, was = feet.touch[i, DEPTH], before[i, 0]
+    if depth <= 0.0 or was > 0.0:
+        return gone
+    return float(dt * depth / (depth - was) + gone - 0.5 * dt)
+
+
+@part()
+def stretch(dt: float, feet: Feet, before: Array) -> None:
     """Points that give way are stretched on by the end of the step, as far as friction there lets them.
 
     The normal force at the end is that of mid-step, drawn on as the gap closes.
@@ -40,13 +51,13 @@ def stretch(dt: float, feet: Feet) -> None:
             push = touch[i, PUSH] + 0.5 * dt * points[i, STIFF] * touch[i, CLOSING]
             most = feet.riders[b, MU] * (push if push > 0.0 else 0.0) / points[i, GRIP]
             most = most if touch[i, PUSH] > 0.0 else 0.0
-            far = touch[i, STRETCH] + dt * (touch[i, SURFACE] - feet.means[b, MEAN])
+            far = touch[i, STRETCH] + _touched(i, dt, dt, feet, before) * (touch[i, SURFACE] - feet.means[b, MEAN])
             far = most if far > most else far
             touch[i, STRETCH] = -most if far < -most else far
 
 
 @part()
-def hold(dt: float, feet: Feet) -> None:
+def hold(dt: float, feet: Feet, before: Array) -> None:
     """Friction in mid-step of points that give way, and their sum on every slider."""
     touch, points = feet.touch, feet.points
     for b in range(feet.body.shape[0]):
@@ -55,7 +66,8 @@ def hold(dt: float, feet: Feet) -> None:
         if points[i, GRIP] > 0.0:
             b = feet.owner[i]
             most = feet.riders[b, MU] * touch[i, PUSH]
-            force = points[i, GRIP] * (touch[i, STRETCH] + 0.5 * dt * (touch[i, SURFACE] - feet.body[b, V]))
+            since = _touched(i, dt, 0.5 * dt, feet, before)
+            force = points[i, GRIP] * (touch[i, STRETCH] + since * (touch[i, SURFACE] - feet.body[b, V]))
             touch[i, STUCK] = 1.0 if abs(force) < most else 0.0
             force = most if force > most else force
             touch[i, RUB] = -most if force < -most else force

@@ -255,16 +255,31 @@ def _sizes(request: Request, one: Onto, stage: Stage, basis: TimeBasis | None) -
 def _weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
     """Modes at rest under what presses the feet on, shared by their points, (n,): on the material under them."""
     feet, length, still = feet_of(onto), basis.beam.length, np.zeros(len(basis.omegas))
-    p, press = feet.points, feet.given[:, records.PRESS]
-    count = np.bincount(feet.foot, p[:, records.WEIGHT])  # of two beams one is kept
-    apart = p[:, records.INSET] * p[:, records.STIFF]  # of a foot between them
-    loads = p[:, records.WEIGHT] * (press / count)[feet.foot] - np.where(p[:, records.IMAGE] > 0.0, apart, 0.0)
+    p = feet.points
+    share = (feet.foot[:, None] == np.arange(len(feet.state))) * p[:, [records.WEIGHT]]
+    share = share / share.sum(axis=0)  # of two beams one is kept
+    apart = np.where(p[:, records.IMAGE] > 0.0, p[:, records.INSET] * p[:, records.STIFF], 0.0)
     x, lever = onto[0].start + p[:, records.OFFSET], basis.beam.surface_distance * p[:, records.FACE]
     at = x
     for _ in range(PASSES):
-        still = basis.shapes(at, 0) @ loads / basis.omegas**2
+        shapes = basis.shapes(at, 0)
+        eased = shapes @ share / basis.omegas[:, None]
+        still = shapes @ (share @ _pressing(feet, eased.T @ eased) - apart) / basis.omegas**2
         at = np.clip(x + lever * p[:, records.IMAGE] * (still @ basis.shapes(at, 1)), 0.0, length)
     return np.asarray(still)
+
+
+def _pressing(feet: Feet, compliance: Array) -> Array:
+    """What presses each foot on where all are at rest, newton along z, (feet,): springs ease as beam and contact yield.
+
+    `compliance` (feet, feet), m/N, is the beam's own.
+    """
+    press, spring = feet.given[:, records.PRESS], feet.given[:, records.SPRING]
+    if not spring.any():
+        return press
+    stiff = np.bincount(feet.foot, feet.points[:, records.STIFF])
+    yielding = compliance + np.diag(1.0 / stiff)
+    return np.asarray(np.linalg.solve(np.eye(len(press)) + spring[:, None] * yielding, press))
 
 
 def _press_apart(plan: Plan, basis: TimeBasis, feet: Feet) -> None:

@@ -5,10 +5,11 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.field_docs import Value
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, ComplexArray, Indices
 from verify.motion.request import Driven, Modelled, Started, Watched, requested
+from verify.motor import records
 from verify.motor.case import MotorCase
-from verify.motor.laid import Onto
+from verify.motor.laid import Onto, feet_of
 from verify.motor.result import MotorRun, MotorState
 from verify.motor.run import carry_out, lay_out
 
@@ -51,18 +52,19 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
             "does not feel its slider, give 'one-way' and 'steady'"
         )
     run = case.run(settle * case.period, held_speed=speed, frozen=True, samples=2)
-    state, size, best = run.state, _size(run), None
+    free = _free(case)
+    state, size, best = run.state, _size(run)[free], None
     for rounds in range(1, MOST + 1):
         run = _period(case, state, speed)
-        missed = (run.state.feet - state.feet).ravel() / size
-        slopes = _slopes(case, state, run, speed, size)
+        missed = (run.state.feet - state.feet).ravel()[free] / size
+        slopes = _slopes(case, state, run, speed, size, free)
         off, multipliers = float(np.abs(missed).max()), np.asarray(np.linalg.eigvals(slopes), dtype=np.complex128)
         if best is None or off < best.missed:
             best = Periodic(run=run, state=state, missed=off, multipliers=multipliers, rounds=rounds)
         if off <= tolerance:
             break
         step = np.linalg.lstsq(slopes - np.eye(len(size)), -missed, rcond=None)[0] * size
-        state = replace(state, feet=state.feet + step.reshape(state.feet.shape), touch=run.state.touch)
+        state = replace(state, feet=_moved(state.feet, free, step), touch=run.state.touch)
     if best is not None and best.missed <= REPEATS:
         return best
     raise InputError(
@@ -94,12 +96,25 @@ def _size(run: MotorRun) -> Array:
     return np.tile(row, len(run.state.feet))
 
 
-def _slopes(case: MotorCase, state: MotorState, run: MotorRun, speed: float, size: Array) -> Array:
-    """The period's map by differences, (n, n), in units of `size`; a foot that does not turn keeps its pitch."""
-    base, columns = run.state.feet.ravel(), []
-    for j in range(len(size)):
-        moved = state.feet.ravel().copy()
-        moved[j] += SMALL * size[j]
-        after = _period(case, replace(state, feet=moved.reshape(state.feet.shape)), speed).state.feet.ravel()
+def _free(case: MotorCase) -> Indices:
+    """Which of the feet's coordinates can move: heights and their rates, pitches of feet that turn."""
+    given = feet_of((Onto(case.slider, 0.0),)).given
+    moves = np.repeat(given[:, [records.LIGHTNESS, records.EASE]] > 0.0, 2, axis=1)
+    return np.flatnonzero(moves.ravel())
+
+
+def _moved(feet: Array, free: Indices, by: Array) -> Array:
+    """The feet with their free coordinates moved."""
+    found = feet.ravel().copy()
+    found[free] += by
+    return found.reshape(feet.shape)
+
+
+def _slopes(case: MotorCase, state: MotorState, run: MotorRun, speed: float, size: Array, free: Indices) -> Array:
+    """The period's map of the free coordinates by differences, (n, n), in units of `size`."""
+    base, columns = run.state.feet.ravel()[free], []
+    for j in range(len(free)):
+        by = SMALL * size[j] * (np.arange(len(free)) == j)
+        after = _period(case, replace(state, feet=_moved(state.feet, free, by)), speed).state.feet.ravel()[free]
         columns.append((after - base) / SMALL / size)
     return np.array(columns).T
