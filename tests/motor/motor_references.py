@@ -391,6 +391,24 @@ class Rider:
         return ("pressed", "stuck" if abs(needed) <= self.p.mu * self.force(t, s) else -mode[1]), s
 
 
+class Resting(Rider):
+    """A Point on a hard contact that it never leaves: N = load + m times the acceleration of the surface below it."""
+
+    def force(self, t, s):
+        """N."""
+        rates = []
+        for side in (1.0, -1.0):
+            there = s.copy()
+            there[X] += side * self.tick * s[V]
+            _, rise, tilt, _ = self.on.seen(t + side * self.tick, there)
+            rates.append(rise + tilt * s[V])
+        return self.p.load + self.p.across * (rates[0] - rates[1]) / (2.0 * self.tick)
+
+    def depth(self, t, s):
+        """It never leaves."""
+        return 1.0
+
+
 def body(x=0.0, v=0.0, z=0.0, zd=0.0, beam=0):
     """A state with these, all else nought."""
     s = np.zeros(beam + BODY)
