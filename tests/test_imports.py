@@ -267,7 +267,7 @@ def read_by(*words):
         "import sys, json, io, contextlib\nfrom verify.asleep import put_to_sleep\nput_to_sleep()\n"
         "from verify.cli import status_of\n"
         "with contextlib.redirect_stdout(io.StringIO()):\n    status = status_of(sys.argv[1:])\n"
-        "asleep = [n for n, m in list(sys.modules.items()) if type(m).__name__ in ('_LazyModule', 'Gathering')]\n"
+        "asleep = [n for n, m in list(sys.modules.items()) if type(m).__name__ in ('_LazyModule', 'Unread', 'Gathering')]\n"
         "print(json.dumps([status, sorted(set(sys.modules) - set(asleep)), asleep]))"
     )
     done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
@@ -322,7 +322,7 @@ def test_what_is_asleep_wakes_when_it_is_looked_into():
         "import sys\nfrom verify.asleep import ASLEEP, put_to_sleep\nput_to_sleep()\nput_to_sleep()\n"
         "import numpy, scipy.linalg, scipy.sparse.linalg\n"
         "kinds = [type(m).__name__ for m in (numpy.ma, scipy.linalg, scipy.sparse.linalg)]\n"
-        "assert kinds == ['_LazyModule', 'Gathering', '_LazyModule'], kinds\n"
+        "assert kinds == ['_LazyModule', 'Gathering', 'Gathering'], kinds\n"
         "from scipy.linalg.lapack import dgtsv\n"
         "import skfem, skfem.refdom\n"
         "assert not hasattr(scipy.linalg, '_not_there')\n"
@@ -331,6 +331,13 @@ def test_what_is_asleep_wakes_when_it_is_looked_into():
         "assert skfem.refdom.RefLine is skfem.element.ElementLineHermite.refdom\n"
         "assert scipy.linalg.det([[3.0, 1.0], [1.0, 2.0]]) == 5.0\n"
         "assert numpy.ma.masked_less(numpy.arange(3), 1).sum() == 3\n"
+        "from numpy.polynomial.legendre import leggauss\n"
+        "assert type(numpy.polynomial).__name__ == 'Gathering' and 'numpy.polynomial.chebyshev' not in sys.modules\n"
+        "assert numpy.polynomial.Chebyshev([0.0, 1.0])(0.3) == 0.3 and 'numpy.polynomial.chebyshev' in sys.modules\n"
+        "import pickle, numpy.typing\n"
+        "assert type(pickle).__name__ == type(numpy.typing).__name__ == 'Unread'\n"
+        "assert pickle.loads(pickle.dumps(numpy.arange(3))).sum() == 3\n"
+        "assert numpy.typing.NBitBase and numpy.typing.NDArray is not numpy.ndarray\n"
         "assert numpy.random.default_rng(3).random() < 1.0\n"
         "assert scipy.sparse.linalg.norm(scipy.sparse.eye_array(4)) == 2.0\n"
         "assert sys.meta_path.count(sys.meta_path[0]) == 1\n"
@@ -338,6 +345,36 @@ def test_what_is_asleep_wakes_when_it_is_looked_into():
         "assert all(find_spec(name) for name in ASLEEP)\n"
     )
     subprocess.run([sys.executable, "-W", "error::ImportWarning", "-c", code], check=True)
+
+
+def test_a_name_that_is_had_from_its_home_is_the_one_that_its_package_gathers():
+    """Also that a package is still read after its modules were had without it."""
+    code = (
+        "from importlib import import_module\n"
+        "from verify.asleep import GATHERS, Gathering, put_to_sleep\nput_to_sleep()\n"
+        "packages = [(import_module(package), homes) for package, homes in GATHERS.items()]\n"
+        "had = [{name: getattr(package, name) for name in homes} for package, homes in packages]\n"
+        "assert all(type(package) is Gathering for package, homes in packages)\n"
+        "for (package, homes), names in zip(packages, had, strict=True):\n"
+        "    package.__all__ if type(package) is Gathering and hasattr(package, '__all__') else None\n"
+        "    assert type(package) is not Gathering, package\n"
+        "    assert all(getattr(package, name) is one for name, one in names.items()), package\n"
+        "assert sum(map(len, had)) > 20\n"
+    )
+    subprocess.run([sys.executable, "-W", "error::ImportWarning", "-c", code], check=True)
+
+
+def test_what_is_spared_means_the_same_where_it_is_asked_for():
+    import typing
+
+    import numpy as np
+
+    from verify.asleep import SPARED
+
+    assert np.typing.NDArray[np.float64].__origin__ is np.ndarray
+    for name, home in SPARED["typing_extensions"].items():
+        assert home == f"typing:{name}"
+        assert hasattr(typing, name)
 
 
 def test_importing_the_package_puts_nothing_to_sleep():

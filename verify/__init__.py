@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from verify.scenes.scene import load_scene
     from verify.section import Section
     from verify.slider import Contact, Foot, Slider
-    from verify.waves.measures import WaveMeasures
+    from verify.waves.found import WaveMeasures
 
 __all__ = [
     "Beam",
@@ -96,7 +96,7 @@ _HOME = {
     "PointSpring": "verify.attached",
     "Section": "verify.section",
     "Slider": "verify.slider",
-    "WaveMeasures": "verify.waves.measures",
+    "WaveMeasures": "verify.waves.found",
     "bend": "verify.chain.bending",
     "free_vibration": "verify.motion.free_vibration",
     "load_scene": "verify.scenes.scene",

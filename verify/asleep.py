@@ -2,8 +2,9 @@
 
 `import scipy` reaches for everything that numpy has, its test tools and Fortran tools among it, which is longer than
 all of numpy; each module of scikit-fem for every solver that scipy has. The command line leaves them unread: a module
-is there under its name, and is read when anybody first looks into it (the standard library's `LazyLoader`), or, of a
-package that only gathers the names of its modules, when anybody first asks for a name that is no module of it.
+is there under its name, and is read when anybody first looks into it (the standard library's `LazyLoader`), or, of
+those that are imported again without being looked into, when anybody first asks for a name that it does not have.
+A package that only gathers names hands on its modules, and some names from their homes, without being read.
 `import verify` does nothing of the kind to whoever imports it.
 """
 
@@ -12,27 +13,93 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from importlib.abc import Loader
     from importlib.machinery import ModuleSpec
 
-GATHERS = frozenset({"scipy.linalg", "skfem"})
-"""Packages whose own file gathers names and does nothing else: their modules do without it."""
+    Homes = Mapping[str, str]
+    """By name: the module below a package that has it, or another module, a colon and what it is there."""
 
-ASLEEP = GATHERS | {
+GATHERS: "dict[str, Homes]" = {
+    "numpy.polynomial": {},
+    "scipy._lib.array_api_compat.numpy": {},  # all of numpy's
+    "scipy.linalg": {
+        **dict.fromkeys(("solve_banded", "solve_triangular", "solveh_banded"), "_basic"),
+        **dict.fromkeys(("eig", "eigh"), "_decomp"),
+        **dict.fromkeys(("lu_factor", "lu_solve"), "_decomp_lu"),
+        "LinAlgError": "_misc",
+        "cholesky": "_decomp_cholesky",
+        "get_lapack_funcs": "lapack",
+    },
+    "scipy.sparse.linalg": {
+        **dict.fromkeys(("MatrixRankWarning", "splu", "spsolve"), "_dsolve.linsolve"),
+        **dict.fromkeys(("ArpackNoConvergence", "eigs", "eigsh"), "_eigen.arpack.arpack"),
+        **dict.fromkeys(("LinearOperator", "aslinearoperator"), "_interface"),
+        **dict.fromkeys(("cg", "gmres"), "_isolve.iterative"),
+    },
+    **{f"scipy.sparse.linalg.{part}": {} for part in ("_dsolve", "_eigen", "_eigen.arpack", "_isolve")},
+    "skfem": {},
+    "skfem.assembly": {"BilinearForm": "form.bilinear_form", "CellBasis": "basis.cell_basis"},
+    "skfem.assembly.basis": {
+        "AbstractBasis": "abstract_basis",
+        "Basis": "skfem.assembly.basis.cell_basis:CellBasis",
+        "CellBasis": "cell_basis",
+    },
+    "skfem.assembly.form": {"Form": "form"},
+    "skfem.mesh": {"Mesh": "mesh", "Mesh2D": "mesh_2d", "Mesh3D": "mesh_3d", "MeshLine1": "mesh_line_1"},
+}
+"""Packages whose own file gathers names: their modules do without it. With some names' homes."""
+
+_ANNOTATIONS = {"NDArray": "numpy:ndarray", "ArrayLike": "typing:Any"}
+
+SPARED: "dict[str, Homes]" = {
+    "numpy._core._add_newdocs": {},  # docstrings of what is compiled
+    "numpy._core._add_newdocs_scalars": {},
+    "numpy._typing": _ANNOTATIONS,  # which numpy.linalg and scipy write and nobody reads
+    "numpy.typing": _ANNOTATIONS,
+    "typing_extensions": {name: f"typing:{name}" for name in ("NotRequired", "Required", "get_type_hints")},
+    **{name: {} for name in ("ctypes", "pickle", "tokenize")},
+}
+"""Modules that are imported again by those who do without them. With what stands for some names of theirs."""
+
+ASLEEP = {
+    *GATHERS,
+    *SPARED,
     *("ipaddress", "pydoc", "shutil", "subprocess"),
-    *(f"numpy.{part}" for part in ("char", "core", "ctypeslib", "f2py", "fft", "ma", "polynomial")),
-    *(f"numpy.{part}" for part in ("rec", "strings", "testing", "typing")),
+    *(f"numpy.{part}" for part in ("char", "core", "ctypeslib", "f2py", "fft", "ma", "rec", "strings", "testing")),
     "scipy.sparse.csgraph",
-    "scipy.sparse.linalg",
 }
 """Packages and modules by the names that others import them by."""
 
 
-class Gathering(ModuleType):
-    """A package that is there and not read: its modules are imported by their names, any other name reads it."""
+class Unread(ModuleType):
+    """One of `SPARED`: there, and not read."""
 
     def __getattr__(self, name: str) -> Any:
+        """What it has under a name: from its home where that is known, else once it is read."""
+        if name == "__path__":  # as `from` asks of what may be a package
+            raise AttributeError(f"module {self.__name__!r} is no package")
+        from contextlib import suppress
+        from importlib import import_module
+
+        if home := (GATHERS | SPARED)[self.__name__].get(name):
+            module, _, there = home.partition(":")
+            with suppress(ImportError, AttributeError):  # in another version it is elsewhere
+                return getattr(import_module(module if there else f"{self.__name__}.{module}"), there or name)
+        return self._read(name)
+
+    def _read(self, name: str) -> Any:
+        self.__class__ = ModuleType  # type: ignore[assignment]
+        assert self.__spec__ is not None
+        assert self.__spec__.loader is not None
+        self.__spec__.loader.exec_module(self)
+        return getattr(self, name)
+
+
+class Gathering(Unread):
+    """One of `GATHERS`: its modules are imported by their names, any other name reads it."""
+
+    def _read(self, name: str) -> Any:
         """A module of it; else what it has under a name once it is read. It gathers nothing private."""
         from importlib import import_module
         from importlib.machinery import PathFinder
@@ -41,15 +108,11 @@ class Gathering(ModuleType):
             return import_module(f"{self.__name__}.{name}")
         if name.startswith("_") and not name.endswith("__"):  # as a module asks that may lie beside it or not
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
-        self.__class__ = ModuleType  # type: ignore[assignment]
-        assert self.__spec__ is not None
-        assert self.__spec__.loader is not None
-        self.__spec__.loader.exec_module(self)
-        return getattr(self, name)
+        return super()._read(name)
 
 
 class Later:
-    """The loader of such a package: leaves it unread, and gives way to Python's own."""
+    """The loader of these: leaves them unread, and gives way to Python's own."""
 
     def __init__(self, loader: "Loader") -> None:
         self.loader = loader
@@ -62,7 +125,7 @@ class Later:
         """Nothing yet."""
         assert module.__spec__ is not None
         module.__spec__.loader = module.__loader__ = self.loader
-        module.__class__ = Gathering
+        module.__class__ = Gathering if module.__name__ in GATHERS else Unread
 
 
 class Sleepers:
@@ -80,7 +143,8 @@ class Sleepers:
 
         spec = PathFinder.find_spec(name, path, target)
         if spec is not None and spec.loader is not None:
-            spec.loader = (Later if name in GATHERS else LazyLoader)(spec.loader)  # type: ignore[assignment]
+            mine = name in GATHERS or name in SPARED
+            spec.loader = (Later if mine else LazyLoader)(spec.loader)  # type: ignore[assignment]
         return spec
 
 

@@ -2,9 +2,8 @@
 
 from verify.waves.absorber import matched_device
 from verify.waves.devices import field_with_devices
+from verify.waves.found import TwoWaves, WaveMeasures
 from verify.waves.measures import (
-    TwoWaves,
-    WaveMeasures,
     ellipse,
     fit_waves,
     measure,

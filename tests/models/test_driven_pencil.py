@@ -10,8 +10,8 @@ from verify.elements import linear as fem_beam
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
 from verify.errors import InputError
-from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, refuse_near_resonance
-from verify.models.eigen import forced_response
+from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, probed, refuse_near_resonance
+from verify.models.eigen import distance_answered, forced_response, resonance_distance
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain, chain_pencil
 
@@ -140,3 +140,18 @@ def test_all_modes_are_taken_up_to_the_dense_size_and_not_beyond():
     ):
         with pytest.raises(InputError, match="takes all 1001 modes"):
             ask()
+
+
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_one_factorisation_answers_a_drive_and_how_far_its_resonance_is(model):
+    """The drive as by itself to the last digit; the distance near the fifth mode is that distance."""
+    pencil = pencils(CLAMPED, 23)[model]
+    values, stiffness = eigh(*matrices(pencil), eigvals_only=True), pencil.stiffness.astype(complex)
+    for omega2, near in ((values[4] * (1.0 - 3e-7), 3e-7), (values[4] * (1.0 + 2e-6), -2e-6), (1.2 * values[7], None)):
+        both = damped_response(pencil, probed(pencil, loads_of(pencil.n)), omega2, stiffness, 0.0)
+        alone = damped_response(pencil, loads_of(pencil.n), omega2, stiffness, 0.0)
+        assert both.shape == (pencil.n, 2)
+        assert np.array_equal(both[:, :1], alone)
+        found = distance_answered(pencil, both[:, 1].real, omega2)
+        assert found == pytest.approx(resonance_distance(pencil, omega2), rel=1e-6)
+        assert near is None or found == pytest.approx(near, rel=1e-3)

@@ -1,4 +1,4 @@
-"""Splines and searches that numpy alone makes, against scipy's, which are the same curves and the same steps."""
+"""Splines, searches and sets that are made here, against scipy's and numpy's, which are the same."""
 
 from math import cos, sin
 
@@ -7,6 +7,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
+from verify.models.arrays import distinct
 from verify.models.search import least_between
 from verify.models.spline import SMALL, natural_or_flat
 
@@ -43,3 +44,10 @@ def test_a_search_takes_scipys_steps_one_by_one(figure, low, high):
     x, value = least_between(lambda at: places.append(at) or figure(at), low, high, 1e-7)
     assert (x, value) == (known.x, known.fun)
     assert len(places) == known.nfev
+
+
+@pytest.mark.parametrize("values", [[], [0.7], [0.3, -1.1, 0.3, 2.9, -1.1], [[7, 3, 3], [-2, 7, 11]]])
+def test_distinct_values_are_numpys_unique(values):
+    found, known = distinct(np.array(values)), np.unique(np.array(values))
+    assert np.array_equal(found, known)
+    assert found.dtype == known.dtype

@@ -67,6 +67,7 @@ def test_the_papers_beam_has_the_figures_that_are_known():
     )
     assert "the largest reflection is 0.0294 with the device" in found.facts()[0]
     assert "mode 21 at 4072.8 Hz and mode 22 at 4469.9 Hz" in found.facts()[1]
+    assert "the way with two forces sends less back there" in found.facts()[4]
 
 
 def test_equal_forces_make_equal_waves_at_the_papers_frequency_and_the_second_takes_what_the_first_gives():
@@ -78,11 +79,11 @@ def test_equal_forces_make_equal_waves_at_the_papers_frequency_and_the_second_ta
     assert driven.forces.amplitude / driven.device.amplitude == pytest.approx(1.001, abs=1e-3)
 
 
-def point_reflection(impedance):
+def point_reflection(impedance, beam=STRIP, hertz=HERTZ):
     """|Gamma| of what stands on an endless strip: w = e^{-ikx} + F G(x), F = -i omega Z w(0)."""
-    omega = 2 * np.pi * HERTZ
-    k = (STRIP.mass_per_length * omega**2 / STRIP.bending_stiffness) ** 0.25
-    scale = 4 * STRIP.bending_stiffness * k**3
+    omega = 2 * np.pi * hertz
+    k = (beam.mass_per_length * omega**2 / beam.bending_stiffness) ** 0.25
+    scale = 4 * beam.bending_stiffness * k**3
     force = -1j * omega * impedance / (1 - 1j * omega * impedance * (1 + 1j) / scale)
     return abs(force * -1j / scale)
 
@@ -307,3 +308,62 @@ def test_the_study_is_one_of_the_catalogues():
     from verify.studies.catalogue import STUDIES
 
     assert isinstance(STUDIES["methods"], MethodsStudy)
+
+
+def test_where_two_forces_meet_a_resonance_there_is_a_gap_and_no_comparison():
+    """Mode 24 of the undamped strip lies at the upper end of the span; the device takes the resonance away."""
+    upper = next(f for n in range(1, 60) if (f := analytic_modes.frequency_hz(STRIP, n)) > HERTZ)
+    found = found_of(scene_of({"span_hz": upper - HERTZ, "steps": 3, "duration": 0.01}, slider=SLIDER))
+    above = found.edges[2]
+    assert above.forces is None
+    assert above.device.reflection < 0.1
+    assert (found.rides[2].device, found.rides[2].forces, found.motions()) == (None, None, 4)
+    assert "a frequency is a resonance of the undamped beam under two forces" in found.facts()[0]
+    assert found.tables()[0].rows[5][2:] == (None,) * len(found.tables()[0].columns[2:])
+    assert "Hz above" not in found.in_short()
+
+
+def test_under_a_heavy_load_two_forces_send_less_back_before_it_and_the_device_nothing_behind():
+    """On the paper's beam with 3 g at mid-span: 0.546 and 0 with the device, 0.346 on both sides with two forces."""
+    found = found_of(load_scene("absorbing-end", ("methods.steps=3", "methods.duration=0.002")))
+    heaviest = found.masses[-1]
+    assert heaviest.value == 3e-3
+    endless = point_reflection(2j * np.pi * 4276.0 * 3e-3, load_scene("absorbing-end").beam, 4276.0)
+    assert (heaviest.device.reflection, heaviest.device.behind) == (pytest.approx(endless, abs=1e-6), 0.0)
+    assert heaviest.forces.reflection == pytest.approx(heaviest.forces.behind, rel=1e-6)
+    assert heaviest.forces.reflection < heaviest.device.reflection
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        ["table", "absorbing-end", "--modes", "1-3"],
+        ["picture", "absorbing-end", "--what", "modes", "--to", "x.png"],
+        ["picture", "absorbing-end", "--what", "chain", "--to", "x.webp"],
+        ["export", "absorbing-end", "--what", "modes", "--to", "x.csv"],
+        ["bench", "absorbing-end"],
+        ["table", "absorbing-end", "--sweep", "phase_deg=0:90:3"],
+    ],
+)
+def test_no_command_passes_over_a_device(asked, capsys, tmp_path, monkeypatch):
+    from verify.cli import status_of
+
+    monkeypatch.chdir(tmp_path)
+    assert status_of(asked) == 2
+    said = capsys.readouterr().err
+    assert "knows no drive.device, and one stands at 0.4884 m" in said or "for two forces, the scene has 1" in said
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_power_balance_that_cannot_count_what_turns_is_refused():
+    gate = {"id": "g", "quantity": "wave.power_imbalance", "at_most": 1.0, "why": "asked"}
+    scene = replace(scene_of(gate=[gate]), methods=None)
+    assert run_scene(scene).passed
+    turning = {"position": 0.2, "rotational_dashpot": 0.01}
+    scene = checked(
+        {"name": "t", "beam": STEEL, "gate": [gate]}
+        | {"drive": {"frequency_hz": HERTZ, "force": [{"position": 0.04}], "device": [turning]}},
+        scene_type(),
+    )
+    (judged,) = run_scene(scene).gates
+    assert "a power balance counts what acts across alone, leave rotational" in judged.reason

@@ -602,3 +602,15 @@ def test_the_papers_rule_lies_seven_hertz_above_the_best_frequency():
     at_rule = measure(driven(eta=1e-3), WINDOW).reflection
     assert 4276.0 - quiet.frequency_hz == pytest.approx(6.93, abs=0.02)
     assert at_rule > 3 * quiet.reflection
+
+
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 49), ("fem", 31)])
+def test_a_figure_that_is_found_alone_is_the_one_among_all_measures(model, count):
+    forces = (PointForce(position=0.0116, amplitude=1.3), PointForce(position=0.4871, amplitude=0.8, phase_deg=71.0))
+    field = MODELS.named(model).solve_harmonic(replace(BEAM, loss_factor=0.004), forces, 4263.0, count)
+    window = (0.117, 0.391)
+    together = measure(field, window, own_wavenumber(field))
+    assert len(travelling_wave.FIGURES) == 8
+    for name in travelling_wave.FIGURES:
+        alone = travelling_wave.measured_figure(field, window, own_wavenumber(field), name)
+        assert alone == getattr(together, name), name

@@ -80,7 +80,8 @@ class Settled(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def settled(asked: Bench, scene: "Scene") -> Settled:
-    """What a scene's [bench] comes to."""
+    """What a scene's [bench] comes to. Raises InputError for a drive with devices."""
+    scene.refuse_devices("a bench")
     convergence, axial = getattr(scene, "convergence", None), getattr(scene, "axial_inertia", None)
     duration = scene.motion.duration if scene.motion else getattr(axial, "duration", None)
     if duration is None and scene.drive:

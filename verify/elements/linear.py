@@ -22,7 +22,7 @@ from verify.elements.pencil import (
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
-from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
+from verify.models.driven_pencil import damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name, resonance_distance
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
@@ -159,12 +159,13 @@ def solve_harmonic(
     unit = elements.parts.unit
     check_dampings(elements, pencil, modal_damping)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * unit**4
-    if not (beam.loss_factor or modal_damping):
+    loads, undamped = force_loads(elements, forces), not (beam.loss_factor or modal_damping)
+    stiffness, asked = damped_stiffness(elements, pencil), probed(pencil, loads) if undamped else loads
+    free = damped_response(pencil, asked, omega2, stiffness, modal_damping)
+    if undamped:
         near = partial(modes_around, theory=theory, grading=grading)
-        refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, near, n_elements)
-    loads = force_loads(elements, forces)
-    stiffness = damped_stiffness(elements, pencil)
-    every = swept_shapes(elements, damped_response(pencil, loads, omega2, stiffness, modal_damping))
+        refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, near, n_elements, free)
+    every = swept_shapes(elements, free[:, :1])
 
     return HarmonicField(
         theory=theory,

@@ -23,7 +23,6 @@ from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import (
     FIELD,
     HarmonicSweep,
-    refuse_resonances,
     swept_frequencies,
     swept_modes,
     swept_response,
@@ -54,16 +53,14 @@ def sweep_harmonic(
     elements, pencil = driven(beam, n_elements, grading, theory)
     check_dampings(elements, pencil, modal_damping)
     omega2 = (2.0 * pi * frequencies / beam.wave_constant) ** 2 * elements.parts.unit**4
-    if not (beam.loss_factor or modal_damping):
+    undamped = not (beam.loss_factor or modal_damping)
+
+    def refuse(index: int) -> None:
         near = partial(modes_around, theory=theory, grading=grading)
+        name_resonance("fem", beam, pencil, float(frequencies[index]), near, n_elements, f"{FIELD}[{index}]")
 
-        def refuse(index: int) -> None:
-            frequency = float(frequencies[index])
-            name_resonance("fem", beam, pencil, frequency, near, n_elements, f"{FIELD}[{index}]")
-
-        refuse_resonances(pencil, omega2, refuse)
     loads, stiffness = force_loads(elements, forces), damped_stiffness(elements, pencil)
-    free = swept_response(pencil, loads, omega2, stiffness, modal_damping)
+    free = swept_response(pencil, loads, omega2, stiffness, modal_damping, refuse if undamped else None)
     return HarmonicSweep(
         theory=theory,
         model="fem",

@@ -2,15 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import lru_cache
 from math import factorial, pi, sqrt
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.arrays import Array, BoolArray, ComplexArray, Indices
+from verify.models.arrays import Array, BoolArray, ComplexArray, Indices, distinct
 from verify.models.fields import (
     RESONANCE,
     HarmonicField,
@@ -84,7 +85,7 @@ def resonant(beam: Beam, frequencies: Array) -> Indices:
     if beam.loss_factor:
         return np.zeros(0, dtype=int)
     turns = np.sqrt(2.0 * pi * frequencies / beam.wave_constant) * beam.length / pi
-    numbers = np.unique(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
+    numbers = distinct(np.clip(turns.astype(int)[:, None] + np.arange(-1, 3), 1, None))
     resonances = np.array([mode_frequency_hz(beam, int(n)) for n in numbers])
     above = np.clip(np.searchsorted(resonances, frequencies), 0, len(resonances) - 1)
     around = np.stack([np.maximum(above - 1, 0), above], axis=1)
@@ -117,30 +118,47 @@ def pinned_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[
     scale = 1.0 / (4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3)
     damped = k.imag.any() if isinstance(k, np.ndarray) else k.imag != 0.0
     near = k if damped else k.real  # real powers take a fifth of complex ones' time
+    waves = [(force, q, factor) for force in forces for q, factor in ((1j * k, -1j), (near, -1.0))]
+    parts = [_fixed(q, force.position, beam.length) for force, q, _ in waves]
+    sizes = [phasor(force) * scale * factor for force, _, factor in waves]
+
+    def decays(x: Array) -> list[_Decay]:
+        return [_decay(q, force.position, beam.length, x) for force, q, _ in waves]
+
+    known = lru_cache(maxsize=1)(lambda x: decays(np.frombuffer(x)))  # deflections and slopes are read together
 
     def shapes(x: Array, derivative: int) -> ComplexArray:
         field = np.zeros((*np.shape(k)[:-1], len(x)), dtype=complex)
-        for force in forces:
-            left = x <= force.position
-            lie = left, np.where(left, x, beam.length - x), abs(x - force.position)
-            for q, factor in ((1j * k, -1j), (near, -1.0)):
-                field += phasor(force) * scale * factor * _green(q, force.position, beam.length, lie, derivative)
+        there = known(x.tobytes()) if np.ndim(k) == 0 and len(x) <= READ_AGAIN else decays(x)
+        for (_, q, _), fixed, decay, size in zip(waves, parts, there, sizes, strict=True):
+            field += size * _green(q, fixed, decay, derivative)
         return field
 
     return shapes
 
 
-def _green(q: Any, source: float, length: float, lie: tuple[BoolArray, Array, Array], derivative: int) -> ComplexArray:
-    """A derivative of e^{-q(b-a)} S(a) S(L-b) / S(L) by x, which is a or b: each one turns a sign in S, (len(x),).
+READ_AGAIN = 5000
+"""Places up to which what was found there is kept for the next derivative."""
+_Decay: TypeAlias = tuple[BoolArray, Any, Any]
 
-    Of every x `lie` says whether it lies left of the force, how far from its own end and how far from the force.
-    """
-    left, own, apart = lie
-    turned = -1.0 if derivative % 2 == 0 else 1.0
+
+def _fixed(q: Any, source: float, length: float) -> tuple[Any, Any, Any]:
+    """S(xi), S(L - xi), S(L)."""
     before, behind, whole = (1.0 - np.exp(-2 * q * part) for part in (source, length - source, length))
-    moving = 1.0 + turned * np.exp(-2 * q * own)
+    return before, behind, whole
+
+
+def _decay(q: Any, source: float, length: float, x: Array) -> _Decay:
+    """Of every x: whether it lies left of the force, e^{-2qz} of its distance z to its own end, e^{-q(b-a)}."""
+    left = x <= source
+    return left, np.exp(-2 * q * np.where(left, x, length - x)), np.exp(-q * abs(x - source))
+
+
+def _green(q: Any, fixed: tuple[Any, Any, Any], decay: _Decay, derivative: int) -> ComplexArray:
+    """A derivative of e^{-q(b-a)} S(a) S(L-b) / S(L) by x, which is a or b: each one turns a sign in S, (len(x),)."""
+    (before, behind, whole), (left, own, wave) = fixed, decay
+    moving = 1.0 - own if derivative % 2 == 0 else 1.0 + own
     start, end = np.where(left, moving, before), np.where(left, behind, moving)
-    wave = np.exp(-q * apart)
     if derivative:
         wave = q**derivative * np.where(left, 1.0, -1.0) ** derivative * wave
     return np.asarray(wave * start * end / whole)
@@ -218,7 +236,7 @@ def spliced_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable
     def shapes(x: Array, derivative: int) -> ComplexArray:
         span = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
         field = np.zeros((*each.shape, len(x)), dtype=complex)
-        for j in np.unique(span):
+        for j in distinct(span):
             parts = np.moveaxis(_exponentials(k, ends, int(j), x[span == j], derivative), 0, -2)
             field[..., span == j] = (amplitudes[..., j, :, :] @ parts)[..., 0, :]
         return field

@@ -68,6 +68,7 @@ def places_of(scene: Scene, count: int | None, model: str, n_modes: int = 0) -> 
 
 def modes_sheet(scene: Scene, wanted: Wanted) -> Sheet:
     """Mass-normalised shapes, a vector each in 1/sqrt(kg), frequencies beside. Raises InputError."""
+    scene.refuse_devices("a sheet of modes")
     count = count_of(scene, wanted, ("spectrum",))
     modes = solved_modes(scene, wanted.model, count, _n_modes(scene, wanted, count))
     x, shapes, read = _read(modes, wanted)

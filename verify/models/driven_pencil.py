@@ -8,7 +8,14 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.eigen import forced_response, has_unlike_parts, modal_basis, resonance_distance
+from verify.models.eigen import (
+    distance_answered,
+    forced_response,
+    has_unlike_parts,
+    modal_basis,
+    probe,
+    resonance_distance,
+)
 from verify.models.fields import RESONANCE, refuse_resonance
 from verify.models.modes import Modes
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
@@ -81,6 +88,11 @@ def check_dense(pencil: FactoredPencil, what: str) -> None:
         raise InputError(f"{what} takes all {pencil.n} modes of the model: lower count to {DENSE_UNKNOWNS} or less")
 
 
+def probed(pencil: FactoredPencil, loads: ComplexArray) -> ComplexArray:
+    """Loads (n, 1) with one beside them whose answer tells how far a resonance is, where no kept modes do."""
+    return loads if pencil.bases else np.hstack([loads, probe(pencil)])
+
+
 def refuse_near_resonance(
     model: str,
     beam: Beam,
@@ -89,10 +101,18 @@ def refuse_near_resonance(
     frequency_hz: float,
     solve_modes: Callable[[Beam, int, int], Modes],
     count: int,
+    answer: ComplexArray | None = None,
 ) -> None:
-    """Raise InputError where an undamped pencil is driven at one of its own frequencies, which kept modes tell."""
-    values = pencil.bases[0][0] if pencil.bases else None
-    distance = resonance_distance(pencil, omega2) if values is None else abs(values / omega2 - 1.0).min()
+    """Raise InputError where an undamped pencil is driven at one of its own frequencies, which kept modes tell.
+
+    `answer` (n, 2) is what `probed` loads are answered with: one factorisation for both.
+    """
+    if pencil.bases:
+        distance = abs(pencil.bases[0][0] / omega2 - 1.0).min()
+    elif answer is None:
+        distance = resonance_distance(pencil, omega2)
+    else:
+        distance = distance_answered(pencil, answer[:, 1].real, omega2)
     if abs(distance) <= 2.0 * RESONANCE:
         name_resonance(model, beam, pencil, frequency_hz, solve_modes, count)
 

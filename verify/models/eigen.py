@@ -278,9 +278,18 @@ def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:
 
     Exact where it is small, which is where it matters; far from a resonance an estimate.
     """
-    inertia = np.asarray(pencil.mass_matrix() @ _start(pencil.n))
-    vector = forced_response(pencil, inertia, omega2, pencil.stiffness.astype(complex)).real
-    return float(vector[:, 0] @ inertia[:, 0] / (vector[:, 0] @ (pencil.mass_matrix() @ vector[:, 0])) / omega2)
+    answer = forced_response(pencil, probe(pencil), omega2, pencil.stiffness.astype(complex))
+    return distance_answered(pencil, answer[:, 0].real, omega2)
+
+
+def probe(pencil: FactoredPencil) -> Array:
+    """The load (n, 1) of that step."""
+    return np.asarray(pencil.mass_matrix() @ _start(pencil.n))
+
+
+def distance_answered(pencil: FactoredPencil, answer: Array, omega2: float) -> float:
+    """The same of the answer (n,) to `probe`."""
+    return float(answer @ probe(pencil)[:, 0] / (answer @ (pencil.mass_matrix() @ answer)) / omega2)
 
 
 @lru_cache(maxsize=8)

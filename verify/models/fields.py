@@ -1,6 +1,7 @@
 """What every model's `solve_harmonic` returns, and what it refuses."""
 
 from collections.abc import Callable
+from math import sqrt
 
 import numpy as np
 
@@ -66,7 +67,7 @@ def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli")
     """
     if beam.tension or beam.foundation or theory != "euler-bernoulli":
         return _running(beam, 2.0 * np.pi * frequency_hz, theory)
-    real = np.sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant)
+    real = sqrt(2.0 * np.pi * frequency_hz / beam.wave_constant)
     return complex(real * (1.0 + 1j * beam.loss_factor) ** -0.25)
 
 

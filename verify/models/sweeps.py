@@ -14,7 +14,7 @@ from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
-from verify.models.eigen import forced_response, lowest, resonance_distance
+from verify.models.eigen import distance_answered, forced_response, lowest, probe
 from verify.models.fields import RESONANCE, HarmonicField, check_forces
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, factored_quotient
 from verify.models.places import Forces, Numbers, in_a_row, places
@@ -125,13 +125,19 @@ def of_each(which: Sequence[int], beams: Sequence[Beam], make: Callable[[Beam], 
 
 
 def swept_response(
-    pencil: FactoredPencil, loads: ComplexArray, omega2: Array, stiffness: ComplexArray, modal_damping: float
+    pencil: FactoredPencil,
+    loads: ComplexArray,
+    omega2: Array,
+    stiffness: ComplexArray,
+    modal_damping: float,
+    refuse: Callable[[int], None] | None = None,
 ) -> ComplexArray:
     """The responses (n, n_frequencies) to loads (n, 1), as `damped_response` gives them one by one.
 
     `stiffness` is (m,) or, where it changes with the frequency, (n_frequencies, m). All modes are solved once and
     summed where damping leaves them uncoupled; where it does not, and of few frequencies, each is solved as a band.
-    Raises InputError for both dampings together where they couple modes.
+    `refuse`, of an undamped pencil, is called with the index of the first frequency at which it resonates, if there is
+    one. Raises InputError for both dampings together where they couple modes.
     """
     over = np.broadcast_to(stiffness, (len(omega2), len(pencil.stiffness)))
     factors = over / pencil.stiffness
@@ -140,23 +146,25 @@ def swept_response(
         check_couples(factors)
         check_dense(pencil, "modal_damping")
     elif coupled.any() or len(omega2) <= FEW or not takes_all_modes(pencil):
-        found = [forced_response(pencil, loads, float(w2), d) for w2, d in zip(omega2, over, strict=True)]
-        return np.hstack(found).astype(complex)
+        asked = loads if refuse is None else np.hstack([loads, probe(pencil)])
+        found = [forced_response(pencil, asked, float(w2), d) for w2, d in zip(omega2, over, strict=True)]
+        if refuse is not None:
+            answers = zip(found, omega2, strict=True)
+            near = [distance_answered(pencil, one[:, 1].real, float(w2)) for one, w2 in answers]
+            _refuse_nearest(np.array(near), refuse)
+        return np.hstack([one[:, :1] for one in found]).astype(complex)
     values, vectors = receptance_basis(pencil)
+    if refuse is not None:
+        _refuse_nearest(abs(values / omega2[:, None] - 1.0).min(axis=1), refuse)
     denominators = values * factors[:, :1] - omega2[:, None]
     if modal_damping:
         denominators = denominators + 2j * modal_damping * np.sqrt(values * omega2[:, None])
     return np.asarray(vectors @ ((vectors.T @ loads) / denominators.T))
 
 
-def refuse_resonances(pencil: FactoredPencil, omega2: Array, refuse: Callable[[int], None]) -> None:
-    """Call `refuse` with the index of the first frequency at which an undamped pencil resonates, if there is one."""
-    if len(omega2) > FEW and takes_all_modes(pencil):
-        values = receptance_basis(pencil)[0]
-        distance = abs(values / omega2[:, None] - 1.0).min(axis=1)
-    else:
-        distance = np.array([abs(resonance_distance(pencil, float(w2))) for w2 in omega2])
-    for index in np.flatnonzero(distance <= 2.0 * RESONANCE):
+def _refuse_nearest(distances: Array, refuse: Callable[[int], None]) -> None:
+    """Call `refuse` with the first index whose distance to a resonance is none."""
+    for index in np.flatnonzero(abs(distances) <= 2.0 * RESONANCE):
         refuse(int(index))
 
 

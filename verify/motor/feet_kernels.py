@@ -7,6 +7,7 @@ from verify.models.kernels import part
 from verify.motion.records import MOVING, STILL
 from verify.motor.records import (
     ACROSS,
+    ANSWER,
     ARM,
     AT,
     CLIMB,
@@ -77,7 +78,7 @@ def see(i: int, x: float, edge: float, length: float, v: float, half: float, lin
     slope, bend, turn = slope / length, 2.0 * bend / (length * length), turn / length
     touch[i, SURFACE_BEFORE] = touch[i, SURFACE]
     touch[i, SURFACE] = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
-    touch[i, AT], touch[i, SLOPE] = at, slope
+    touch[i, AT], touch[i, SLOPE], touch[i, ANSWER] = at, slope, 0.0
     image, face, foot = points[i, IMAGE], points[i, FACE], feet.foot[i]
     lift = image * (rise + slope * (v + lever * (turn + bend * v)))
     state, arm = feet.state, points[i, ARM]
@@ -87,8 +88,10 @@ def see(i: int, x: float, edge: float, length: float, v: float, half: float, lin
 
 
 @part()
-def press(dt: float, feet: Feet, before: Array) -> None:
-    """Normal forces in mid-step and what they give to the feet; `before` is (points, 2), depth at the last mid-step.
+def press(dt: float, feet: Feet, before: Array) -> bool:
+    """Normal forces in mid-step and what they give to the feet; whether any point has a dashpot.
+
+    `before` is (points, 2), depth at the last mid-step.
 
     Dashpots see the mean speed of the step: twice more, with half of what the force before has given.
     """
@@ -98,6 +101,7 @@ def press(dt: float, feet: Feet, before: Array) -> None:
         _gather(dt, feet)
         _push(feet, before)
     _gather(dt, feet)
+    return damped
 
 
 @part()

@@ -12,7 +12,9 @@ from verify.motor.logging_kernels import keep, note
 from verify.motor.records import (
     AFTER,
     ALONG,
+    ANSWER,
     CLOSING,
+    DEPTH,
     DONE,
     FACE,
     HEIGHT,
@@ -45,6 +47,9 @@ from verify.motor.records import (
     V,
 )
 from verify.motor.rub_kernels import agree, hold, settle, share, stretch
+
+GIVES_WAY = 4
+"""Times that dashpots and the beam under them are matched: each leaves half of c times the beam's answer in a step."""
 
 
 @part(fastmath=FAST)
@@ -86,10 +91,39 @@ def _rub(dt: float, feet: Feet, slope: float | None, before: Array) -> None:
 
 
 @part()
+def _close(i: int, across: float, feet: Feet) -> None:
+    """How fast the gap at point i closes, with what the forces of the step give to the beam across there."""
+    answer = feet.points[i, IMAGE] * feet.points[i, FACE] * across
+    feet.touch[i, CLOSING] += answer - feet.touch[i, ANSWER]
+    feet.touch[i, ANSWER] = answer
+
+
+@part()
+def _give_way(edges: Array, half: float, feet: Feet, beam: Beamed) -> None:
+    """The beam gives way under the forces so far, which dashpots feel."""
+    for i in range(feet.points.shape[0]):
+        if feet.touch[i, DEPTH] > 0.0:
+            length = edges[feet.piece[i] + 1] - edges[feet.piece[i]]
+            _close(i, moved(i, length, half, feet, beam)[1], feet)
+
+
+@part()
 def _rub_back(
-    dt: float, surface: Surface, feet: Feet, half: float, slope: float | None, beam: Beamed, before: Array
+    dt: float,
+    damped: bool,
+    surface: Surface,
+    feet: Feet,
+    half: float,
+    slope: float | None,
+    beam: Beamed,
+    before: Array,
 ) -> None:
     """The same where the beam feels it; what points see of the surface is its mean then."""
+    for _ in range(GIVES_WAY if damped else 0):
+        clear(feet, beam)
+        bear(dt, surface.edges, half, feet, beam)
+        _give_way(surface.edges, half, feet, beam)
+        press(dt, feet, before)
     hold(dt, feet, before)
     clear(feet, beam)
     bear(dt, surface.edges, half, feet, beam)
@@ -100,9 +134,8 @@ def _rub_back(
             length = surface.edges[piece + 1] - surface.edges[piece]
             along, across = moved(i, length, half, feet, beam)
             feet.touch[i, SURFACE] += along
-            image = feet.points[i, IMAGE]
-            feet.touch[i, LIFT] += image * across
-            feet.touch[i, CLOSING] += image * feet.points[i, FACE] * across
+            feet.touch[i, LIFT] += feet.points[i, IMAGE] * across
+            _close(i, across, feet)
             feet.sums[feet.owner[i], LIFTED] -= dt * feet.touch[i, RUB] * feet.touch[i, SURFACE]
     leave(surface.table, surface.modes, beam)
 
@@ -165,11 +198,11 @@ def ride(
         set_factors((number + 0.5) * dt, modes, surface.drive, line.factors)
         if not _look(number, surface.table, surface.edges, rubbing.half, line, feet):
             return OFF_BEAM
-        press(dt, feet, before)
+        damped = press(dt, feet, before)
         if beam is None:
             _rub(dt, feet, rubbing.slope, before)
         else:
-            _rub_back(dt, surface, feet, rubbing.half, rubbing.slope, beam, before)
+            _rub_back(dt, damped, surface, feet, rubbing.half, rubbing.slope, beam, before)
         kick(dt, feet)
         stretch(dt, feet, before)
         _book(dt, feet)

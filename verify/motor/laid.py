@@ -68,7 +68,7 @@ def feet_of(onto: Sequence[Onto]) -> Feet:
         state=np.zeros((len(feet), 4)),
         given=np.array([_given(onto[b].slider, foot) for b, foot in feet]),
         points=points,
-        touch=np.zeros((len(points), 11)),
+        touch=np.zeros((len(points), 12)),
         foot=_whole(np.repeat(np.arange(len(feet)), lengths)),
         owner=_whole(np.repeat(keeper, lengths)),
         keeper=keeper,

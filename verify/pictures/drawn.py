@@ -39,6 +39,8 @@ MODE, PERIOD = 3, 36
 
 def picture_of(scene: Scene, asked: Asked) -> Picture:
     """What is asked for, in plain arrays. Raises InputError."""
+    if asked.what != "wave":
+        scene.refuse_devices(f"a picture of what = {asked.what!r}")
     if asked.mode is not None and asked.what != "modes":
         raise InputError(f"mode = {asked.mode}: {asked.what} has no mode, leave it out or ask for modes")
     if asked.count is not None:

@@ -173,7 +173,7 @@ def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
     """The same of a model's whole beam, between its forces and the device, in the middle half."""
     from verify.device import of_impedance
     from verify.waves.devices import field_with_devices
-    from verify.waves.driven import measures
+    from verify.waves.driven import measured_alone
 
     assert a.model is not None
     at, model = scene.beam.length - a.position, MODELS.named(a.model)
@@ -190,7 +190,7 @@ def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
         hertz,
         [of_impedance(at, impedance, 2.0 * pi * hertz, turning=a.turning)] if impedance else [],
     )
-    return measures(field, None).reflection
+    return measured_alone(field, None, "reflection")
 
 
 def _needs_device(a: Device, scene: "Scene") -> tuple[()]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.quantities import beforehand
 from verify.quantities.cases import drive_frequency, driven_beam, driven_case
@@ -24,8 +25,8 @@ from verify.quantities.wave_arguments import (
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
+    from verify.waves.found import WaveMeasures
     from verify.waves.lumped import TwoModes
-    from verify.waves.measures import WaveMeasures
 
 
 def field_of(a: Driven, scene: "Scene", bench: Workbench) -> "HarmonicField":
@@ -60,7 +61,7 @@ def _curvature(a: At, scene: "Scene", bench: Workbench) -> complex:
 
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
     if a.x is None:
-        return measured(a, scene, bench).mean_axis_ratio
+        return _figure("mean_axis_ratio")(a, scene, bench)
     from verify.waves.measures import ellipse, medium_of, surface_motion
 
     field = field_of(a, scene, bench)
@@ -71,6 +72,11 @@ def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
 def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.driven import power_imbalance
 
+    if any(device.turning for device in scene.devices):
+        raise InputError(
+            "drive.device: a power balance counts what acts across alone, leave rotational, rotary_inertia and "
+            "rotational_dashpot out"
+        )
     field = field_of(a, scene, bench)
     return power_imbalance(field, measured(a, scene, bench))
 
@@ -130,8 +136,14 @@ def _needs_two_modes(a: Lumped, scene: "Scene") -> tuple[()]:
 
 
 def _figure(name: str) -> Callable[[InWindow, "Scene", Workbench], float]:
-    """One attribute of the measures."""
-    return lambda a, scene, bench: float(getattr(measured(a, scene, bench), name))
+    """One of the measures, found without the others."""
+
+    def evaluate(a: InWindow, scene: "Scene", bench: Workbench) -> float:
+        from verify.waves.driven import measured_alone
+
+        return float(measured_alone(field_of(a, scene, bench), a.window, name))
+
+    return evaluate
 
 
 WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (

@@ -33,10 +33,10 @@ NARROW = 88
 
 
 class Terminal(Console):
-    """Standard output without highlighting of numbers."""
+    """Standard output without highlighting of numbers; what lies between two colons stays as it is."""
 
     def __init__(self, **settings: Any) -> None:
-        super().__init__(highlight=False, **settings)
+        super().__init__(highlight=False, emoji=False, **settings)
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         """As rich draws it, with what a title or a path would have the terminal obey escaped."""

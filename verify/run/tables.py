@@ -73,6 +73,7 @@ def rules_of(words: Mapping[str, str]) -> Rules:
 
 def convergence(scene: Scene, modes: str | None, counts: str | None, rules: Mapping[str, str] | None = None) -> Job:
     """Errors and run time of modes over sizes. Raises InputError."""
+    scene.refuse_devices("a table of modes")
     study = ConvergenceStudy()
     asked = msgspec.to_builtins(study.asked(scene) or Convergence())
     asked |= {name: _listed(text, name) for name, text in (("modes", modes), ("counts", counts)) if text is not None}

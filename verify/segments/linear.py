@@ -12,7 +12,7 @@ from verify.checks import check_number, check_whole
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
-from verify.models.driven_pencil import damped_response, modal_receptance, refuse_near_resonance
+from verify.models.driven_pencil import damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor
 from verify.models.modes import Modes
@@ -214,13 +214,15 @@ def solve_harmonic(
     check_settings(load, reading, modal_damping, joint_dashpot)
     chain, pencil = driven(beam, n_segments, settings)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * chain.unit**4
-    if not (beam.loss_factor or modal_damping or joint_dashpot):
-        solve = partial(solve_modes, **settings)
-        refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments)
     check_dampings(beam, chain, modal_damping)
     loads = force_loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
     stiffness = damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
-    free = damped_response(pencil, loads, omega2, stiffness, modal_damping)
+    undamped = not (beam.loss_factor or modal_damping or joint_dashpot)
+    free = damped_response(pencil, probed(pencil, loads) if undamped else loads, omega2, stiffness, modal_damping)
+    if undamped:
+        solve = partial(solve_modes, **settings)
+        refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments, free)
+        free = free[:, :1]
     return HarmonicField(
         theory=theory,
         model="segment",

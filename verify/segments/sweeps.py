@@ -15,7 +15,6 @@ from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import (
     FIELD,
     HarmonicSweep,
-    refuse_resonances,
     swept_frequencies,
     swept_modes,
     swept_response,
@@ -65,18 +64,16 @@ def sweep_harmonic(
     check_settings(load, reading, modal_damping, joint_dashpot)
     chain, pencil = driven(beam, n_segments, settings)
     omega2 = (2.0 * pi * frequencies / beam.wave_constant) ** 2 * chain.unit**4
-    if not (beam.loss_factor or modal_damping or joint_dashpot):
+    undamped = not (beam.loss_factor or modal_damping or joint_dashpot)
+
+    def refuse(index: int) -> None:
         solve = partial(solve_modes, **settings)
+        name_resonance("segment", beam, pencil, float(frequencies[index]), solve, n_segments, f"{FIELD}[{index}]")
 
-        def refuse(index: int) -> None:
-            frequency = float(frequencies[index])
-            name_resonance("segment", beam, pencil, frequency, solve, n_segments, f"{FIELD}[{index}]")
-
-        refuse_resonances(pencil, omega2, refuse)
     check_dampings(beam, chain, modal_damping)
     loads = force_loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
     stiffness = _damped(beam, chain, pencil, frequencies, joint_dashpot)
-    free = swept_response(pencil, loads, omega2, stiffness, modal_damping)
+    free = swept_response(pencil, loads, omega2, stiffness, modal_damping, refuse if undamped else None)
     return HarmonicSweep(
         theory=theory,
         model="segment",

@@ -14,7 +14,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.errors import InputError, NoFigureError, near_name
-from verify.models.arrays import Array
+from verify.models.arrays import Array, distinct
 from verify.models.catalogue import MODELS
 from verify.patience import check_work
 from verify.quantities.cases import driven_case
@@ -135,7 +135,7 @@ class DesignMap(Found, frozen=True, eq=False, kw_only=True):
 
 def _spread(n: int, most: int) -> "list[int]":
     """At most so many of n places, evenly."""
-    return [int(i) for i in np.unique(np.linspace(0, n - 1, most).round().astype(int))]
+    return [int(i) for i in distinct(np.linspace(0, n - 1, most).round().astype(int))]
 
 
 def finite_or_none(value: float) -> float | None:
@@ -166,7 +166,7 @@ def parse_axis(text: str, drive_hz: float | None = None) -> Axis:
         raise InputError(f"--sweep {text!r}: start and end have to be {words}, for instance {name}={AXES[name]}")
     values = np.linspace(*ends, n)
     if name == "count":
-        values = np.unique(np.round(values))
+        values = distinct(np.round(values))
     return Axis(name, tuple(float(v) for v in values))
 
 

@@ -1,6 +1,7 @@
 """Both ways of driving for a table and a report: over frequency, load and detuning, along the beam, under a slider."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -9,6 +10,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.device import Device
+from verify.errors import ResonanceError
 from verify.exact.closed_forms import frequency_hz
 from verify.models.catalogue import MODELS, discrete
 from verify.motion.validity import nearest_mode
@@ -45,11 +47,11 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Ride(msgspec.Struct, frozen=True, kw_only=True):
-    """Mean speed of the slider at one frequency, m/s along +x, both ways."""
+    """Mean speed of the slider at one frequency, m/s along +x, both ways; None on a resonance of the bare beam."""
 
     off_hz: float
-    device: float
-    forces: float
+    device: float | None
+    forces: float | None
 
 
 class ByModel(msgspec.Struct, frozen=True, kw_only=True):
@@ -245,8 +247,8 @@ class MethodsFound(Found, frozen=True, eq=False, kw_only=True):
         return methods_charts(self)
 
     def motions(self) -> int:
-        """Two for each ride."""
-        return 2 * len(self.rides)
+        """Both of each ride, but for resonances."""
+        return sum(speed is not None for ride in self.rides for speed in (ride.device, ride.forces))
 
 
 def methods_study(
@@ -302,8 +304,10 @@ def _rides(
     progress("slider")
     rides = []
     for off in (-asked.span_hz, 0.0, asked.span_hz):
-        fields = {way: driven(setting.case(way, off_hz=off), bench) for way in WAYS}
-        speeds = {way: slider_speed(scene, field, asked.duration) for way, field in fields.items()}
+        speeds: dict[Way, float | None] = dict.fromkeys(WAYS)
+        for way in WAYS:
+            with suppress(ResonanceError):
+                speeds[way] = slider_speed(scene, driven(setting.case(way, off_hz=off), bench), asked.duration)
         rides.append(Ride(off_hz=off, device=speeds["device"], forces=speeds["forces"]))
     slider = scene.slider
     assert slider is not None

@@ -12,8 +12,8 @@ from verify.errors import ResonanceError
 from verify.waves.case import DrivenCase
 from verify.waves.devices import powers
 from verify.waves.driven import driven
+from verify.waves.found import STANDING
 from verify.waves.lumped import local_waves, reflections
-from verify.waves.measures import STANDING
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench

@@ -43,7 +43,8 @@ def facts(found: "MethodsFound") -> tuple[str, ...]:
 def _frequency(found: "MethodsFound") -> Iterator[str]:
     """Which way bears the span better, where one does."""
     device, forces = (worst(found.frequencies, way) for way in WAYS)
-    span = f"within {found.span_hz:g} Hz of {found.hertz:g} Hz, {len(found.frequencies)} frequencies, nothing retuned"
+    n, span = len(found.frequencies), f"within {found.span_hz:g} Hz of {found.hertz:g} Hz"
+    span = f"{span}, {n} frequencies, {found.damping}, nothing retuned"
     if device is None or forces is None:
         yield f"{span}: a frequency is a resonance of the undamped beam under two forces, where nothing is compared"
         return
@@ -57,12 +58,10 @@ def _frequency(found: "MethodsFound") -> Iterator[str]:
         )
 
 
-def _better(device: float, forces: float) -> str:
+def _better(device: float, forces: float, does: str = "bears a change of frequency better") -> str:
     if abs(device - forces) <= 0.1 * max(device, forces):
         return ", which tells neither from the other"
-    return (
-        f", so that the way with {'the device' if device < forces else 'two forces'} bears a change of frequency better"
-    )
+    return f", so that the way with {'the device' if device < forces else 'two forces'} {does}"
 
 
 def _power(found: "MethodsFound") -> Iterator[str]:
@@ -93,14 +92,16 @@ def _detuning(found: "MethodsFound") -> Iterator[str]:
 
 
 def _load(found: "MethodsFound") -> Iterator[str]:
-    heaviest, known = found.masses[-1], [row for row in found.masses if row.device and row.forces]
-    if heaviest in known:
-        assert heaviest.device is not None
-        assert heaviest.forces is not None
+    """Of the heaviest mass; which way reflects less before it, where one does."""
+    heaviest = found.masses[-1]
+    device, forces = heaviest.device, heaviest.forces
+    if device and forces:
+        at = f"{1e3 * found.load_position:g} mm, at {found.hertz:g} Hz, {found.damping}"
         yield (
-            f"with {heaviest.what} on the beam at {1e3 * found.load_position:g} mm, at {found.hertz:g} Hz: the "
-            f"reflection is {heaviest.device.reflection:.3g} before it and {heaviest.device.behind:.3g} behind it with "
-            f"the device, {heaviest.forces.reflection:.3g} and {heaviest.forces.behind:.3g} with two forces"
+            f"with {heaviest.what} on the beam at {at}: behind it the reflection is {device.behind:.3g} with the "
+            f"device and {forces.behind:.3g} with two forces, "
+            f"before it {device.reflection:.3g} and {forces.reflection:.3g}"
+            + _better(device.reflection, forces.reflection, "sends less back there")
         )
 
 
@@ -118,7 +119,7 @@ def _lumped(found: "MethodsFound") -> Iterator[str]:
 
 def _rides(found: "MethodsFound") -> Iterator[str]:
     for ride in found.rides:
-        if ride.off_hz == 0.0:
+        if ride.off_hz == 0.0 and ride.device is not None and ride.forces is not None:
             yield (
                 f"at {found.hertz:g} Hz and {found.force:g} N the slider's mean speed is {1e6 * ride.device:.4g} µm/s "
                 f"with the device and {1e6 * ride.forces:.4g} µm/s with two forces ({found.slider})"

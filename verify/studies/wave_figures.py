@@ -24,7 +24,7 @@ from verify.waves.driven import (
     Operation,
     check_fields,
     driven,
-    measures,
+    measured_alone,
     operation,
     quietest_drive,
 )
@@ -301,7 +301,7 @@ def _under_the_other_drive(scene: "Scene", bench: "Workbench") -> float:
     """The exact beam's standing-wave ratio with displacements for forces, or the reverse."""
     own = case_on(scene, "analytic", None)
     other = replace(own, kind="displacement" if own.kind == "force" else "force")
-    return measures(driven(other, bench), None).standing_wave_ratio
+    return measured_alone(driven(other, bench), None, "standing_wave_ratio")
 
 
 def _pure_along_a_phase(scene: "Scene") -> bool:

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.judge.compare import observed_order, relative_error
-from verify.models.arrays import Array
+from verify.models.arrays import Array, distinct
 from verify.models.catalogue import MODELS
 from verify.models.eigen import field_seconds
 from verify.models.fields import HarmonicField, phasor
@@ -19,14 +19,15 @@ from verify.models.search import Least, least_over
 from verify.models.sweeps import HarmonicSweep
 from verify.patience import check_work
 from verify.waves.case import DrivenCase
+from verify.waves.found import WaveMeasures
 from verify.waves.imposed import driven_field
 from verify.waves.measures import (
-    WaveMeasures,
     amplitudes_of,
     check_moving,
     crest_speed,
     mean_axis_ratio,
     measure,
+    measured_figure,
     medium_of,
     middle_half,
     two_waves,
@@ -128,6 +129,11 @@ def measures(field: HarmonicField, window: tuple[float, float] | None) -> WaveMe
     return measure(field, window or middle_half(field.beam), own_wavenumber(field))
 
 
+def measured_alone(field: HarmonicField, window: Window | None, name: str) -> float:
+    """One figure of these by its name, and nothing beside it. Raises InputError."""
+    return measured_figure(field, window or middle_half(field.beam), own_wavenumber(field), name)
+
+
 def operation(field: HarmonicField, window: Window | None = None) -> Operation:
     """These four of a field, as `measures` has them beside much else. Raises InputError."""
     window, medium = window or middle_half(field.beam), medium_of(field)
@@ -167,7 +173,7 @@ def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
     given = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
     points, weights = np.polynomial.legendre.leggauss(8)
     cells = max(int(middle * field.wavenumber.real), 8)
-    edges = np.unique(np.concatenate([np.linspace(0.0, middle, cells), [f.position for f in left]]))
+    edges = distinct(np.concatenate([np.linspace(0.0, middle, cells), [f.position for f in left]]))
     half = 0.5 * np.diff(edges)
     x = (edges[:-1, None] + half[:, None] * (points + 1.0)).ravel()
     bending = abs(field.shapes(x, 2)) ** 2

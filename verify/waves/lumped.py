@@ -23,7 +23,7 @@ from verify.errors import InputError
 from verify.exact.modes import exact_frequency_hz, mode_shape
 from verify.models.fields import HarmonicField
 from verify.models.places import Numbers, in_a_row, places
-from verify.waves.measures import STANDING
+from verify.waves.found import STANDING
 
 if TYPE_CHECKING:
     from collections.abc import Callable

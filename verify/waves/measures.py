@@ -8,21 +8,20 @@ surface points turn counter-clockwise and move backwards at the crest.
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
+import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.errors import InputError, StandingError, ZeroFieldError
-from verify.field_docs import Value
+from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField, phasor, unit_response
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
 from verify.models.places import real_array
 from verify.models.search import least_over
+from verify.waves.found import TwoWaves, WaveMeasures
 from verify.waves.medium import Medium
 from verify.waves.window import check_window
 
-STANDING = 1e-12
-"""A reflection this near 1 is a standing wave; its ratio is infinite, not rounding's."""
 SHARPNESS = 24
 """Points for each half wavelength of the window, to draw from and to look for extremes around."""
 HILLS_OF_A_PART = 8
@@ -38,104 +37,6 @@ def middle_half(beam: Beam) -> tuple[float, float]:
     return 0.25 * beam.length, 0.75 * beam.length
 
 
-class TwoWaves(Value, frozen=True, eq=False, kw_only=True):
-    """A forward and a backward wave fitted to phasors, amplitudes at the middle of the window."""
-
-    wavenumber: complex
-    """k, 1/m, the one used."""
-    forward: complex
-    """A+ of e^{-ik(x - middle)}, metres."""
-    backward: complex
-    """A- of e^{+ik(x - middle)}, metres."""
-    residual: float
-    """What the two waves leave unexplained, rms over rms."""
-
-    @property
-    def direction(self) -> int:
-        """+1 where the stronger wave runs towards +x, else -1."""
-        return 1 if abs(self.forward) >= abs(self.backward) else -1
-
-    @property
-    def reflection(self) -> float:
-        """Gamma, the weaker amplitude over the stronger, 0 to 1."""
-        weak, strong = sorted((abs(self.forward), abs(self.backward)))
-        return float(weak / strong) if strong > 0 else 0.0
-
-    @property
-    def standing_wave_ratio(self) -> float:
-        """(1 + Gamma) / (1 - Gamma), 1 for a pure travelling wave, infinite for a standing one."""
-        gamma = self.reflection
-        return (1.0 + gamma) / (1.0 - gamma) if gamma < 1.0 - STANDING else float("inf")
-
-    def check_travelling(self) -> None:
-        """Raise StandingError where the wave stands: flux and signed area are then zero but for rounding."""
-        if self.reflection >= 1.0 - STANDING:
-            raise StandingError(
-                "the wave stands: it carries no power and its ellipses have no area to relate to, choose another "
-                "phase_deg"
-            )
-
-
-class WaveMeasures(Value, frozen=True, eq=False, kw_only=True):
-    """What kind of wave a field carries in a window, and what the surface does there."""
-
-    window: tuple[float, float]
-    """Metres."""
-    waves: TwoWaves
-    """The forward and the backward wave fitted in the window."""
-    envelope: float
-    """(max - min) / (max + min) of |w| over the window: equals Gamma for two waves."""
-    travelling_index: float
-    """1 / cond of [Re w, Im w] in the mean square (Feeny's complex orthogonal decomposition): 1 travelling, 0 standing.
-
-    Over whole half wavelengths, the most that fit in the middle of the window: there, and only there, it equals
-    (1 - Gamma) / (1 + Gamma) for two waves.
-    """
-    mean_axis_ratio: float
-    """Of `axis_ratio` over the same whole half wavelengths: there k h/2 for any two waves as kh goes to 0."""
-    x: Array
-    """(n,), metres: where the surface quantities are given, 24 points for each half wavelength of the exact beam."""
-    axis_ratio: Array
-    """(n,), signed ratio of the ellipse's axes, tan chi; k h/2 for a pure wave, negative towards +x."""
-    tilt_deg: Array
-    """(n,), angle of the long axis from x, degrees."""
-    signed_area: Array
-    """(n,), S3, m^2."""
-    signed_area_range: tuple[float, float, float]
-    """Least, mean and largest over the window, not over the points."""
-    ideal_axis_ratio: float
-    """k h / 2."""
-    crest_speed: float
-    """Of the surface at the crests, m/s along +x: -omega (h/2) k (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2)."""
-    energy_flux: float
-    """Power carried towards +x through the middle of the window, watt."""
-
-    @property
-    def reflection(self) -> float:
-        """Gamma, 0 to 1."""
-        return self.waves.reflection
-
-    @property
-    def standing_wave_ratio(self) -> float:
-        """(1 + Gamma) / (1 - Gamma)."""
-        return self.waves.standing_wave_ratio
-
-    @property
-    def signed_area_spread(self) -> float:
-        """(max - min) / |mean| of the signed area: 0 for undamped waves away from forces and ends.
-
-        Raises StandingError where the wave stands.
-        """
-        self.waves.check_travelling()
-        least, mean, largest = self.signed_area_range
-        return (largest - least) / abs(mean)
-
-    @property
-    def rotation(self) -> str:
-        """The sense in which most surface points turn, in (x, y)."""
-        return "counter-clockwise" if self.signed_area_range[1] < 0 else "clockwise"
-
-
 def medium_of(field: HarmonicField) -> Medium:
     """What the field's waves run in."""
     return Medium(field.beam, field.theory)
@@ -148,11 +49,27 @@ def measure(field: HarmonicField, window: tuple[float, float], wave_number: comp
     window that leaves the span between two forces or is shorter than half a wavelength, for a field that is zero
     there and for a fit that ends at its edge.
     """
+    return _measures(_seen(field, window, wave_number), sample_points(window, field.wavenumber.real))
+
+
+def measured_figure(field: HarmonicField, window: tuple[float, float], wave_number: complex | None, name: str) -> float:
+    """One of `FIGURES` as `measure` has it, and nothing beside it. Raises as that, StandingError as the figure."""
+    return FIGURES[name](_seen(field, window, wave_number))
+
+
+def _seen(field: HarmonicField, window: tuple[float, float], wave_number: complex | None) -> "Seen":
     waves = two_waves(field, window, wave_number)
     x = sample_points(window, field.wavenumber.real)
     parts = HILLS_OF_A_PART * (field.count or 0) * (window[1] - window[0]) / field.beam.length
-    fine = x if len(x) > parts else np.linspace(*window, int(parts) + 1)
-    return measures_of(medium_of(field), field.omega, x, fine, field.deflection, field.slope, waves)
+    return Seen(
+        medium=medium_of(field),
+        omega=field.omega,
+        window=(float(window[0]), float(window[1])),
+        fine=x if len(x) > parts else np.linspace(*window, int(parts) + 1),
+        deflection=field.deflection,
+        slope=field.slope,
+        waves=waves,
+    )
 
 
 def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> TwoWaves:
@@ -184,39 +101,108 @@ def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle
 Along: TypeAlias = Callable[[Array], ComplexArray]
 
 
+class Seen(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """A field that is known at any place of a window, and the two waves in it: what measures are found from."""
+
+    medium: Medium
+    omega: float
+    window: tuple[float, float]
+    fine: Array
+    """(m,), close enough to tell the hills of the field apart."""
+    deflection: Along
+    slope: Along
+    waves: TwoWaves
+
+    @property
+    def halves(self) -> tuple[tuple[float, float], int]:
+        """The whole half wavelengths in the window's middle, and how many."""
+        return whole_halves(self.window, self.waves.wavenumber.real)
+
+    def envelope(self) -> float:
+        """As `WaveMeasures` has it, like all below."""
+        least, largest = extremes(lambda at: np.abs(self.deflection(at)), self.fine)
+        return (largest - least) / (largest + least)
+
+    def travelling_index(self) -> float:
+        """Over whole half wavelengths."""
+        whole, halves = self.halves
+        rule = rule_over(whole, 2 * halves)
+        return travelling_index(self.deflection(rule.x), rule.weights)
+
+    def mean_axis_ratio(self) -> float:
+        """Over the same."""
+        return mean_axis_ratio(self.medium, self.omega, self.window, self.deflection, self.slope, self.waves)
+
+    def signed_area_range(self) -> tuple[float, float, float]:
+        """Least, mean and largest."""
+        beam, turn = self.medium.beam, self.medium.turn(self.omega)
+
+        def areas(at: Array) -> Array:
+            return signed_area(surface_motion(beam, self.slope(at), turn), self.deflection(at))
+
+        low, high = extremes(areas, self.fine)
+        return low, mean_over(areas, self.window, 2 * self.halves[1]), high
+
+    def signed_area_spread(self) -> float:
+        """Raises StandingError where the wave stands."""
+        self.waves.check_travelling()
+        least, mean, largest = self.signed_area_range()
+        return (largest - least) / abs(mean)
+
+    def crest_speed(self) -> float:
+        """Of both waves."""
+        waves = self.waves
+        return float(crest_speed(self.medium, self.omega, waves.wavenumber, waves.forward, waves.backward))
+
+    def energy_flux(self) -> float:
+        """Likewise."""
+        waves = self.waves
+        return float(energy_flux(self.medium, self.omega, waves.wavenumber, waves.forward, waves.backward))
+
+
+FIGURES: dict[str, Callable[[Seen], float]] = {
+    "reflection": lambda seen: seen.waves.reflection,
+    "standing_wave_ratio": lambda seen: seen.waves.standing_wave_ratio,
+    "envelope": Seen.envelope,
+    "travelling_index": Seen.travelling_index,
+    "mean_axis_ratio": Seen.mean_axis_ratio,
+    "signed_area_spread": Seen.signed_area_spread,
+    "crest_speed": Seen.crest_speed,
+    "energy_flux": Seen.energy_flux,
+}
+"""Figures of `WaveMeasures` by name, each found without the others."""
+
+
 def measures_of(
     medium: Medium, omega: float, x: Array, fine: Array, deflection: Along, slope: Along, waves: TwoWaves
 ) -> WaveMeasures:
     """The measures of a field known at any place of the window: means and extremes do not depend on points.
 
-    x (n,): where ellipses are given; fine (m,): close enough to tell the hills of the field apart.
+    x (n,): where ellipses are given; fine (m,): as `Seen` has it.
     """
     window = float(x[0]), float(x[-1])
+    seen = Seen(medium=medium, omega=omega, window=window, fine=fine, deflection=deflection, slope=slope, waves=waves)
+    return _measures(seen, x)
 
-    turn = medium.turn(omega)
 
-    def areas(at: Array) -> Array:
-        return signed_area(surface_motion(medium.beam, slope(at), turn), deflection(at))
-
-    whole, halves = whole_halves(window, waves.wavenumber.real)
-    rule = rule_over(whole, 2 * halves)
-    least, largest = extremes(lambda at: np.abs(deflection(at)), fine)
-    low, high = extremes(areas, fine)
-    ratio, tilt, area = ellipse(surface_motion(medium.beam, slope(x), turn), deflection(x))
+def _measures(seen: Seen, x: Array) -> WaveMeasures:
+    """All of them, ellipses at x (n,)."""
+    beam, turn = seen.medium.beam, seen.medium.turn(seen.omega)
+    ratio, tilt, area = ellipse(surface_motion(beam, seen.slope(x), turn), seen.deflection(x))
     return WaveMeasures(
-        window=window,
-        waves=waves,
-        envelope=(largest - least) / (largest + least),
-        travelling_index=travelling_index(deflection(rule.x), rule.weights),
-        mean_axis_ratio=mean_axis_ratio(medium, omega, window, deflection, slope, waves),
+        window=seen.window,
+        waves=seen.waves,
+        envelope=seen.envelope(),
+        travelling_index=seen.travelling_index(),
+        mean_axis_ratio=seen.mean_axis_ratio(),
         x=x,
         axis_ratio=ratio,
         tilt_deg=tilt,
         signed_area=area,
-        signed_area_range=(low, mean_over(areas, window, 2 * halves), high),
-        ideal_axis_ratio=waves.wavenumber.real * medium.beam.surface_distance * turn,
-        crest_speed=float(crest_speed(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
-        energy_flux=float(energy_flux(medium, omega, waves.wavenumber, waves.forward, waves.backward)),
+        signed_area_range=seen.signed_area_range(),
+        ideal_axis_ratio=seen.waves.wavenumber.real * beam.surface_distance * turn,
+        crest_speed=seen.crest_speed(),
+        energy_flux=seen.energy_flux(),
     )
 
 
@@ -291,7 +277,8 @@ def travelling_index(deflection: ComplexArray, weights: Array) -> float:
 def wave_basis(x: Array, k: Any, middle: float) -> ComplexArray:
     """e^{-ik(x - middle)} and e^{+ik(x - middle)}, (..., len(x), 2) for k of shape (...)."""
     phase = 1j * np.asarray(k)[..., None] * (x - middle)
-    return np.stack([np.exp(-phase), np.exp(phase)], axis=-1)
+    forward = np.exp(-phase)
+    return np.stack([forward, np.exp(phase) if phase.real.any() else np.conj(forward)], axis=-1)
 
 
 def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | None = None) -> TwoWaves:

@@ -8,7 +8,8 @@ from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import wavenumber
 from verify.models.places import real_array
-from verify.waves.measures import STILL, WaveMeasures, fit_waves, fitted_wavenumber, measures_of
+from verify.waves.found import WaveMeasures
+from verify.waves.measures import STILL, fit_waves, fitted_wavenumber, measures_of
 from verify.waves.medium import Medium
 
 

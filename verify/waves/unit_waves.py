@@ -12,9 +12,9 @@ from verify.errors import InputError, NoFigureError, ResonanceError
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.catalogue import MODELS
 from verify.models.fields import unit_response, wavenumber
+from verify.waves.found import STANDING
 from verify.waves.imposed import held_units
 from verify.waves.measures import (
-    STANDING,
     STILL,
     amplitudes_of,
     crest_speed,
