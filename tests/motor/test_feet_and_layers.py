@@ -73,10 +73,10 @@ def foot_misses(case, step):
 @pytest.mark.parametrize("case", FEET)
 def test_a_foot_rises_turns_and_rubs_as_dop853_says(case):
     motion, pressed, dragged, touched = foot_misses(case, 4000)
-    assert motion < 6e-3
-    assert pressed < 3e-5
-    assert dragged < 3e-4
-    assert touched < 3e-4
+    assert motion < 3e-5
+    assert pressed < 1e-6
+    assert dragged < 2e-4
+    assert touched < 2e-4
 
 
 @pytest.mark.parametrize("case", [FEET[0], FEET[1], FEET[3]])
