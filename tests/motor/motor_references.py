@@ -337,7 +337,7 @@ class Rider:
             return [*found, (spare, 1)]
         return [*found, (lambda t, s: mode[1] * self.slip(t, s), -1)]
 
-    def run(self, start, duration, at, period, max_step=0.01, rtol=1e-11, atol=None):
+    def run(self, start, duration, at, period, max_step=0.02, rtol=1e-10, atol=None):
         """States at the times `at`, from 0 to `duration`."""
         self.tick = 1e-5 * period
         self.speed = max(abs(self.on.seen(t, start)[3]) for t in np.linspace(0.0, period, 17))

@@ -41,7 +41,7 @@ def followed(spans, n, damping, pitches):
     )
     level = by.lain_on(by.felt(wave.at, MIDDLE + arms, 0.0, HALF)[0], load / stiffness)
     times = np.arange(1, PERIODS + 1) * PERIOD
-    rows = by.foot_ridden(foot, wave, MIDDLE, [level, 0.0, 0.0, 0.0], times, rtol=1e-8, max_step=0.02 * PERIOD)
+    rows = by.foot_ridden(foot, wave, MIDDLE, [level, 0.0, 0.0, 0.0], times, rtol=1e-8, max_step=0.05 * PERIOD)
     return foot, rows
 
 
