@@ -78,7 +78,15 @@ def row_of(cells, scene):
 def is_source(name, scene):
     """Whether a name is a gate of the scene, a quantity with arguments or a path into a run."""
     head = name.split()[0]
-    paths = ("motion.runs.", "motion.readings.", "motion.facts.", "axial_inertia.", "wave.rows.", "convergence.")
+    paths = (
+        "motion.runs.",
+        "motion.readings.",
+        "motion.facts.",
+        "axial_inertia.",
+        "wave.rows.",
+        "convergence.",
+        "motor.",
+    )
     with_arguments = head in QUANTITIES and len(name.split()) > 1
     return with_arguments or name.startswith(paths) or (scene and name in {gate.id for gate in load_scene(scene).gate})
 

@@ -69,7 +69,7 @@ NormalChoice = Literal["held", "massless"]
 """What a slider coupled two-way presses its beam with. held: weight and inertia. massless: nothing, as in the paper."""
 
 Face = Literal["upper", "lower"]
-"""Of the beam, on which a foot is pressed."""
+"""Of the beam, on which a foot is pressed. upper: from above, weight and preload together. lower: from below."""
 
 Start = Literal["rest", "steady"]
 """How a beam stands when its motion begins. rest: straight and still. steady: in the steady state of its drive."""

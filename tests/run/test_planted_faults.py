@@ -5,7 +5,7 @@ from itertools import chain
 import faults.everything  # noqa: F401
 import pytest
 from faults import chain as of_the_chain
-from faults import contact, driven, modes, motion, stress, waves
+from faults import contact, driven, modes, motion, motor, stress, waves
 
 from verify.quantities.catalogue import QUANTITIES
 from verify.run.gates import judge
@@ -21,6 +21,7 @@ FAMILIES = (
     driven.FAULTS,
     stress.FAULTS,
     contact.FAULTS,
+    motor.FAULTS,
 )
 FAULTS = {
     scene: dict(chain.from_iterable(family.get(scene, {}).items() for family in FAMILIES))

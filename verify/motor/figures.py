@@ -52,7 +52,7 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     @property
     def power(self) -> float:
         """On the slider, W: force times speed."""
-        return self.force * self.speed
+        return self.force * self.speed + 0.0  # never a negative nought
 
     @property
     def efficiency(self) -> float | None:

@@ -69,22 +69,28 @@ def run_on_chain(
         else simulate(system, at_rest(system), times, tolerance=TOLERANCE, ledger=False, most=MOST, progress=progress)
     )
     check_moved(moved)
-    riding = Riding.fresh(onto, request, False)
+    ready = perf_counter()
+    note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
+    given = surface_given(moved, plan)
+    runs = [_ride(replace(plan, onto=(one,)), given, (began, ready), progress) for one in onto]
+    return tuple(replace(run, model=CHAIN, notes=(note, *run.notes[1:])) for run in runs)
+
+
+def _ride(plan: Plan, given: Moved, begun: tuple[float, float], progress: Callable[[float], None]) -> MotorRun:
+    """One slider on a chain that does not feel it, hence none of the others; `given` is the surface under all."""
+    stage = plan.stages[0]
+    riding = Riding.fresh(plan.onto, plan.request, False)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
     begin(plan, riding, ())
     riding.look()
     riding.first = np.zeros(0)
-    given = surface_given(moved, plan)
+    given = given._replace(edges=given.edges - plan.onto[0].start)
     riding.feet.piece[:] = np.clip(
         np.searchsorted(given.edges[1:-1], riding.feet.points[:, records.OFFSET]), 0, len(given.edges) - 2
     )
-    ready = perf_counter()
     stopped = _run(given, stage.n_steps, stage.dt, riding, progress)
     state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
-    clock = (began, ready, perf_counter())
-    runs = [told(b, plan, riding, stopped, state, clock) for b in range(len(onto))]
-    note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
-    return tuple(replace(run, model=CHAIN, notes=(note, *run.notes[1:])) for run in runs)
+    return told(0, plan, riding, stopped, state, (*begun, perf_counter()))
 
 
 def _run(given: Moved, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
@@ -103,16 +109,23 @@ def _run(given: Moved, n_steps: int, dt: float, riding: Riding, progress: Callab
 
 
 def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> Moved:
-    """The contact line on the links under the feet and beside them, at every other time kept: in mid-steps."""
-    system, ends = moved.system, []
-    for one in plan.onto:
-        ends += [one.start + foot.offset + side * 0.5 * foot.length for foot in one.slider.feet for side in (-1.0, 1.0)]
+    """The contact line on the links under all feet and beside them, at every other time kept: in mid-steps.
+
+    Edges are metres from the left end.
+    """
+    system = moved.system
+    ends = [
+        one.start + foot.offset + side * 0.5 * foot.length
+        for one in plan.onto
+        for foot in one.slider.feet
+        for side in (-1.0, 1.0)
+    ]
     first = max(_link_at(system, min(ends)) - BESIDE, 0)
     last = min(_link_at(system, max(ends)) + BESIDE, system.n_links - 1)
     heights, rises, along = (part[1::2] for part in _moved(moved))
     rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
     local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)
-    edges = system.nodes[first : last + 2] - plan.onto[0].start
+    edges = system.nodes[first : last + 2]
     return Moved(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 1]), edges)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from time import perf_counter
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -143,8 +144,8 @@ def run_motors(
     samples: int = 201,
     step: float | None = None,
     steps_per_period: int = STEPS_PER_PERIOD,
-    held_speed: float | None = None,
-    frozen: bool = False,
+    held_speed: float | Sequence[float | None] | None = None,
+    frozen: bool | Sequence[bool] = False,
     links: Links = "rigid",
     continue_from: Sequence[MotorRun] = (),
     progress: Callable[[float], None] = lambda part: None,
@@ -152,12 +153,15 @@ def run_motors(
 ) -> tuple[MotorRun, ...]:
     """Several sliders on one beam, one run for each: coupled two-way they feel each other through it.
 
-    They rub by one law of one slope and are coupled alike; otherwise as `run_motor`. Raises InputError.
+    They rub by one law of one slope and are coupled alike; `held_speed` and `frozen` are of all, or one for each.
+    Otherwise as `run_motor`. Raises InputError.
     """
     began = perf_counter()
     check_together(model, start, sliders)
-    if held_speed is not None:
-        check_number("held_speed", held_speed, "m/s")
+    speeds, stay = _each("held_speed", held_speed, len(sliders)), _each("frozen", frozen, len(sliders))
+    for speed in speeds:
+        if speed is not None:
+            check_number("held_speed", speed, "m/s")
     request = requested(
         Driven(beam, as_forces(forces), frequency_hz, duration),
         Modelled("segment" if model == CHAIN else model, count, modes, modal_damping),
@@ -165,7 +169,8 @@ def run_motors(
         Watched(at, samples, step, steps_per_period, False),
         sliders[0],
     )
-    onto = tuple(Onto(slider, slider.start_on(beam), held_speed, frozen) for slider in sliders)
+    each = zip(sliders, speeds, stay, strict=True)
+    onto = tuple(Onto(slider, slider.start_on(beam), speed, bool(stays)) for slider, speed, stays in each)
     if model == CHAIN:
         from verify.motor.on_chain import check_chain, run_on_chain
 
@@ -175,6 +180,14 @@ def run_motors(
         raise InputError(f"links = {links!r} is of model = 'chain': leave it out on {model}")
     before = tuple(run.state for run in continue_from)
     return carry_out(lay_out(request, onto, before), before, began, progress, patient)
+
+
+def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
+    """One for each slider. Raises InputError."""
+    found = tuple(given) if isinstance(given, Sequence) else (given,) * n
+    if len(found) != n:
+        raise InputError(f"{field} has {len(found)} of them for {n} sliders: give one for each, or one for all")
+    return found
 
 
 def lay_out(request: Request, onto: tuple[Onto, ...], before: Sequence[MotorState]) -> Plan:

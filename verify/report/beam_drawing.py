@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from verify.device import Device
     from verify.scenes.scene import Scene
     from verify.section import Piece
-    from verify.slider import Slider
+    from verify.slider import Foot, Slider
 
 BROAD, NARROW = (860.0, 60.0), (400.0, 48.0)
 """Width of the picture and of its margins: for a page, for a phone."""
@@ -26,6 +26,11 @@ LEAST, MOST = 5.0, 24.0
 """Thickness of the thinnest and the thickest section."""
 ARROW = 46.0
 """Length of a force."""
+PLATE, TOOTH = 9.0, 6.0
+"""Thickness of a foot, and length of its contact points."""
+POINT_FOOT, TEETH = 14.0, 24
+"""Length of a foot of one point; contact points that are drawn at most."""
+STAGE = "#e8760c"
 INK, SOFT, BODY, FORCE, SPRING = "var(--ink)", "var(--soft)", "var(--bar)", "#d6427a", "#2a9d5c"
 
 Drawn: TypeAlias = "Box | Label | str"
@@ -281,15 +286,60 @@ def _carried(scene: "Scene", view: View, x: float) -> float:
     slider = scene.slider.start_on(view.beam) if scene.slider is not None else None
     if any(abs(mass.position - x) < 0.5 * near for mass in view.beam.mass):
         return 18.0
+    if scene.slider is not None and scene.slider.foot:
+        return PLATE + TOOTH if any(_stands_over(foot, slider or 0.0, x, near) for foot in scene.slider.foot) else 0.0
     return 17.0 if slider is not None and abs(slider - x) < near else 0.0
 
 
+def _stands_over(foot: "Foot", start: float, x: float, near: float) -> bool:
+    return foot.face == "upper" and abs(start + foot.offset - x) < 0.5 * (foot.length + near)
+
+
 def _slider(slider: "Slider", view: View) -> Iterator[Drawn]:
+    if slider.foot:
+        yield from _feet(slider, view)
+        return
     x = slider.start_on(view.beam)
     at, y = view.at(x), -_half(view.beam, x)
-    yield f'<rect x="{at - 16:.1f}" y="{y - 17:.1f}" width="32" height="16" rx="2" fill="#e8760c" fill-opacity=".8"/>'
+    yield f'<rect x="{at - 16:.1f}" y="{y - 17:.1f}" width="32" height="16" rx="2" fill="{STAGE}" fill-opacity=".8"/>'
     yield Box(at - 16, y - 17, at + 16, y)
     yield Label(at, y - 19, (f"slider, {1e3 * slider.mass:.4g} g, mu {slider.mu:g}",))
+
+
+def _feet(slider: "Slider", view: View) -> Iterator[Drawn]:
+    """Feet on the faces that they stand on, with a tooth for every contact point; a second beam over mirrored ones."""
+    x = slider.start_on(view.beam)
+    tops = []
+    for foot in slider.foot:
+        middle = x + foot.offset
+        half, up = _half(view.beam, middle), 1.0 if foot.face == "lower" else -1.0
+        length = max(view.at(foot.length) - view.edge, POINT_FOOT)
+        left = view.at(middle) - 0.5 * length
+        near, far = up * half, up * (half + TOOTH + PLATE)
+        yield _plate(left, length, up * (half + TOOTH))
+        for k in range(min(foot.points, TEETH)):
+            at = left + length * (k + 0.5) / min(foot.points, TEETH)
+            yield _line((at, near), (at, up * (half + TOOTH)), colour=STAGE)
+            if foot.mirrored:
+                yield _line((at, far), (at, far - TOOTH), colour=STAGE)
+        if foot.mirrored:
+            far -= TOOTH + 2.0 * half
+            yield (
+                f'<rect x="{left - 12:.1f}" y="{far:.1f}" width="{length + 24:.1f}" height="{2 * half:.1f}" '
+                f'fill="{BODY}" fill-opacity=".2" stroke="{BODY}" stroke-dasharray="4 3"/>'
+            )
+        yield Box(left, min(near, far), left + length, max(near, far))
+        tops.append(min(near, far))
+    words = f"slider on {len(slider.foot)} f{'ee' if len(slider.foot) > 1 else 'oo'}t"
+    yield Label(view.at(x), min(tops) - 3, (f"{words}, {1e3 * slider.mass:.4g} g, mu {slider.mu:g}",))
+
+
+def _plate(left: float, length: float, edge: float) -> str:
+    top = edge if edge > 0 else edge - PLATE
+    return (
+        f'<rect x="{left:.1f}" y="{top:.1f}" width="{length:.1f}" height="{PLATE:g}" rx="2" fill="{STAGE}" '
+        'fill-opacity=".8"/>'
+    )
 
 
 def _length(view: View, y: float) -> Iterator[str]:

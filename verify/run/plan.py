@@ -191,7 +191,8 @@ def _skipped_slider(scene: "Scene", asks: list[Ask]) -> list[Choice]:
     if scene.slider is None:
         return [Choice("contact search", "the scene has no slider")]
     if not any(ask.slides for ask in asks):
-        return [Choice("slider", "nothing runs it: add [motion] with a duration")]
+        section = "[motor]" if scene.slider.contact is not None else "[motion] with a duration"
+        return [Choice("slider", f"nothing runs it: add {section}")]
     return []
 
 

@@ -28,8 +28,10 @@ PER_FIELD = 2
 """Steps of progress of one field: held, free."""
 FREE_RUNS = 3
 """Under way, cut off, turned round."""
-CONDITIONS = 4
-"""Of the runs from rest: the wave either way, in steps and in half of them."""
+HELD = 3
+"""Speeds of the runs from rest, from standing still to that of the crests."""
+RUNS = 2 * (1 + HELD) + 2 * 2
+"""From rest at each place: the wave either way, free and held; free and still in half the steps."""
 
 
 class Motor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -180,7 +182,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
 
     def n_motions(self, asked: Motor, scene: "Scene") -> int:
         """Held speeds, a search for no load counted as one; free runs; those from rest; one period for the picture."""
-        return len(asked.linear) * (asked.speeds + 1 + FREE_RUNS) + CONDITIONS * asked.places * len(asked.from_rest) + 1
+        return len(asked.linear) * (asked.speeds + 1 + FREE_RUNS) + RUNS * asked.places * len(asked.from_rest) + 1
 
     def run(
         self, asked: Motor, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

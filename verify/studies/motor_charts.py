@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from verify.models.catalogue import MODELS
 from verify.motor.combine import CHAIN
 from verify.studies.chart import Axis, Chart, Dash, Line
-from verify.studies.charting import BROAD, DASHES, PALETTE, key, plain_line
+from verify.studies.charting import BROAD, DASHES, PALETTE, key, line, plain_line
 from verify.studies.motor_movie import motor_movie
 
 if TYPE_CHECKING:
@@ -89,8 +89,8 @@ def _efficiency(found: "MotorFound") -> Chart:
     return Chart(
         id="motor-efficiency",
         title="Efficiency of the contact over speed",
-        caption="That power over what the surface gives along the beam; the rest is rubbed off. What the wave loses "
-        "in the beam and at its ends is not in it.",
+        caption="That power over what the surface gives along the beam; the rest is rubbed off. What the contact's "
+        "dashpots take across it, and what the wave loses at its ends, is not in it.",
         x=Axis("speed, cm/s"),
         y=Axis("efficiency, %"),
         lines=_curves(found, lambda at: None if at.efficiency is None else 100.0 * at.efficiency),
@@ -181,12 +181,39 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
         Chart(
             id="motor-rest",
             title=f"From rest: the slider's way at {rest.force:g} N",
-            caption="From its own place, undamped, forces switched on at once, which is how a nonlinear chain starts: the wave never "
-            f"settles. (kL)² ⟨θ²⟩ = {rest.size:.2g} of the drive's own motion.",
+            caption="From its own place, undamped, forces switched on at once, which is how a nonlinear chain starts: "
+            f"the wave never settles. (kL)² ⟨θ²⟩ = {rest.size:.2g} of the drive's own motion.",
             x=Axis("time, ms"),
             y=Axis("distance, µm"),
             lines=tuple(_way(run) for run in order),
         ),
+        Chart(
+            id="motor-rest-force",
+            title=f"From rest: force over speed at {rest.force:g} N",
+            caption="Means over the last half of those runs and over all places, over mu N. Left and right: the wave "
+            "as the scene says, and turned round. A motor that pushes with its wave is below nought on one side of "
+            "standing still and above it on the other.",
+            x=Axis("speed, cm/s"),
+            y=Axis("force over mu N"),
+            lines=tuple(line for one in order for line in _held_lines(one)),
+        ),
+    )
+
+
+def _held_lines(one: "RestField") -> tuple[Line, ...]:
+    chain = one.model == CHAIN
+    return tuple(
+        line(
+            one.title,
+            CHAINS[one.links] if chain else MODELS[one.model].colour,
+            [100.0 * at.speed for at in curve],
+            [at.force for at in curve],
+            dash="dash" if chain else "solid",
+            said=tuple(f"{at.force:+.3f} ± {at.error:.2g}" for at in curve),
+            keyed=not k,
+            group=one.title,
+        )
+        for k, curve in enumerate((one.curve, one.turned))
     )
 
 

@@ -59,7 +59,7 @@ class Shooting(msgspec.Struct, frozen=True, kw_only=True):
 
     force: float
     """Newton along +x."""
-    missed: float
+    return_error: float
     """How far its state is off after a period, over its own size."""
     largest_multiplier: float
     """Of a small departure after a period: below 1 it dies away."""
@@ -77,8 +77,10 @@ class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
     stuck_share: float
     wear_power: float
     """Lost in friction, and put into what gives way along the surface, W."""
+    damped_power: float
+    """Lost in the contact's dashpots or landings, mean over all of the run, W."""
     seconds: float
-    ratio: float
+    run_ms_per_ms: float
     """Run time over simulated time."""
     stopped: str
     """'end', or why it ended before."""
@@ -178,9 +180,9 @@ class MotorFound(Found, frozen=True, eq=False, kw_only=True):
 
     def plain(self) -> Any:
         """Figures of every field, those from rest, doubts."""
-        from verify.studies.motor_tables import field_as_plain
+        from verify.studies.motor_tables import field_as_plain, rest_as_plain
 
-        rest = msgspec.to_builtins(self.rest) if self.rest else None
+        rest = rest_as_plain(self.rest) if self.rest else None
         return {"fields": [field_as_plain(one) for one in self.fields], "rest": rest, "doubts": list(self.doubts)}
 
     def motions(self) -> int:
@@ -204,9 +206,9 @@ def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step
         fields.append(found)
         for name, one in kept.items():
             histories[name][model] = one
-    rest = rest_runs(scene, asked, progress)
-    progress("the picture of one period")
     first = fields[0]
+    rest = rest_runs(scene, asked, -1.0 if first.stall.force < 0.0 else 1.0, progress)
+    progress("the picture of one period")
     assert scene.slider is not None
     return MotorFound(
         fields=tuple(fields),
@@ -283,8 +285,9 @@ def _free(under_way: Timed) -> FreeRun:
         contact_share=float(run.contact_share[-last:].mean()),
         stuck_share=float(run.stuck_share[-last:].mean()),
         wear_power=float(run.rubbed[-last:].sum()) / seconds,
+        damped_power=(run.ledger.damped + run.ledger.impacts) / run.duration,
         seconds=run.duration,
-        ratio=run.statistics.wall_s / run.duration,
+        run_ms_per_ms=run.statistics.wall_s / run.duration,
         stopped=run.statistics.stopped,
     )
 
@@ -302,7 +305,7 @@ def _shooting(case: MotorCase, one_way: bool) -> Shooting | None:
         return None
     return Shooting(
         force=float(found.run.friction[1:].mean()),
-        missed=found.missed,
+        return_error=found.missed,
         largest_multiplier=float(np.abs(found.multipliers).max()),
     )
 

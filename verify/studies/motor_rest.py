@@ -5,7 +5,7 @@ places of one wavelength, the wave runs both ways, and what is said of a field i
 standard error; what halved steps change stands beside it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import sqrt
 from typing import TYPE_CHECKING
@@ -18,10 +18,11 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.motor.case import MotorCase
 from verify.motor.combine import CHAIN
+from verify.motor.figures import crest_speed
 from verify.options import Links
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
-from verify.studies.motor import CONDITIONS, case_of, places_from_rest
+from verify.studies.motor import HELD, RUNS, case_of, places_from_rest
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun
@@ -46,6 +47,19 @@ class Departure(msgspec.Struct, frozen=True, kw_only=True):
         return abs(self.mean) > SURE * self.error
 
 
+class RestHeld(msgspec.Struct, frozen=True, kw_only=True):
+    """One field's sliders held at one speed and at their places, means over the last half of each run."""
+
+    speed: float
+    """m/s along +x."""
+    force: float
+    """Mean friction along +x over mu times the preload, over the places."""
+    error: float
+    """Its standard error."""
+    halved: float | None
+    """The same in half the steps; None where that was not run."""
+
+
 class RestField(msgspec.Struct, frozen=True, kw_only=True):
     """One field's sliders, from rest."""
 
@@ -55,8 +69,10 @@ class RestField(msgspec.Struct, frozen=True, kw_only=True):
     """Metres along +x, of every place, then of every place with the wave turned round."""
     halved: tuple[float, ...]
     """The same in half the steps."""
-    forces: tuple[float, ...]
-    """Mean friction over each run, newton along +x."""
+    curve: tuple[RestHeld, ...]
+    """From standing still to the speed of the crests, the way that the wave pushes."""
+    turned: tuple[RestHeld, ...]
+    """The same with the wave turned round."""
     times: tuple[float, ...]
     way: tuple[float, ...]
     """Metres, at those times, of the slider at the scene's own place."""
@@ -72,6 +88,25 @@ class RestField(msgspec.Struct, frozen=True, kw_only=True):
     def stepped(self) -> float:
         """What halved steps change, rms, metres."""
         return float(np.sqrt(np.mean((np.array(self.ends) - np.array(self.halved)) ** 2)))
+
+    @property
+    def push(self) -> tuple[float, float]:
+        """(force over mu N on a slider that stands still, as far as it turns round with the wave, its error)."""
+        there, back = self.curve[0], self.turned[0]
+        way = 1.0 if self.turned[-1].speed > 0.0 else -1.0
+        return 0.5 * way * (back.force - there.force), 0.5 * sqrt(there.error**2 + back.error**2)
+
+    @property
+    def push_stepped(self) -> float:
+        """What halved steps change of it."""
+        there, back = self.curve[0], self.turned[0]
+        return 0.5 * abs((back.halved or 0.0) - (there.halved or 0.0) - (back.force - there.force))
+
+    @property
+    def bias(self) -> tuple[float, float]:
+        """(what does not turn round with the wave, along +x, its error)."""
+        there, back = self.curve[0], self.turned[0]
+        return 0.5 * (back.force + there.force), self.push[1]
 
     def own(self, turned: bool) -> float:
         """Of the scene's own place."""
@@ -96,7 +131,7 @@ class FromRest(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def n_runs(self) -> int:
         """Of sliders."""
-        return CONDITIONS * len(self.places) * len(self.fields)
+        return RUNS * len(self.places) * len(self.fields)
 
     def departure(self, one: RestField) -> Departure:
         """From the first field."""
@@ -105,16 +140,20 @@ class FromRest(msgspec.Struct, frozen=True, kw_only=True):
         return Departure(mean=float(apart.mean()), error=error, rms=float(np.sqrt((apart**2).mean())))
 
 
-def rest_runs(scene: "Scene", asked: "Motor", progress: Progress) -> FromRest | None:
-    """Every field from every start; None where no chain was asked for. Raises InputError."""
+def rest_runs(scene: "Scene", asked: "Motor", way: float, progress: Progress) -> FromRest | None:
+    """Every field from every start; None where no chain was asked for. Raises InputError.
+
+    `way` is that of the steady wave's push, +1 or -1.
+    """
     if not asked.from_rest:
         return None
     case, places = _scaled(scene, asked), places_from_rest(asked, scene)
+    crests = way * crest_speed(case)
     fields, size = [], 0.0
     for model, links in asked.from_rest:
         progress(f"from rest on {links + ' links' if model == CHAIN else model}")
         own = replace(case, model=model, count=asked.sized(model), links=links)
-        found, nonlinear = _field(own, asked.chain, places)
+        found, nonlinear = _field(own, asked, places, crests)
         fields.append(found)
         size = nonlinear if model == CHAIN else size
     return FromRest(
@@ -138,34 +177,77 @@ def _scaled(scene: "Scene", asked: "Motor") -> MotorCase:
     return case.driven(factor).on(pressed)
 
 
-def _field(case: MotorCase, seconds: float, places: tuple[float, ...]) -> tuple[RestField, float]:
-    """All starts of one field, and how nonlinear its chain is."""
+def _field(case: MotorCase, asked: "Motor", places: tuple[float, ...], crests: float) -> tuple[RestField, float]:
+    """All starts of one field, and how nonlinear its chain is; `crests` is their speed, m/s, with its way."""
     halved = replace(case, steps_per_period=2 * case.steps_per_period)
-    runs = [_run(one, seconds, places) for one in (case, case.turned(), halved, halved.turned())]
-    first, shown = [*runs[0], *runs[1]], runs[0][len(places) // 2]
+    held = tuple(crests * k / (HELD - 1) for k in range(HELD))
+    there = _runs(case, asked.chain, places, held)
+    back = _runs(case.turned(), asked.chain, places, tuple(-speed for speed in held))
+    fine = _runs(halved, asked.chain, places, held[:1])
+    fine_back = _runs(halved.turned(), asked.chain, places, held[:1])
+    shown = there[0][len(places) // 2]
     found = RestField(
         model=case.model,
         links=case.links,
-        ends=tuple(float(run.travelled[-1]) for run in first),
-        halved=tuple(float(run.travelled[-1]) for run in (*runs[2], *runs[3])),
-        forces=tuple(float(run.friction[1:].mean()) for run in first),
+        ends=tuple(float(run.travelled[-1]) for run in (*there[0], *back[0])),
+        halved=tuple(float(run.travelled[-1]) for run in (*fine[0], *fine_back[0])),
+        curve=tuple(_held(row, fine[k] if k == 1 else ()) for k, row in enumerate(there) if k),
+        turned=tuple(_held(row, fine_back[k] if k == 1 else ()) for k, row in enumerate(back) if k),
         times=tuple(thinned(shown.times, 200)),
         way=tuple(thinned(shown.travelled, 200)),
-        whole=all(run.statistics.stopped == "end" for row in runs for run in row),
+        whole=all(_whole(rows) for rows in (there, back, fine, fine_back)),
     )
     return found, shown.motor_margins.chain or 0.0
 
 
-def _run(case: MotorCase, seconds: float, places: tuple[float, ...]) -> "tuple[MotorRun, ...]":
-    """Sliders at all places on one beam, which does not feel them."""
+def _whole(rows: "list[tuple[MotorRun, ...]]") -> bool:
+    return all(run.statistics.stopped == "end" for row in rows for run in row)
+
+
+def _held(runs: "Sequence[MotorRun]", fine: "Sequence[MotorRun]") -> RestHeld:
+    """Means over the last half of the runs, and over their places."""
+    forces = _forces(runs)
+    return RestHeld(
+        speed=float(runs[0].speed[-1]),
+        force=float(forces.mean()),
+        error=float(forces.std(ddof=1)) / sqrt(len(forces)),
+        halved=float(_forces(fine).mean()) if fine else None,
+    )
+
+
+def _forces(runs: "Sequence[MotorRun]") -> Array:
+    """(n,), over mu N."""
+    slider = runs[0].slider
+    assert slider is not None
+    means = [float(run.friction[len(run.friction) // 2 :].mean()) for run in runs]
+    return np.asarray(np.array(means) / (slider.mu * slider.normal_force))
+
+
+def _runs(
+    case: MotorCase, seconds: float, places: tuple[float, ...], held: tuple[float, ...]
+) -> "list[tuple[MotorRun, ...]]":
+    """Free sliders at all places on one beam, which does not feel them, then those held at each speed."""
+    if case.model == CHAIN:  # which moves once for all of them
+        found = _run(case, seconds, places, (None, *held))
+        n = len(places)
+        return [found[k * n : (k + 1) * n] for k in range(1 + len(held))]
+    return [_run(case, seconds, places, (speed,)) for speed in (None, *held)]
+
+
+def _run(
+    case: MotorCase, seconds: float, places: tuple[float, ...], speeds: tuple[float | None, ...]
+) -> "tuple[MotorRun, ...]":
     from verify.motor.run import run_motors
 
+    each = [(speed, x) for speed in speeds for x in places]
     return run_motors(
         case.beam,
         case.forces,
         case.frequency_hz,
         seconds,
-        sliders=[replace(case.slider, position=x) for x in places],
+        sliders=[replace(case.slider, position=x) for _, x in each],
+        held_speed=[speed for speed, _ in each],
+        frozen=[speed is not None for speed, _ in each],
         model=case.model,
         count=case.count,
         modes=case.modes,
@@ -186,9 +268,16 @@ def what_stands(found: FromRest) -> Iterator[str]:
         f"{found.size:.2g}, {starts} starts ({len(found.places)} places of one wavelength, the wave either way): where "
         f"a slider ends against that on the {first}, " + "; ".join(_departs(found, one) for one in found.fields[1:])
     )
+    yield "held still in those runs, force over mu N that turns round with the wave, and that does not: " + "; ".join(
+        f"{one.title} {_pm(*one.push)}, {_pm(*one.bias)}" for one in found.fields
+    )
     chains = [one for one in found.fields if one.model == CHAIN]
     for one, other in pairwise(chains):
         yield _nearer(found, one, other)
+
+
+def _pm(mean: float, error: float) -> str:
+    return f"{mean:+.3f} +- {error:.2g}"
 
 
 def _departs(found: FromRest, one: RestField) -> str:
@@ -199,12 +288,14 @@ def _departs(found: FromRest, one: RestField) -> str:
 
 
 def _nearer(found: FromRest, one: RestField, other: RestField) -> str:
-    """Which of two is nearer the first field, start by start."""
-    first: Array = np.array(found.fields[0].ends)
-    apart = abs(np.array(one.ends) - first) - abs(np.array(other.ends) - first)
-    mean, error = float(apart.mean()), float(apart.std(ddof=1)) / sqrt(len(apart))
-    pair = f"{one.title} against {other.title}: by {1e6 * mean:+.3g} +- {1e6 * error:.2g} um a start"
-    beam = found.fields[0].title
-    if abs(mean) <= max(SURE * error, one.stepped + other.stepped):
-        return f"which chain is nearer the {beam} is withheld ({pair}, no more than its error allows)"
-    return f"{(other if mean > 0 else one).title} are nearer the {beam} ({pair} farther)"
+    """Which of two pushes more nearly as the first field does, standing still."""
+    beam = found.fields[0]
+    far = [abs(each.push[0] - beam.push[0]) for each in (one, other)]
+    error, stepped = sqrt(one.push[1] ** 2 + other.push[1] ** 2), one.push_stepped + other.push_stepped
+    pair = f"{one.title} push {far[0]:.3f} mu N otherwise, {other.title} {far[1]:.3f}"
+    if abs(far[0] - far[1]) <= max(SURE * error, stepped):
+        return (
+            f"which chain pushes more nearly as the {beam.title} does is withheld ({pair}, apart by less than errors)"
+        )
+    near = other if far[0] > far[1] else one
+    return f"{near.title} push more nearly as the {beam.title} does where the axial inertia is that large ({pair})"

@@ -10,12 +10,12 @@ from verify.studies.told import Column, Table
 if TYPE_CHECKING:
     from verify.motor.figures import AtSpeed
     from verify.studies.motor_figures import FieldFound, MotorFound
-    from verify.studies.motor_rest import FromRest
+    from verify.studies.motor_rest import Departure, FromRest, RestField
 
 
 def motor_tables(found: "MotorFound") -> tuple[Table, ...]:
     """All of them."""
-    rest = (_rest(found.rest),) if found.rest else ()
+    rest = (_rest(found.rest), _rest_curve(found.rest)) if found.rest else ()
     return (_overview(found), _force_speed(found), _margins(found), *rest)
 
 
@@ -34,6 +34,7 @@ def _overview(found: "MotorFound") -> Table:
         Column("stop", "duration"),
         Column("turn", "duration"),
         Column("wear, mW", ".4g", 1e3, wide=True),
+        Column("dashpots, mW", ".4g", 1e3, wide=True),
         Column("s per s", ".2g", wide=True),
     )
     return Table(
@@ -68,7 +69,8 @@ def _of_field(one: "FieldFound") -> tuple[Any, ...]:
         one.stop_time,
         one.reversal_time,
         free.wear_power,
-        free.ratio,
+        free.damped_power,
+        free.run_ms_per_ms,
     )
 
 
@@ -124,7 +126,7 @@ def _margins(found: "MotorFound") -> Table:
                 one.coupling.normal_size,
                 one.coupling.friction_size,
                 one.free.spread,
-                one.shooting.missed if one.shooting else None,
+                one.shooting.return_error if one.shooting else None,
                 one.shooting.largest_multiplier if one.shooting else None,
             )
             for one in found.fields
@@ -142,29 +144,75 @@ def _rest(rest: "FromRest") -> Table:
         f"slider put at {len(rest.places)} places of one wavelength, the wave either way.",
         columns=(
             Column("field", left=True),
-            Column("own place, µm", "+.4g", 1e6),
-            Column("wave turned, µm", "+.4g", 1e6),
-            Column("from the first, µm", "+.3g", 1e6),
+            Column("own place, µm", "+.4g", 1e6, wide=True),
+            Column("wave turned, µm", "+.4g", 1e6, wide=True),
+            Column("apart, µm", "+.3g", 1e6),
             Column("error, µm", ".2g", 1e6),
             Column("rms, µm", ".3g", 1e6),
-            Column("steps halved, µm", ".2g", 1e6),
+            Column("steps halved, µm", ".2g", 1e6, wide=True),
+            Column("push", "+.3f"),
+            Column("bias", "+.3f"),
+            Column("error", ".2g"),
+            Column("steps halved", ".1e", wide=True),
         ),
         rows=tuple(
-            (one.title, one.own(False), one.own(True), away.mean, away.error, away.rms, one.stepped)
+            (*_ends(one, away), one.push[0], one.bias[0], one.push[1], one.push_stepped)
             for one, away in zip(rest.fields, gone, strict=True)
         ),
         notes=(
-            "Own place: where the slider ends that starts where the scene puts it. From the first: mean, over all "
+            "Own place: where the slider ends that starts where the scene puts it. Apart: mean, over all "
             "starts, of how much farther along +x it ends than on the first field, with its standard error and its "
-            "rms. Steps halved: what that changes, rms.",
+            "rms. Steps halved: what that changes, rms. Push and bias: the force on a slider that stands still, over "
+            "mu N, that turns round with the wave, and that does not.",
         ),
+        shown="both",
+    )
+
+
+def _ends(one: "RestField", away: "Departure") -> tuple[Any, ...]:
+    return one.title, one.own(False), one.own(True), away.mean, away.error, away.rms, one.stepped
+
+
+def _rest_curve(rest: "FromRest") -> Table:
+    """Force over speed of all fields from rest."""
+    columns = [Column("speed, cm/s", "+.4f", 100.0)]
+    for one in rest.fields:
+        columns += [Column(one.title, "+.3f"), Column("error", ".2g", wide=True)]
+    rows = []
+    for k in range(-len(rest.fields[0].curve), len(rest.fields[0].turned)):
+        cells: list[float] = []
+        for one in rest.fields:
+            at = one.curve[-1 - k] if k < 0 else one.turned[k]
+            cells += [at.speed] * (not cells) + [at.force, at.error]
+        rows.append(tuple(cells))
+    return Table(
+        title="Force over speed from rest, over mu N",
+        before="The same runs, held at each speed and at each place, means over their last half: above with the wave "
+        "as the scene says, below with it turned round.",
+        columns=tuple(columns),
+        rows=tuple(rows),
         shown="both",
     )
 
 
 def at_speed_as_plain(at: "AtSpeed") -> dict[str, Any]:
     """With what follows from it."""
-    return msgspec.to_builtins(at) | {"power": at.power, "efficiency": at.efficiency}
+    plain: dict[str, Any] = msgspec.to_builtins(at)
+    return plain | {"power": at.power, "efficiency": at.efficiency}
+
+
+def rest_as_plain(rest: "FromRest") -> dict[str, Any]:
+    """For JSON, with what follows from it."""
+    plain: dict[str, Any] = msgspec.to_builtins(rest)
+    for kept, one in zip(plain["fields"], rest.fields, strict=True):
+        (push, error), (bias, _) = one.push, one.bias
+        kept |= {
+            "push": push,
+            "bias": bias,
+            "push_standard_deviation": error,
+            "apart": msgspec.to_builtins(rest.departure(one)),
+        }
+    return plain
 
 
 def field_as_plain(one: "FieldFound") -> dict[str, Any]:
@@ -172,5 +220,6 @@ def field_as_plain(one: "FieldFound") -> dict[str, Any]:
     plain: dict[str, Any] = msgspec.to_builtins(one)
     plain["curve"] = [at_speed_as_plain(at) for at in one.curve]
     plain["no_load"] = at_speed_as_plain(one.no_load) if one.no_load else None
+    plain["margins"]["sag"] = round(one.margins.sag, 12)  # loads that balance leave rounding
     plain["title"] = MODELS[one.model].title
     return plain

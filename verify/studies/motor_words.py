@@ -47,7 +47,7 @@ def _of_field(one: "FieldFound") -> Iterator[str]:
     times = {"start": one.start_time, "stop": one.stop_time, "turning round": one.reversal_time}
     words = ", ".join(f"{name} {seconds_in_words(value)}" for name, value in times.items() if value is not None)
     yield f"time constants {where}: {words or 'none, the speed is not reached within the run'}"
-    yield f"one second of motor {where}: {free.ratio:.2g} s of run time"
+    yield f"one second of motor {where}: {free.run_ms_per_ms:.2g} s of run time"
 
 
 def _two_ways(one: "FieldFound") -> str:

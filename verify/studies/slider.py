@@ -36,6 +36,8 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
         """Without [motion], or without a slider."""
         if scene.motion is None:
             return "the scene has no [motion]"
+        if scene.slider is not None:
+            return "slider.contact lets the slider leave the beam, which [motor] runs; [motion] is of one that stays on"
         return "the scene has no [slider]; its [motion] says how gates and claims in time are run"
 
     def check_run(self, asked: MotionAsk, scene: "Scene") -> None:

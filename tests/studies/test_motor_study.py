@@ -1,0 +1,364 @@
+"""The study of a motor against direct calls, its inputs, its sentences, what it refuses, what it draws."""
+
+import re
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import load_scene, run_scene
+from verify.errors import InputError
+from verify.motor.figures import at_speed, crest_speed, held, mean_speed, no_load, started, stopped
+from verify.motor.run import run_motor
+from verify.report.beam_drawing import beam_drawing
+from verify.report.plain import run_as_plain
+from verify.run.plan import plan_scene
+from verify.run.runner import n_steps
+from verify.studies import motor_figures
+from verify.studies.motor import case_of
+from verify.studies.motor_figures import motor_study
+from verify.studies.motor_rest import FromRest, RestField, RestHeld, what_stands
+from verify.studies.motor_words import doubts
+
+SMALL = (
+    'motor.models=["segment"]',
+    "motor.count=49",
+    "motor.speeds=3",
+    "motor.periods=120",
+    "slider.foot.0.points=5",
+    "slider.foot.1.points=5",
+)
+CHAINED = (
+    'motor.models=["segment", "chain"]',
+    "motor.chain=5e-4",
+    "motor.places=2",
+    "motor.periods=20",
+    "motor.speeds=2",
+)
+
+
+def small(*more):
+    return load_scene("preloaded-motor", (*SMALL, *more))
+
+
+def studied(scene):
+    return motor_study(scene, scene.motor)
+
+
+@pytest.fixture(scope="module")
+def study():
+    return studied(small())
+
+
+@pytest.fixture(scope="module")
+def chained():
+    return studied(small(*CHAINED))
+
+
+def test_held_figures_are_those_of_direct_calls(study):
+    scene = small()
+    case, (field,) = case_of(scene.motor, scene, "segment"), study.fields
+    still, settled = held(case, 0.0)
+    assert [one.speed for one in field.curve] == pytest.approx([0.0, -0.5 * crest_speed(case), -crest_speed(case)])
+    assert field.stall == still
+    assert field.curve[1] == at_speed(case, field.curve[1].speed, settled)
+    assert field.curve[1].force == pytest.approx(at_speed(case, field.curve[1].speed).force, rel=0.01)  # settles
+    assert field.no_load == no_load(case, None, settled)
+
+
+def test_free_figures_are_those_of_direct_calls(study):
+    scene = small()
+    case, (field,) = case_of(scene.motor, scene, "segment"), study.fields
+    under_way = started(case, field.no_load.speed, 120)
+    run = under_way.run
+    assert (field.free.speed, field.free.spread) == mean_speed(run, 30)
+    assert field.free.contact_share == pytest.approx(run.contact_share[-30:].mean())
+    assert field.free.wear_power == pytest.approx(run.rubbed[-30:].sum() / (run.times[-1] - run.times[-31]))
+    assert field.free.damped_power == pytest.approx(run.ledger.damped / run.duration)
+    assert field.stop_time == stopped(case, run, 120).time
+    assert 0.9 < field.start_time / (0.632 * 0.01 * abs(field.free.speed) / 0.04) < 1.3
+    assert 1.8 < field.reversal_time / field.start_time < 2.3
+
+
+def test_a_free_run_ends_at_the_speed_of_no_load(study):
+    (field,) = study.fields
+    assert field.free.speed == pytest.approx(field.no_load.speed, rel=0.02)
+    assert field.no_load.speed == pytest.approx(-0.0264, rel=0.02)
+
+
+@pytest.fixture
+def unsought(monkeypatch):
+    """The speed without load is not sought, where no figure of it is asked for."""
+    monkeypatch.setattr(motor_figures, "no_load", lambda case, reach, before: at_speed(case, -0.026, before))
+
+
+INPUTS = {
+    "motor.count=98": lambda field: field.stall.force,
+    "motor.periods=60": lambda field: field.free.speed,
+    "motor.speeds=4": lambda field: field.curve[1].speed,
+    "motor.steps_per_period=127": lambda field: field.free.speed,
+    'motor.start="rest"': lambda field: field.free.speed,
+    "slider.contact.stiffness=9e4": lambda field: field.free.contact_share,
+}
+
+
+@pytest.mark.parametrize("setting", INPUTS)
+def test_every_input_moves_a_figure(setting, study, unsought):
+    read = INPUTS[setting]
+    assert read(studied(small(setting)).fields[0]) != read(study.fields[0])
+
+
+def test_a_soft_start_and_damping_move_a_start_from_rest(unsought):
+    rest = ('motor.start="rest"', "motor.periods=20", "motor.speeds=2")
+    plain, soft, damped = (
+        studied(small(*rest, *more)).fields[0].free.speed
+        for more in ((), ("motor.soft_start_periods=6",), ("motor.modal_damping=0.01",))
+    )
+    assert len({plain, soft, damped}) == 3
+
+
+def test_every_input_of_the_runs_from_rest_moves_them(chained, unsought):
+    def ends(*more):
+        return [one.ends for one in studied(small(*CHAINED, *more)).rest.fields]
+
+    own = [one.ends for one in chained.rest.fields]
+    assert [one.title for one in chained.rest.fields] == ["segments", "rigid links", "stretching links"]
+    assert ends("motor.chain=4e-4")[0] != own[0]
+    assert ends("motor.chain_force=12")[1] != own[1]
+    assert [len(one) for one in ends("motor.places=3")] == [6, 6, 6]
+    assert ends('motor.links=["stretching"]') == [own[0], own[2]]
+
+
+def test_a_run_from_rest_is_that_of_a_direct_call(chained):
+    scene = small(*CHAINED)
+    forces = tuple(replace(one, amplitude=30.0) for one in scene.forces)
+    slider = replace(scene.slider, preload=0.2 * 30.0 / 9.0)
+    for one in chained.rest.fields:
+        model = "segment" if one.model == "segment" else "chain"
+        run = run_motor(
+            scene.beam,
+            forces,
+            4276.0,
+            5e-4,
+            slider=slider,
+            model=model,
+            count=49,
+            start="rest",
+            modal_damping=0.0,
+            links=one.links,
+            samples=4,
+            steps_per_period=61,
+        )
+        assert one.own(False) == pytest.approx(run.travelled[-1], rel=1e-3)
+
+
+def test_nonlinear_chains_move_a_slider_as_the_linear_one_does_where_forces_are_small(chained, unsought):
+    weak = studied(small(*CHAINED, "motor.chain=9e-4", "motor.chain_force=0.05")).rest
+    linear, rigid, stretching = (np.array(one.ends) for one in weak.fields)
+    largest = abs(linear).max()
+    assert rigid == pytest.approx(linear, abs=0.01 * largest)
+    assert stretching == pytest.approx(linear, abs=0.01 * largest)
+    strong = studied(small(*CHAINED, "motor.chain=9e-4", "motor.chain_force=30")).rest
+    linear, rigid, stretching = (np.array(one.ends) for one in strong.fields)
+    assert abs(rigid - linear).max() > 0.1 * abs(linear).max()
+    assert abs(stretching - linear).max() > 0.1 * abs(linear).max()
+
+
+def rest_field(model, links, still, turned, ends=(1e-6, -1e-6, 2e-6, -2e-6), error=0.01):
+    """A field whose sliders are pushed so much, standing still, the wave either way."""
+    there, back = ((RestHeld(speed=v, force=f, error=error, halved=f) for f, v in pair) for pair in (
+        ((still, 0.0), (0.1, -0.02)), ((turned, 0.0), (-0.1, 0.02)))
+    )  # fmt: skip
+    return RestField(
+        model=model,
+        links=links,
+        ends=ends,
+        halved=ends,
+        curve=tuple(there),
+        turned=tuple(back),
+        times=(0.0,),
+        way=(0.0,),
+        whole=True,
+    )
+
+
+def rest_of(*fields):
+    return FromRest(force=30.0, preload=0.6, seconds=0.02, size=0.12, places=(0.2, 0.3), fields=fields)
+
+
+def test_push_turns_round_with_the_wave_and_bias_does_not():
+    field = rest_field("chain", "rigid", -0.2, 0.5)
+    assert field.push == pytest.approx((0.35, 0.01 / sqrt(2.0)))
+    assert field.bias == pytest.approx((0.15, 0.01 / sqrt(2.0)))
+
+
+def test_which_chain_is_nearer_is_said_where_errors_allow_and_withheld_otherwise():
+    beam = rest_field("analytic", "rigid", -0.4, 0.4)
+    rigid, near, as_far = (
+        rest_field("chain", links, -push, push)
+        for links, push in (("rigid", 0.1), ("stretching", 0.3), ("stretching", 0.115))
+    )
+    assert list(what_stands(rest_of(beam, rigid, near)))[-1].startswith("stretching links push more nearly")
+    assert "is withheld" in list(what_stands(rest_of(beam, rigid, as_far)))[-1]
+
+
+def test_a_mean_within_twice_its_error_is_not_told():
+    beam = rest_field("analytic", "rigid", -0.4, 0.4, ends=(0.0, 0.0, 0.0, 0.0))
+    apart = rest_field("chain", "rigid", -0.4, 0.4, ends=(3e-6, 4e-6, 3e-6, 4e-6))
+    spread = rest_field("chain", "rigid", -0.4, 0.4, ends=(-9e-6, 10e-6, -9e-6, 10e-6))
+    assert "on rigid links +3.5 +- 0.29 um" in next(iter(what_stands(rest_of(beam, apart))))
+    assert "on rigid links no mean that is told from its error" in next(iter(what_stands(rest_of(beam, spread))))
+
+
+# --- How far it can be believed ---------------------------------------------------------------------------------------
+
+
+def doubted(study, **changed):
+    (field,) = study.fields
+    margins = {name: value for name, value in changed.items() if name in ("epsilon", "sag", "step", "chain")}
+    changed_field = replace(field, margins=replace(field.margins, **margins))
+    told = doubts([changed_field], small().slider, changed.get("k", 135.2), changed.get("h", 1e-3))
+    return {line.partition(":")[0]: line for line in told}
+
+
+def test_a_margin_that_is_not_small_has_its_sentence(study):
+    assert set(doubted(study)) == {"epsilon", "chain", "coupling"}
+    assert "would have 2 mu kappa/(kappa_t k h) = 18" in doubted(study)["epsilon"]
+    assert "= 0.93, so that points give way" in doubted(study, epsilon=0.93)["epsilon"]
+    assert "epsilon" not in doubted(study, epsilon=0.05)
+    assert "epsilon" not in doubted(study, k=1e5)
+    assert "bends the beam by 30 um, 2.1 times" in doubted(study, sag=30e-6)["sag"]
+    assert "step" in doubted(study, step=0.4)
+    assert "chain" not in doubted(study, chain=1e-4)
+
+
+def test_facts_print_both_ways_to_a_steady_figure_and_withhold_what_the_spread_hides(study):
+    (field,) = study.fields
+    shaky = replace(field, free=replace(field.free, spread=0.01))
+    first = next(line for line in study.facts() if line.startswith("speed without load"))
+    assert f"{100 * field.free.speed:+.5g} cm/s in the free run" in first
+    assert f"{100 * field.no_load.speed:+.5g} cm/s held at its place" in first
+    second = next(line for line in replace(study, fields=(shaky,)).facts() if line.startswith("speed without load"))
+    assert "whether they differ is withheld" in second
+
+
+# --- Plan, JSON, progress ---------------------------------------------------------------------------------------------
+
+
+def test_a_run_does_what_its_plan_says():
+    scene, told = small(*CHAINED), []
+    result = run_scene(replace(scene, gate=()), told.append)
+    assert plan_scene(replace(scene, gate=())).motions == result.found["motor"].motions()
+    assert len(told) == n_steps(replace(scene, gate=()))
+    plain = run_as_plain(result, None)["motor"]
+    assert plain["fields"][0]["curve"][0]["force"] == result.found["motor"].fields[0].stall.force
+    assert plain["rest"]["fields"][1]["links"] == "rigid"
+
+
+def test_a_plan_says_that_motion_leaves_such_a_slider_to_the_motor():
+    skipped = {one.what: one.why for one in plan_scene(small("motion.duration=1e-3")).skipped}
+    assert "which [motor] runs" in skipped["motion study"]
+    alone = load_scene("preloaded-motor")
+    without = {one.what: one.why for one in plan_scene(replace(alone, motor=None, gate=())).skipped}
+    assert without["slider"] == "nothing runs it: add [motor]"
+
+
+WRONG = {
+    "motor.speeds=1": "speeds",
+    "motor.periods=3": "periods",
+    "motor.chain=-0.1": "motor.chain = -0.1",
+    "motor.chain_force=0": "motor.chain_force = 0",
+    "motor.modal_damping=1.5": "motor.modal_damping = 1.5",
+    "motor.soft_start_periods=2": "motor.soft_start_periods = 2",
+    'motor.models=["chain"]': "the nonlinear chain alone",
+    'motor.models=["segment", "chian"]': "'chian'.*did you mean 'chain'",
+    'motor.models=["segment", "segment"]': "one twice",
+    'motor.links=[]': "motor.links = \\[\\]",
+    'motor.start="stedy"': "start",
+    "motor.places=1": "places",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("setting", WRONG)
+def test_bad_input_is_refused_with_the_scene(setting):
+    with pytest.raises(InputError, match=WRONG[setting]):
+        load_scene("preloaded-motor", (setting,))
+
+
+REFUSED = {
+    'drive.kind="displacement"': "drive.kind",
+    'slider.coupling="two-way"': "slider.coupling = 'two-way' on a nonlinear chain",
+    "slider.position=0.03": "off the beam",
+    "slider.foot.0.length=0.7": "longer than the beam",
+}
+
+
+@pytest.mark.parametrize("setting", REFUSED)
+def test_what_cannot_be_run_is_refused_before_anything_is_solved(setting):
+    plan = plan_scene(replace(load_scene("preloaded-motor", (setting,)), gate=()))
+    (problem,) = [one for one in plan.problems if one.who == "motor"]
+    assert re.search(REFUSED[setting], problem.why)
+
+
+def test_a_motor_without_forces_or_without_a_slider_that_leaves_is_refused():
+    scene = small()
+    for changed, words in (
+        ({"drive": None}, "under a \\[drive\\] with forces"),
+        ({"slider": None}, "add \\[slider\\] with \\[slider.contact\\]"),
+        ({"slider": replace(scene.slider, contact=None, foot=())}, "add \\[slider.contact\\]; one that never"),
+    ):
+        with pytest.raises(InputError, match=words):
+            replace(scene, gate=(), **changed)
+
+
+# --- What is drawn ----------------------------------------------------------------------------------------------------
+
+
+def test_the_picture_has_a_bar_for_every_point_as_long_as_its_force(study):
+    (movie,) = [chart for chart in study.charts() if chart.id == "motor-moving"]
+    run = study.drawn.period
+    assert len(movie.frames) == len(run.times) - 1
+    above = next(line for line in movie.lines if line.name == "force of points above")
+    lengths = np.array([[row[3 * i + 1] - row[3 * i] for i in range(5)] for row in above.moves])
+    forces = run.pressures[1:, :5]
+    assert lengths / lengths.max() == pytest.approx(
+        forces / run.pressures[1:].max() * lengths.max() / lengths.max(), abs=0.2
+    )
+    assert np.corrcoef(lengths.ravel(), forces.ravel())[0, 1] > 1.0 - 1e-9
+    assert {len(line.moves) for line in movie.lines} == {len(movie.frames)}
+
+
+def test_the_contact_line_moves_with_the_crests_by_a_wavelength_a_period(study):
+    """The middle of what presses on the upper face, as a phase along the foot, turns once."""
+    run = study.drawn.period
+    length = 0.0465
+    turn = np.exp(2j * pi * run.point_offsets[:5] / length)
+    phase = np.unwrap(np.angle(run.pressures[1:, :5] @ turn))
+    assert abs(phase[-1] - phase[0]) / (2 * pi) == pytest.approx(35 / 36, abs=0.03)
+
+
+def test_every_chart_has_something_to_show(study, chained):
+    ids = [chart.id for chart in study.charts()]
+    assert ids == [
+        "motor-moving",
+        "motor-force",
+        "motor-power",
+        "motor-efficiency",
+        "motor-portrait",
+        "motor-shares",
+        "motor-way",
+    ]
+    assert [chart.id for chart in chained.charts()][-2:] == ["motor-rest", "motor-rest-force"]
+    assert not [chart.id for chart in (*study.charts(), *chained.charts()) if chart.empty]
+
+
+def test_a_drawing_shows_feet_on_their_faces_and_the_second_beam():
+    plain = beam_drawing(load_scene("preloaded-motor"))
+    assert "slider on 2 feet" in plain
+    assert plain.count('fill="#e8760c"') == 2
+    assert plain.count('stroke="#e8760c"') == 30
+    several = beam_drawing(load_scene("multi-contact-slider"))
+    assert several.count('fill="#e8760c"') == 3
+    assert several.count('stroke="#e8760c"') == 44
+    assert several.count("stroke-dasharray") == 1
