@@ -523,6 +523,8 @@ SLIDER = {
     "loaded-elements": lambda: loaded(0.31, SLIDER_MASS, 0.25),
     "held-steady-segments": held_steady,
     "held-steady-elements": held_steady,
+}
+HEAVY_SLIDER = {
     "books-contact": lambda: ridden("massless")["contact_on_beam"],
     "books-contact-one-way": lambda: ridden("massless", felt=False)["contact_on_beam"],
     "books-damped": lambda: ridden("massless")["damped"],
@@ -642,6 +644,7 @@ KNOWN = {
     "patched-strip": PATCHED,
     "moving-load": MOVING,
     "paper-slider": SLIDER,
+    "heavy-slider": HEAVY_SLIDER,
     "chain": CHAIN,
 }
 """By scene and gate."""

@@ -322,21 +322,11 @@ FAULTS = {
         },
         static_friction_for_kinetic: {"belt-stick-time", "belt-slip-time"},
         friction_of_half_the_slope: {"free-decay", "creep"},
-        one_way_for_two_way: {"slider-felt", "held-from-rest", "books-contact", "books-way"},
+        one_way_for_two_way: {"slider-felt", "held-from-rest"},
         held_slider_without_inertia: {
             "held-steady-segments",
             "held-steady-elements",
             "held-from-rest",
-            "books-reaction",
-            "books-way",
-        },
-        two_way_for_one_way: {"books-contact-one-way"},
-        loss_of_the_beam_booked_at_a_thousandth_less: {
-            "books-damped",
-            "books-close",
-            "books-close-coulomb",
-            "books-close-one-way",
-            "books-close-held",
         },
         steady_start_without_the_mass: {"held-steady-segments", "held-steady-elements"},
         start_without_the_sag: {"held-steady-segments", "held-steady-elements"},
@@ -378,6 +368,18 @@ FAULTS = {
             "beam-segments",
         },
         surface_seen_half_a_step_late: {"slider-order-step", "slider-step-steep"},
+    },
+    "heavy-slider": {
+        one_way_for_two_way: {"books-contact", "books-way"},
+        held_slider_without_inertia: {"books-reaction", "books-way"},
+        two_way_for_one_way: {"books-contact-one-way"},
+        loss_of_the_beam_booked_at_a_thousandth_less: {
+            "books-damped",
+            "books-close",
+            "books-close-coulomb",
+            "books-close-one-way",
+            "books-close-held",
+        },
     },
     "moving-load": {
         held_slider_without_inertia: {

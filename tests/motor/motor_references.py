@@ -337,7 +337,7 @@ class Rider:
             return [*found, (spare, 1)]
         return [*found, (lambda t, s: mode[1] * self.slip(t, s), -1)]
 
-    def run(self, start, duration, at, period, max_step=0.01, rtol=1e-11, atol=None):
+    def run(self, start, duration, at, period, max_step=0.02, rtol=1e-10, atol=None):
         """States at the times `at`, from 0 to `duration`."""
         self.tick = 1e-5 * period
         self.speed = max(abs(self.on.seen(t, start)[3]) for t in np.linspace(0.0, period, 17))
@@ -389,6 +389,24 @@ class Rider:
         if mode[1] == "stuck":
             return ("pressed", 1 if needed > 0.0 else -1), s
         return ("pressed", "stuck" if abs(needed) <= self.p.mu * self.force(t, s) else -mode[1]), s
+
+
+class Resting(Rider):
+    """A Point on a hard contact that it never leaves: N = load + m times the acceleration of the surface below it."""
+
+    def force(self, t, s):
+        """N."""
+        rates = []
+        for side in (1.0, -1.0):
+            there = s.copy()
+            there[X] += side * self.tick * s[V]
+            _, rise, tilt, _ = self.on.seen(t + side * self.tick, there)
+            rates.append(rise + tilt * s[V])
+        return self.p.load + self.p.across * (rates[0] - rates[1]) / (2.0 * self.tick)
+
+    def depth(self, t, s):
+        """It never leaves."""
+        return 1.0
 
 
 def body(x=0.0, v=0.0, z=0.0, zd=0.0, beam=0):

@@ -41,7 +41,7 @@ def followed(spans, n, damping, pitches):
     )
     level = by.lain_on(by.felt(wave.at, MIDDLE + arms, 0.0, HALF)[0], load / stiffness)
     times = np.arange(1, PERIODS + 1) * PERIOD
-    rows = by.foot_ridden(foot, wave, MIDDLE, [level, 0.0, 0.0, 0.0], times, rtol=1e-8, max_step=0.02 * PERIOD)
+    rows = by.foot_ridden(foot, wave, MIDDLE, [level, 0.0, 0.0, 0.0], times, rtol=1e-8, max_step=0.05 * PERIOD)
     return foot, rows
 
 
@@ -73,10 +73,10 @@ def foot_misses(case, step):
 @pytest.mark.parametrize("case", FEET)
 def test_a_foot_rises_turns_and_rubs_as_dop853_says(case):
     motion, pressed, dragged, touched = foot_misses(case, 4000)
-    assert motion < 6e-3
-    assert pressed < 3e-5
-    assert dragged < 3e-4
-    assert touched < 3e-4
+    assert motion < 3e-5
+    assert pressed < 1e-6
+    assert dragged < 2e-4
+    assert touched < 2e-4
 
 
 @pytest.mark.parametrize("case", [FEET[0], FEET[1], FEET[3]])
@@ -134,7 +134,7 @@ def test_power_and_efficiency_are_the_layers(phi, r):
 
 def test_a_layer_that_gives_way_is_of_second_order_in_the_step():
     """Root mean square over cases, against the same foot in steps finer by far: the number of points does not tell."""
-    cases = [(1.0, 0.87, 0.1), (1.0, 0.0, 3.0), (1.4, 0.5, 0.7), (0.7, 0.9, 1.0), (1.9, 0.3, 0.4)]
+    cases = [(1.0, 0.87, 0.1), (1.0, 0.0, 3.0), (1.4, 0.5, 0.7), (0.7, 0.9, 1.0), (1.9, 0.3, 0.4), (1.3, 0.68, 0.4)]
     best = np.array([dragged(*case, step=4999) for case in cases])
     off = [[np.subtract([dragged(*case, step=n) for case in cases], best) for n in s] for s in ((31, 37), (251, 257))]
     coarse, fine = np.sqrt(np.mean(np.square(off), axis=(1, 2)))

@@ -2,10 +2,11 @@
 
 from math import asin, cos, pi, sin, sqrt
 
+import motor_references as by
 import numpy as np
 import pytest
 from motor_references import bounces
-from motor_setups import MIDDLE, OMEGA, STRIP, drive, ridden
+from motor_setups import HERTZ, MIDDLE, OMEGA, STRIP, drive, ridden
 from msgspec.structs import replace
 
 from verify.contact import bouncing, landing
@@ -157,3 +158,32 @@ def test_a_bouncing_point_is_thrown_along_by_mu_of_every_blow_until_it_runs_as_t
     assert len(ramp) == int(abs(last) / blow) > 3
     assert run.ledger.rubbed > 0.0
     assert abs(run.ledger.residual) < 1e-9 * run.ledger.impacts
+
+
+@pytest.mark.parametrize(("law", "slope"), [("coulomb", None), ("tanh", 3e3)])
+def test_a_hard_point_that_stays_on_sticks_and_slips_as_dop853_says(law, slope):
+    """At 0.7 of what lifts it off, three periods from rest, of second order in the step."""
+    amplitude, mu, load = 1e-6, 0.03, MASS * 1e-6 * OMEGA**2 / 0.7
+    wave, times = drive(amplitude, 0.1)[1], np.arange(1, 4) / HERTZ
+    point = by.Point(MASS, MASS, load, 1.0, mu=mu, slope=slope, half=0.5 * STRIP.thickness)
+    followed = by.Resting(point, by.OneWay(wave.at, point.half)).run(by.body(x=MIDDLE), times[-1], times, times[0])
+    slider = Slider(
+        mass=MASS,
+        mu=mu,
+        law=law,
+        slope=slope or 1.0,
+        gravity=0.0,
+        preload=load,
+        coupling="one-way",
+        contact=Contact(),
+    )
+
+    def miss(steps):
+        run = ridden(slider, amplitude, 0.1, 3, steps, samples=4)
+        assert len(run.events[run.events[:, 1] == LEAVES]) == 0
+        assert law == "tanh" or 0.1 < run.stuck_share[1:].mean() < 0.9
+        return np.abs(run.speed[1:] - followed.states[:, by.V]).max() / np.abs(followed.states[:, by.V]).max()
+
+    coarse, fine = (np.mean([miss(n) for n in steps]) for steps in ((97, 103, 107, 113), (1552, 1648, 1712, 1808)))
+    assert fine < 2e-5
+    assert 1.4 < np.log2(coarse / fine) / 4.0 < 2.6

@@ -1,13 +1,9 @@
 """What a run of a slider on feet returns."""
 
-from typing import TYPE_CHECKING
-
 from verify.field_docs import Value
 from verify.models.arrays import Array
+from verify.motion.contact import Margins
 from verify.motion.result import Ride
-
-if TYPE_CHECKING:
-    from verify.motion.contact import Margins
 
 
 class MotorMargins(Value, frozen=True, kw_only=True):
@@ -104,7 +100,7 @@ class MotorRun(Ride, frozen=True, eq=False, kw_only=True):
     """(points,), of the points from the slider's position, metres."""
     events: Array
     """(k, 4): time, kind (1 sticks, 2 slips, 4 lands, 5 leaves), point, distance travelled."""
-    beam_margins: "Margins"
+    beam_margins: Margins
     """What the beam's own assumptions leave out."""
     motor_margins: MotorMargins
     """What the contact's leave out."""
