@@ -15,6 +15,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
+from verify.motor import figures
 from verify.quantities.catalogue import QUANTITIES, among_of, arguments_of, evaluate
 from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
@@ -186,6 +187,31 @@ DEVICED = {
     },
 }
 """A device with everything, in the steady state alone."""
+FOOTED = {
+    **dict.fromkeys(("spectrum", "convergence", "sensitivity", "wave")),
+    "motion": {"modal_damping": None},
+    "drive": SHAKEN["drive"],
+    "slider": {
+        "mass": 0.0043,
+        "mu": 0.23,
+        "slope": 11.0,
+        "position": 0.271,
+        "speed": 0.0011,
+        "preload": 0.31,
+        "preload_stiffness": 137.0,
+        "coupling": "one-way",
+        "contact": {"stiffness": 2.9e4, "damping": 0.37, "tangential_stiffness": None},
+        "foot": [{"length": 0.0431, "points": 3, "offset": 0.0113, "mass": 0.0039, "inertia": 7.1e-7}],
+    },
+}
+"""A foot that may leave the beam."""
+DAMPED = {**FOOTED, "slider": {**FOOTED["slider"], "contact": {**FOOTED["slider"]["contact"], "damping": 5.3}}}
+PRESSED = {**FOOTED, "slider": {**FOOTED["slider"], "preload": 2.3}}
+GIVING = {**FOOTED, "slider": {**FOOTED["slider"], "law": "coulomb", "contact": {**FOOTED["slider"]["contact"],
+    "tangential_stiffness": 1.7e4}}}  # fmt: skip
+FREE = {"periods": 14, "last": 5}
+OVER_WAVE = {"contact_half_angle": 1.1, "speed_ratio": 0.71, "epsilon": 0.3, "amplitude": 3.1e-5}
+"""High enough for heights to show beside the thickness."""
 FEM, SEGMENT = {"model": "fem", "count": 9}, {"model": "segment", "count": 9}
 SETTINGS = {"wall": "third-order", "grading": 1.3, "joints": "printed"}
 FIELDS = ("standing_wave_ratio", "reflection", "envelope", "travelling_index", "signed_area_spread", "crest_speed")
@@ -364,6 +390,20 @@ CASES: dict[str, list[Case]] = {
         Case({"model": "fem", "count": 12, "of": "normal_on_beam", "mass": 0.02}, COARSE),
     ],
     "slider.imbalance": [Case({"model": "fem", "count": 12, "mass": 0.02, "step": 2e-5}, SHAKEN)],
+    "slider.stall_force": [Case(FEM, FOOTED), Case(SEGMENT, GIVING)],
+    "slider.force_speed": [Case({**FEM, "speed": 0.0037}, FOOTED)],
+    "slider.normal_mean": [Case(FEM, FOOTED)],
+    "slider.contact_share": [Case({**FEM, "steps_per_period": 2999}, DAMPED)],
+    "slider.stuck_share": [Case({**SEGMENT, "steps_per_period": 4999}, GIVING)],
+    "slider.power": [Case({**FEM, "speed": 0.0037}, FOOTED)],
+    "slider.efficiency": [Case({**FEM, "speed": 0.0007}, PRESSED)],
+    "slider.wear_power": [Case({**SEGMENT, "speed": 0.0037}, FOOTED)],
+    "slider.no_load_speed": [Case(FEM, PRESSED)],
+    "slider.free_speed": [Case({**FEM, **FREE}, FOOTED)],
+    "slider.start_time": [Case({**FEM, **FREE}, FOOTED)],
+    "slider.contact_energy": [Case({**FEM, **FREE, "of": "rubbed"}, FOOTED)],
+    "slider.wave_force": [Case(OVER_WAVE)],
+    "slider.wave_force_order": [Case({**OVER_WAVE, "counts": [13, 23, 41]})],
     "slider.deflection": [
         Case({"model": "segment", "count": 12, "x": 0.31, "mass": 0.02}, COARSE),
         Case(
@@ -550,6 +590,11 @@ def bare(asked):
     return not (asked.scene["beam"]["mass"] or asked.scene["beam"]["spring"])
 
 
+UNDER_WAY = "slider.free_speed slider.start_time slider.contact_energy"
+HELD = (
+    "slider.stall_force slider.force_speed slider.normal_mean slider.contact_share slider.stuck_share slider.power "
+    "slider.efficiency slider.wear_power slider.no_load_speed"
+)
 RELATIVE = "mode.frequency_error mode.law_ratio mode.shape_error mode.curvature_error mode.*order mode.count_needed"
 MATERIAL = "beam.width beam.thickness beam.youngs_modulus beam.density"
 DEAD = [
@@ -758,6 +803,30 @@ DEAD = [
         "beam.* drive.* slider.* motion.*",
         "a layer on crests of their own",
     ),
+    Dead(f"{HELD} {UNDER_WAY}", "motion.*", "a motor's own steps, periods and start"),
+    Dead(HELD, "slider.speed slider.pull", "held at a speed whatever pulls"),
+    Dead(
+        f"{HELD} {UNDER_WAY}",
+        "slider.slope slider.law=tanh arguments.slope arguments.law=tanh slider.mu_static",
+        "a point that gives way has Coulomb's limit, whatever the law",
+        lambda a: a.scene["slider"]["contact"]["tangential_stiffness"] is not None,
+    ),
+    Dead(
+        "slider.contact_share slider.normal_mean",
+        "slider.mu slider.slope slider.law=coulomb slider.contact.*tangential_stiffness arguments.mu arguments.slope "
+        "arguments.law=coulomb arguments.tangential_stiffness",
+        "one way the motion across knows no friction",
+    ),
+    Dead("slider.contact_share", "arguments.speed beam.extreme_fibre", "turned points are met within the same step"),
+    Dead("slider.efficiency slider.no_load_speed", "slider.mu arguments.mu", "all friction in one proportion"),
+    Dead("slider.contact_energy", "arguments.last", "the books of the whole run"),
+    Dead("slider.efficiency", "beam.thickness beam.length arguments.preload", "so far it is braked, and refused"),
+    Dead(
+        "slider.wave_force*",
+        "beam.length beam.width beam.supports.* beam.loss_factor drive.kind drive.force.* slider.* motion.* "
+        "arguments.mu",
+        "over mu N, of a pure wave on the beam's section under feet of its own",
+    ),
     Dead("contact.landing_phase contact.restitution", "beam.* drive.* slider.* motion.*", "a surface of its own"),
     Dead("wave.absorber_*", "drive.kind drive.force.*", "one wave from the left, whatever makes it", half_infinite),
     Dead("wave.absorber_* wave.lumped_swr", "beam.extreme_fibre", "no surface"),
@@ -954,6 +1023,17 @@ OFF: dict[str, Any] = {
     "rotational": 1.3,
     "device": [{"position": 0.31, "dashpot": 1.3}],
     "turning": True,
+    "contact": {"stiffness": 3.1e5, "damping": 0.7},
+    "foot": [{"length": 0.013, "points": 3}],
+    "pull": 0.0017,
+    "preload_stiffness": 2.3e4,
+    "tangential_stiffness": 1.9e4,
+    "layer_stiffness": 3.1e6,
+    "layer_tangential_stiffness": 2.3e6,
+    "restitution": 0.37,
+    "mirrored": True,
+    "points": 2,
+    "foot_length": 0.037,
 }
 """What an input is turned to that is nothing or not given."""
 WHOLE = ("gate", "claim")
@@ -1175,6 +1255,13 @@ def problems_of(quantity):
     return problems
 
 
+@pytest.fixture(autouse=True)
+def unsettled(monkeypatch):
+    """Motors are asked whether a figure moves, not whether it has settled."""
+    for name, value in (("BLOCK", 3), ("MOST_BLOCKS", 2), ("HALVINGS", 16)):
+        monkeypatch.setattr(figures, name, value)
+
+
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_every_input_moves_its_figure_or_is_refused_or_declared(quantity):
     assert CASES.get(quantity), f"{quantity} has no base case: give CASES one, with values that are not symmetric"
@@ -1231,6 +1318,6 @@ def test_every_entry_of_the_table_speaks_of_some_input_of_some_case():
 
 def test_the_base_has_every_part_that_a_scene_can_have():
     """A new part of scenes is turned as well, or this says so."""
-    assert set(BASE) | {"title", "description", "axial_inertia", "readings", "methods", "bench", "stress"} == {
+    assert set(BASE) | {"title", "description", "axial_inertia", "readings", "methods", "bench", "stress", "motor"} == {
         f.name for f in msgspec.structs.fields(scene_type())
     }
