@@ -15,8 +15,9 @@ SAGS = 0.1
 """Of the wave's amplitude: a static deflection that is felt."""
 COARSE = 1e-3
 """Relative error of a swing on the springs, which steps leave."""
-LAYER = 6.0
-"""Stiffness of a confined layer of nu = 0.4 across over along, 2 (1 - nu)/(1 - 2 nu)."""
+NU = 0.4
+LAYER = 2.0 * (1.0 - NU) / (1.0 - 2.0 * NU)
+"""Stiffness of a confined layer of that Poisson's ratio, across over along."""
 
 
 def in_short_of(found: "MotorFound") -> str:
@@ -131,7 +132,7 @@ def _of_epsilon(epsilon: float | None, mu: float, wavenumber: float, thickness: 
         if layer > SAGS:
             yield (
                 f"epsilon: 0, the contact does not give way along the surface, as the scene says; a confined layer of "
-                f"nu = 0.4 would have 2 mu kappa/(kappa_t k h) = {layer:.2g} and stick nearly everywhere"
+                f"nu = {NU:g} would have 2 mu kappa/(kappa_t k h) = {layer:.2g} and stick nearly everywhere"
             )
     elif epsilon > SAGS:
         yield (
