@@ -14,8 +14,9 @@ from verify.models.arrays import Array
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.time_basis import TimeBasis
 from verify.motion.carried import steady_field
-from verify.motion.contact import Coupling
+from verify.motion.contact import Coupling, Margins
 from verify.motion.forcing import check_no_resonance
+from verify.motion.margins import margins_of
 from verify.motion.moving_mass import receptance
 from verify.motion.request import Driven, Modelled, Request, Started, Watched, requested
 from verify.motion.step_size import stepped
@@ -23,8 +24,8 @@ from verify.motion.surface import Stage, basis_of, stages_from_rest, steady_stag
 from verify.motor import records
 from verify.motor.combine import CHAIN, check_together
 from verify.motor.coupling import coupled, in_words, sizes
-from verify.motor.laid import Onto, check_on_beam, feet_of, put_down
-from verify.motor.records import Feet
+from verify.motor.laid import Onto, check_on_beam, put_down
+from verify.motor.resting import contact_rate, levels_of, press_apart, sag_of, weighed
 from verify.motor.result import MotorRun, MotorState
 from verify.motor.stepping import RIDES_FROM_HERE, Riding, run_stages
 from verify.motor.told import told
@@ -39,10 +40,6 @@ STEPS_PER_PERIOD = 61
 RESOLVED = 0.5
 """Radians of the contact's own swing in a step, unless a step is given: an error of 1 % of its period."""
 UNSTABLE = 2.0
-PASSES = 4
-"""Each shortens what is left of the way to the material under a point by (h/2) w'' and more."""
-SAGGING = 20
-"""Modes that a static deflection is read from."""
 SHARP = 0.5 * np.pi
 """Radians of the fastest mode in a step of a beam that feels its slider."""
 
@@ -62,6 +59,8 @@ class Plan(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Natural frequency of the contact, rad/s."""
     sag: float
     """Static deflection under what presses, metres."""
+    margins: Margins
+    """What the beam's own assumptions leave out."""
     notes: tuple[str, ...]
 
 
@@ -212,7 +211,8 @@ def lay_out(request: Request, onto: tuple[Onto, ...], before: Sequence[MotorStat
         z=stages[0].start(*_at_start(stages[0], basis if coupling.two_way else None, onto, before)),
         coupling=coupling,
         contact_rate=rate,
-        sag=_sag(request, onto),
+        sag=sag_of(request, onto),
+        margins=margins_of(request, stages[-1]),
         notes=_notes(request, basis, coupling),
     )
 
@@ -223,7 +223,7 @@ def _at_start(
     """(q, dq/dt) of every mode: as the run before left them, else at rest, or bent by what presses the sliders on."""
     n = len(stage.modal.squares)
     if not before:
-        return (_weighed(basis, onto) if basis else np.zeros(n)), np.zeros(n)
+        return (weighed(basis, onto) if basis else np.zeros(n)), np.zeros(n)
     if len(before[0].q) != n:
         raise InputError(f"continue_from has {len(before[0].q)} modes and this run {n}: give both the same model")
     return before[0].q, before[0].rates
@@ -263,74 +263,6 @@ def _sizes(request: Request, one: Onto, stage: Stage, basis: TimeBasis | None) -
         else complex(steady_field(request, (PointForce(position=one.start),)).deflection(x)[0])
     )
     return sizes(slider, beam, omega, moved, turned, felt)
-
-
-def _weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
-    """Modes at rest under what presses the feet on, shared by their points, (n,): on the material under them."""
-    feet, length, still = feet_of(onto), basis.beam.length, np.zeros(len(basis.omegas))
-    p = feet.points
-    share = (feet.foot[:, None] == np.arange(len(feet.state))) * p[:, [records.WEIGHT]]
-    share = share / share.sum(axis=0)  # of two beams one is kept
-    apart = np.where(p[:, records.IMAGE] > 0.0, p[:, records.INSET] * p[:, records.STIFF], 0.0)
-    x, lever = onto[0].start + p[:, records.OFFSET], basis.beam.surface_distance * p[:, records.FACE]
-    at = x
-    for _ in range(PASSES):
-        shapes = basis.shapes(at, 0)
-        eased = shapes @ share / basis.omegas[:, None]
-        still = shapes @ (share @ _pressing(feet, eased.T @ eased) - apart) / basis.omegas**2
-        at = np.clip(x + lever * p[:, records.IMAGE] * (still @ basis.shapes(at, 1)), 0.0, length)
-    return np.asarray(still)
-
-
-def _pressing(feet: Feet, compliance: Array) -> Array:
-    """What presses each foot on where all are at rest, newton along z, (feet,): springs ease as beam and contact yield.
-
-    `compliance` (feet, feet), m/N, is the beam's own.
-    """
-    press, spring = feet.given[:, records.PRESS], feet.given[:, records.SPRING]
-    if not spring.any():
-        return press
-    stiff = np.bincount(feet.foot, feet.points[:, records.STIFF])
-    yielding = compliance + np.diag(1.0 / stiff)
-    return np.asarray(np.linalg.solve(np.eye(len(press)) + spring[:, None] * yielding, press))
-
-
-def _press_apart(plan: Plan, basis: TimeBasis, feet: Feet) -> None:
-    """A foot between two beams sits deeper by as much as its preload has bent the beam away, on the average."""
-    still = _weighed(basis, plan.onto)
-    bent = still @ basis.shapes(plan.onto[0].start + feet.points[:, records.OFFSET], 0)
-    for f in range(len(feet.state)):
-        between = (feet.foot == f) & (feet.points[:, records.WEIGHT] < 1.0)
-        if between.any():
-            feet.points[between, records.INSET] -= bent[between].mean()
-
-
-def _sag(request: Request, onto: Sequence[Onto]) -> float:
-    """Largest static deflection under the net loads at the sliders, metres, by the first modes of the model."""
-    basis = basis_of(request.beam, request.model, request.count, min(request.modes, SAGGING), "spline")
-    places = np.array([one.start for one in onto])
-    still = _weighed(basis, onto)
-    return float(np.abs(still @ basis.shapes(places, 0)).max())
-
-
-def contact_rate(one: Onto, basis: TimeBasis | None) -> float:
-    """The fastest natural frequency that the contact may have, rad/s, every point pressed; with the beam's own ease.
-
-    Also at least what a dashpot turns into one: half its rate is as much as a step bears of it.
-    """
-    feet = feet_of((one,))
-    p, given = feet.points, feet.given[feet.foot]
-    ease = given[:, records.LIGHTNESS] + p[:, records.ARM] ** 2 * given[:, records.EASE]
-    along = np.full(len(ease), 1.0 / one.slider.mass)
-    if basis is not None:
-        places, lever = one.start + p[:, records.OFFSET], basis.beam.surface_distance
-        ease = ease + (basis.shapes(places, 0) ** 2).sum(axis=0)
-        along = along + lever**2 * (basis.shapes(places, 1) ** 2).sum(axis=0)
-    rates = [np.sqrt(p[:, records.GRIP] @ along)]
-    for f in range(len(feet.state)):
-        own = feet.foot == f
-        rates += [np.sqrt(p[own, records.STIFF] @ ease[own]), p[own, records.DASHPOT] @ ease[own]]
-    return float(max(rates))
 
 
 def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:
@@ -390,17 +322,7 @@ def begin(plan: Plan, riding: Riding, before: Sequence[MotorState]) -> None:
         riding.before[0, 0] = RIDES_FROM_HERE
         return
     if plan.coupling.two_way and plan.basis is not None:
-        _press_apart(plan, plan.basis, feet)
-    levels = _levels(stage, plan, feet)
+        press_apart(plan.onto, plan.basis, feet)
+    levels = levels_of(stage, plan.z, plan.request.beam, plan.onto, feet)
     put_down(feet, levels)
     riding.set_touch(levels)
-
-
-def _levels(stage: Stage, plan: Plan, feet: Feet) -> Array:
-    """The surface under every point at the start, (points,), metres: of the material X = x + face (h/2) w' there."""
-    x, p, beam = plan.onto[0].start + feet.points[:, records.OFFSET], feet.points, plan.request.beam
-    lever, at = beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE], x
-    factors = np.concatenate([plan.z[0], stage.drive_factors(np.zeros(1))[0]])
-    for _ in range(PASSES):
-        at = np.clip(x + lever * (factors @ stage.rows(at, 1)), 0.0, beam.length)
-    return np.asarray(factors @ stage.rows(at))

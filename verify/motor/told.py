@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.models.arrays import Array, Indices
-from verify.motion.margins import margins_of
 from verify.motion.result import Statistics
 from verify.motor import records
 from verify.motor.result import MotorLedger, MotorMargins, MotorRun, MotorState
@@ -70,7 +69,7 @@ def told(
         pressures=np.concatenate([riding.pressed[None, own], log.pressures[:n, own]]),
         point_offsets=feet.points[own, records.OFFSET] - (one.start - plan.onto[0].start),
         events=_events(log.events[: int(log.tally[records.EVENTS])], np.flatnonzero(own)),
-        beam_margins=margins_of(request, plan.stages[-1]),
+        beam_margins=plan.margins,
         motor_margins=motor_margins(plan, one.slider),
         ledger=ledger(riding, b),
         state=MotorState(
@@ -106,7 +105,7 @@ def motor_margins(plan: "Plan", slider: Slider) -> MotorMargins:
         step=plan.contact_rate * plan.stages[-1].dt,
         sag=plan.sag,
         sag_taken=plan.coupling.two_way,
-        chain=margins_of(plan.request, plan.stages[-1]).nonlinearity,
+        chain=plan.margins.nonlinearity,
     )
 
 

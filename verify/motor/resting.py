@@ -1,0 +1,105 @@
+"""Sliders at rest on a beam: how it bends under them, where their points stand, how stiff they stand on it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from verify.beam import Beam
+from verify.models.arrays import Array
+from verify.models.time_basis import TimeBasis
+from verify.motion.request import Request
+from verify.motion.surface import Stage, basis_of
+from verify.motor import records
+from verify.motor.laid import Onto, feet_of
+from verify.motor.records import Feet
+
+PASSES = 4
+"""Each shortens what is left of the way to the material under a point by (h/2) w'' and more."""
+SAGGING = 20
+"""Modes that a static deflection is read from."""
+
+
+def weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
+    """Modes at rest under what presses the feet on, shared by their points, (n,): on the material under them."""
+    feet, length, still = feet_of(onto), basis.beam.length, np.zeros(len(basis.omegas))
+    p = feet.points
+    share = (feet.foot[:, None] == np.arange(len(feet.state))) * p[:, [records.WEIGHT]]
+    share = share / share.sum(axis=0)  # of two beams one is kept
+    apart = np.where(p[:, records.IMAGE] > 0.0, p[:, records.INSET] * p[:, records.STIFF], 0.0)
+    x, lever = onto[0].start + p[:, records.OFFSET], basis.beam.surface_distance * p[:, records.FACE]
+    at = x
+    for _ in range(PASSES):
+        shapes = basis.shapes(at, 0)
+        eased = shapes @ share / basis.omegas[:, None]
+        still = shapes @ (share @ _pressing(feet, eased.T @ eased) - apart) / basis.omegas**2
+        at = np.clip(x + lever * p[:, records.IMAGE] * (still @ basis.shapes(at, 1)), 0.0, length)
+    return np.asarray(still)
+
+
+def _pressing(feet: Feet, compliance: Array) -> Array:
+    """What presses each foot on where all are at rest, newton along z, (feet,): springs ease as beam and contact yield.
+
+    `compliance` (feet, feet), m/N, is the beam's own.
+    """
+    press, spring = feet.given[:, records.PRESS], feet.given[:, records.SPRING]
+    if not spring.any():
+        return press
+    stiff = np.bincount(feet.foot, feet.points[:, records.STIFF])
+    yielding = compliance + np.diag(1.0 / stiff)
+    return np.asarray(np.linalg.solve(np.eye(len(press)) + spring[:, None] * yielding, press))
+
+
+def press_apart(onto: Sequence[Onto], basis: TimeBasis, feet: Feet) -> None:
+    """A foot between two beams sits deeper by as much as its preload has bent the beam away, on the average."""
+    still = weighed(basis, onto)
+    bent = still @ basis.shapes(onto[0].start + feet.points[:, records.OFFSET], 0)
+    for f in range(len(feet.state)):
+        between = (feet.foot == f) & (feet.points[:, records.WEIGHT] < 1.0)
+        if between.any():
+            feet.points[between, records.INSET] -= bent[between].mean()
+
+
+def sag_of(request: Request, onto: Sequence[Onto]) -> float:
+    """Largest static deflection under the net loads at the sliders, metres, by the first modes of the model."""
+    if not any(_net(one) for one in onto):
+        return 0.0
+    basis = basis_of(request.beam, request.model, request.count, min(request.modes, SAGGING), "spline")
+    places = np.array([one.start for one in onto])
+    still = weighed(basis, onto)
+    return float(np.abs(still @ basis.shapes(places, 0)).max())
+
+
+def _net(one: Onto) -> bool:
+    """Whether what presses a slider's feet on bends the beam: a clasp's cancel out."""
+    press = feet_of((one,)).given[:, records.PRESS]
+    return bool(abs(press.sum()) > 1e-12 * np.abs(press).max()) or any(foot.mirrored for foot in one.slider.feet)
+
+
+def contact_rate(one: Onto, basis: TimeBasis | None) -> float:
+    """The fastest natural frequency that the contact may have, rad/s, every point pressed; with the beam's own ease.
+
+    Also at least what a dashpot turns into one: half its rate is as much as a step bears of it.
+    """
+    feet = feet_of((one,))
+    p, given = feet.points, feet.given[feet.foot]
+    ease = given[:, records.LIGHTNESS] + p[:, records.ARM] ** 2 * given[:, records.EASE]
+    along = np.full(len(ease), 1.0 / one.slider.mass)
+    if basis is not None:
+        places, lever = one.start + p[:, records.OFFSET], basis.beam.surface_distance
+        ease = ease + (basis.shapes(places, 0) ** 2).sum(axis=0)
+        along = along + lever**2 * (basis.shapes(places, 1) ** 2).sum(axis=0)
+    rates = [np.sqrt(p[:, records.GRIP] @ along)]
+    for f in range(len(feet.state)):
+        own = feet.foot == f
+        rates += [np.sqrt(p[own, records.STIFF] @ ease[own]), p[own, records.DASHPOT] @ ease[own]]
+    return float(max(rates))
+
+
+def levels_of(stage: Stage, z: Array, beam: Beam, onto: Sequence[Onto], feet: Feet) -> Array:
+    """The surface under every point at the start, (points,), metres: of the material X = x + face (h/2) w' there."""
+    x, p = onto[0].start + feet.points[:, records.OFFSET], feet.points
+    lever, at = beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE], x
+    factors = np.concatenate([z[0], stage.drive_factors(np.zeros(1))[0]])
+    for _ in range(PASSES):
+        at = np.clip(x + lever * (factors @ stage.rows(at, 1)), 0.0, beam.length)
+    return np.asarray(factors @ stage.rows(at))
