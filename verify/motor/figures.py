@@ -5,7 +5,7 @@ that the motion across can repeat itself; blocks of periods go on until two agre
 beam and lets the speed swing within a period, is the check on them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.motor.case import MotorCase
+from verify.motor.repeated import blocks
 from verify.motor.result import MotorRun
 
 BLOCK = 12
@@ -67,9 +68,9 @@ def at_speed(case: MotorCase, speed: float, before: MotorRun | None = None) -> A
 
 def held(case: MotorCase, speed: float, before: MotorRun | None = None) -> tuple[AtSpeed, MotorRun]:
     """The same with the last block of periods; `before`, a run held at its place too, is settled already."""
-    force, found = np.inf, None
+    force, found, run = np.inf, None, _block(case, speed)
     for block in range(1, MOST_BLOCKS + 1):
-        before = case.run(BLOCK * case.period, held_speed=speed, frozen=True, samples=BLOCK + 1, continue_from=before)
+        before = run(before)
         found = _means(before, speed, abs(float(before.friction[1:].mean()) - force), BLOCK * block)
         force = found.force
         if found.spread <= SETTLED * case.slider.mu * max(found.normal_force, case.slider.normal_force):
@@ -77,6 +78,16 @@ def held(case: MotorCase, speed: float, before: MotorRun | None = None) -> tuple
     assert found is not None
     assert before is not None
     return found, before
+
+
+def _block(case: MotorCase, speed: float) -> Callable[[MotorRun | None], MotorRun]:
+    """The next block of periods after a run, or the first."""
+    if case.start == "steady":
+        block = blocks(case, speed, BLOCK, BLOCK + 1)
+        return lambda before: block(before.state if before is not None else None)
+    return lambda before: case.run(
+        BLOCK * case.period, continue_from=before, held_speed=speed, frozen=True, samples=BLOCK + 1
+    )
 
 
 def _means(run: MotorRun, speed: float, spread: float, periods: int) -> AtSpeed:

@@ -50,7 +50,7 @@ def over_a_wave(
     crest = beam.surface_distance * k * stage.omega * amplitude
     slider = _slider(mu, epsilon, k, 2.0 * beam.surface_distance, 2.0 * pi / k, points)
     riding = _riding(slider, beam, -speed_ratio * crest, amplitude * cos(contact_half_angle), WARM + 1)
-    run_stages([stage], np.zeros((2, 0)), riding, lambda n: None)
+    run_stages([stage], [stage.table(0, len(stage.edges) - 1)], np.zeros((2, 0)), riding, lambda n: None)
     return _means(riding, stage, -speed_ratio * crest), crest
 
 

@@ -50,6 +50,8 @@ class Plan(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     request: Request
     onto: tuple[Onto, ...]
     stages: list[Stage]
+    tables: tuple[Array, ...]
+    """Polynomials of every stage, (pieces, degree + 1, rows)."""
     basis: TimeBasis | None
     """None where no mode is free."""
     z: Array
@@ -207,6 +209,7 @@ def lay_out(request: Request, onto: tuple[Onto, ...], before: Sequence[MotorStat
         request=request,
         onto=onto,
         stages=stages,
+        tables=tuple(stage.table(0, len(stage.edges) - 1) for stage in stages),
         basis=basis,
         z=stages[0].start(*_at_start(stages[0], basis if coupling.two_way else None, onto, before)),
         coupling=coupling,
@@ -300,7 +303,7 @@ def carry_out(
         check_work("duration", seconds, riding.seconds(n_steps), "shorten it or lengthen the step")
     begin(plan, riding, before)
     ready = perf_counter()
-    stopped, q, rates = run_stages(plan.stages, plan.z, riding, lambda n: progress(n / n_steps))
+    stopped, q, rates = run_stages(plan.stages, plan.tables, plan.z, riding, lambda n: progress(n / n_steps))
     clock = (began, ready, perf_counter())
     return tuple(told(b, plan, riding, stopped, (q, rates), clock) for b in range(len(plan.onto)))
 

@@ -6,12 +6,11 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray, Indices
-from verify.motion.request import Driven, Modelled, Started, Watched, requested
 from verify.motor import records
 from verify.motor.case import MotorCase
 from verify.motor.laid import Onto, feet_of
+from verify.motor.repeated import Block, blocks
 from verify.motor.result import MotorRun, MotorState
-from verify.motor.run import carry_out, lay_out
 
 MOST = 12
 SMALL = 1e-4
@@ -52,12 +51,12 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
             "does not feel its slider, give 'one-way' and 'steady'"
         )
     run = case.run(settle * case.period, held_speed=speed, frozen=True, samples=2)
-    free = _free(case)
+    free, period = _free(case), blocks(case, speed, 1, 2)
     state, size, best = run.state, _size(run)[free], None
     for rounds in range(1, MOST + 1):
-        run = _period(case, state, speed)
+        run = period(state)
         missed = (run.state.feet - state.feet).ravel()[free] / size
-        slopes = _slopes(case, state, run, speed, size, free)
+        slopes = _slopes(period, state, run, size, free)
         off, multipliers = float(np.abs(missed).max()), np.asarray(np.linalg.eigvals(slopes), dtype=np.complex128)
         if best is None or off < best.missed:
             best = Periodic(run=run, state=state, missed=off, multipliers=multipliers, rounds=rounds)
@@ -71,20 +70,6 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
         f"no periodic motion was found in {MOST} rounds: it does not repeat after one period; take means over many "
         "periods instead"
     )
-
-
-def _period(case: MotorCase, state: MotorState, speed: float) -> MotorRun:
-    """One period from a state, its clock set back so that the drive is met at the same phase."""
-    request = requested(
-        Driven(case.beam, case.forces, case.frequency_hz, case.period),
-        Modelled(case.model, case.count, case.modes, case.modal_damping),
-        Started(case.start, 0.0, (), None),
-        Watched((), 2, None, case.steps_per_period, False),
-        case.slider,
-    )
-    before = (replace(state, time=0.0),)
-    plan = lay_out(request, (Onto(case.slider, case.slider.start_on(case.beam), speed, True),), before)
-    return carry_out(plan, before, 0.0, lambda part: None, True)[0]
 
 
 def _size(run: MotorRun) -> Array:
@@ -110,11 +95,11 @@ def _moved(feet: Array, free: Indices, by: Array) -> Array:
     return found.reshape(feet.shape)
 
 
-def _slopes(case: MotorCase, state: MotorState, run: MotorRun, speed: float, size: Array, free: Indices) -> Array:
+def _slopes(period: Block, state: MotorState, run: MotorRun, size: Array, free: Indices) -> Array:
     """The period's map of the free coordinates by differences, (n, n), in units of `size`."""
     base, columns = run.state.feet.ravel()[free], []
     for j in range(len(free)):
         by = SMALL * size[j] * (np.arange(len(free)) == j)
-        after = _period(case, replace(state, feet=_moved(state.feet, free, by)), speed).state.feet.ravel()[free]
+        after = period(replace(state, feet=_moved(state.feet, free, by))).state.feet.ravel()[free]
         columns.append((after - base) / SMALL / size)
     return np.array(columns).T

@@ -114,13 +114,13 @@ def _turned(eases: Array) -> Array:
 
 
 def run_stages(
-    stages: Sequence[Stage], z: Array, riding: Riding, tell: Callable[[int], None]
+    stages: Sequence[Stage], tables: Sequence[Array], z: Array, riding: Riding, tell: Callable[[int], None]
 ) -> tuple[str, Array, Array]:
     """Run through all stages from free modes z; (why it stopped, q, dq/dt of the modes then)."""
     stopped, state = "end", (np.empty(0), np.empty(0))
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.start(*state)
-        surface = _surface(stage, z, riding.start)
+        surface = _surface(stage, tables[i], z, riding.start)
         if i == 0:
             riding.first = stage.deflection(z, np.zeros(1), riding.points)[0]
             riding.look()
@@ -138,7 +138,7 @@ def run_stages(
     return stopped, *state
 
 
-def _surface(stage: Stage, z: Array, start: float) -> Surface:
+def _surface(stage: Stage, table: Array, z: Array, start: float) -> Surface:
     """The whole beam as the loop sees it."""
     modes = np.zeros((beam_records.READ + 1, z.shape[1]))
     modes[[beam_records.Z_RE, beam_records.Z_IM]] = z
@@ -150,7 +150,7 @@ def _surface(stage: Stage, z: Array, start: float) -> Surface:
         unit=float(stage.unit_s),
         growth=np.array(stage.growth, dtype=float),
     )
-    return Surface(modes, drive, stage.table(0, len(stage.edges) - 1), stage.edges - start)
+    return Surface(modes, drive, table, stage.edges - start)
 
 
 def beam_answer(surface: Surface) -> Beamed:
