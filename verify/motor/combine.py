@@ -9,6 +9,9 @@ CHAIN = "chain"
 """The nonlinear chain as a field under a slider, beside the linear models by their names."""
 
 
+CREEPS = "a layer that gives way along the surface sticks and slips by Coulomb's law"
+
+
 def check_together(model: str, start: str, sliders: Sequence[Slider]) -> None:
     """Raise InputError for no slider, one that does not combine with the field, or several that do not go together."""
     if not sliders:
@@ -110,9 +113,8 @@ def _run_by(field: str, friction: str, normal: str, shape: str, coupling: str) -
     if field == CHAIN and coupling == "two-way":
         return "refused: a nonlinear chain carries a slider one way"
     if normal == "springs":
-        if shape == "layer" and friction != "coulomb":
-            return "refused: a layer that gives way along the surface sticks and slips by Coulomb's law"
-        return "run_motor"
+        creeps = shape == "layer" and friction != "coulomb"
+        return f"refused: {CREEPS}" if creeps else "run_motor"
     if shape != "point":
         held = "stays on a curved surface at one point alone" if normal == "always on" else "lands at one point alone"
         return f"refused: a rigid foot {held}"

@@ -125,15 +125,14 @@ def slider_on_feet(a: Motor, scene: "Scene") -> "Slider":
     contact = replace(scene.slider.contact, **_given(touching))
     standing = _given({"points": a.points, "length": a.foot_length})
     feet = tuple(replace(foot, **standing) for foot in scene.slider.feet) if standing else scene.slider.foot
-    if a.foot_length is not None:
-        _check_length(a.foot_length, contact, feet)
+    _check_length(a.foot_length, contact, feet)
     return replace(scene.slider, contact=contact, foot=feet, **_given(own))
 
 
-def _check_length(length: float, contact: "Contact", feet: "tuple[Foot, ...]") -> None:
+def _check_length(length: float | None, contact: "Contact", feet: "tuple[Foot, ...]") -> None:
     """Raise InputError for a length on which a foot of one point does not touch."""
     layered = contact.layer_stiffness is not None or contact.layer_tangential_stiffness is not None
-    if contact.hard or (not layered and any(foot.points == 1 for foot in feet)):
+    if length is not None and (contact.hard or (not layered and any(foot.points == 1 for foot in feet))):
         remedy = "leave it out" if contact.hard else "give points as well"
         raise InputError(f"foot_length = {length!r} of a foot of one point, which touches at its middle: {remedy}")
 
