@@ -27,8 +27,8 @@ sits in the straight beam at height 0, metres; 1/2 of a point between two beams,
 PUSH, RUB, SURFACE, SURFACE_BEFORE, DEPTH, STRETCH, AT, SLOPE, CLOSING, LIFT, STUCK, ANSWER = range(12)
 """Columns of `Feet.touch`: normal force, friction on the stage, speed of the surface, now and a step before; how
 deep it is pressed in (below 0: the gap), how far it is stretched along; where on its piece the material under it lies,
-its slope; how fast the gap closes, how fast the surface rises, both without the foot's own kick; whether it sticks; what
-the step's forces give the beam of that closing."""
+its slope; how fast the gap closes, how fast the surface rises, both without the foot's own kick; whether it sticks;
+what the step's forces give the beam of that closing."""
 (
     ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED
 ) = range(13)  # fmt: skip
