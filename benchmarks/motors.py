@@ -52,8 +52,8 @@ def main(rounds: int) -> None:
             spent = second(*case)
             if turn:  # the first compiles
                 times[case].append(spent)
-    on = f"{machine()['processor']}, Python {platform.python_version()}"
-    print(f"{date.today()}: {on}; medians of {rounds} in turns.\n")
+    named = f"{machine()['processor']}, Python {platform.python_version()}"
+    print(f"{date.today()}: {named}; medians of {rounds} in turns.\n")
     print("| field | slider | friction | coupling | processor seconds for one second |\n|---|---|---|---|---|")
     for case, spent in times.items():
         print(f"| {' | '.join(case)} | {median(spent):.3f} |")

@@ -53,9 +53,10 @@ class Contact(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     f"slider.contact.{one} = {getattr(self, one)!r} and {other} = {getattr(self, other)!r}: give one"
                 )
         if not self.hard and self.restitution:
+            name = "stiffness" if self.layer_stiffness is None else "layer_stiffness"
             raise InputError(
-                f"slider.contact.restitution = {self.restitution!r} is of a hard contact: springs lose by "
-                "damping, leave one out"
+                f"slider.contact.restitution = {self.restitution!r} is of a hard contact: springs of "
+                f"slider.contact.{name} lose by damping, leave one out"
             )
         for name in ("damping", "tangential_stiffness", "layer_tangential_stiffness"):
             if self.hard and getattr(self, name):
@@ -208,9 +209,19 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                     f"slider.{name} = {getattr(self, name)!r} is of a slider that never leaves: leave it out, or "
                     "slider.contact"
                 )
-        lengths = [foot.length for foot in self.foot] or [0.0]
-        if self.contact.layer_stiffness is not None and not all(lengths):
-            raise InputError("slider.contact.layer_stiffness is for each metre of foot: give slider.foot.length")
+        layered = [
+            name
+            for name in ("layer_stiffness", "layer_tangential_stiffness")
+            if getattr(self.contact, name) is not None
+        ]
+        for foot in self.feet:
+            if layered and not foot.length:
+                raise InputError(f"slider.contact.{layered[0]} is for each metre of foot: give slider.foot.length")
+            if foot.length and foot.points == 1 and not layered and not self.contact.hard:
+                raise InputError(
+                    f"slider.foot.length = {foot.length!r} of a foot of one point, which touches at its middle: give "
+                    "slider.foot.points, or leave the length out"
+                )
         if self.contact.hard and (len(self.foot) > 1 or any(foot.points > 1 for foot in self.foot)):
             raise InputError("slider.foot: a hard contact is of one point, give slider.contact.stiffness or one point")
 

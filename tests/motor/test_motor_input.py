@@ -42,6 +42,12 @@ def moved(slider, **given):
         (lambda: a_slider(mu_static=0.4), "slider.mu_static = 0.4", "leave it out"),
         (lambda: a_slider(kinematics="following"), "slider.kinematics = 'following'", "leave it out"),
         (lambda: a_slider(contact=Contact(layer_stiffness=1e6)), "slider.contact.layer_stiffness", "foot.length"),
+        (
+            lambda: a_slider(contact=Contact(stiffness=6e4, layer_tangential_stiffness=3e5)),
+            "slider.contact.layer_tangential_stiffness",
+            "foot.length",
+        ),
+        (lambda: a_slider(foot=(Foot(length=0.02),)), "slider.foot.length = 0.02", "slider.foot.points"),
         (lambda: a_slider(contact=Contact(), foot=(Foot(), Foot())), "slider.foot", "slider.contact.stiffness"),
     ],
 )
@@ -67,6 +73,13 @@ def test_a_contact_that_cannot_be_is_refused_by_field_value_and_remedy(make, fie
         ({}, {"model": "chain", "count": 9}, "start = 'steady'", "'rest'"),
         ({}, {"model": "chain", "count": 9, "start": "rest"}, "modal_damping = 0.005", "0.0"),
         ({"contact": Contact(), "coupling": "two-way"}, {}, "slider.coupling = 'two-way'", "one-way"),
+        ({"contact": Contact(), "foot": (Foot(offset=0.003),)}, {}, "slider.foot.offset = 0.003", "leave it out"),
+        (
+            {"law": "tanh", "contact": Contact(stiffness=6e4, tangential_stiffness=3e4)},
+            {},
+            "slider.law = 'tanh' with slider.contact.tangential_stiffness = 30000.0",
+            "law = 'coulomb'",
+        ),
         ({"contact": Contact(), "preload_stiffness": 3.0}, {}, "slider.preload_stiffness = 3.0", "preload alone"),
         ({"foot": (Foot(mirrored=True),), "coupling": "two-way"}, {}, "slider.gravity = 9.81", "one-way"),
         (

@@ -9,6 +9,9 @@ CHAIN = "chain"
 """The nonlinear chain as a field under a slider, beside the linear models by their names."""
 
 
+CREEPS = "a layer that gives way along the surface sticks and slips by Coulomb's law"
+
+
 def check_together(model: str, start: str, sliders: Sequence[Slider]) -> None:
     """Raise InputError for no slider, one that does not combine with the field, or several that do not go together."""
     if not sliders:
@@ -36,6 +39,12 @@ def check_combines(model: str, start: str, slider: Slider) -> None:
         )
     if contact.hard:
         _check_hard(model, start, slider)
+    for name in ("tangential_stiffness", "layer_tangential_stiffness"):
+        if slider.law != "coulomb" and (give := getattr(contact, name)) is not None:
+            raise InputError(
+                f"slider.law = {slider.law!r} with slider.contact.{name} = {give!r}: what gives way along the surface "
+                "sticks until it slips at mu N, give law = 'coulomb' or leave the stiffness out"
+            )
     if model == CHAIN and slider.coupling != "one-way":
         raise InputError(
             f"slider.coupling = {slider.coupling!r} on a nonlinear chain, which moves first: give 'one-way'"
@@ -79,8 +88,12 @@ def _check_hard(model: str, start: str, slider: Slider) -> None:
             f"slider.preload_stiffness = {slider.preload_stiffness!r} with a hard contact, it flies under a constant "
             "force: give preload alone, or slider.contact.stiffness"
         )
-    if slider.feet[0].face != "upper" or slider.feet[0].length or slider.feet[0].offset:
-        raise InputError("slider.foot with a hard contact is a point on the upper face: leave slider.foot out")
+    foot = slider.feet[0]
+    for name, right in (("face", "upper"), ("length", 0.0), ("offset", 0.0)):
+        if (value := getattr(foot, name)) != right:
+            raise InputError(
+                f"slider.foot.{name} = {value!r} with a hard contact, which is a point on the upper face: leave it out"
+            )
 
 
 def combinations() -> tuple[tuple[str, str, str, str, str, str], ...]:
@@ -100,7 +113,8 @@ def _run_by(field: str, friction: str, normal: str, shape: str, coupling: str) -
     if field == CHAIN and coupling == "two-way":
         return "refused: a nonlinear chain carries a slider one way"
     if normal == "springs":
-        return "run_motor"
+        creeps = shape == "layer" and friction != "coulomb"
+        return f"refused: {CREEPS}" if creeps else "run_motor"
     if shape != "point":
         held = "stays on a curved surface at one point alone" if normal == "always on" else "lands at one point alone"
         return f"refused: a rigid foot {held}"

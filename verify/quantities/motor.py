@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from verify.motor.case import MotorCase
     from verify.motor.figures import AtSpeed
     from verify.scenes.scene import Scene
-    from verify.slider import Slider
+    from verify.slider import Contact, Foot, Slider
 
 Positive = Annotated[float, Meta(gt=0)]
 
@@ -63,12 +63,17 @@ class ForceAt(Motor, frozen=True, kw_only=True):
     speed: Annotated[float, Meta(description="along +x, m/s")]
 
 
-class UnderWay(Motor, frozen=True, kw_only=True):
+class FreeRun(Motor, frozen=True, kw_only=True):
     """Its slider free, from rest."""
 
     periods: Annotated[int, Meta(ge=2, description="of the drive, that are run")] = 2000
-    last: Annotated[int, Meta(ge=2, description="periods at the end of which the mean is taken")] = 200
     pull: Annotated[float, Meta(description="on the slider along +x, newton")] | None = None
+
+
+class UnderWay(FreeRun, frozen=True, kw_only=True):
+    """The same, at its end."""
+
+    last: Annotated[int, Meta(ge=2, description="periods at the end of which the mean is taken")] = 200
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -76,7 +81,7 @@ class UnderWay(Motor, frozen=True, kw_only=True):
             raise InputError(f"last = {self.last!r} of periods = {self.periods!r}: take the mean of fewer than all")
 
 
-class OfRun(UnderWay, frozen=True, kw_only=True):
+class OfRun(FreeRun, frozen=True, kw_only=True):
     """A line of its energy books over the work of the surface on it."""
 
     of: Annotated[
@@ -120,7 +125,16 @@ def slider_on_feet(a: Motor, scene: "Scene") -> "Slider":
     contact = replace(scene.slider.contact, **_given(touching))
     standing = _given({"points": a.points, "length": a.foot_length})
     feet = tuple(replace(foot, **standing) for foot in scene.slider.feet) if standing else scene.slider.foot
+    _check_length(a.foot_length, contact, feet)
     return replace(scene.slider, contact=contact, foot=feet, **_given(own))
+
+
+def _check_length(length: float | None, contact: "Contact", feet: "tuple[Foot, ...]") -> None:
+    """Raise InputError for a length on which a foot of one point does not touch."""
+    layered = contact.layer_stiffness is not None or contact.layer_tangential_stiffness is not None
+    if length is not None and (contact.hard or (not layered and any(foot.points == 1 for foot in feet))):
+        remedy = "leave it out" if contact.hard else "give points as well"
+        raise InputError(f"foot_length = {length!r} of a foot of one point, which touches at its middle: {remedy}")
 
 
 def _given(settings: dict[str, Any]) -> dict[str, Any]:
@@ -195,7 +209,7 @@ def _free_speed(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
     return mean_speed(_free(a, scene, bench), a.last)[0]
 
 
-def _free(a: UnderWay, scene: "Scene", bench: Workbench) -> Any:
+def _free(a: FreeRun, scene: "Scene", bench: Workbench) -> Any:
     """The free run, sampled once a period, solved once. Raises InputError where it does not reach its end."""
     case = motor_case(a, scene)
     key = ("motor free", case, a.periods)

@@ -53,9 +53,10 @@ MOST_SAMPLES = 1_000_000
 
 
 def slider_of(a: Arguments, scene: "Scene") -> Slider:
-    """The scene's slider with what is given instead. Raises InputError where there is none."""
+    """The scene's slider with what is given instead. Raises InputError where there is none, or one that may leave."""
     if scene.slider is None:
         raise InputError("the scene has no slider: add [slider] with mass and mu")
+    scene.slider.check_stays()
     given = asdict(a)
     return replace(scene.slider, **{own: given[name] for name, own in _OWN.items() if given.get(name) is not None})
 
