@@ -127,3 +127,26 @@ def test_a_slider_that_runs_off_the_beam_says_so_with_what_it_did_until_then():
     assert found.statistics.stopped == "left the beam"
     assert 0.0 < found.travelled[-1] < 0.011
     assert len(found.times) == len(found.speed) < 50
+
+
+def test_a_slider_that_is_in_the_air_at_the_end_says_since_when():
+    """Thrown up by a wave a hundred times stronger than what presses it on."""
+    thrown = run_motor(
+        BEAM,
+        [replace(one, amplitude=60.0) for one in FORCES],
+        3130.0,
+        2e-3,
+        slider=a_slider(preload=0.0, contact=Contact(stiffness=6e5)),
+        model="fem",
+        count=17,
+        samples=41,
+    )
+    left = thrown.events[thrown.events[:, 1] == 5.0, 0]
+    assert thrown.normal_force[-1] == 0.0 < thrown.height[-1, 0]
+    assert thrown.notes[-1] == f"the slider is off the beam at the end, 0.002 s, and has been since {left[-1]:.6g} s"
+    assert not any("off the beam" in note for note in moved(a_slider()).notes)
+
+
+def test_a_beam_that_its_own_compression_buckles_carries_no_motor():
+    with pytest.raises(InputError, match=r"beam\.tension"):
+        run_motor(replace(BEAM, tension=-1e6), FORCES, 3130.0, 6e-4, slider=a_slider(), model="fem", count=17)

@@ -34,6 +34,7 @@ def told(
     times = np.concatenate([[origin], *(stage.origin + stage.sample_times for stage in plan.stages)])[: n + 1]
     columns = log.kept[:n, b].T
     lost = int(log.tally[records.EVENTS]) - len(log.events)
+    events = _events(log.events[: int(log.tally[records.EVENTS])], np.flatnonzero(own))
     notes = (f"events: the first {len(log.events)} of {len(log.events) + lost}",) * (lost > 0)
     began, ready, end = clock
     assert riding.first is not None
@@ -54,7 +55,7 @@ def told(
             wall_s=end - ready,
             stopped=stopped,
         ),
-        notes=(*plan.notes, *notes),
+        notes=(*plan.notes, *notes, *_lost(columns[records.KEPT_PUSH], events, times)),
         model=request.model,
         count=request.count,
         points=request.points,
@@ -68,7 +69,7 @@ def told(
         pitch=np.concatenate([riding.put_down[None, feet_own, 2], log.heights[:n, feet_own, 1]]),
         pressures=np.concatenate([riding.pressed[None, own], log.pressures[:n, own]]),
         point_offsets=feet.points[own, records.OFFSET] - (one.start - plan.onto[0].start),
-        events=_events(log.events[: int(log.tally[records.EVENTS])], np.flatnonzero(own)),
+        events=events,
         beam_margins=plan.margins,
         motor_margins=motor_margins(plan, one.slider),
         ledger=ledger(riding, b),
@@ -86,6 +87,15 @@ def told(
 
 def _led(first: float, values: Array) -> Array:
     return np.concatenate([[first], values])
+
+
+def _lost(push: Array, events: Array, times: Array) -> tuple[str, ...]:
+    """Since when nothing has touched, where nothing does at the end; empty otherwise."""
+    if not len(push) or push[-1] > 0.0:
+        return ()
+    left = events[events[:, records.EVENT_KIND] == records.LEAVES, records.EVENT_TIME]
+    since = float(left[-1]) if len(left) else float(times[0])
+    return (f"the slider is off the beam at the end, {times[-1]:.6g} s, and has been since {since:.6g} s",)
 
 
 def _events(events: Array, points: Indices) -> Array:
