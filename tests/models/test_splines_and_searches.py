@@ -7,7 +7,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from verify.models.arrays import distinct
+from verify.models.ordered import distinct
 from verify.models.search import least_between
 from verify.models.spline import SMALL, natural_or_flat
 

@@ -11,7 +11,7 @@ import numpy as np
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
-from verify.models.arrays import Array, BoolArray, ComplexArray, Indices, distinct
+from verify.models.arrays import Array, BoolArray, ComplexArray, Indices
 from verify.models.fields import (
     RESONANCE,
     HarmonicField,
@@ -21,6 +21,7 @@ from verify.models.fields import (
     refuse_resonance,
     wavenumber,
 )
+from verify.models.ordered import distinct
 from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 
 

@@ -14,8 +14,9 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.errors import InputError, NoFigureError, near_name
-from verify.models.arrays import Array, distinct
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
+from verify.models.ordered import distinct
 from verify.patience import check_work
 from verify.quantities.cases import driven_case
 from verify.quantities.kind import Quantity

@@ -11,10 +11,11 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.judge.compare import observed_order, relative_error
-from verify.models.arrays import Array, distinct
+from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.eigen import field_seconds
 from verify.models.fields import HarmonicField, phasor
+from verify.models.ordered import distinct
 from verify.models.search import Least, least_over
 from verify.models.sweeps import HarmonicSweep
 from verify.patience import check_work
