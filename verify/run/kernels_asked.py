@@ -25,7 +25,7 @@ def kernels_asked(scene: "Scene") -> Iterator[Call]:
     carried = any(ask.slides for ask in in_time)
     alone = any(not ask.slides for ask in in_time)
     if scene.slider and scene.slider.contact is not None and carried:
-        yield from _motors(scene.slider)
+        yield from _motors(scene.slider, getattr(getattr(scene, "motor", None), "models", ()))
         return
     if scene.slider and carried:
         if alone:
@@ -37,9 +37,15 @@ def kernels_asked(scene: "Scene") -> Iterator[Call]:
         yield from chain.stretching()
 
 
-def _motors(slider: "Slider") -> Iterator[Call]:
-    """Those of a slider that may leave the beam."""
+def _motors(slider: "Slider", models: tuple[str, ...]) -> Iterator[Call]:
+    """Those of a slider that may leave the beam, and of the nonlinear chain where it is among the motor's fields."""
+    from verify.chain import warm as chain
     from verify.motor import warm
+    from verify.motor.combine import CHAIN
 
     assert slider.contact is not None
     yield from warm.hard(slider.law) if slider.contact.hard else warm.on_springs(slider.law, slider.coupling)
+    if CHAIN in models:
+        yield from chain.rigid()
+        yield from warm.on_chain(slider.law)
+        yield from chain.stretching()
