@@ -342,7 +342,7 @@ def test_what_is_asleep_wakes_when_it_is_looked_into():
         "assert scipy.sparse.linalg.norm(scipy.sparse.eye_array(4)) == 2.0\n"
         "assert sys.meta_path.count(sys.meta_path[0]) == 1\n"
         "from importlib.util import find_spec\n"
-        "assert all(find_spec(name) for name in ASLEEP)\n"
+        "assert all(find_spec(name) for name in set(ASLEEP) - {'typing_extensions'})\n"  # which others bring, or not
     )
     subprocess.run([sys.executable, "-W", "error::ImportWarning", "-c", code], check=True)
 
