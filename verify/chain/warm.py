@@ -1,42 +1,63 @@
 """The calls for which the kernels of a chain are compiled, with values of the right kinds."""
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from verify.chain.records import FREE, Flat, March, Modal
-
-Call = tuple[Callable[..., Any], tuple[Any, ...]]
-"""A kernel and what it is called with."""
+from verify.models.compiling import Call
 
 
 def calls() -> Iterator[Call]:
     """Rigid links in steps and in modes, links that stretch."""
     yield from rigid()
+    yield from energies()
     yield from modal()
     yield from stretching()
 
 
+def placed() -> Iterator[Call]:
+    """Links where they stand."""
+    from verify.chain import held_kernels, recursion_kernels
+
+    one = np.zeros(1)
+    yield recursion_kernels.hub_motion, (one, 0.0)
+    yield held_kernels.place, (_flat(), 0.0, one, one, np.zeros((1, 1)))
+
+
+def resting() -> Iterator[Call]:
+    """Links on their constraints, about an equilibrium."""
+    from verify.chain import held_kernels
+
+    one = np.zeros(1)
+    yield from placed()
+    yield held_kernels.project, (_flat(), 0.0, one, one, np.zeros(1, dtype=np.int64), 0.0, np.zeros((1, 1)))
+
+
 def rigid() -> Iterator[Call]:
     """Rigid links in steps."""
-    from verify.chain import held_kernels, kernels, recursion_kernels
+    from verify.chain import kernels
 
-    flat, one, few, chain = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64), _flat()
-    yield recursion_kernels.hub_motion, (one, 0.0)
-    yield held_kernels.place, (chain, 0.0, one, one, flat)
-    yield held_kernels.project, (chain, 0.0, one, one, few, 0.0, flat)
-    yield kernels.accelerate, (chain, 0.0, one, one, flat, one)
-    yield kernels.march, (chain, _march(), 1, flat)
+    flat, one = np.zeros((1, 1)), np.zeros(1)
+    yield from resting()
+    yield kernels.accelerate, (_flat(), 0.0, one, one, flat, one)
+    yield kernels.march, (_flat(), _march(), 1, flat)
+
+
+def energies() -> Iterator[Call]:
+    """Energies of rigid links."""
+    from verify.chain import kernels
+
+    one = np.zeros(1)
+    yield kernels.energies, (_flat(), 0.0, one, one, np.zeros((1, 1)))
 
 
 def modal() -> Iterator[Call]:
-    """Rigid links in modes, and their energies."""
-    from verify.chain import kernels, splitting_kernels
+    """Rigid links in modes."""
+    from verify.chain import splitting_kernels
 
-    flat, one, few, chain = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64), _flat()
-    yield kernels.energies, (chain, 0.0, one, one, flat)
-    yield splitting_kernels.march_modal, (chain, _modal(), one, few, one, np.zeros((1, 1, 1)), 1, flat, flat)
+    flat, one, few = np.zeros((1, 1)), np.zeros(1), np.zeros(1, dtype=np.int64)
+    yield splitting_kernels.march_modal, (_flat(), _modal(), one, few, one, np.zeros((1, 1, 1)), 1, flat, flat)
 
 
 def stretching() -> Iterator[Call]:

@@ -17,9 +17,10 @@ from typing import Any, NoReturn
 
 from verify.cores import jobs
 from verify.models import compiling
+from verify.models.compiling import Call
 
-Call = tuple[Any, tuple[Any, ...]]
-"""A kernel and what it is called with; from `compiling.Missing` on the types of that."""
+Typed = tuple[Any, tuple[Any, ...]]
+"""A kernel and the types of what it is called with."""
 END_WITH_PARENT = 1
 """Of prctl, Linux."""
 MOST = 4
@@ -29,6 +30,8 @@ MOST = 4
 @contextmanager
 def compiled_ahead(planned: Callable[[], Iterable[Call]]) -> Iterator[None]:
     """Where a kernel is missing in the meantime, have other processes compile what is `planned`, in order of need.
+
+    What is planned twice is compiled once.
 
     As many as `jobs` says, and none where the system does not fork safely (all but Linux). None is left at the end,
     whatever happens; what they compiled is in `compiling.compiled`. Raises InputError for a wrong number of jobs.
@@ -51,7 +54,7 @@ class _Crew:
 
     def __init__(self, planned: Callable[[], Iterable[Call]], n: int) -> None:
         self.planned, self.n, self.owner = planned, n, os.getpid()
-        self.calls: list[Call] = []
+        self.calls: list[Typed] = []
         self.locks = -1
         """A byte for every call, and one more for who writes."""
         self.helpers: list[tuple[int, int]] = []
@@ -62,7 +65,8 @@ class _Crew:
         if self.locks < 0:
             if os.getpid() != self.owner or compiling.unkept:
                 return False
-            self.calls = [(one, tuple(one.typeof_pyval(value) for value in given)) for one, given in self.planned()]
+            typed = ((one, tuple(one.typeof_pyval(value) for value in given)) for one, given in self.planned())
+            self.calls = list(dict.fromkeys(typed))  # each once
             self.locks = os.memfd_create("kernels")
         found = [i for i, call in enumerate(self.calls) if call[0] is kernel and call[1] == tuple(types)]
         if not found:

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any
+from typing import Any, TypeAlias
 
 import msgspec
 
+Call: TypeAlias = tuple[Any, tuple[Any, ...]]
+"""A kernel and what it is called with."""
 COMPILING = "compiling kernels, once on this machine"
 AT_EVERY_RUN = (
     "kernels are compiled at every run: set NUMBA_CACHE_DIR to a folder that can be written to, then `verify warm-up`"

@@ -1,15 +1,13 @@
 """The calls for which the kernels of a slider are compiled, with values of the right kinds."""
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
+from verify.models.compiling import Call
 from verify.motion.records import Books, Drive, Given, Kept, Law, Rider, Surface
 from verify.motion.stepping import contact_space, fresh_motion
 
-Call = tuple[Callable[..., Any], tuple[Any, ...]]
-"""A kernel and what it is called with."""
 LAWS = {"tanh": None, "coulomb": 0.0}
 """`Law.static`, as far as its kind goes."""
 COUPLINGS = {"one-way": None, "two-way": True}
@@ -18,18 +16,17 @@ COUPLINGS = {"one-way": None, "two-way": True}
 
 def calls() -> Iterator[Call]:
     """Each law, each coupling."""
-    yield from on_belt()
-    for law in ("tanh", "coulomb"):
+    for law in LAWS:
+        yield from on_belt(law)
         yield from on_chain(law)
         yield from on_beam(law, "auto")
 
 
-def on_belt() -> Iterator[Call]:
+def on_belt(law: str) -> Iterator[Call]:
     """A slider on a surface of constant speed."""
     from verify.motion import friction_kernels
 
-    for static in LAWS.values():
-        yield friction_kernels.slide_on_belt, (1, 0.0, _law(static), 0.0, 0.0, 0.0, np.zeros(1), np.zeros((1, 1)))
+    yield friction_kernels.slide_on_belt, (1, 0.0, _law(LAWS[law]), 0.0, 0.0, 0.0, np.zeros(1), np.zeros((1, 1)))
 
 
 def on_chain(law: str) -> Iterator[Call]:

@@ -1,17 +1,15 @@
 """The calls for which the kernels of a slider on feet are compiled, with values of the right kinds."""
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
+from verify.models.compiling import Call
 from verify.motion.records import Drive, Surface
 from verify.motor.laid import Onto, feet_of, fresh_log
 from verify.motor.records import Beamed, Feet, Hard, Line, Log, Moved, Rubbing
 from verify.slider import Contact, Slider
 
-Call = tuple[Callable[..., Any], tuple[Any, ...]]
-"""A kernel and what it is called with."""
 SLOPES = {"coulomb": None, "tanh": 1.0}
 
 
@@ -21,6 +19,13 @@ def calls() -> Iterator[Call]:
         yield from on_springs(law, "auto")
         yield from on_chain(law)
         yield from hard(law)
+
+
+def on_beam(slider: Slider) -> Iterator[Call]:
+    """A slider on a linear beam, as its contact and its coupling say."""
+    if slider.contact is not None and slider.contact.hard:
+        return hard(slider.law)
+    return on_springs(slider.law, slider.coupling)
 
 
 def on_springs(law: str, coupling: str) -> Iterator[Call]:

@@ -7,7 +7,7 @@ from msgspec import Meta
 from verify import options
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
-from verify.quantities import beforehand
+from verify.quantities import beforehand, compiled
 from verify.quantities.kind import Arguments, Grading, Mode, Quantity, Wall
 from verify.quantities.motion_arguments import Friction, Slope
 
@@ -302,6 +302,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         TipUnderLoad,
         "equilibrium",
         _cantilever_tip,
+        kernels=compiled.placed,
     ),
     Quantity(
         "chain.rollup_gap",
@@ -310,6 +311,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         RolledUp,
         "equilibrium",
         _rollup_gap,
+        kernels=compiled.placed,
     ),
     Quantity(
         "chain.hanging_frequency",
@@ -318,6 +320,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         Hanging,
         "equilibrium",
         _hanging_frequency,
+        kernels=compiled.resting,
     ),
     Quantity(
         "chain.turning_frequency",
@@ -326,6 +329,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         Turning,
         "equilibrium",
         _turning_frequency,
+        kernels=compiled.resting,
     ),
     Quantity(
         "chain.large_amplitude_frequency",
@@ -335,6 +339,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _large_amplitude_frequency,
         needs=beforehand.buildable,
+        kernels=compiled.stepped,
     ),
     Quantity(
         "chain.energy_drift",
@@ -344,6 +349,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _energy_drift,
         needs=beforehand.buildable,
+        kernels=compiled.booked,
     ),
     Quantity(
         "chain.transient_deflection",
@@ -353,6 +359,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _transient_deflection,
         needs=beforehand.pushable,
+        kernels=compiled.transient,
     ),
     Quantity(
         "chain.axial_departure",
@@ -362,6 +369,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _axial_departure,
         needs=beforehand.buildable,
+        kernels=compiled.departing,
     ),
     Quantity(
         "chain.contact_line_error",
@@ -373,7 +381,16 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         needs=beforehand.buildable,
     ),
     *(
-        Quantity(f"chain.slider_{name}", unit, summary, Ridden, "in time", _ridden(figure), needs=beforehand.rideable)
+        Quantity(
+            f"chain.slider_{name}",
+            unit,
+            summary,
+            Ridden,
+            "in time",
+            _ridden(figure),
+            needs=beforehand.rideable,
+            kernels=compiled.ridden,
+        )
         for name, unit, summary, figure in (
             (
                 "displacement",

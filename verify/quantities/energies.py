@@ -8,6 +8,7 @@ from verify import options
 from verify.checks import Relative
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
+from verify.quantities import compiled
 from verify.quantities.chain import Chained
 from verify.quantities.kind import Arguments, MovingModel, Quantity, Size, check_count
 from verify.quantities.motion_arguments import InTime
@@ -180,5 +181,6 @@ ENERGY_QUANTITIES: tuple[Quantity[Any], ...] = (
         Shaken,
         "in time",
         _shaken_imbalance,
+        kernels=compiled.booked,
     ),
 )

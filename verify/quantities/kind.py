@@ -1,6 +1,6 @@
 """What a quantity is, and the typed arguments that quantities share."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
 
 import msgspec
@@ -14,6 +14,7 @@ from verify.judge.variants import DEFAULTS
 from verify.judge.workbench import Need, Settings, Workbench
 from verify.models import catalogue
 from verify.models.catalogue import MODELS
+from verify.models.compiling import Call
 from verify.models.naming import MEAN, model_meta
 
 if TYPE_CHECKING:
@@ -248,6 +249,11 @@ def no_needs(arguments: Any, scene: "Scene") -> tuple[Need, ...]:
     return ()
 
 
+def no_kernels(arguments: Any, scene: "Scene") -> Iterable[Call]:
+    """Nothing that is compiled."""
+    return ()
+
+
 class Quantity(msgspec.Struct, Generic[A], frozen=True):
     """A named figure. One is registered by `QUANTITIES.register(mine)` or as an entry point of `verify.quantities`."""
 
@@ -262,6 +268,8 @@ class Quantity(msgspec.Struct, Generic[A], frozen=True):
     """What has to be solved for it, as far as can be known beforehand. Raises InputError where it cannot be."""
     models: tuple[str, ...] = ()
     """Models that it uses beside the one its arguments name and those of its needs."""
+    kernels: Callable[[A, "Scene"], Iterable[Call]] = no_kernels
+    """Compiled loops that it runs, called with values of the right kinds, in order of need. May raise InputError."""
     devices: bool = False
     """Whether it knows a drive's devices; one of the beam that does not is refused beside them."""
     superposed: str = ""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.motion.figures import RUN_FIGURES, RunFigure
-from verify.quantities import beforehand
+from verify.quantities import beforehand, compiled
 from verify.quantities.kind import Quantity
 from verify.quantities.motion_arguments import (
     CouplingSize,
@@ -136,6 +136,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         FreeDecay,
         "in time",
         _free_decay,
+        kernels=compiled.on_belt("tanh"),
     ),
     Quantity(
         "friction.creep_speed",
@@ -144,6 +145,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         Creep,
         "in time",
         _creep_speed,
+        kernels=compiled.on_belt("tanh"),
     ),
     Quantity(
         "friction.belt_stick_time",
@@ -152,8 +154,17 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         OnBelt,
         "in time",
         _belt(0),
+        kernels=compiled.on_belt("coulomb"),
     ),
-    Quantity("friction.belt_slip_time", "s", "Time it slips back.", OnBelt, "in time", _belt(1)),
+    Quantity(
+        "friction.belt_slip_time",
+        "s",
+        "Time it slips back.",
+        OnBelt,
+        "in time",
+        _belt(1),
+        kernels=compiled.on_belt("coulomb"),
+    ),
     Quantity(
         "friction.coulomb_decrement",
         "m",
@@ -161,6 +172,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         Oscillator,
         "in time",
         _decrement,
+        kernels=compiled.on_belt("coulomb"),
     ),
     Quantity(
         "slider.terminal_speed",
@@ -170,9 +182,19 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _terminal_speed,
         needs=beforehand.at_frequency,
+        kernels=compiled.on_wave,
     ),
     *(
-        Quantity(name, figure.unit, figure.summary, SliderInTime, "in time", _slider(figure), needs=beforehand.in_time)
+        Quantity(
+            name,
+            figure.unit,
+            figure.summary,
+            SliderInTime,
+            "in time",
+            _slider(figure),
+            needs=beforehand.in_time,
+            kernels=compiled.slid,
+        )
         for name, figure in RUN_FIGURES.items()
     ),
     Quantity(
@@ -183,6 +205,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _order,
         needs=beforehand.in_time,
+        kernels=compiled.slid,
     ),
     Quantity(
         "slider.deflection",
@@ -192,6 +215,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _deflection_under,
         needs=beforehand.in_time,
+        kernels=compiled.slid,
     ),
     Quantity(
         "slider.energy",
@@ -201,6 +225,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _booked,
         needs=beforehand.in_time,
+        kernels=compiled.slid,
     ),
     Quantity(
         "slider.imbalance",
@@ -210,6 +235,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _imbalance,
         needs=beforehand.in_time,
+        kernels=compiled.slid,
     ),
     Quantity(
         "slider.coupling_size",

@@ -10,6 +10,7 @@ from verify import options
 from verify.checks import Relative
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
+from verify.quantities import compiled
 from verify.quantities.cases import drive_forces, drive_frequency
 from verify.quantities.kind import WHAT_EXISTS, AtFrequency, DriveArguments, MovingModel, Quantity, Size, check_count
 
@@ -281,6 +282,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(lambda found: found.force),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.force_speed",
@@ -290,6 +292,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(lambda found: found.force),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.normal_mean",
@@ -299,6 +302,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(lambda found: found.normal_force),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.contact_share",
@@ -308,6 +312,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(lambda found: found.contact_share),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.stuck_share",
@@ -317,6 +322,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(lambda found: found.stuck_share),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.power",
@@ -326,6 +332,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(lambda found: found.power),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.efficiency",
@@ -335,6 +342,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(_efficiency),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.wear_power",
@@ -344,6 +352,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _of_held(lambda found: found.rubbed),
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.no_load_speed",
@@ -353,6 +362,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _no_load,
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.free_speed",
@@ -362,6 +372,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _free_speed,
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.start_time",
@@ -371,6 +382,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _start_time,
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.contact_energy",
@@ -380,6 +392,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _booked,
         needs=_needs,
+        kernels=compiled.motor,
     ),
     Quantity(
         "slider.wave_force",
@@ -388,6 +401,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         OverWave,
         "in time",
         _over_wave,
+        kernels=compiled.over_wave,
     ),
     Quantity(
         "slider.wave_force_order",
@@ -396,5 +410,6 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         OverWaveOrder,
         "in time",
         _over_wave_order,
+        kernels=compiled.over_wave,
     ),
 )

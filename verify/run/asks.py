@@ -1,12 +1,14 @@
 """Who wants figures of a scene: its gates, its claims and its studies, each with the work and the solves behind it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from verify.errors import InputError
 from verify.judge.workbench import Need
+from verify.models.compiling import Call
 from verify.quantities.catalogue import QUANTITIES, arguments_of, models_named, needs_of, quantity
 from verify.quantities.kind import Work
 from verify.scenes.claims import Claim
@@ -33,6 +35,8 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True):
     """Whether the scene's slider is run."""
     motions: int = 0
     """Simulations in time that a study will do."""
+    kernels: Callable[[], Iterable[Call]] = tuple
+    """Compiled loops that are run for it; a compiler is loaded by whoever asks. Raises InputError."""
     problem: str = ""
     """Why it cannot be evaluated; empty where it can."""
 
@@ -79,6 +83,7 @@ def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
         needs=needs,
         models=(*found.models, *models_named(arguments)),
         slides=found.arguments.slides,
+        kernels=partial(found.kernels, arguments, scene),
     )
 
 
@@ -101,6 +106,7 @@ def _study_asks(scene: "Scene") -> Iterable[Ask]:
             models=study.models(asked, scene),
             slides=study.slides,
             motions=study.n_motions(asked, scene),
+            kernels=partial(study.kernels, asked, scene),
         )
 
 

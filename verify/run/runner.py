@@ -68,10 +68,11 @@ def run_scene(
     asked_scene = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
     start = perf_counter()
     aside = not_applicable(asked_scene, overrides)
-    bench = workbench_for(applicable(asked_scene, overrides))
+    asks = applicable(asked_scene, overrides)
+    bench = workbench_for(asks)
     gates = []
     found: dict[str, Found] = {}
-    with compiled_ahead(partial(kernels_asked, asked_scene)):
+    with compiled_ahead(partial(kernels_asked, asks)):
         for gate in asked_scene.gate:
             progress(f"gate {gate.id}")
             why = aside.get(gate.id)

@@ -12,9 +12,10 @@ from verify.models.catalogue import discrete
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import Call
     from verify.scenes.scene import Drive, Scene
     from verify.studies.axial_figures import AxialFound
     from verify.studies.told import Found
@@ -104,6 +105,13 @@ class AxialInertiaStudy(Study[AxialInertia, "AxialFound"]):
     def n_motions(self, asked: AxialInertia, scene: "Scene") -> int:
         """Stepped and closed form alike."""
         return STEPPED * len(asked.forces) + BESIDE
+
+    def kernels(self, asked: AxialInertia, scene: "Scene") -> "Iterable[Call]":
+        """Rigid links and those that stretch."""
+        from verify.chain import warm
+
+        yield from warm.rigid()
+        yield from warm.stretching()
 
     def run(
         self, asked: AxialInertia, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -1,6 +1,6 @@
 """What a study is: a section of a scene, what it needs, what it will do, and how it is run."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeAlias, TypeVar
 
 import msgspec
@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from verify.judge.workbench import Need, Workbench
+    from verify.models.compiling import Call
     from verify.quantities.kind import Work
     from verify.scenes.scene import Scene
     from verify.studies.told import Found
@@ -91,6 +92,10 @@ class Study(Generic[Asked, Out]):
     def n_motions(self, asked: Asked, scene: "Scene") -> int:
         """How many simulations in time it will do."""
         return 0
+
+    def kernels(self, asked: Asked, scene: "Scene") -> "Iterable[Call]":
+        """Compiled loops that it will run, called with values of the right kinds, in order of need."""
+        return ()
 
     def run(self, asked: Asked, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress) -> Out:
         """Do it; `done` has what the studies before it found. Raises InputError."""

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import msgspec
+from msgspec.structs import replace
 
 from verify.checks import check_number
 from verify.errors import InputError
@@ -10,9 +11,10 @@ from verify.models.catalogue import discrete
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import Call
     from verify.quantities.kind import Work
     from verify.scenes.scene import Scene
     from verify.studies.methods_figures import MethodsFound
@@ -127,6 +129,16 @@ class MethodsStudy(Study[Methods, "MethodsFound"]):
     def n_motions(self, asked: Methods, scene: "Scene") -> int:
         """Both at three frequencies, with a slider."""
         return 6 if scene.slider else 0
+
+    def kernels(self, asked: Methods, scene: "Scene") -> "Iterable[Call]":
+        """The slider's, on a field that does not feel it."""
+        if scene.slider is None:
+            return ()
+        from verify.motion import warm as motion
+        from verify.motor import warm as motor
+
+        slider = replace(scene.slider, coupling="one-way")
+        return motion.on_beam(slider.law, slider.coupling) if slider.contact is None else motor.on_beam(slider)
 
     def run(
         self, asked: Methods, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -15,9 +15,10 @@ from verify.options import Links, Start
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import Call
     from verify.motor.case import MotorCase
     from verify.scenes.scene import Scene
     from verify.studies.motor_figures import MotorFound
@@ -183,6 +184,17 @@ class MotorStudy(Study[Motor, "MotorFound"]):
     def n_motions(self, asked: Motor, scene: "Scene") -> int:
         """Held speeds, a search for no load counted as one; free runs; those from rest; one period for the picture."""
         return len(asked.linear) * (asked.speeds + 1 + FREE_RUNS) + RUNS * asked.places * len(asked.from_rest) + 1
+
+    def kernels(self, asked: Motor, scene: "Scene") -> "Iterable[Call]":
+        """The slider's, on a beam and on every chain that is asked for."""
+        from verify.chain import warm as chain
+        from verify.motor import warm
+
+        assert scene.slider is not None
+        yield from warm.on_beam(scene.slider)
+        for links in asked.links if CHAIN in asked.models else ():
+            yield from chain.rigid() if links == "rigid" else chain.stretching()
+            yield from warm.on_chain(scene.slider.law)
 
     def run(
         self, asked: Motor, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -15,9 +15,10 @@ from verify.scenes.claims import asks_for_turned
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import Call
     from verify.scenes.scene import Scene
     from verify.studies.reading_figures import ReadingsFound
     from verify.studies.told import Found
@@ -227,6 +228,17 @@ class ReadingsStudy(Study[ReadingsAsk, "ReadingsFound"]):
     def n_motions(self, asked: ReadingsAsk, scene: "Scene") -> int:
         """Of each reading, those on the exact beam among them, again where a claim asks for phases turned round."""
         return self.n_steps(asked, scene) * (2 if asks_for_turned(scene.claim) else 1)
+
+    def kernels(self, asked: ReadingsAsk, scene: "Scene") -> "Iterable[Call]":
+        """The slider's, on a beam, and on a chain of rigid links where one carries it beside."""
+        from verify.chain.warm import rigid
+        from verify.motion import warm
+
+        assert scene.slider is not None
+        yield from warm.on_beam(scene.slider.law, scene.slider.coupling)
+        if asked.chain:
+            yield from rigid()
+            yield from warm.on_chain(scene.slider.law)
 
     def run(
         self, asked: ReadingsAsk, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -8,9 +8,10 @@ from verify.scenes.scene import MotionAsk
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import Call
     from verify.scenes.scene import Scene
     from verify.studies.slider_figures import SliderFound
     from verify.studies.told import Found
@@ -81,6 +82,13 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
         models = len(discrete("time_basis", scene.beam))
         once = (models + 1) * (2 if asks_for_turned(scene.claim) else 1)
         return once + DRIFTS + EXACT + ROUNDS * models * len(set(asked.counts))
+
+    def kernels(self, asked: MotionAsk, scene: "Scene") -> "Iterable[Call]":
+        """The slider's, on a beam."""
+        from verify.motion import warm
+
+        assert scene.slider is not None
+        return warm.on_beam(scene.slider.law, scene.slider.coupling)
 
     def run(
         self, asked: MotionAsk, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -1,0 +1,98 @@
+"""What a plan says is compiled, against what really runs: of every quantity, and of every packaged scene.
+
+In a process of its own, in which a kernel is asked for when it is first called; what ran is forgotten in between.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from verify.scenes.scene import packaged_scenes
+
+TESTS = Path(__file__).parent.parent
+INNER = {"chain.recursion_kernels.hub_motion"}
+"""Compiled ahead by itself since several others have it in them; Python does not call it."""
+START = """
+import json, sys
+from numba.core import dispatcher
+ran, known, ask = [], [], dispatcher._DispatcherBase._compile_for_args
+def named(kernel, types):
+    return f"{kernel.py_func.__module__.removeprefix('verify.')}.{kernel.__name__}", str(tuple(types))
+def asked(kernel, *given):
+    ran.append(named(kernel, map(kernel.typeof_pyval, given)))
+    known.append(kernel)
+    return ask(kernel, *given)
+dispatcher._DispatcherBase._compile_for_args = asked
+def forget():
+    ran.clear()
+    for kernel in known:
+        kernel.overloads.clear()
+        kernel._reset_overloads()
+def told(planned):
+    return {"ran": list(ran), "planned": [named(kernel, map(kernel.typeof_pyval, given)) for kernel, given in planned]}
+"""
+OF_QUANTITIES = """
+from quantities.test_every_input import CASES, asked_of, figure, checked, scene_type
+from verify.quantities.catalogue import QUANTITIES, arguments_of
+found = {}
+for name, cases in CASES.items():
+    for i, case in enumerate(cases if QUANTITIES[name].work in ("in time", "equilibrium") else ()):
+        forget()
+        asked = asked_of(name, case)
+        figure(asked)
+        given = {key: value for key, value in asked.arguments.items() if value is not None}
+        arguments, scene = arguments_of(QUANTITIES[name], given), checked(asked.scene, scene_type())
+        found[f"{name} {i}"] = told(QUANTITIES[name].kernels(arguments, scene))
+print(json.dumps(found))
+"""
+OF_SCENE = """
+from verify.run.kernels_asked import kernels_asked
+from verify.run.runner import run_scene
+from verify.scenes.scene import load_scene
+scene = load_scene(sys.argv[1], tuple(sys.argv[2:]))
+run_scene(scene)
+print(json.dumps({"": told(kernels_asked(scene))}))
+"""
+SHORTER = {
+    "preloaded-motor": ("motor.speeds=2", "motor.periods=40", "motor.places=2", "motor.chain=0.001"),
+    "multi-contact-slider": ("motor.speeds=2", "motor.periods=40"),
+}
+"""Overrides that leave every loop to be run, for less long."""
+OF_THEIR_OWN = {"stress"}
+"""Scenes whose beams are not the scene's, nor of one law."""
+
+
+def compared(code, *given):
+    """(what ran, what was planned) by name."""
+    path = os.pathsep.join([str(TESTS), *sys.path])
+    command = [sys.executable, "-c", START + code, *given]
+    surroundings = {**os.environ, "PYTHONPATH": path, "VERIFY_JOBS": "1"}
+    done = subprocess.run(command, capture_output=True, text=True, env=surroundings, check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout.splitlines()[-1])
+    return {name: tuple({tuple(k) for k in one[kind]} for kind in ("ran", "planned")) for name, one in found.items()}
+
+
+def names(kernels):
+    return {name for name, _ in kernels} - INNER
+
+
+def test_every_quantity_says_which_kernels_it_runs():
+    """Whether a beam feels its slider only a size may tell: then both loops are planned, and one of them runs."""
+    found = compared(OF_QUANTITIES)
+    assert len(found) > 60
+    for name, (ran, planned) in found.items():
+        assert ran <= planned, name
+        assert names(planned) == names(ran), name
+    assert sum(bool(ran) for ran, _ in found.values()) > 45
+
+
+@pytest.mark.parametrize("scene", sorted({*packaged_scenes()} - OF_THEIR_OWN))
+def test_a_scene_plans_what_it_runs(scene):
+    ((ran, planned),) = compared(OF_SCENE, scene, *SHORTER.get(scene, ())).values()
+    assert ran <= planned
+    assert names(planned) == names(ran)
