@@ -7,6 +7,7 @@ immovable. RK4 with a fixed step; the limit is that of axial waves, of order l.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 from time import perf_counter
 from typing import Any
@@ -32,8 +33,15 @@ class ElasticMotion(MovedChain):
     """(n, N + 1, 2), metres from the straight chain."""
     velocities: Array
     """(n, N + 1, 2), m/s."""
-    energies: Array
-    """(n,), kinetic, elastic and of gravity together, joule."""
+    axial_stiffness: float | Array
+    """EA in newton, of all links or of each, (N,)."""
+
+    @cached_property
+    def energies(self) -> Array:
+        """(n,), kinetic, elastic and of gravity together, joule."""
+        flat, diagonal, coupling = _flattened(self.system, self.axial_stiffness, False)
+        states = zip(self.displacements, self.velocities, strict=True)
+        return np.array([kernels.energy(flat, diagonal, coupling, u, v) for u, v in states])
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Y of material points on their links, (n, len(x)), metres."""
@@ -89,20 +97,19 @@ def simulate_elastic(
     spacing = float(samples[1] - samples[0])
     work = fixed_steps(spacing, step) * (len(samples) - 1.0) * system.n_links * PER_STRETCHING_STEP
     refuse_work(work, most, float(samples[-1]))
-    flat, diagonal, coupling = _flattened(system, axial_stiffness, immovable)
+    flat, _, _ = _flattened(system, axial_stiffness, immovable)
     u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
     u[:, 1] = 0.0 if deflected is None else deflected
     steps, ready = int(np.ceil(spacing / step - 1e-9)), perf_counter()
     kept, stopped = _march(flat, samples, steps, u, v)
     done, wall = steps * (len(kept) - 1), perf_counter() - ready
-    energies = np.array([kernels.energy(flat, diagonal, coupling, *state) for state in kept])
     places, speeds = (np.array([state[part] for state in kept]) for part in range(2))
     return ElasticMotion(
         system=system,
         times=samples[: len(kept)],
         displacements=places,
         velocities=speeds,
-        energies=energies,
+        axial_stiffness=axial_stiffness,
         statistics=Statistics(
             steps=done,
             evaluations=4 * done,

@@ -14,6 +14,7 @@ def calls() -> Iterator[Call]:
     yield from energies()
     yield from modal()
     yield from stretching()
+    yield from stretching_energy()
 
 
 def placed() -> Iterator[Call]:
@@ -68,6 +69,14 @@ def stretching() -> Iterator[Call]:
     links = stretching_kernels.Elastic(links=flat, loads=flat, gravity=one, factors=cube)
     yield stretching_kernels.factorise, (one, one, flat, cube)
     yield stretching_kernels.march, (links, 0.0, 0.0, 1, flat, flat, cube, cube)
+
+
+def stretching_energy() -> Iterator[Call]:
+    """Their energy."""
+    from verify.chain import stretching_kernels
+
+    flat, one = np.zeros((1, 1)), np.zeros(1)
+    links = stretching_kernels.Elastic(links=flat, loads=flat, gravity=one, factors=np.zeros((1, 1, 1)))
     yield stretching_kernels.energy, (links, one, one, flat, flat)
 
 

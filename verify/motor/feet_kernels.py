@@ -1,10 +1,7 @@
 """The compiled feet: what their points see of the surface, how they press on it, what it gives them in a step."""
 
-import numpy as np
-
 from verify.models.arrays import Array
 from verify.models.kernels import part
-from verify.motion.records import MOVING, STILL
 from verify.motor.records import (
     ACROSS,
     ANSWER,
@@ -41,6 +38,7 @@ from verify.motor.records import (
     V,
     X,
 )
+from verify.motor.surface_kernels import material
 
 
 @part()
@@ -58,32 +56,16 @@ def drift(t: float, feet: Feet) -> None:
 def see(i: int, x: float, edge: float, length: float, v: float, half: float, line: Line, feet: Feet) -> None:
     """What point i sees of the surface under x, of its material there: speed along, height and rate, slope.
 
-    The material over x stands at X = x + face (h/2) w'(X) of the mid-line and moves with (-face (h/2) dw'/dt, dw/dt).
+    `edge` and `length` are those of its piece, `v` is the speed of its slider.
     """
-    touch, points, local, piece = feet.touch, feet.points, line.local, feet.piece[i]
-    lever = half * points[i, FACE] * points[i, IMAGE]
-    xi = (x - edge) / length
-    value, first = 0.0, 0.0
-    for d in range(local.shape[2] - 1, 0, -1):
-        value = value * xi + local[piece, STILL, d]
-        first = first * xi + value
-    at = xi + lever * first / (length * length)
-    level, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
-    for d in range(local.shape[2] - 1, -1, -1):
-        bend = bend * at + slope
-        slope = slope * at + level
-        level = level * at + local[piece, STILL, d]
-        turn = turn * at + rise
-        rise = rise * at + local[piece, MOVING, d]
-    slope, bend, turn = slope / length, 2.0 * bend / (length * length), turn / length
-    touch[i, SURFACE_BEFORE] = touch[i, SURFACE]
-    touch[i, SURFACE] = (rise * slope - lever * turn) / np.sqrt(1.0 + slope * slope)
-    touch[i, AT], touch[i, SLOPE], touch[i, ANSWER] = at, slope, 0.0
-    image, face, foot = points[i, IMAGE], points[i, FACE], feet.foot[i]
+    touch, state, foot = feet.touch, feet.state, feet.foot[i]
+    image, face, arm, inset = feet.points[i, IMAGE], feet.points[i, FACE], feet.points[i, ARM], feet.points[i, INSET]
+    lever = half * face * image
+    at, level, slope, bend, rise, turn, along = material(feet.piece[i], (x - edge) / length, length, lever, line)
     lift = image * (rise + slope * (v + lever * (turn + bend * v)))
-    state, arm = feet.state, points[i, ARM]
-    touch[i, LIFT] = lift
-    touch[i, DEPTH] = points[i, INSET] + face * (image * level - state[foot, HEIGHT] - arm * state[foot, PITCH])
+    touch[i, SURFACE_BEFORE], touch[i, SURFACE] = touch[i, SURFACE], along
+    touch[i, AT], touch[i, SLOPE], touch[i, ANSWER], touch[i, LIFT] = at, slope, 0.0, lift
+    touch[i, DEPTH] = inset + face * (image * level - state[foot, HEIGHT] - arm * state[foot, PITCH])
     touch[i, CLOSING] = face * (lift - state[foot, CLIMB] - arm * state[foot, TURN])
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.models.kernels import lean, part
-from verify.motion.records import MOVING, STILL, Surface
+from verify.motion.records import Surface
 from verify.motion.surface_kernels import find_piece, set_factors
 from verify.motor.beam_kernels import slide_by_tanh
 from verify.motor.logging_kernels import keep, write
@@ -51,6 +51,7 @@ from verify.motor.records import (
     V,
     X,
 )
+from verify.motor.surface_kernels import draw, material
 
 HALVINGS = 100
 BLOWS = 10_000
@@ -65,35 +66,15 @@ def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Li
 
     Its acceleration across, as a point that rides on it has it, goes to `kick`: of second order in the wave.
     """
-    touch, local = feet.touch, line.local
-    piece = find_piece(surface.edges, x, feet.piece[0])
+    touch, piece = feet.touch, find_piece(surface.edges, x, feet.piece[0])
     if piece < 0:
         return np.nan
     feet.piece[0] = piece
-    length = surface.edges[piece + 1] - surface.edges[piece]
+    edge, length = surface.edges[piece], surface.edges[piece + 1] - surface.edges[piece]
     set_factors(t, surface.modes, surface.drive, line.factors)
-    for d in range(surface.table.shape[1]):
-        still, moving = 0.0, 0.0
-        for j in range(surface.table.shape[2]):
-            still += surface.table[piece, d, j] * line.factors[STILL, j]
-            moving += surface.table[piece, d, j] * line.factors[MOVING, j]
-        local[piece, STILL, d], local[piece, MOVING, d] = still, moving
-    xi = (x - surface.edges[piece]) / length
-    value, first = 0.0, 0.0
-    for d in range(local.shape[2] - 1, 0, -1):
-        value = value * xi + local[piece, STILL, d]
-        first = first * xi + value
-    at = xi + half * first / (length * length)
-    level, slope, bend, rise, turn = 0.0, 0.0, 0.0, 0.0, 0.0
-    for d in range(local.shape[2] - 1, -1, -1):
-        bend = bend * at + slope
-        slope = slope * at + level
-        level = level * at + local[piece, STILL, d]
-        turn = turn * at + rise
-        rise = rise * at + local[piece, MOVING, d]
-    slope, bend, turn = slope / length, 2.0 * bend / (length * length), turn / length
-    touch[0, SURFACE] = (rise * slope - half * turn) / np.sqrt(1.0 + slope * slope)
-    touch[0, SLOPE] = slope
+    draw(surface.table, piece, line)
+    _, level, slope, bend, rise, turn, along = material(piece, (x - edge) / length, length, half, line)
+    touch[0, SURFACE], touch[0, SLOPE] = along, slope
     passed, square = v + half * (turn + bend * v), surface.drive.omega * surface.drive.omega
     touch[0, LIFT] = rise + slope * passed
     feet.kick[0, 0] = -square * (level + half * slope * slope) + (2.0 * turn + bend * passed) * passed
@@ -109,26 +90,6 @@ def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, lin
     x = body[0, X] + free * (body[0, V] + 0.5 * along * s) * s
     z = state[0, HEIGHT] + (state[0, CLIMB] - 0.5 * hard.press * s) * s
     return float(z - _under(t + s, x, v, surface, rubbing.half, line, feet))
-
-
-@part()
-def _fly(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
-    """How long the point flies on, at most h seconds: until the gap closes, sought on both halves of h."""
-    if _gap(t, 0.5 * h, surface, rubbing, hard, line, feet) < 0.0:
-        low, high = 0.0, 0.5 * h
-    elif _gap(t, h, surface, rubbing, hard, line, feet) < 0.0:
-        low, high = 0.5 * h, h
-    else:
-        return h
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if middle <= low or middle >= high:
-            break
-        if _gap(t, middle, surface, rubbing, hard, line, feet) < 0.0:
-            high = middle
-        else:
-            low = middle
-    return high
 
 
 @part()
@@ -188,11 +149,23 @@ def _pushed(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, 
 
 
 @part()
-def _stay(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
-    """How long the point rides on, at most h seconds: until nothing presses it, sought on both halves of h."""
-    if _pushed(t, 0.5 * h, surface, rubbing, hard, line, feet) < 0.0:
+def _margin(
+    riding: bool, t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet
+) -> float:
+    """What is below 0 once the riding point leaves, or once the flying one lands, s seconds after t."""
+    if riding:
+        return _pushed(t, s, surface, rubbing, hard, line, feet)
+    return _gap(t, s, surface, rubbing, hard, line, feet)
+
+
+@part()
+def _lasts(
+    riding: bool, t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet
+) -> float:
+    """How long the point rides or flies on, at most h seconds: sought by halving on both halves of h."""
+    if _margin(riding, t, 0.5 * h, surface, rubbing, hard, line, feet) < 0.0:
         low, high = 0.0, 0.5 * h
-    elif _pushed(t, h, surface, rubbing, hard, line, feet) < 0.0:
+    elif _margin(riding, t, h, surface, rubbing, hard, line, feet) < 0.0:
         low, high = 0.5 * h, h
     else:
         return h
@@ -200,7 +173,7 @@ def _stay(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, li
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        if _pushed(t, middle, surface, rubbing, hard, line, feet) < 0.0:
+        if _margin(riding, t, middle, surface, rubbing, hard, line, feet) < 0.0:
             high = middle
         else:
             low = middle
@@ -262,15 +235,15 @@ def _step(
         left = dt - done
         if left <= 1e-15 * dt:
             break
-        if before[0, 0] > 0.0:
-            s = _stay(t + done, left, surface, rubbing, hard, line, feet)
+        riding = before[0, 0] > 0.0
+        s = _lasts(riding, t + done, left, surface, rubbing, hard, line, feet)
+        if riding:
             if not _move_riding(t + done, s, surface, rubbing, hard, line, feet, rubbing.slope):
                 return False
             if s < left:
                 before[0, 0] = -1.0
                 write(origin + t + done + s, LEAVES, 0, x, log.events, log.tally)
         else:
-            s = _fly(t + done, left, surface, rubbing, hard, line, feet)
             _move_flying(s, rubbing, hard, feet)
             feet.touch[0, PUSH] = 0.0
             level = _under(t + done + s, feet.body[0, X], feet.body[0, V], surface, rubbing.half, line, feet)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from verify.models.arrays import Array
-from verify.models.kernels import FAST, lean, part
+from verify.models.kernels import lean, part
 from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import find_piece, rotate_half, set_factors
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
@@ -47,21 +47,10 @@ from verify.motor.records import (
     V,
 )
 from verify.motor.rub_kernels import agree, hold, settle, share, stretch
+from verify.motor.surface_kernels import draw
 
 GIVES_WAY = 4
 """Times that dashpots and the beam under them are matched: each leaves half of c times the beam's answer in a step."""
-
-
-@part(fastmath=FAST)
-def _lay(table: Array, piece: int, line: Line) -> None:
-    """Polynomials of deflection and velocity on one piece."""
-    factors, local = line.factors, line.local
-    for d in range(table.shape[1]):
-        still, moving = 0.0, 0.0
-        for j in range(table.shape[2]):
-            still += table[piece, d, j] * factors[STILL, j]
-            moving += table[piece, d, j] * factors[MOVING, j]
-        local[piece, STILL, d], local[piece, MOVING, d] = still, moving
 
 
 @part()
@@ -74,7 +63,7 @@ def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet
             return False
         feet.piece[i] = piece
         if line.stamp[piece] != number:
-            _lay(table, piece, line)
+            draw(table, piece, line)
             line.stamp[piece] = number
         see(i, x, edges[piece], edges[piece + 1] - edges[piece], feet.body[feet.owner[i], V], half, line, feet)
     return True
@@ -145,12 +134,10 @@ def _book(dt: float, feet: Feet) -> None:
     """What a step adds to the sums; shares are of all points of a slider. Then it has its speed at the end."""
     touch, sums, means, riders = feet.touch, feet.sums, feet.means, feet.riders
     for b in range(feet.body.shape[0]):
-        mean, rubbed, n = means[b, MEAN], 0.0, 0
-        for i in range(touch.shape[0]):
-            n += 1 if feet.owner[i] == b else 0
-        for i in range(touch.shape[0]):
+        mean, rubbed, n = means[b, MEAN], 0.0, feet.first[b + 1] - feet.first[b]
+        for i in range(feet.first[b], feet.first[b + 1]):
             push, rub = touch[i, PUSH], touch[i, RUB]
-            if push > 0.0 and feet.owner[i] == b:
+            if push > 0.0:
                 sums[b, ALONG] += dt * rub * touch[i, SURFACE]
                 sums[b, RUBBED] += dt * rub * (touch[i, SURFACE] - mean)
                 sums[b, MEAN_RUB] += dt * rub
@@ -172,6 +159,18 @@ def _finite(feet: Feet) -> bool:
     for f in range(feet.state.shape[0]):
         total += feet.state[f, HEIGHT]
     return bool(np.isfinite(total))
+
+
+@part()
+def _take(middle: float, dt: float, before: Array, feet: Feet, log: Log) -> bool:
+    """The feet take the forces of a step, whose middle was at that time, and end it; whether all are finite."""
+    kick(dt, feet)
+    stretch(dt, feet, before)
+    _book(dt, feet)
+    drift(0.5 * dt, feet)
+    log.tally[STEP] += 1
+    note(middle, dt, before, feet, log)
+    return _finite(feet)
 
 
 @lean()
@@ -203,14 +202,8 @@ def ride(
             _rub(dt, feet, rubbing.slope, before)
         else:
             _rub_back(dt, damped, surface, feet, rubbing.half, rubbing.slope, beam, before)
-        kick(dt, feet)
-        stretch(dt, feet, before)
-        _book(dt, feet)
-        drift(0.5 * dt, feet)
         rotate_half(modes)
-        tally[STEP] += 1
-        note(surface.drive.origin + (number + 0.5) * dt, dt, before, feet, log)
-        if not _finite(feet):
+        if not _take(surface.drive.origin + (number + 0.5) * dt, dt, before, feet, log):
             return NOT_FINITE
         if tally[STEP] % log.every == 0:
             if len(log.points) > 0:
@@ -244,13 +237,7 @@ def ride_given(
             feet.touch[i, SURFACE] += given.along[number, piece]
         press(dt, feet, before)
         _rub(dt, feet, rubbing.slope, before)
-        kick(dt, feet)
-        stretch(dt, feet, before)
-        _book(dt, feet)
-        drift(0.5 * dt, feet)
-        tally[STEP] += 1
-        note((number + 0.5) * dt, dt, before, feet, log)
-        if not _finite(feet):
+        if not _take((number + 0.5) * dt, dt, before, feet, log):
             return NOT_FINITE
         if tally[STEP] % log.every == 0:
             stored(dt, feet)

@@ -71,6 +71,7 @@ def feet_of(onto: Sequence[Onto]) -> Feet:
         touch=np.zeros((len(points), 12)),
         foot=_whole(np.repeat(np.arange(len(feet)), lengths)),
         owner=_whole(np.repeat(keeper, lengths)),
+        first=np.searchsorted(np.repeat(keeper, lengths), np.arange(len(onto) + 1)).astype(np.int64),
         keeper=keeper,
         piece=_whole(np.zeros(len(points))),
         kick=np.zeros((len(feet), 2)),

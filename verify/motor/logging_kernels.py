@@ -100,8 +100,8 @@ def _keep_slider(row: int, b: int, span: float, feet: Feet, log: Log) -> None:
     kept[row, b, KEPT_RUBBED] = sums[b, RUBBED] - before[b, RUBBED]
     kept[row, b, KEPT_ALONG] = sums[b, ALONG] - before[b, ALONG]
     speed, n = 0.0, 0
-    for i in range(feet.points.shape[0]):
-        if feet.owner[i] == b and feet.touch[i, PUSH] > 0.0:
+    for i in range(feet.first[b], feet.first[b + 1]):
+        if feet.touch[i, PUSH] > 0.0:
             speed += feet.touch[i, SURFACE]
             n += 1
     kept[row, b, KEPT_SURFACE] = speed / n if n > 0 else np.nan

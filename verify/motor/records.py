@@ -78,6 +78,8 @@ class Feet(NamedTuple):
     """(points,), the foot of each."""
     owner: Indices
     """(points,), the slider of each."""
+    first: Indices
+    """(sliders + 1,), where the points of each slider begin, and how many there are."""
     keeper: Indices
     """(feet,), the slider of each."""
     piece: Indices

@@ -75,17 +75,17 @@ def hold(dt: float, feet: Feet, before: Array) -> None:
 
 
 @part()
-def _rubs(i: int, b: int, feet: Feet) -> bool:
-    """Whether point i is slider b's, touches, and does not give way."""
-    return bool(feet.owner[i] == b and feet.touch[i, PUSH] > 0.0 and feet.points[i, GRIP] == 0.0)
+def _rubs(i: int, feet: Feet) -> bool:
+    """Whether point i touches and does not give way."""
+    return bool(feet.touch[i, PUSH] > 0.0 and feet.points[i, GRIP] == 0.0)
 
 
 @part()
 def _even(b: int, mean: float, feet: Feet, slope: float | None) -> tuple[float, float]:
     """Friction at a speed of slider b of its points that do not give way: (sum, what those at that speed can do)."""
     touch, total, reserve = feet.touch, 0.0, 0.0
-    for i in range(feet.points.shape[0]):
-        if _rubs(i, b, feet):
+    for i in range(feet.first[b], feet.first[b + 1]):
+        if _rubs(i, feet):
             ahead, most = touch[i, SURFACE] - mean, feet.riders[b, MU] * touch[i, PUSH]
             if slope is not None:
                 total += most * np.tanh(slope * ahead)
@@ -109,8 +109,8 @@ def agree(b: int, dt: float, feet: Feet, slope: float | None) -> float:
     if light == 0.0:
         return float(feet.body[b, V])
     gain, most = 0.5 * dt * light, 0.0
-    for i in range(feet.points.shape[0]):
-        most += feet.riders[b, MU] * feet.touch[i, PUSH] if _rubs(i, b, feet) else 0.0
+    for i in range(feet.first[b], feet.first[b + 1]):
+        most += feet.riders[b, MU] * feet.touch[i, PUSH] if _rubs(i, feet) else 0.0
     free = feet.body[b, V] + gain * (feet.riders[b, PULL] + feet.means[b, HELD])
     if most == 0.0:
         return float(free)
@@ -122,9 +122,9 @@ def agree(b: int, dt: float, feet: Feet, slope: float | None) -> float:
 @part()
 def _by_points(b: int, low: float, high: float, free: float, gain: float, feet: Feet, slope: float | None) -> float:
     """Coulomb: surface speeds between low and high are tried until one holds the slider or none is left between."""
-    for i in range(feet.points.shape[0]):
+    for i in range(feet.first[b], feet.first[b + 1]):
         at = feet.touch[i, SURFACE]
-        if low < at < high and _rubs(i, b, feet):
+        if low < at < high and _rubs(i, feet):
             total, reserve = _even(b, at, feet, slope)
             wanted = (at - free) / gain - total
             if abs(wanted) <= reserve:
@@ -161,8 +161,8 @@ def _by_halving(b: int, low: float, high: float, free: float, gain: float, feet:
 def _miss(b: int, mean: float, free: float, gain: float, feet: Feet, slope: float) -> tuple[float, float]:
     """(mean - free - gain friction, its rise with the mean)."""
     touch, miss, rise = feet.touch, mean - free, 1.0
-    for i in range(feet.points.shape[0]):
-        if _rubs(i, b, feet):
+    for i in range(feet.first[b], feet.first[b + 1]):
+        if _rubs(i, feet):
             most = feet.riders[b, MU] * touch[i, PUSH]
             share = np.tanh(slope * (touch[i, SURFACE] - mean))
             miss -= gain * most * share
@@ -179,8 +179,8 @@ def share(b: int, dt: float, mean: float, feet: Feet, slope: float | None) -> No
     if reserve > 0.0 and riders[b, LIGHT] > 0.0:
         left = 2.0 * (mean - feet.body[b, V]) / (dt * riders[b, LIGHT]) - riders[b, PULL] - feet.means[b, HELD] - total
         left = left / reserve
-    for i in range(feet.points.shape[0]):
-        if feet.owner[i] != b or feet.points[i, GRIP] > 0.0:
+    for i in range(feet.first[b], feet.first[b + 1]):
+        if feet.points[i, GRIP] > 0.0:
             continue
         most, ahead = riders[b, MU] * touch[i, PUSH], touch[i, SURFACE] - mean
         touch[i, STUCK] = 0.0
@@ -202,8 +202,8 @@ def settle(b: int, dt: float, mean: float, feet: Feet) -> None:
     """
     touch, v, riders = feet.touch, feet.body[b, V], feet.riders
     after, gain = 2.0 * mean - v, dt * riders[b, LIGHT]
-    for i in range(feet.points.shape[0]):
-        if gain > 0.0 and touch[i, STUCK] > 0.0 and _rubs(i, b, feet):
+    for i in range(feet.first[b], feet.first[b + 1]):
+        if gain > 0.0 and touch[i, STUCK] > 0.0 and _rubs(i, feet):
             wanted = 1.5 * touch[i, SURFACE] - 0.5 * touch[i, SURFACE_BEFORE]
             more = (wanted - after) / gain
             most, rub = riders[b, MU] * touch[i, PUSH], touch[i, RUB]

@@ -14,6 +14,7 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.cores import for_each
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.motor.case import MotorCase
@@ -141,28 +142,27 @@ class FromRest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def rest_runs(scene: "Scene", asked: "Motor", way: float, progress: Progress) -> FromRest | None:
-    """Every field from every start; None where no chain was asked for. Raises InputError.
+    """Every field from every start, shared among the cores; None where no chain was asked for. Raises InputError.
 
     `way` is that of the steady wave's push, +1 or -1.
     """
     if not asked.from_rest:
         return None
     case, places = _scaled(scene, asked), places_from_rest(asked, scene)
-    crests = way * crest_speed(case)
-    fields, size = [], 0.0
-    for model, links in asked.from_rest:
-        progress(f"from rest on {links + ' links' if model == CHAIN else model}")
-        own = replace(case, model=model, count=asked.sized(model), links=links)
-        found, nonlinear = _field(own, asked, places, crests)
-        fields.append(found)
-        size = nonlinear if model == CHAIN else size
+    crests, n = way * crest_speed(case), len(asked.from_rest)
+
+    def run(field: tuple[str, Links]) -> tuple[RestField, float]:
+        model, links = field
+        return _field(replace(case, model=model, count=asked.sized(model), links=links), asked, places, crests)
+
+    found = for_each(run, asked.from_rest, lambda number: progress(f"from rest on {number} of {n} fields"))
     return FromRest(
         force=max(abs(force.amplitude) for force in case.forces),
         preload=case.slider.preload,
         seconds=asked.chain,
-        size=size,
+        size=next(size for one, size in reversed(found) if one.model == CHAIN),
         places=places,
-        fields=tuple(fields),
+        fields=tuple(one for one, _ in found),
     )
 
 
@@ -226,21 +226,11 @@ def _forces(runs: "Sequence[MotorRun]") -> Array:
 def _runs(
     case: MotorCase, seconds: float, places: tuple[float, ...], held: tuple[float, ...]
 ) -> "list[tuple[MotorRun, ...]]":
-    """Free sliders at all places on one beam, which does not feel them, then those held at each speed."""
-    if case.model == CHAIN:  # which moves once for all of them
-        found = _run(case, seconds, places, (None, *held))
-        n = len(places)
-        return [found[k * n : (k + 1) * n] for k in range(1 + len(held))]
-    return [_run(case, seconds, places, (speed,)) for speed in (None, *held)]
-
-
-def _run(
-    case: MotorCase, seconds: float, places: tuple[float, ...], speeds: tuple[float | None, ...]
-) -> "tuple[MotorRun, ...]":
+    """Free sliders at all places, then those held at each speed: on one beam, which moves once and feels none."""
     from verify.motor.run import run_motors
 
-    each = [(speed, x) for speed in speeds for x in places]
-    return run_motors(
+    each = [(speed, x) for speed in (None, *held) for x in places]
+    found = run_motors(
         case.beam,
         case.forces,
         case.frequency_hz,
@@ -257,6 +247,7 @@ def _run(
         samples=int(seconds * case.frequency_hz) + 2,
         steps_per_period=case.steps_per_period,
     )
+    return [found[k : k + len(places)] for k in range(0, len(found), len(places))]
 
 
 def what_stands(found: FromRest) -> Iterator[str]:
