@@ -3,50 +3,50 @@
 import faults.motion as friction
 from msgspec import structs
 
-from verify.motor import figures, laid, stepping, told
+from verify.motor import feet, figures, outcome, stepping
 
 
 def friction_a_tenth_larger(patch):
-    true = laid._rider
-    patch.setattr(laid, "_rider", lambda one: (1.1 * true(one)[0], *true(one)[1:]))
+    true = feet._rider
+    patch.setattr(feet, "_rider", lambda one: (1.1 * true(one)[0], *true(one)[1:]))
 
 
 def surface_lever_half_as_long(patch):
-    true = laid.rubbing_of
+    true = feet.rubbing_of
 
     def shorter(slider, beam):
         found = true(slider, beam)
         return found._replace(half=0.5 * found.half)
 
-    for module in (laid, stepping):
+    for module in (feet, stepping):
         patch.setattr(module, "rubbing_of", shorter)
 
 
 def springs_twice_as_stiff(patch):
-    true = laid._points
+    true = feet._points
 
     def stiffer(*given):
         sheet = true(*given)
         sheet[:, 2] *= 2.0
         return sheet
 
-    patch.setattr(laid, "_points", stiffer)
+    patch.setattr(feet, "_points", stiffer)
 
 
 def give_along_the_surface_doubled(patch):
-    true = laid._points
+    true = feet._points
 
     def softer(*given):
         sheet = true(*given)
         sheet[:, 4] *= 0.5
         return sheet
 
-    patch.setattr(laid, "_points", softer)
+    patch.setattr(feet, "_points", softer)
 
 
 def preload_a_tenth_less(patch):
-    true = laid._given
-    patch.setattr(laid, "_given", lambda *given: (*true(*given)[:2], 0.9 * true(*given)[2], true(*given)[3]))
+    true = feet._given
+    patch.setattr(feet, "_given", lambda *given: (*true(*given)[:2], 0.9 * true(*given)[2], true(*given)[3]))
 
 
 def what_sticks_taken_for_what_touches(patch):
@@ -68,13 +68,13 @@ def under_way_at_half_the_speed(patch):
 
 
 def dashpots_left_out_of_the_books(patch):
-    true = told.ledger
+    true = outcome.ledger
 
     def without(*given):
         books = true(*given)
         return structs.replace(books, residual=books.residual + books.damped)
 
-    patch.setattr(told, "ledger", without)
+    patch.setattr(outcome, "ledger", without)
 
 
 FAULTS = {

@@ -17,7 +17,7 @@ from verify.motor.records import (
     GRIP,
     HELD,
     IMAGE,
-    LIGHT,
+    INVERSE_MASS,
     MEAN,
     MU,
     PULL,
@@ -27,7 +27,7 @@ from verify.motor.records import (
     STUCK,
     SURFACE,
     WEIGHT,
-    Beamed,
+    BeamAnswer,
     Feet,
     V,
 )
@@ -46,7 +46,9 @@ def _lever(d: int, at: float, slope: float, lever: float, length: float) -> floa
 
 
 @part()
-def _add(i: int, along: float, across: float, dt: float, length: float, half: float, feet: Feet, beam: Beamed) -> None:
+def _add(
+    i: int, along: float, across: float, dt: float, length: float, half: float, feet: Feet, beam: BeamAnswer
+) -> None:
     """Forces of point i on its beam, newton: half of what they give is added to the rates, all of it to the load.
 
     Of two beams that are each other's mirror image one is kept, with the mean of what points below and above give.
@@ -61,7 +63,7 @@ def _add(i: int, along: float, across: float, dt: float, length: float, half: fl
 
 
 @part(fastmath=FAST)
-def _spread(impulse: float, column: int, beam: Beamed) -> None:
+def _spread(impulse: float, column: int, beam: BeamAnswer) -> None:
     """What an impulse on one coefficient adds to all rates."""
     degree, row = beam.load.shape[1], beam.span[0] * beam.load.shape[1]
     for p in range(beam.span[0], beam.span[1] + 1):
@@ -71,7 +73,7 @@ def _spread(impulse: float, column: int, beam: Beamed) -> None:
 
 
 @part()
-def clear(feet: Feet, beam: Beamed) -> None:
+def clear(feet: Feet, beam: BeamAnswer) -> None:
     """Nothing is pushed yet, on the pieces from the first to the last that a point stands on."""
     first = last = feet.piece[0]
     for piece in feet.piece:
@@ -83,7 +85,7 @@ def clear(feet: Feet, beam: Beamed) -> None:
 
 
 @part()
-def bear(dt: float, edges: Array, half: float, feet: Feet, beam: Beamed) -> None:
+def bear(dt: float, edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
     """The surface takes the normal forces, and those of friction that are known."""
     for i in range(feet.points.shape[0]):
         force = feet.touch[i, PUSH]
@@ -94,7 +96,7 @@ def bear(dt: float, edges: Array, half: float, feet: Feet, beam: Beamed) -> None
 
 
 @part()
-def _given(i: int, length: float, half: float, feet: Feet, beam: Beamed) -> float:
+def _given(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> float:
     """What the forces so far add to the mean speed of the surface under point i, m/s."""
     lever, piece, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], feet.piece[i], 0.0
     for d in range(beam.load.shape[1]):
@@ -103,7 +105,7 @@ def _given(i: int, length: float, half: float, feet: Feet, beam: Beamed) -> floa
 
 
 @part()
-def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: Beamed) -> float:
+def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: BeamAnswer) -> float:
     """What a unit force along the surface at point i adds to its mean speed there, m/s per newton."""
     lever, degree, total = half * feet.points[i, FACE] * feet.points[i, IMAGE], beam.load.shape[1], 0.0
     at, slope, first = feet.touch[i, AT], feet.touch[i, SLOPE], feet.piece[i] * beam.load.shape[1]
@@ -115,7 +117,7 @@ def _ease(i: int, dt: float, length: float, half: float, feet: Feet, beam: Beame
 
 
 @part()
-def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None, beam: Beamed) -> None:
+def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None, beam: BeamAnswer) -> None:
     """The mean speeds of the sliders at which every point's friction suits its own slip: sweeps from point to point.
 
     The surface has half of what all forces give it. Each point's rule is kept exactly in its turn; the sweeps are those
@@ -123,7 +125,7 @@ def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None,
     """
     touch, points, riders, means, largest = feet.touch, feet.points, feet.riders, feet.means, 0.0
     for b in range(feet.body.shape[0]):
-        means[b, MEAN] = feet.body[b, V] + 0.5 * dt * riders[b, LIGHT] * (riders[b, PULL] + means[b, HELD])
+        means[b, MEAN] = feet.body[b, V] + 0.5 * dt * riders[b, INVERSE_MASS] * (riders[b, PULL] + means[b, HELD])
     for i in range(points.shape[0]):
         if points[i, GRIP] == 0.0:
             touch[i, RUB], touch[i, STUCK] = 0.0, 0.0
@@ -134,7 +136,7 @@ def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None,
         for i in range(points.shape[0]):
             if touch[i, PUSH] > 0.0 and points[i, GRIP] == 0.0:
                 length, b = edges[feet.piece[i] + 1] - edges[feet.piece[i]], feet.owner[i]
-                gain = 0.5 * dt * riders[b, LIGHT]
+                gain = 0.5 * dt * riders[b, INVERSE_MASS]
                 slip = touch[i, SURFACE] - means[b, MEAN] + _given(i, length, half, feet, beam)
                 ease = gain + _ease(i, dt, length, half, feet, beam)
                 force = _suited(i, slip + ease * touch[i, RUB], ease, feet, slope)
@@ -182,7 +184,7 @@ def slide_by_tanh(most: float, slip: float, ease: float, slope: float) -> float:
 
 
 @part()
-def leave(table: Array, modes: Array, beam: Beamed) -> None:
+def leave(table: Array, modes: Array, beam: BeamAnswer) -> None:
     """Give the step's impulses to the modes, in its middle."""
     for p in range(beam.span[0], beam.span[1] + 1):
         for d in range(beam.load.shape[1]):
@@ -193,7 +195,7 @@ def leave(table: Array, modes: Array, beam: Beamed) -> None:
 
 
 @part()
-def moved(i: int, length: float, half: float, feet: Feet, beam: Beamed) -> tuple[float, float]:
+def moved(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> tuple[float, float]:
     """What all forces of a step add to the mean rates under point i: (along, across), m/s."""
     piece, across = feet.piece[i], 0.0
     for d in range(beam.load.shape[1]):

@@ -1,23 +1,32 @@
 """Whether the beam feels a slider that may leave it: what all that presses it on moves the surface by."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
+from verify.models.time_basis import TimeBasis
+from verify.motion.carried import steady_field
 from verify.motion.contact import FELT, Coupling
+from verify.motion.moving_mass import receptance
+from verify.motion.request import Request
+from verify.motion.surface import Stage
+from verify.motor.feet import Placed
 from verify.slider import Slider
 
 
 def sizes(
-    slider: Slider, beam: Beam, omega: float, moved: float, turned: float, receptance: complex
+    slider: Slider, beam: Beam, omega: float, moved: float, turned: float, yielding: complex
 ) -> tuple[float, float | None]:
     """What the slider's whole load moves the surface by, over what the drive moves: (across, by friction along).
 
-    `moved` (metres) and `turned` are the drive's amplitudes of deflection and slope under it, `receptance` G(x, x) in
-    m/N. Friction is a moment (h/2) mu N on an infinite beam. Along, None where the drive does not turn the surface.
+    `moved` (metres) and `turned` are the drive's amplitudes of deflection and slope under it, `yielding` is the beam's
+    receptance there, G(x, x) in m/N. Friction is a moment (h/2) mu N on an infinite beam. Along, None where the drive
+    does not turn the surface.
     """
     lever, k = beam.surface_distance, float(np.sqrt(omega / beam.wave_constant))
     rub = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
-    across = slider.normal_force * abs(receptance) / moved if moved else np.inf
+    across = slider.normal_force * abs(yielding) / moved if moved else np.inf
     return float(across), float(rub / (lever * omega * turned)) if turned else None
 
 
@@ -37,3 +46,23 @@ def in_words(coupling: Coupling) -> str:
     """Both sizes."""
     along = "" if coupling.friction_size is None else f", its friction by {coupling.friction_size:.1e} of its speed"
     return f"all that presses the slider on moves the surface by {coupling.normal_size:.1e} of its motion{along}"
+
+
+def coupling_of(request: Request, placed: Sequence[Placed], stage: Stage, basis: TimeBasis | None) -> Coupling:
+    """One-way or two-way by size, unless the sliders say which: what their load moves, over what the drive moves."""
+    found = [_load_sizes(request, one, stage, basis) for one in placed]
+    across = max(size for size, _ in found)
+    along = None if any(size is None for _, size in found) else max(size or 0.0 for _, size in found)
+    return coupled(placed[0].slider, across, along)
+
+
+def _load_sizes(request: Request, one: Placed, stage: Stage, basis: TimeBasis | None) -> tuple[float, float | None]:
+    """What all that presses a slider on moves the surface by, over its own motion: (across, by friction along)."""
+    beam, omega, slider, x = request.beam, request.omega, one.slider, np.array([one.start])
+    moved, turned = (float(np.hypot(*stage.drive_shapes(x, d)[:2, 0])) for d in (0, 1))
+    felt = (
+        receptance(basis, one.start, omega, request.damping)
+        if basis
+        else complex(steady_field(request, (PointForce(position=one.start),)).deflection(x)[0])
+    )
+    return sizes(slider, beam, omega, moved, turned, felt)

@@ -12,15 +12,15 @@ from verify.motor.records import (
     DAMPED,
     DASHPOT,
     DEPTH,
-    EASE,
     FACE,
+    FOOT_INVERSE_INERTIA,
+    FOOT_INVERSE_MASS,
     FREE,
     HEIGHT,
     IMAGE,
     INSET,
     LIFT,
     LIFTED,
-    LIGHTNESS,
     OFFSET,
     PITCH,
     PRESS,
@@ -89,9 +89,10 @@ def press(dt: float, feet: Feet, before: Array) -> bool:
 @part()
 def _fall_free(dt: float, feet: Feet) -> None:
     """What presses the feet, given for the step."""
+    given = feet.given
     for f in range(feet.state.shape[0]):
-        given = feet.given
-        feet.kick[f, 0] = dt * given[f, LIGHTNESS] * (given[f, PRESS] - given[f, SPRING] * feet.state[f, HEIGHT])
+        force = given[f, PRESS] - given[f, SPRING] * feet.state[f, HEIGHT]
+        feet.kick[f, 0] = dt * given[f, FOOT_INVERSE_MASS] * force
         feet.kick[f, 1] = 0.0
 
 
@@ -125,8 +126,8 @@ def _gather(dt: float, feet: Feet) -> None:
         force = touch[i, PUSH]
         if force > 0.0:
             foot, way = feet.foot[i], dt * points[i, FACE] * force
-            feet.kick[foot, 0] += way * feet.given[foot, LIGHTNESS]
-            feet.kick[foot, 1] += way * points[i, ARM] * feet.given[foot, EASE]
+            feet.kick[foot, 0] += way * feet.given[foot, FOOT_INVERSE_MASS]
+            feet.kick[foot, 1] += way * points[i, ARM] * feet.given[foot, FOOT_INVERSE_INERTIA]
 
 
 @part()

@@ -20,11 +20,11 @@ from verify.motor.records import (
     DONE,
     FREE,
     HEIGHT,
+    INVERSE_MASS,
     LANDS,
     LEAVES,
     LIFT,
     LIFTED,
-    LIGHT,
     MEAN_PUSH,
     MEAN_RUB,
     MEAN_SPEED,
@@ -84,7 +84,7 @@ def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Li
 @part()
 def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
     """How far the flying point is above the surface, s seconds after t."""
-    body, state, along = feet.body, feet.state, feet.riders[0, LIGHT] * feet.riders[0, PULL]
+    body, state, along = feet.body, feet.state, feet.riders[0, INVERSE_MASS] * feet.riders[0, PULL]
     free = feet.riders[0, FREE]
     v = body[0, V] + along * s
     x = body[0, X] + free * (body[0, V] + 0.5 * along * s) * s
@@ -96,7 +96,7 @@ def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, lin
 def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
     """The point flies for s seconds."""
     body, state, sums = feet.body, feet.state, feet.sums
-    along, free = feet.riders[0, LIGHT] * feet.riders[0, PULL], feet.riders[0, FREE]
+    along, free = feet.riders[0, INVERSE_MASS] * feet.riders[0, PULL], feet.riders[0, FREE]
     way, rise = (body[0, V] + 0.5 * along * s) * s, (state[0, CLIMB] - 0.5 * hard.press * s) * s
     body[0, X] += free * way
     body[0, V] += along * s
@@ -127,9 +127,9 @@ def _land(rubbing: Rubbing, hard: Hard, feet: Feet, slope: float | None) -> floa
     blow = hard.mass * (1.0 + hard.restitution) * into
     state[0, CLIMB] += blow / hard.mass
     ahead = touch[0, SURFACE] - body[0, V]
-    rub = _suit(feet.riders[0, MU] * blow, ahead, feet.riders[0, LIGHT], slope)
-    mean = body[0, V] + 0.5 * feet.riders[0, LIGHT] * rub
-    body[0, V] += feet.riders[0, LIGHT] * rub
+    rub = _suit(feet.riders[0, MU] * blow, ahead, feet.riders[0, INVERSE_MASS], slope)
+    mean = body[0, V] + 0.5 * feet.riders[0, INVERSE_MASS] * rub
+    body[0, V] += feet.riders[0, INVERSE_MASS] * rub
     sums[0, ACROSS] += blow * touch[0, LIFT]
     sums[0, LIFTED] -= blow * touch[0, LIFT]
     sums[0, DAMPED] += 0.5 * blow * into * (1.0 - hard.restitution)
@@ -189,7 +189,7 @@ def _move_riding(
     free = feet.riders[0, FREE]
     push = hard.mass * _pushed(t, 0.5 * s, surface, rubbing, hard, line, feet)
     push = push if push > 0.0 else 0.0
-    gain = 0.5 * s * feet.riders[0, LIGHT]
+    gain = 0.5 * s * feet.riders[0, INVERSE_MASS]
     ahead, v = touch[0, SURFACE] - body[0, V] - gain * feet.riders[0, PULL], body[0, V]
     rub = _suit(feet.riders[0, MU] * push, ahead, gain, slope)
     surface_mean = touch[0, SURFACE]

@@ -19,9 +19,9 @@ from verify.motor.records import (
     FACE,
     HEIGHT,
     IMAGE,
+    INVERSE_MASS,
     LIFT,
     LIFTED,
-    LIGHT,
     MEAN,
     MEAN_PUSH,
     MEAN_RUB,
@@ -38,11 +38,11 @@ from verify.motor.records import (
     STUCK,
     SURFACE,
     TOUCHING,
-    Beamed,
+    BeamAnswer,
     Feet,
+    GivenSurface,
     Line,
     Log,
-    Moved,
     Rubbing,
     V,
 )
@@ -88,7 +88,7 @@ def _close(i: int, across: float, feet: Feet) -> None:
 
 
 @part()
-def _give_way(edges: Array, half: float, feet: Feet, beam: Beamed) -> None:
+def _give_way(edges: Array, half: float, feet: Feet, beam: BeamAnswer) -> None:
     """The beam gives way under the forces so far, which dashpots feel."""
     for i in range(feet.points.shape[0]):
         if feet.touch[i, DEPTH] > 0.0:
@@ -104,7 +104,7 @@ def _rub_back(
     feet: Feet,
     half: float,
     slope: float | None,
-    beam: Beamed,
+    beam: BeamAnswer,
     before: Array,
 ) -> None:
     """The same where the beam feels it; what points see of the surface is its mean then."""
@@ -145,7 +145,7 @@ def _book(dt: float, feet: Feet) -> None:
                 sums[b, TOUCHING] += dt / n
                 sums[b, STICKING] += dt * touch[i, STUCK] / n
                 rubbed += rub
-        sums[b, PULLED] += dt * mean * (riders[b, PULL] if riders[b, LIGHT] > 0.0 else -rubbed)
+        sums[b, PULLED] += dt * mean * (riders[b, PULL] if riders[b, INVERSE_MASS] > 0.0 else -rubbed)
         sums[b, MEAN_SPEED] += dt * mean
         feet.body[b, V] = means[b, AFTER]
 
@@ -180,7 +180,7 @@ def ride(
     surface: Surface,
     feet: Feet,
     rubbing: Rubbing,
-    beam: Beamed | None,
+    beam: BeamAnswer | None,
     line: Line,
     before: Array,
     log: Log,
@@ -216,7 +216,7 @@ def ride(
 
 @lean()
 def ride_given(
-    n_steps: int, dt: float, given: Moved, feet: Feet, rubbing: Rubbing, line: Line, before: Array, log: Log
+    n_steps: int, dt: float, given: GivenSurface, feet: Feet, rubbing: Rubbing, line: Line, before: Array, log: Log
 ) -> int:
     """The same on a surface that is given in the middle of every step, which does not feel the stage."""
     tally = log.tally

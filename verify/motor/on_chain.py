@@ -18,13 +18,14 @@ from verify.models.arrays import Array
 from verify.motion.request import Request
 from verify.motion.stepping import CHUNK
 from verify.motor import records
+from verify.motor.carry import begin
 from verify.motor.combine import CHAIN
-from verify.motor.laid import Onto
-from verify.motor.records import Line, Moved
+from verify.motor.feet import Placed
+from verify.motor.outcome import Ended, outcome
+from verify.motor.plan import Plan, lay_out
+from verify.motor.records import GivenSurface, Line
 from verify.motor.result import MotorRun
-from verify.motor.run import Plan, begin, lay_out
 from verify.motor.stepping import WHY, Riding
-from verify.motor.told import told
 from verify.options import Links
 from verify.segments.reading import contact_line
 
@@ -46,7 +47,7 @@ def check_chain(request: Request, soft_start_periods: float) -> None:
 
 def run_on_chain(
     request: Request,
-    onto: tuple[Onto, ...],
+    placed: tuple[Placed, ...],
     links: Links,
     began: float,
     progress: Callable[[float], None],
@@ -56,7 +57,7 @@ def run_on_chain(
         raise InputError(
             f"at = {request.points.tolist()!r}: a nonlinear chain under a slider keeps no deflections, leave it out"
         )
-    plan = lay_out(request, onto, ())
+    plan = lay_out(request, placed, ())
     assert request.count is not None
     check_links(request.count, 2, STATIC_LINKS, "a slider's contact line goes through two links or more")
     stage = plan.stages[0]
@@ -72,28 +73,29 @@ def run_on_chain(
     ready = perf_counter()
     note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
     given = surface_given(moved, plan)
-    runs = [_ride(replace(plan, onto=(one,)), given, (began, ready), progress) for one in onto]
+    runs = [_ride(replace(plan, placed=(one,)), given, (began, ready), progress) for one in placed]
     return tuple(replace(run, model=CHAIN, notes=(note, *run.notes[1:])) for run in runs)
 
 
-def _ride(plan: Plan, given: Moved, begun: tuple[float, float], progress: Callable[[float], None]) -> MotorRun:
+def _ride(plan: Plan, given: GivenSurface, begun: tuple[float, float], progress: Callable[[float], None]) -> MotorRun:
     """One slider on a chain that does not feel it, hence none of the others; `given` is the surface under all."""
     stage = plan.stages[0]
-    riding = Riding.fresh(plan.onto, plan.request, False)
+    riding = Riding.fresh(plan.placed, plan.request, False)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
     begin(plan, riding, ())
     riding.look()
     riding.first = np.zeros(0)
-    given = given._replace(edges=given.edges - plan.onto[0].start)
+    given = given._replace(edges=given.edges - plan.placed[0].start)
     riding.feet.piece[:] = np.clip(
         np.searchsorted(given.edges[1:-1], riding.feet.points[:, records.OFFSET]), 0, len(given.edges) - 2
     )
     stopped = _run(given, stage.n_steps, stage.dt, riding, progress)
     state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
-    return told(0, plan, riding, stopped, state, (*begun, perf_counter()))
+    began, ready = begun
+    return outcome(0, plan, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
 
 
-def _run(given: Moved, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
+def _run(given: GivenSurface, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
     from verify.motor import kernels
 
     pieces, terms = given.local.shape[1], given.local.shape[3]
@@ -108,7 +110,7 @@ def _run(given: Moved, n_steps: int, dt: float, riding: Riding, progress: Callab
     return "end"
 
 
-def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> Moved:
+def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> GivenSurface:
     """The contact line on the links under all feet and beside them, at every other time kept: in mid-steps.
 
     Edges are metres from the left end.
@@ -116,7 +118,7 @@ def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> Moved:
     system = moved.system
     ends = [
         one.start + foot.offset + side * 0.5 * foot.length
-        for one in plan.onto
+        for one in plan.placed
         for foot in one.slider.feet
         for side in (-1.0, 1.0)
     ]
@@ -126,7 +128,7 @@ def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> Moved:
     rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
     local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)
     edges = system.nodes[first : last + 2]
-    return Moved(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 1]), edges)
+    return GivenSurface(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 1]), edges)
 
 
 def _link_at(system: ChainSystem, x: float) -> int:

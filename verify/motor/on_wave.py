@@ -13,8 +13,8 @@ from verify.models.arrays import Array
 from verify.motion.pure_wave import wave_stage
 from verify.motion.surface import Stage, cut
 from verify.motor import records
+from verify.motor.feet import Placed, feet_of, fresh_log
 from verify.motor.figures import AtSpeed
-from verify.motor.laid import Onto, feet_of, fresh_log
 from verify.motor.stepping import Riding, run_stages
 from verify.slider import Contact, Foot, Slider
 
@@ -80,11 +80,11 @@ def _slider(mu: float, epsilon: float, k: float, thickness: float, length: float
 
 def _riding(slider: Slider, beam: Beam, speed: float, height: float, samples: int) -> Riding:
     """The foot at its height, which nothing changes."""
-    onto = (Onto(slider, 0.0, speed, True),)
-    feet = feet_of(onto)
-    feet.given[:, records.LIGHTNESS] = 0.0
+    placed = (Placed(slider, 0.0, speed, True),)
+    feet = feet_of(placed)
+    feet.given[:, records.FOOT_INVERSE_MASS] = 0.0
     feet.state[:, records.HEIGHT] = height
-    return Riding.of(feet, onto, beam, fresh_log(samples, feet, np.zeros((0, 2)), 1), np.empty(0), False)
+    return Riding.of(feet, placed, beam, fresh_log(samples, feet, np.zeros((0, 2)), 1), np.empty(0), False)
 
 
 def _means(riding: Riding, stage: Stage, speed: float) -> AtSpeed:

@@ -11,14 +11,14 @@ from verify.models.arrays import Array, Indices
 
 X, V = range(2)
 """Columns of `Feet.body`: distance travelled, speed."""
-MU, LIGHT, PULL, FREE = range(4)
+MU, INVERSE_MASS, PULL, FREE = range(4)
 """Columns of `Feet.riders`: coefficient of friction; 1/mass, 0 where the speed is held; newton along x; 0 where the
 slider stays at its place, whatever its speed, otherwise 1."""
 MEAN, AFTER, HELD = range(3)
 """Columns of `Feet.means`: speed in the middle of the step and at its end, friction of what gives way."""
 HEIGHT, CLIMB, PITCH, TURN = range(4)
 """Columns of `Feet.state`."""
-LIGHTNESS, EASE, PRESS, SPRING = range(4)
+FOOT_INVERSE_MASS, FOOT_INVERSE_INERTIA, PRESS, SPRING = range(4)
 """Columns of `Feet.given`: 1/mass, 1/inertia (0: it does not pitch), force along z, stiffness of what presses."""
 OFFSET, ARM, STIFF, DASHPOT, GRIP, FACE, IMAGE, INSET, WEIGHT = range(9)
 """Columns of `Feet.points`: place from the stage's x and from the middle of its foot, metres; stiffness, damping and
@@ -99,7 +99,7 @@ class Hard(NamedTuple):
     restitution: float
 
 
-class Beamed(NamedTuple):
+class BeamAnswer(NamedTuple):
     """The beam's answer where it feels the feet."""
 
     answer: Array
@@ -123,7 +123,7 @@ class Line(NamedTuple):
     """(2, rows)"""
 
 
-class Moved(NamedTuple):
+class GivenSurface(NamedTuple):
     """A surface that is given in the middle of every step."""
 
     local: Array

@@ -7,11 +7,12 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.motion.request import Driven, Modelled, Started, Watched, requested
+from verify.motor.carry import carry_out
 from verify.motor.case import MotorCase
 from verify.motor.combine import check_combines
-from verify.motor.laid import Onto
+from verify.motor.feet import Placed
+from verify.motor.plan import lay_out
 from verify.motor.result import MotorRun, MotorState
-from verify.motor.run import carry_out, lay_out
 
 Block = Callable[[MotorState | None], MotorRun]
 """From the state at its end the run of the next; None: from where the slider is put down."""
@@ -32,7 +33,7 @@ def blocks(case: MotorCase, speed: float, periods: int, samples: int) -> Block:
         Watched((), samples, None, case.steps_per_period, False),
         case.slider,
     )
-    plan = lay_out(request, (Onto(case.slider, case.slider.start_on(case.beam), speed, True),), ())
+    plan = lay_out(request, (Placed(case.slider, case.slider.start_on(case.beam), speed, True),), ())
 
     def run(before: MotorState | None) -> MotorRun:
         if before is None:

@@ -10,7 +10,7 @@ from verify.models.time_basis import TimeBasis
 from verify.motion.request import Request
 from verify.motion.surface import Stage, basis_of
 from verify.motor import records
-from verify.motor.laid import Onto, feet_of
+from verify.motor.feet import Placed, feet_of
 from verify.motor.records import Feet
 
 PASSES = 4
@@ -19,14 +19,14 @@ SAGGING = 20
 """Modes that a static deflection is read from."""
 
 
-def weighed(basis: TimeBasis, onto: Sequence[Onto]) -> Array:
+def weighed(basis: TimeBasis, placed: Sequence[Placed]) -> Array:
     """Modes at rest under what presses the feet on, shared by their points, (n,): on the material under them."""
-    feet, length, still = feet_of(onto), basis.beam.length, np.zeros(len(basis.omegas))
+    feet, length, still = feet_of(placed), basis.beam.length, np.zeros(len(basis.omegas))
     p = feet.points
     share = (feet.foot[:, None] == np.arange(len(feet.state))) * p[:, [records.WEIGHT]]
     share = share / share.sum(axis=0)  # of two beams one is kept
     apart = np.where(p[:, records.IMAGE] > 0.0, p[:, records.INSET] * p[:, records.STIFF], 0.0)
-    x, lever = onto[0].start + p[:, records.OFFSET], basis.beam.surface_distance * p[:, records.FACE]
+    x, lever = placed[0].start + p[:, records.OFFSET], basis.beam.surface_distance * p[:, records.FACE]
     at = x
     for _ in range(PASSES):
         shapes = basis.shapes(at, 0)
@@ -49,40 +49,40 @@ def _pressing(feet: Feet, compliance: Array) -> Array:
     return np.asarray(np.linalg.solve(np.eye(len(press)) + spring[:, None] * yielding, press))
 
 
-def press_apart(onto: Sequence[Onto], basis: TimeBasis, feet: Feet) -> None:
+def press_apart(placed: Sequence[Placed], basis: TimeBasis, feet: Feet) -> None:
     """A foot between two beams sits deeper by as much as its preload has bent the beam away, on the average."""
-    still = weighed(basis, onto)
-    bent = still @ basis.shapes(onto[0].start + feet.points[:, records.OFFSET], 0)
+    still = weighed(basis, placed)
+    bent = still @ basis.shapes(placed[0].start + feet.points[:, records.OFFSET], 0)
     for f in range(len(feet.state)):
         between = (feet.foot == f) & (feet.points[:, records.WEIGHT] < 1.0)
         if between.any():
             feet.points[between, records.INSET] -= bent[between].mean()
 
 
-def sag_of(request: Request, onto: Sequence[Onto]) -> float:
+def sag_of(request: Request, placed: Sequence[Placed]) -> float:
     """Largest static deflection under the net loads at the sliders, metres, by the first modes of the model."""
-    if not any(_net(one) for one in onto):
+    if not any(_net(one) for one in placed):
         return 0.0
     basis = basis_of(request.beam, request.model, request.count, min(request.modes, SAGGING), "spline")
-    places = np.array([one.start for one in onto])
-    still = weighed(basis, onto)
+    places = np.array([one.start for one in placed])
+    still = weighed(basis, placed)
     return float(np.abs(still @ basis.shapes(places, 0)).max())
 
 
-def _net(one: Onto) -> bool:
+def _net(one: Placed) -> bool:
     """Whether what presses a slider's feet on bends the beam: a clasp's cancel out."""
     press = feet_of((one,)).given[:, records.PRESS]
     return bool(abs(press.sum()) > 1e-12 * np.abs(press).max()) or any(foot.mirrored for foot in one.slider.feet)
 
 
-def contact_rate(one: Onto, basis: TimeBasis | None) -> float:
+def contact_rate(one: Placed, basis: TimeBasis | None) -> float:
     """The fastest natural frequency that the contact may have, rad/s, every point pressed; with the beam's own ease.
 
     Also at least what a dashpot turns into one: half its rate is as much as a step bears of it.
     """
     feet = feet_of((one,))
     p, given = feet.points, feet.given[feet.foot]
-    ease = given[:, records.LIGHTNESS] + p[:, records.ARM] ** 2 * given[:, records.EASE]
+    ease = given[:, records.FOOT_INVERSE_MASS] + p[:, records.ARM] ** 2 * given[:, records.FOOT_INVERSE_INERTIA]
     along = np.full(len(ease), 1.0 / one.slider.mass)
     if basis is not None:
         places, lever = one.start + p[:, records.OFFSET], basis.beam.surface_distance
@@ -95,9 +95,9 @@ def contact_rate(one: Onto, basis: TimeBasis | None) -> float:
     return float(max(rates))
 
 
-def levels_of(stage: Stage, z: Array, beam: Beam, onto: Sequence[Onto], feet: Feet) -> Array:
+def levels_of(stage: Stage, z: Array, beam: Beam, placed: Sequence[Placed], feet: Feet) -> Array:
     """The surface under every point at the start, (points,), metres: of the material X = x + face (h/2) w' there."""
-    x, p = onto[0].start + feet.points[:, records.OFFSET], feet.points
+    x, p = placed[0].start + feet.points[:, records.OFFSET], feet.points
     lever, at = beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE], x
     factors = np.concatenate([z[0], stage.drive_factors(np.zeros(1))[0]])
     for _ in range(PASSES):

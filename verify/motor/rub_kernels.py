@@ -10,7 +10,7 @@ from verify.motor.records import (
     DEPTH,
     GRIP,
     HELD,
-    LIGHT,
+    INVERSE_MASS,
     MEAN,
     MU,
     PULL,
@@ -105,7 +105,7 @@ def agree(b: int, dt: float, feet: Feet, slope: float | None) -> float:
     Friction falls with the speed, so that there is one: Coulomb's between the speeds of the surface under two points or
     at one of them, that of tanh by halving and Newton's steps.
     """
-    light = feet.riders[b, LIGHT]
+    light = feet.riders[b, INVERSE_MASS]
     if light == 0.0:
         return float(feet.body[b, V])
     gain, most = 0.5 * dt * light, 0.0
@@ -175,9 +175,9 @@ def share(b: int, dt: float, mean: float, feet: Feet, slope: float | None) -> No
     """Friction of every point of slider b that does not give way; those that stick share what is left."""
     touch, riders = feet.touch, feet.riders
     total, reserve = _even(b, mean, feet, slope)
-    left = 0.0
-    if reserve > 0.0 and riders[b, LIGHT] > 0.0:
-        left = 2.0 * (mean - feet.body[b, V]) / (dt * riders[b, LIGHT]) - riders[b, PULL] - feet.means[b, HELD] - total
+    left, light = 0.0, riders[b, INVERSE_MASS]
+    if reserve > 0.0 and light > 0.0:
+        left = 2.0 * (mean - feet.body[b, V]) / (dt * light) - riders[b, PULL] - feet.means[b, HELD] - total
         left = left / reserve
     for i in range(feet.first[b], feet.first[b + 1]):
         if feet.points[i, GRIP] > 0.0:
@@ -201,7 +201,7 @@ def settle(b: int, dt: float, mean: float, feet: Feet) -> None:
     what the point that holds can do.
     """
     touch, v, riders = feet.touch, feet.body[b, V], feet.riders
-    after, gain = 2.0 * mean - v, dt * riders[b, LIGHT]
+    after, gain = 2.0 * mean - v, dt * riders[b, INVERSE_MASS]
     for i in range(feet.first[b], feet.first[b + 1]):
         if gain > 0.0 and touch[i, STUCK] > 0.0 and _rubs(i, feet):
             wanted = 1.5 * touch[i, SURFACE] - 0.5 * touch[i, SURFACE_BEFORE]

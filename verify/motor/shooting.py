@@ -8,7 +8,7 @@ from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray, Indices
 from verify.motor import records
 from verify.motor.case import MotorCase
-from verify.motor.laid import Onto, feet_of
+from verify.motor.feet import Placed, feet_of
 from verify.motor.repeated import Block, blocks
 from verify.motor.result import MotorRun, MotorState
 
@@ -83,8 +83,8 @@ def _size(run: MotorRun) -> Array:
 
 def _free(case: MotorCase) -> Indices:
     """Which of the feet's coordinates can move: heights and their rates, pitches of feet that turn."""
-    given = feet_of((Onto(case.slider, 0.0),)).given
-    moves = np.repeat(given[:, [records.LIGHTNESS, records.EASE]] > 0.0, 2, axis=1)
+    given = feet_of((Placed(case.slider, 0.0),)).given
+    moves = np.repeat(given[:, [records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA]] > 0.0, 2, axis=1)
     return np.flatnonzero(moves.ravel())
 
 

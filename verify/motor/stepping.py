@@ -14,8 +14,8 @@ from verify.motion.request import Request
 from verify.motion.stepping import CHUNK
 from verify.motion.surface import Stage
 from verify.motor import records
-from verify.motor.laid import Onto, feet_of, fresh_log, hard_of, rubbing_of
-from verify.motor.records import Beamed, Feet, Hard, Line, Log, Rubbing
+from verify.motor.feet import Placed, feet_of, fresh_log, hard_of, rubbing_of
+from verify.motor.records import BeamAnswer, Feet, Hard, Line, Log, Rubbing
 
 
 class Riding(msgspec.Struct, eq=False, kw_only=True):
@@ -30,7 +30,7 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     points: Array
     """(p,), metres: where the deflection is kept."""
     two_way: bool
-    onto: tuple[Onto, ...]
+    placed: tuple[Placed, ...]
     hard: Hard | None
     """None of a contact on springs."""
     at_start: Array | None = None
@@ -46,25 +46,25 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     """(p,), the deflection at the start."""
 
     @classmethod
-    def fresh(cls, onto: Sequence[Onto], request: Request, two_way: bool) -> "Riding":
+    def fresh(cls, placed: Sequence[Placed], request: Request, two_way: bool) -> "Riding":
         """Room for a run."""
-        samples, feet = sum(piece.steps.n // piece.steps.every for piece in request.pieces), feet_of(onto)
+        samples, feet = sum(piece.steps.n // piece.steps.every for piece in request.pieces), feet_of(placed)
         rows = np.zeros((len(request.points), 0))  # laid out with every stage
-        return cls.of(feet, onto, request.beam, fresh_log(samples, feet, rows, 1), request.points, two_way)
+        return cls.of(feet, placed, request.beam, fresh_log(samples, feet, rows, 1), request.points, two_way)
 
     @classmethod
-    def of(cls, feet: Feet, onto: Sequence[Onto], beam: Beam, log: Log, points: Array, two_way: bool) -> "Riding":
+    def of(cls, feet: Feet, placed: Sequence[Placed], beam: Beam, log: Log, points: Array, two_way: bool) -> "Riding":
         """The same with what is at hand."""
         return cls(
             feet=feet,
-            rubbing=rubbing_of(onto[0].slider, beam),
+            rubbing=rubbing_of(placed[0].slider, beam),
             log=log,
             before=np.full((len(feet.points), 2), -1.0),
-            start=onto[0].start,
+            start=placed[0].start,
             points=points,
             two_way=two_way,
-            onto=tuple(onto),
-            hard=hard_of(onto[0].slider),
+            placed=tuple(placed),
+            hard=hard_of(placed[0].slider),
             put_down=feet.state.copy(),
             set_off=feet.body.copy(),
             pressed=np.zeros(len(feet.points)),
@@ -98,9 +98,11 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
     def energy(self) -> Array:
         """(sliders, 2): kinetic and in the springs across now, joules; these at the depths that the touch says."""
         feet, p, touch = self.feet, self.feet.points, self.feet.touch
-        found = np.zeros((len(self.onto), 2))
-        found[:, 0] = 0.5 * np.array([one.slider.mass for one in self.onto]) * feet.body[:, records.V] ** 2
-        masses, inertias = (_turned(feet.given[:, one]) for one in (records.LIGHTNESS, records.EASE))
+        found = np.zeros((len(self.placed), 2))
+        found[:, 0] = 0.5 * np.array([one.slider.mass for one in self.placed]) * feet.body[:, records.V] ** 2
+        masses, inertias = (
+            _turned(feet.given[:, one]) for one in (records.FOOT_INVERSE_MASS, records.FOOT_INVERSE_INERTIA)
+        )
         across = 0.5 * (masses * feet.state[:, records.CLIMB] ** 2 + inertias * feet.state[:, records.TURN] ** 2)
         np.add.at(found[:, 0], feet.keeper, across)
         depth = np.maximum(touch[:, records.DEPTH], 0.0)
@@ -153,11 +155,11 @@ def _surface(stage: Stage, table: Array, z: Array, start: float) -> Surface:
     return Surface(modes, drive, table, stage.edges - start)
 
 
-def beam_answer(surface: Surface) -> Beamed:
+def beam_answer(surface: Surface) -> BeamAnswer:
     """What unit impulses on the polynomials' coefficients add to their rates, through all free modes."""
     n, (pieces, terms, _) = surface.modes.shape[1], surface.table.shape
     free = surface.table[:, :, :n].reshape(pieces * terms, n)
-    return Beamed(
+    return BeamAnswer(
         answer=np.ascontiguousarray(free @ free.T),
         load=np.zeros((pieces, terms)),
         added=np.zeros((pieces, terms)),

@@ -6,8 +6,8 @@ import numpy as np
 
 from verify.models.compiling import Call
 from verify.motion.records import Drive, Surface
-from verify.motor.laid import Onto, feet_of, fresh_log
-from verify.motor.records import Beamed, Feet, Hard, Line, Log, Moved, Rubbing
+from verify.motor.feet import Placed, feet_of, fresh_log
+from verify.motor.records import BeamAnswer, Feet, GivenSurface, Hard, Line, Log, Rubbing
 from verify.slider import Contact, Slider
 
 SLOPES = {"coulomb": None, "tanh": 1.0}
@@ -32,7 +32,7 @@ def on_springs(law: str, coupling: str) -> Iterator[Call]:
     """On a beam; both couplings where it is left open which one it is."""
     from verify.motor import kernels
 
-    for name, beam in (("one-way", None), ("two-way", _beamed())):
+    for name, beam in (("one-way", None), ("two-way", _beam_answer())):
         if coupling in (name, "auto"):
             feet, log = _ridden()
             yield kernels.ride, (1, 0.0, _surface(), feet, _rubbing(law), beam, _line(), np.zeros((1, 2)), log)
@@ -43,7 +43,7 @@ def on_chain(law: str) -> Iterator[Call]:
     from verify.motor import kernels
 
     feet, log = _ridden()
-    given = Moved(np.zeros((1, 1, 2, 4)), np.zeros((1, 1)), np.zeros(2))
+    given = GivenSurface(np.zeros((1, 1, 2, 4)), np.zeros((1, 1)), np.zeros(2))
     yield kernels.ride_given, (1, 0.0, given, feet, _rubbing(law), _line(), np.zeros((1, 2)), log)
 
 
@@ -58,7 +58,7 @@ def hard(law: str) -> Iterator[Call]:
 
 
 def _ridden() -> tuple[Feet, Log]:
-    feet = feet_of((Onto(Slider(mass=1.0, mu=1.0, contact=Contact(stiffness=1.0)), 0.0),))
+    feet = feet_of((Placed(Slider(mass=1.0, mu=1.0, contact=Contact(stiffness=1.0)), 0.0),))
     return feet, fresh_log(1, feet, np.zeros((0, 1)), 1)
 
 
@@ -75,6 +75,6 @@ def _line() -> Line:
     return Line(local=np.zeros((1, 2, 1)), stamp=np.zeros(1, dtype=np.int64), factors=np.zeros((2, 1)))
 
 
-def _beamed() -> Beamed:
+def _beam_answer() -> BeamAnswer:
     flat = np.zeros((1, 1))
-    return Beamed(answer=flat, load=flat, added=flat, span=np.zeros(2, dtype=np.int64))
+    return BeamAnswer(answer=flat, load=flat, added=flat, span=np.zeros(2, dtype=np.int64))

@@ -164,7 +164,7 @@ def motor_case(a: Motor, scene: "Scene") -> "MotorCase":
 def _needs(a: Motor, scene: "Scene") -> tuple[()]:
     """Raise InputError for a motor that is not run."""
     from verify.motor.combine import check_combines
-    from verify.motor.laid import check_on_beam
+    from verify.motor.feet import check_on_beam
 
     case = motor_case(a, scene)
     check_combines(case.model, case.start, case.slider)

@@ -129,7 +129,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         """Raise InputError for what does not combine, feet that do not fit, a chain that is not run."""
         from verify.models.places import as_forces
         from verify.motor.combine import check_combines
-        from verify.motor.laid import check_on_beam
+        from verify.motor.feet import check_on_beam
         from verify.quantities.simulated import check_forced
 
         check_forced(scene, "a motor")

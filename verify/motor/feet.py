@@ -1,6 +1,6 @@
-"""A slider on feet as the compiled loop sees it: arrays of its feet and points, laid on a beam."""
+"""Sliders on feet as the compiled loop sees them: arrays of their feet and points, set down on a beam."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import msgspec
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
+from verify.motor import records
 from verify.motor.records import Feet, Hard, Log, Rubbing
 from verify.slider import Foot, Slider
 
@@ -24,7 +25,7 @@ def shared_mass(slider: Slider, foot: Foot) -> float:
     return slider.mass / len(slider.feet) if foot.mass is None else foot.mass
 
 
-class Onto(msgspec.Struct, frozen=True):
+class Placed(msgspec.Struct, frozen=True):
     """A slider and how it is put on."""
 
     slider: Slider
@@ -55,34 +56,34 @@ def hard_of(slider: Slider) -> Hard | None:
     return Hard(mass, slider.normal_force / mass, float(slider.contact.restitution))
 
 
-def feet_of(onto: Sequence[Onto]) -> Feet:
+def feet_of(placed: Sequence[Placed]) -> Feet:
     """The feet at height 0, with their points; distances are from where the first slider is put."""
-    feet = [(b, foot) for b, one in enumerate(onto) for foot in one.slider.feet]
-    sheets = [_points(onto[b].slider, foot, onto[b].start - onto[0].start) for b, foot in feet]
+    feet = [(b, foot) for b, one in enumerate(placed) for foot in one.slider.feet]
+    sheets = [_points(placed[b].slider, foot, placed[b].start - placed[0].start) for b, foot in feet]
     points, lengths = np.concatenate(sheets), [len(sheet) for sheet in sheets]
     keeper = _whole(np.array([b for b, _ in feet]))
     return Feet(
-        body=np.array([[0.0, one.speed] for one in onto]),
-        riders=np.array([_rider(one) for one in onto]),
-        means=np.zeros((len(onto), 3)),
+        body=np.array([[0.0, one.speed] for one in placed]),
+        riders=np.array([_rider(one) for one in placed]),
+        means=np.zeros((len(placed), 3)),
         state=np.zeros((len(feet), 4)),
-        given=np.array([_given(onto[b].slider, foot) for b, foot in feet]),
+        given=np.array([_given(placed[b].slider, foot) for b, foot in feet]),
         points=points,
         touch=np.zeros((len(points), 12)),
         foot=_whole(np.repeat(np.arange(len(feet)), lengths)),
         owner=_whole(np.repeat(keeper, lengths)),
-        first=np.searchsorted(np.repeat(keeper, lengths), np.arange(len(onto) + 1)).astype(np.int64),
+        first=np.searchsorted(np.repeat(keeper, lengths), np.arange(len(placed) + 1)).astype(np.int64),
         keeper=keeper,
         piece=_whole(np.zeros(len(points))),
         kick=np.zeros((len(feet), 2)),
-        sums=np.zeros((len(onto), 13)),
+        sums=np.zeros((len(placed), 13)),
     )
 
 
-def _rider(one: Onto) -> tuple[float, float, float, float]:
+def _rider(one: Placed) -> tuple[float, float, float, float]:
     """(mu, 1/mass, pull, whether it moves along) of a slider."""
-    light = 0.0 if one.held_speed is not None else 1.0 / one.slider.mass
-    return float(one.slider.mu), light, float(one.slider.pull), 0.0 if one.frozen else 1.0
+    inverse_mass = 0.0 if one.held_speed is not None else 1.0 / one.slider.mass
+    return float(one.slider.mu), inverse_mass, float(one.slider.pull), 0.0 if one.frozen else 1.0
 
 
 def _whole(values: Array) -> Indices:
@@ -108,14 +109,15 @@ def _points(slider: Slider, foot: Foot, beyond: float) -> Array:
     shares = np.array([across, contact.damping, contact.along(foot.length)]) / foot.points
     face = -1.0 if foot.face == "lower" else 1.0
     sheet = np.zeros((foot.points, 9))
-    sheet[:, 1] = arms(foot)
-    sheet[:, 0] = beyond + foot.offset + sheet[:, 1]
-    sheet[:, 2:5], sheet[:, 5], sheet[:, 6], sheet[:, 7] = shares, face, 1.0, inset
-    sheet[:, 8] = 0.5 if foot.mirrored else 1.0
+    sheet[:, records.ARM] = arms(foot)
+    sheet[:, records.OFFSET] = beyond + foot.offset + sheet[:, records.ARM]
+    sheet[:, [records.STIFF, records.DASHPOT, records.GRIP]] = shares
+    sheet[:, records.FACE], sheet[:, records.IMAGE], sheet[:, records.INSET] = face, 1.0, inset
+    sheet[:, records.WEIGHT] = 0.5 if foot.mirrored else 1.0
     if not foot.mirrored:
         return sheet
     above = sheet.copy()
-    above[:, 5], above[:, 6] = -1.0, -1.0
+    above[:, records.FACE], above[:, records.IMAGE] = -1.0, -1.0
     return np.concatenate([sheet, above])
 
 
@@ -139,27 +141,29 @@ def put_down(feet: Feet, levels: Array) -> None:
 
     Raises InputError for a foot that nothing presses on.
     """
-    points = feet.points
+    deepest = float(feet.points[:, records.INSET].max())
     for f in range(len(feet.state)):
         own = feet.foot == f
-        face, stiff = points[own, 5], points[own, 2]
-        touching = points[own, 7] + face * points[own, 6] * levels[own]
-
-        def force(z: float, f: int = f, face: Array = face, stiff: Array = stiff, touching: Array = touching) -> float:
-            pushes = face * stiff * np.maximum(touching - face * z, 0.0)
-            return float(pushes.sum() + feet.given[f, 2] - feet.given[f, 3] * z)
-
-        feet.state[f, 0] = _balanced(force, float(np.abs(levels[own]).max()), float(stiff.sum()), f, feet)
+        feet.state[f, records.HEIGHT] = _rest_height(f, feet.points[own], levels[own], feet.given[f], deepest)
 
 
-def _balanced(falls: Callable[[float], float], reach: float, stiff: float, f: int, feet: Feet) -> float:
+def _rest_height(f: int, points: Array, levels: Array, given: Array, deepest: float) -> float:
+    """Of foot f on its own points over these levels, metres. Raises InputError."""
     from scipy.optimize import brentq
 
-    wide = 2.0 * reach + 2.0 * (abs(float(feet.given[f, 2])) + stiff * float(feet.points[:, 7].max())) / stiff + 1e-12
-    if not falls(-wide) > 0.0 > falls(wide):
-        way = "its weight is more than the preload" if feet.given[f, 2] < 0.0 else "nothing presses it on"
+    face, stiff, press = points[:, records.FACE], points[:, records.STIFF], float(given[records.PRESS])
+    depths = points[:, records.INSET] + face * points[:, records.IMAGE] * levels
+
+    def force(z: float) -> float:
+        """On the foot at a height, newton: it falls as the foot rises."""
+        return float((face * stiff * np.maximum(depths - face * z, 0.0)).sum() + press - given[records.SPRING] * z)
+
+    total = float(stiff.sum())
+    wide = 2.0 * float(np.abs(levels).max()) + 2.0 * (abs(press) + total * deepest) / total + 1e-12
+    if not force(-wide) > 0.0 > force(wide):
+        way = "its weight is more than the preload" if press < 0.0 else "nothing presses it on"
         raise InputError(f"slider.preload leaves foot {f + 1} off the beam, {way}: raise slider.preload")
-    return float(brentq(falls, -wide, wide, xtol=1e-15 * max(wide, 1e-9), rtol=1e-14))
+    return float(brentq(force, -wide, wide, xtol=1e-15 * max(wide, 1e-9), rtol=1e-14))
 
 
 def fresh_log(samples: int, feet: Feet, rows: Array, every: int) -> Log:

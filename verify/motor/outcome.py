@@ -1,0 +1,172 @@
+"""What came of a run of a slider on feet."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from verify.models.arrays import Array
+from verify.motion.result import Statistics
+from verify.motor import records
+from verify.motor.plan import Plan
+from verify.motor.result import MotorLedger, MotorMargins, MotorRun, MotorState
+from verify.motor.stepping import Riding
+from verify.slider import Slider
+
+
+class Ended(NamedTuple):
+    """How a run came to its end."""
+
+    stopped: str
+    """'end', or why it ended before."""
+    q: Array
+    """(n,), of every free mode."""
+    rates: Array
+    """(n,), dq/dt."""
+    set_up_s: float
+    wall_s: float
+
+
+def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
+    """The run of slider b, with its first sample as it was put down."""
+    request, one, n = plan.request, plan.placed[b], int(riding.log.tally[records.SAMPLES])
+    stages = (stage.origin + stage.sample_times for stage in plan.stages)
+    times = np.concatenate([[plan.stages[0].origin], *stages])[: n + 1]
+    events, notes = _events(riding, b, times)
+    assert riding.first is not None
+    return MotorRun(
+        model=request.model,
+        count=request.count,
+        slider=one.slider,
+        start=one.start,
+        times=times,
+        points=request.points,
+        deflection=np.concatenate([riding.first[None], riding.log.deflections[:n]]),
+        **_along(b, n, one.slider, riding),
+        **_across(b, n, riding),
+        point_offsets=riding.feet.points[riding.feet.owner == b, records.OFFSET] - (one.start - plan.placed[0].start),
+        events=events,
+        notes=(*plan.notes, *notes),
+        coupling=plan.coupling,
+        beam_margins=plan.margins,
+        motor_margins=motor_margins(plan, one.slider),
+        ledger=ledger(riding, b),
+        state=_state(b, float(times[-1]), riding, ended),
+        statistics=_statistics(plan, riding, ended),
+    )
+
+
+def _along(b: int, n: int, slider: Slider, riding: Riding) -> dict[str, Array]:
+    """What slider b did along the beam, and what its points together gave it, (n + 1,) each."""
+    kept, off = riding.log.kept[:n, b].T, riding.set_off[b]
+    columns = {
+        "travelled": (float(off[records.X]), records.KEPT_X),
+        "speed": (float(off[records.V]), records.KEPT_V),
+        "friction": (0.0, records.KEPT_RUB),
+        "surface_speed": (np.nan, records.KEPT_SURFACE),
+        "normal_force": (slider.normal_force, records.KEPT_PUSH),
+        "contact_share": (1.0, records.KEPT_TOUCHING),
+        "stuck_share": (0.0, records.KEPT_STICKING),
+        "rubbed": (0.0, records.KEPT_RUBBED),
+        "carried": (0.0, records.KEPT_ALONG),
+    }
+    return {name: np.concatenate([[first], kept[column]]) for name, (first, column) in columns.items()}
+
+
+def _across(b: int, n: int, riding: Riding) -> dict[str, Array]:
+    """What the feet of slider b did across the beam, (n + 1, feet), and its points, (n + 1, points)."""
+    log, put, feet, points = riding.log, riding.put_down, riding.feet.keeper == b, riding.feet.owner == b
+    return {
+        "height": np.concatenate([put[None, feet, records.HEIGHT], log.heights[:n, feet, 0]]),
+        "pitch": np.concatenate([put[None, feet, records.PITCH], log.heights[:n, feet, 1]]),
+        "pressures": np.concatenate([riding.pressed[None, points], log.pressures[:n, points]]),
+    }
+
+
+def _state(b: int, time: float, riding: Riding, ended: Ended) -> MotorState:
+    """From where slider b can go on."""
+    feet = riding.feet
+    return MotorState(
+        time=time,
+        q=ended.q,
+        rates=ended.rates,
+        travelled=float(feet.body[b, records.X]),
+        speed=float(feet.body[b, records.V]),
+        feet=feet.state[feet.keeper == b].copy(),
+        touch=feet.touch[feet.owner == b].copy(),
+    )
+
+
+def _statistics(plan: Plan, riding: Riding, ended: Ended) -> Statistics:
+    return Statistics(
+        steps=riding.steps,
+        evaluations=riding.steps,
+        step_s=plan.stages[-1].dt,
+        set_up_s=ended.set_up_s,
+        wall_s=ended.wall_s,
+        stopped=ended.stopped,
+    )
+
+
+def _events(riding: Riding, b: int, times: Array) -> tuple[Array, tuple[str, ...]]:
+    """(events of slider b's points, numbered from its first; what to say of them)."""
+    log, feet = riding.log, riding.feet
+    n = int(log.tally[records.EVENTS])
+    found = log.events[: min(n, len(log.events))]
+    found = found[np.isin(found[:, records.EVENT_POINT], np.arange(feet.first[b], feet.first[b + 1]))].copy()
+    found[:, records.EVENT_POINT] -= feet.first[b]
+    lost = (f"events: the first {len(log.events)} of {n}",) if n > len(log.events) else ()
+    push = log.kept[: int(log.tally[records.SAMPLES]), b, records.KEPT_PUSH]
+    return found, (*lost, *_lost(push, found, times))
+
+
+def _lost(push: Array, events: Array, times: Array) -> tuple[str, ...]:
+    """Since when nothing has touched, where nothing does at the end; empty otherwise."""
+    if not len(push) or push[-1] > 0.0:
+        return ()
+    left = events[events[:, records.EVENT_KIND] == records.LEAVES, records.EVENT_TIME]
+    since = float(left[-1]) if len(left) else float(times[0])
+    return (f"the slider is off the beam at the end, {times[-1]:.6g} s, and has been since {since:.6g} s",)
+
+
+def motor_margins(plan: Plan, slider: Slider) -> MotorMargins:
+    """What the contact's assumptions leave out."""
+    beam = plan.request.beam
+    k = float(np.sqrt(plan.request.omega / beam.wave_constant))
+    thickness = 2.0 * beam.surface_distance
+    return MotorMargins(
+        epsilon=layer_epsilon(slider, k, thickness),
+        step=plan.contact_rate * plan.stages[-1].dt,
+        sag=plan.sag,
+        sag_taken=plan.coupling.two_way,
+        chain=plan.margins.nonlinearity,
+    )
+
+
+def layer_epsilon(slider: Slider, wavenumber: float, thickness: float) -> float | None:
+    """2 mu kappa / (kappa_t k h) of the slider's contact; 0 without give along the surface, None of a hard one."""
+    contact = slider.contact
+    if contact is None or contact.hard:
+        return None
+    across, along = (max(each(foot.length) for foot in slider.feet) for each in (contact.across, contact.along))
+    return 2.0 * slider.mu * across / (along * wavenumber * thickness) if along else 0.0
+
+
+def ledger(riding: Riding, b: int) -> MotorLedger:
+    """Where slider b's energy went."""
+    sums, before = riding.feet.sums[b], riding.at_start
+    assert before is not None
+    kinetic = float(riding.energy()[b, 0] - before[b, 0])
+    stored = float(sums[records.STORED] - before[b, 1])
+    names = {"across": records.ACROSS, "along": records.ALONG, "pressed": records.PRESSED, "pulled": records.PULLED}
+    given = {name: float(sums[column]) for name, column in names.items()}
+    rubbed, damped = float(sums[records.RUBBED]), float(sums[records.DAMPED])
+    return MotorLedger(
+        kinetic=kinetic,
+        stored=stored,
+        **given,
+        rubbed=rubbed,
+        damped=damped if riding.hard is None else 0.0,
+        impacts=0.0 if riding.hard is None else damped,
+        on_beam=float(sums[records.LIFTED]),
+        residual=sum(given.values()) - rubbed - damped - kinetic - stored,
+    )
