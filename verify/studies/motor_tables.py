@@ -5,12 +5,14 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.models.catalogue import MODELS
-from verify.studies.told import Column, Table
+from verify.studies.told import Column, Read, Table
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from verify.motor.figures import AtSpeed
     from verify.studies.motor_figures import FieldFound, MotorFound
-    from verify.studies.motor_rest import Departure, FromRest, RestField
+    from verify.studies.motor_rest import FromRest, RestHeld
 
 
 def motor_tables(found: "MotorFound") -> tuple[Table, ...]:
@@ -19,30 +21,61 @@ def motor_tables(found: "MotorFound") -> tuple[Table, ...]:
     return (_overview(found), _force_speed(found), _margins(found), *rest)
 
 
+OVERVIEW: tuple[Read, ...] = (
+    (Column("field", left=True), lambda one: one.title),
+    (Column("crests, cm/s", ".4f", 100.0, wide=True), lambda one: one.crest_speed),
+    (Column("no load, cm/s", "+.4f", 100.0), lambda one: one.no_load.speed if one.no_load else None),
+    (Column("free, cm/s", "+.4f", 100.0), lambda one: one.free.speed),
+    (Column("stall, mN", "+.4f", 1e3), lambda one: one.stall.force),
+    (Column("most power, mW", ".4g", 1e3, wide=True), lambda one: one.most_power.power),
+    (Column("best efficiency", "bare size"), lambda one: one.best_efficiency),
+    (Column("touching", "bare size", wide=True), lambda one: one.free.contact_share),
+    (Column("sticking", "bare size", wide=True), lambda one: one.free.stuck_share),
+    (Column("start", "duration"), lambda one: one.start_time),
+    (Column("stop", "duration"), lambda one: one.stop_time),
+    (Column("turn", "duration"), lambda one: one.reversal_time),
+    (Column("wear, mW", ".4g", 1e3, wide=True), lambda one: one.free.wear_power),
+    (Column("dashpots, mW", ".4g", 1e3, wide=True), lambda one: one.free.damped_power),
+    (Column("s per s", ".2g", wide=True), lambda one: one.free.run_ms_per_ms),
+)
+"""Of a `FieldFound`."""
+MARGINS: tuple[Read, ...] = (
+    (Column("field", left=True), lambda one: one.title),
+    (Column("epsilon", ".3g"), lambda one: one.margins.epsilon),
+    (Column("sag, µm", ".3g", 1e6), lambda one: one.margins.sag),
+    (Column("amplitude, µm", ".4g", 1e6), lambda one: one.amplitude),
+    (Column("contact's radians a step", ".2g"), lambda one: one.margins.step),
+    (Column("axial inertia", ".1e"), lambda one: one.margins.chain),
+    (Column("normal load felt", ".1e"), lambda one: one.coupling.normal_size),
+    (Column("friction felt", ".1e"), lambda one: one.coupling.friction_size),
+    (Column("free run's halves, cm/s", ".1e", 100.0), lambda one: one.free.spread),
+    (Column("shooting missed", ".1e"), lambda one: one.shooting.return_error if one.shooting else None),
+    (Column("largest multiplier", ".5f"), lambda one: one.shooting.largest_multiplier if one.shooting else None),
+)
+"""The same."""
+FROM_REST: tuple[Read, ...] = (
+    (Column("field", left=True), lambda row: row[0].title),
+    (Column("own place, µm", "+.4g", 1e6, wide=True), lambda row: row[0].own(False)),
+    (Column("wave turned, µm", "+.4g", 1e6, wide=True), lambda row: row[0].own(True)),
+    (Column("apart, µm", "+.3g", 1e6), lambda row: row[1].mean),
+    (Column("error, µm", ".2g", 1e6), lambda row: row[1].error),
+    (Column("rms, µm", ".3g", 1e6), lambda row: row[1].rms),
+    (Column("steps halved, µm", ".2g", 1e6, wide=True), lambda row: row[0].stepped),
+    (Column("push", "+.3f"), lambda row: row[0].push[0]),
+    (Column("bias", "+.3f"), lambda row: row[0].bias[0]),
+    (Column("error", ".2g"), lambda row: row[0].push[1]),
+    (Column("steps halved", ".1e", wide=True), lambda row: row[0].push_stepped),
+)
+"""Of a `RestField` and its `Departure` from the first."""
+
+
 def _overview(found: "MotorFound") -> Table:
-    columns = (
-        Column("field", left=True),
-        Column("crests, cm/s", ".4f", 100.0, wide=True),
-        Column("no load, cm/s", "+.4f", 100.0),
-        Column("free, cm/s", "+.4f", 100.0),
-        Column("stall, mN", "+.4f", 1e3),
-        Column("most power, mW", ".4g", 1e3, wide=True),
-        Column("best efficiency", "bare size"),
-        Column("touching", "bare size", wide=True),
-        Column("sticking", "bare size", wide=True),
-        Column("start", "duration"),
-        Column("stop", "duration"),
-        Column("turn", "duration"),
-        Column("wear, mW", ".4g", 1e3, wide=True),
-        Column("dashpots, mW", ".4g", 1e3, wide=True),
-        Column("s per s", ".2g", wide=True),
-    )
-    return Table(
+    return Table.over(
+        found.fields,
+        OVERVIEW,
         title="The motor on every field",
         before="Held figures are means over periods of a slider kept at its place; free, touching, sticking and wear "
         "are means over the last quarter of a free run.",
-        columns=columns,
-        rows=tuple(_of_field(one) for one in found.fields),
         notes=(
             "Start, stop and turn: until 1 - 1/e of the way is made from the slider's own speed, with the drive cut "
             "off at once, with its phases turned round at once. Shares are of contact points and of time, in per "
@@ -53,112 +86,55 @@ def _overview(found: "MotorFound") -> Table:
     )
 
 
-def _of_field(one: "FieldFound") -> tuple[Any, ...]:
-    free = one.free
-    return (
-        one.title,
-        one.crest_speed,
-        one.no_load.speed if one.no_load else None,
-        free.speed,
-        one.stall.force,
-        one.most_power.power,
-        one.best_efficiency,
-        free.contact_share,
-        free.stuck_share,
-        one.start_time,
-        one.stop_time,
-        one.reversal_time,
-        free.wear_power,
-        free.damped_power,
-        free.run_ms_per_ms,
-    )
-
-
 def _force_speed(found: "MotorFound") -> Table:
-    """A row for every speed, with force, power and efficiency of every field."""
-    columns = [Column("speed, cm/s", "+.4f", 100.0)]
-    for one in found.fields:
-        columns += [
-            Column(f"{one.title}, mN", "+.4f", 1e3),
-            Column("power, mW", "+.4g", 1e3, wide=True),
-            Column("efficiency %", "bare size", wide=True),
-        ]
-    rows = []
-    for k, at in enumerate(found.fields[0].curve):
-        cells: list[float | None] = [at.speed]
-        for one in found.fields:
-            cells += [one.curve[k].force, one.curve[k].power, one.curve[k].efficiency]
-        rows.append(tuple(cells))
-    return Table(
+    """With power and efficiency."""
+    return _over_speed(
+        [(one.title, one.curve) for one in found.fields],
+        lambda title: (
+            (Column(f"{title}, mN", "+.4f", 1e3), lambda at: at.force),
+            (Column("power, mW", "+.4g", 1e3, wide=True), lambda at: at.power),
+            (Column("efficiency %", "bare size", wide=True), lambda at: at.efficiency),
+        ),
         title="Force over speed",
         before="Friction on the slider along +x at speeds up to that of the crests, the way that it pushes; a dash "
         "where the slider drives the surface.",
-        columns=tuple(columns),
-        rows=tuple(rows),
-        shown="both",
     )
 
 
+def _over_speed(
+    curves: "Sequence[tuple[str, Sequence[AtSpeed | RestHeld]]]",
+    columns: "Callable[[str], Sequence[Read]]",
+    **told: str,
+) -> Table:
+    """A row for every speed, with these columns of every field, whose title and curve are given."""
+    speed: Read = Column("speed, cm/s", "+.4f", 100.0), lambda row: row[0].speed
+    others = [(column, _of(field, read)) for field, (title, _) in enumerate(curves) for column, read in columns(title)]
+    rows = zip(*(curve for _, curve in curves), strict=True)
+    return Table.over(rows, [speed, *others], shown="both", **told)
+
+
+def _of(field: int, read: "Callable[[Any], Any]") -> "Callable[[Any], Any]":
+    """The same of one field in a row of them."""
+    return lambda row: read(row[field])
+
+
 def _margins(found: "MotorFound") -> Table:
-    return Table(
+    return Table.over(
+        found.fields,
+        MARGINS,
         title="How far these figures can be believed",
-        columns=(
-            Column("field", left=True),
-            Column("epsilon", ".3g"),
-            Column("sag, µm", ".3g", 1e6),
-            Column("amplitude, µm", ".4g", 1e6),
-            Column("contact's radians a step", ".2g"),
-            Column("axial inertia", ".1e"),
-            Column("normal load felt", ".1e"),
-            Column("friction felt", ".1e"),
-            Column("free run's halves, cm/s", ".1e", 100.0),
-            Column("shooting missed", ".1e"),
-            Column("largest multiplier", ".5f"),
-        ),
-        rows=tuple(
-            (
-                one.title,
-                one.margins.epsilon,
-                one.margins.sag,
-                one.amplitude,
-                one.margins.step,
-                one.margins.chain,
-                one.coupling.normal_size,
-                one.coupling.friction_size,
-                one.free.spread,
-                one.shooting.return_error if one.shooting else None,
-                one.shooting.largest_multiplier if one.shooting else None,
-            )
-            for one in found.fields
-        ),
         notes=found.doubts or ("Every margin is small.",),
     )
 
 
 def _rest(rest: "FromRest") -> Table:
     """Where sliders end on every field."""
-    gone = [rest.departure(one) for one in rest.fields]
-    return Table(
+    return Table.over(
+        ((one, rest.departure(one)) for one in rest.fields),
+        FROM_REST,
         title=f"From rest, {1e3 * rest.seconds:g} ms under {rest.force:g} N",
         before=f"Undamped, forces switched on at once, as a nonlinear chain starts; preload {rest.preload:.3g} N, the "
         f"slider put at {len(rest.places)} places of one wavelength, the wave either way.",
-        columns=(
-            Column("field", left=True),
-            Column("own place, µm", "+.4g", 1e6, wide=True),
-            Column("wave turned, µm", "+.4g", 1e6, wide=True),
-            Column("apart, µm", "+.3g", 1e6),
-            Column("error, µm", ".2g", 1e6),
-            Column("rms, µm", ".3g", 1e6),
-            Column("steps halved, µm", ".2g", 1e6, wide=True),
-            Column("push", "+.3f"),
-            Column("bias", "+.3f"),
-            Column("error", ".2g"),
-            Column("steps halved", ".1e", wide=True),
-        ),
-        rows=tuple(
-            (*_ends(one, away), one.push[0], one.bias[0], one.push[1], one.push_stepped)
-            for one, away in zip(rest.fields, gone, strict=True)
-        ),
         notes=(
             "Own place: where the slider ends that starts where the scene puts it. Apart: mean, over all "
             "starts, of how much farther along +x it ends than on the first field, with its standard error and its "
@@ -169,29 +145,17 @@ def _rest(rest: "FromRest") -> Table:
     )
 
 
-def _ends(one: "RestField", away: "Departure") -> tuple[Any, ...]:
-    return one.title, one.own(False), one.own(True), away.mean, away.error, away.rms, one.stepped
-
-
 def _rest_curve(rest: "FromRest") -> Table:
     """Force over speed of all fields from rest."""
-    columns = [Column("speed, cm/s", "+.4f", 100.0)]
-    for one in rest.fields:
-        columns += [Column(one.title, "+.3f"), Column("error", ".2g", wide=True)]
-    rows = []
-    for k in range(-len(rest.fields[0].curve), len(rest.fields[0].turned)):
-        cells: list[float] = []
-        for one in rest.fields:
-            at = one.curve[-1 - k] if k < 0 else one.turned[k]
-            cells += [at.speed] * (not cells) + [at.force, at.error]
-        rows.append(tuple(cells))
-    return Table(
+    return _over_speed(
+        [(one.title, (*reversed(one.curve), *one.turned)) for one in rest.fields],
+        lambda title: (
+            (Column(title, "+.3f"), lambda at: at.force),
+            (Column("error", ".2g", wide=True), lambda at: at.error),
+        ),
         title="Force over speed from rest, over mu N",
         before="The same runs, held at each speed and at each place, means over their last half: above with the wave "
         "as the scene says, below with it turned round.",
-        columns=tuple(columns),
-        rows=tuple(rows),
-        shown="both",
     )
 
 

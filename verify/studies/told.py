@@ -1,6 +1,7 @@
 """How what a study finds is told: tables, charts, facts and an answer as plain values."""
 
-from typing import Any, Literal
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Literal, TypeAlias
 
 import msgspec
 
@@ -28,6 +29,10 @@ class Column(msgspec.Struct, frozen=True):
     """Left out where there is no room."""
 
 
+Read: TypeAlias = tuple[Column, Callable[[Any], Any]]
+"""A column, and what stands in it of the thing that a row is about."""
+
+
 class Table(msgspec.Struct, frozen=True, kw_only=True):
     """Rows for a person; None is a figure that there is not."""
 
@@ -42,6 +47,12 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     """Where a run shows it; `verify table` shows it anyway."""
     folded: bool = False
     """On the page: behind its title until it is opened."""
+
+    @classmethod
+    def over(cls, things: Iterable[Any], columns: Sequence[Read], **told: Any) -> "Table":
+        """A row for each thing, read off column by column; `told` is all else."""
+        rows = tuple(tuple(read(one) for _, read in columns) for one in things)
+        return cls(columns=tuple(column for column, _ in columns), rows=rows, **told)
 
     def __post_init__(self) -> None:
         for row in self.rows:
