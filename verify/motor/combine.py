@@ -1,14 +1,13 @@
 """What combines with what under a slider that may leave the surface; the rest is refused by name."""
 
 from collections.abc import Sequence
+from itertools import product
 
 from verify.errors import InputError
 from verify.slider import Slider
 
 CHAIN = "chain"
 """The nonlinear chain as a field under a slider, beside the linear models by their names."""
-
-
 CREEPS = "a layer that gives way along the surface sticks and slips by Coulomb's law"
 
 
@@ -98,15 +97,14 @@ def _check_hard(model: str, start: str, slider: Slider) -> None:
 
 def combinations() -> tuple[tuple[str, str, str, str, str, str], ...]:
     """Every cell: (field, friction, normal, slider, coupling, how it is run or why it is not)."""
-    rows = []
-    for field in ("analytic", "segment", "fem", CHAIN):
-        for friction in ("tanh", "coulomb"):
-            for normal in ("always on", "springs", "hard"):
-                for shape in ("point", "foot", "layer"):
-                    for coupling in ("one-way", "two-way"):
-                        cell = (field, friction, normal, shape, coupling)
-                        rows.append((*cell, _run_by(*cell)))
-    return tuple(rows)
+    cells = product(
+        ("analytic", "segment", "fem", CHAIN),
+        ("tanh", "coulomb"),
+        ("always on", "springs", "hard"),
+        ("point", "foot", "layer"),
+        ("one-way", "two-way"),
+    )
+    return tuple((*cell, _run_by(*cell)) for cell in cells)
 
 
 def _run_by(field: str, friction: str, normal: str, shape: str, coupling: str) -> str:

@@ -181,6 +181,20 @@ def _lasts(
 
 
 @part()
+def _book_riding(s: float, mean: float, surface_mean: float, feet: Feet) -> None:
+    """What s seconds of riding add to the sums along the beam, at these mean speeds of slider and surface."""
+    sums, push, rub = feet.sums, feet.touch[0, PUSH], feet.touch[0, RUB]
+    sums[0, ALONG] += s * rub * surface_mean
+    sums[0, RUBBED] += s * rub * (surface_mean - mean)
+    sums[0, MEAN_RUB] += s * rub
+    sums[0, MEAN_PUSH] += s * push
+    sums[0, PULLED] += s * feet.riders[0, PULL] * mean
+    sums[0, MEAN_SPEED] += s * mean
+    sums[0, TOUCHING] += s
+    sums[0, STICKING] += s * feet.touch[0, STUCK]
+
+
+@part()
 def _move_riding(
     t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet, slope: float | None
 ) -> bool:
@@ -203,24 +217,16 @@ def _move_riding(
         most, wanted = feet.riders[0, MU] * push, rub + (touch[0, SURFACE] - after) / (2.0 * gain)
         rub = most if wanted > most else -most if wanted < -most else wanted
         after = v + 2.0 * gain * (feet.riders[0, PULL] + rub)
-    mean = 0.5 * (v + after)
+    mean, rise = 0.5 * (v + after), level - state[0, HEIGHT]
+    across = 0.5 * hard.mass * (touch[0, LIFT] ** 2 - state[0, CLIMB] ** 2) + hard.mass * hard.press * rise
     body[0, X] += free * mean * s
     body[0, V] = after
-    rise = level - state[0, HEIGHT]
-    gained = 0.5 * hard.mass * (touch[0, LIFT] ** 2 - state[0, CLIMB] ** 2)
     state[0, HEIGHT], state[0, CLIMB] = level, touch[0, LIFT]
     touch[0, PUSH], touch[0, RUB], touch[0, STUCK] = push, rub, 1.0 if stuck else 0.0
-    sums[0, ACROSS] += gained + hard.mass * hard.press * rise
-    sums[0, LIFTED] -= gained + hard.mass * hard.press * rise
+    sums[0, ACROSS] += across
+    sums[0, LIFTED] -= across
     sums[0, PRESSED] -= hard.mass * hard.press * rise
-    sums[0, ALONG] += s * rub * surface_mean
-    sums[0, RUBBED] += s * rub * (surface_mean - mean)
-    sums[0, MEAN_RUB] += s * rub
-    sums[0, MEAN_PUSH] += s * push
-    sums[0, PULLED] += s * feet.riders[0, PULL] * mean
-    sums[0, MEAN_SPEED] += s * mean
-    sums[0, TOUCHING] += s
-    sums[0, STICKING] += s * touch[0, STUCK]
+    _book_riding(s, mean, surface_mean, feet)
     return True
 
 

@@ -16,16 +16,15 @@ from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.motion.request import Request
-from verify.motion.stepping import CHUNK
 from verify.motor import records
 from verify.motor.carry import begin
 from verify.motor.combine import CHAIN
 from verify.motor.feet import Placed
 from verify.motor.outcome import Ended, outcome
 from verify.motor.plan import Plan, lay_out
-from verify.motor.records import GivenSurface, Line
+from verify.motor.records import GivenSurface
 from verify.motor.result import MotorRun
-from verify.motor.stepping import WHY, Riding
+from verify.motor.stepping import WHY, Riding, fresh_line, in_chunks
 from verify.options import Links
 from verify.segments.reading import contact_line
 
@@ -96,18 +95,17 @@ def _ride(plan: Plan, given: GivenSurface, begun: tuple[float, float], progress:
 
 
 def _run(given: GivenSurface, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
+    """All steps on a surface that is given; why it ended."""
     from verify.motor import kernels
 
-    pieces, terms = given.local.shape[1], given.local.shape[3]
-    line = Line(local=np.zeros((pieces, 2, terms)), stamp=np.full(pieces, -1, dtype=np.int64), factors=np.zeros((2, 0)))
-    done = riding.log.tally
-    while done[records.STEP] < n_steps:
-        steps = min(CHUNK, n_steps - int(done[records.STEP]))
-        why = kernels.ride_given(steps, dt, given, riding.feet, riding.rubbing, line, riding.before, riding.log)
-        progress(riding.steps / n_steps)
-        if why != records.DONE:
-            return "left the links that it was put on" if why == records.OFF_BEAM else WHY[why]
-    return "end"
+    pieces, _, terms = given.local.shape[1:]
+    line = fresh_line(pieces, terms, 0)
+
+    def advance(steps: int) -> int:
+        return kernels.ride_given(steps, dt, given, riding.feet, riding.rubbing, line, riding.before, riding.log)
+
+    stopped = in_chunks(n_steps, riding, advance, lambda n: progress(n / n_steps))
+    return "left the links that it was put on" if stopped == WHY[records.OFF_BEAM] else stopped
 
 
 def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> GivenSurface:

@@ -6,6 +6,7 @@ What the closed forms of a driving layer are about, by the compiled loop of `run
 from math import cos, pi
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.checks import check_number, check_whole
@@ -56,8 +57,6 @@ def over_a_wave(
 
 def _stage(beam: Beam, amplitude: float, frequency_hz: float, steps: int) -> Stage:
     """Some periods of the wave, sampled once in each."""
-    from msgspec.structs import replace
-
     one = wave_stage(beam, amplitude, frequency_hz)
     length = 2.0 * pi / float(np.sqrt(one.omega / beam.wave_constant))
     cells = int(np.ceil(2.0 * pi / 0.3))

@@ -11,6 +11,7 @@ from verify.motion import records as beam_records
 from verify.motion.forcing import turns
 from verify.motion.records import Drive, Surface
 from verify.motion.request import Request
+from verify.motion.result import END
 from verify.motion.stepping import CHUNK
 from verify.motion.surface import Stage
 from verify.motor import records
@@ -119,7 +120,7 @@ def run_stages(
     stages: Sequence[Stage], tables: Sequence[Array], z: Array, riding: Riding, tell: Callable[[int], None]
 ) -> tuple[str, Array, Array]:
     """Run through all stages from free modes z; (why it stopped, q, dq/dt of the modes then)."""
-    stopped, state = "end", (np.empty(0), np.empty(0))
+    stopped, state = END, (np.empty(0), np.empty(0))
     for i, stage in enumerate(stages):
         z = z if i == 0 else stage.start(*state)
         surface = _surface(stage, tables[i], z, riding.start)
@@ -135,7 +136,7 @@ def run_stages(
         except KeyboardInterrupt:
             stopped = "interrupted"
         state = stage.state(surface.modes[:2].copy(), int(riding.log.tally[records.STEP]) * stage.dt)
-        if stopped != "end":
+        if stopped != END:
             break
     return stopped, *state
 
@@ -167,24 +168,38 @@ def beam_answer(surface: Surface) -> BeamAnswer:
     )
 
 
+def fresh_line(pieces: int, terms: int, rows: int) -> Line:
+    """Room for the surface in mid-step on so many pieces, of polynomials with so many terms."""
+    stamp = np.full(pieces, -1, dtype=np.int64)
+    return Line(local=np.zeros((pieces, 2, terms)), stamp=stamp, factors=np.zeros((2, rows)))
+
+
+def in_chunks(n_steps: int, riding: Riding, advance: Callable[[int], int], tell: Callable[[int], None]) -> str:
+    """All steps of a stage, as many at once as `advance` is given; why it ended. `tell` hears of all steps so far."""
+    done = riding.log.tally
+    while done[records.STEP] < n_steps:
+        why = advance(min(CHUNK, n_steps - int(done[records.STEP])))
+        tell(riding.steps)
+        if why != records.DONE:
+            return WHY[why]
+    return END
+
+
 def _run_stage(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[int], None]) -> str:
     """One stage in chunks; why it ended."""
     from verify.motor import kernels
 
-    pieces, terms, rows = surface.table.shape
-    line = Line(
-        local=np.zeros((pieces, 2, terms)), stamp=np.full(pieces, -1, dtype=np.int64), factors=np.zeros((2, rows))
-    )
-    beam, done = beam_answer(surface) if riding.two_way else None, riding.log.tally
+    line = fresh_line(*surface.table.shape)
     if riding.hard is not None:
         return _run_hard(stage, surface, riding, line, riding.hard, tell)
-    while done[records.STEP] < stage.n_steps:
-        steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
-        why = kernels.ride(steps, stage.dt, surface, riding.feet, riding.rubbing, beam, line, riding.before, riding.log)
-        tell(riding.steps)
-        if why != records.DONE:
-            return WHY[why]
-    return "end"
+    beam = beam_answer(surface) if riding.two_way else None
+
+    def advance(steps: int) -> int:
+        return kernels.ride(
+            steps, stage.dt, surface, riding.feet, riding.rubbing, beam, line, riding.before, riding.log
+        )
+
+    return in_chunks(stage.n_steps, riding, advance, tell)
 
 
 def _run_hard(
@@ -193,19 +208,18 @@ def _run_hard(
     """The same of a hard point."""
     from verify.motor import hop_kernels
 
-    done, feet = riding.log.tally, riding.feet
-    if riding.before[0, 0] == RIDES_FROM_HERE:
+    feet, before = riding.feet, riding.before
+    if before[0, 0] == RIDES_FROM_HERE:
         added = hop_kernels.put(0.0, surface, feet, riding.rubbing, line)
-        riding.before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
+        before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
         riding.look()
-    while done[records.STEP] < stage.n_steps:
-        steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
-        why = hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, riding.before, riding.log)
-        feet.touch[0, records.DEPTH] = riding.before[0, 0]  # from where another run goes on
-        tell(riding.steps)
-        if why != records.DONE:
-            return WHY[why]
-    return "end"
+
+    def advance(steps: int) -> int:
+        why = hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)
+        feet.touch[0, records.DEPTH] = before[0, 0]  # from where another run goes on
+        return why
+
+    return in_chunks(stage.n_steps, riding, advance, tell)
 
 
 RIDES_FROM_HERE = 2.0
