@@ -26,7 +26,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
 from numba.core.compiler_machinery import PassManager
 
-from verify.models import compiling, quick_typing
+from verify.models import compiling, quick_entries, quick_typing
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
@@ -77,6 +77,11 @@ NEEDLESS = {
 
 class _ScalarCompiler(Compiler):
     """Numba's, without the passes that kernels do not need."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """A function, by the pipeline."""
+        with quick_entries.taken():
+            return super().compile_extra(func)  # type: ignore[no-untyped-call]
 
     def define_pipelines(self) -> list[Any]:
         """The one pipeline."""
