@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from verify.models.ordered import distinct
-from verify.models.search import least_between
+from verify.models.search import least_between, least_over
 from verify.models.spline import SMALL, natural_or_flat
 
 
@@ -44,6 +44,32 @@ def test_a_search_takes_scipys_steps_one_by_one(figure, low, high):
     x, value = least_between(lambda at: places.append(at) or figure(at), low, high, 1e-7)
     assert (x, value) == (known.x, known.fun)
     assert len(places) == known.nfev
+
+
+@pytest.mark.parametrize("floor", [0.0, 1e-9, 0.02])
+@pytest.mark.parametrize("at", [4269.07, 4252.9, 4289.9])
+def test_a_size_that_falls_to_nothing_is_least_where_it_does_in_a_few_steps(floor, at):
+    """A reflection's corner, |sin| of a phase, bare or over a floor that losses leave: by hand where it is."""
+    steps = []
+
+    def size(x):
+        steps.append(len(x))
+        return np.hypot(np.sin(0.004 * (x - at)) * (1.0 + 2e-3 * (x - at)), floor)
+
+    found = least_over(size, np.linspace(4250.0, 4290.0, 41), 1e-5)
+    assert abs(found.x - at) < 1e-5
+    assert found.value == pytest.approx(floor, abs=4e-8, rel=1e-9)
+    assert not found.at_edge
+    assert len(steps) < 12
+    assert steps[0] == 41
+
+
+def test_a_size_that_still_falls_where_a_search_ends_is_least_there():
+    for sign, end in ((1.0, 3.0), (-1.0, 7.0)):
+        found = least_over(lambda x, sign=sign: np.exp(sign * x), np.linspace(3.0, 7.0, 9), 1e-6)
+        assert found.at_edge
+        assert found.x == pytest.approx(end, abs=1e-5)
+        assert found.value == pytest.approx(np.exp(sign * found.x), rel=1e-12)
 
 
 @pytest.mark.parametrize("values", [[], [0.7], [0.3, -1.1, 0.3, 2.9, -1.1], [[7, 3, 3], [-2, 7, 11]]])
