@@ -174,13 +174,12 @@ def _inverted(lower: Array) -> Array:
 def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     """Vectors by the SVD of diag(d)^{1/2} B L^{-T}, M = L L^T: conditioned like n^2 where K is like n^4."""
     mass = pencil.mass_matrix()
-    lower = np.linalg.cholesky(mass.toarray() if hasattr(mass, "toarray") else mass)
+    inverse = _inverted(np.linalg.cholesky(mass.toarray() if hasattr(mass, "toarray") else mass))
     strain = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(np.eye(pencil.n))
     # full_matrices: where motions are rigid, B has fewer rows than columns, and those come last
-    right = np.linalg.svd(np.linalg.solve(lower, strain.T).T, full_matrices=True)[2]
+    right = np.linalg.svd(strain @ inverse.T, full_matrices=True)[2]
     last = pencil.n - pencil.rigid_modes
-    wanted = right[last - n_modes : last][::-1].T
-    return np.asarray(np.linalg.solve(lower.T, wanted))
+    return np.asarray(inverse.T @ right[last - n_modes : last][::-1].T)
 
 
 def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:

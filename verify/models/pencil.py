@@ -43,7 +43,9 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
     bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
-    """All modes of it, once they were asked for (`driven_pencil.receptance_basis`)."""
+    """All modes of it, sharp ones, once they were asked for (`driven_pencil.receptance_basis`)."""
+    rough_bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
+    """The same where sharp ones are not had."""
     uneven: bool = False
     """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
 
