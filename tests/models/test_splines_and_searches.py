@@ -5,10 +5,10 @@ from math import cos, sin
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from verify.models.ordered import distinct
-from verify.models.search import least_between, least_over
+from verify.models.search import least_between, least_over, zero_between
 from verify.models.spline import SMALL, natural_or_flat
 
 
@@ -71,6 +71,30 @@ def test_a_size_that_still_falls_where_a_search_ends_is_least_there():
         assert found.at_edge
         assert found.x == pytest.approx(end, abs=1e-5)
         assert found.value == pytest.approx(np.exp(sign * found.x), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("figure", "low", "high"),
+    [
+        (lambda x: x**3 - 0.2, -1.0, 2.0),
+        (lambda x: cos(x) - 0.3 * x, 0.1, 1.9),
+        (lambda x: max(1e-3 - x, 0.0) - 2e-4, -1.0, 1.0),
+        (lambda x: -1.0 if x < 0.3141 else 1.0, 0.0, 1.0),
+        (lambda x: sin(40.0 * x) * (1.0 + x), 0.05, 0.13),
+        (lambda x: x - 0.7, 0.7, 3.0),
+        (lambda x: x - 0.7, -4.0, 0.7),
+    ],
+)
+def test_a_zero_is_found_by_scipys_steps_one_by_one(figure, low, high):
+    places = []
+    known, steps = brentq(figure, low, high, xtol=1e-15, rtol=1e-14, full_output=True)
+    assert zero_between(lambda at: places.append(at) or figure(at), low, high, 1e-15, 1e-14) == known
+    assert len(places) <= steps.function_calls
+
+
+def test_a_zero_is_not_made_up_where_both_ends_have_one_sign():
+    with pytest.raises(ValueError, match="no zero is known"):
+        zero_between(lambda x: x * x + 0.1, -1.0, 2.0, 1e-12, 1e-12)
 
 
 @pytest.mark.parametrize("values", [[], [0.7], [0.3, -1.1, 0.3, 2.9, -1.1], [[7, 3, 3], [-2, 7, 11]]])

@@ -1,4 +1,4 @@
-"""The least of a size over an interval: the best of a grid, then Brent's method around it."""
+"""The least of a size over an interval: the best of a grid, then Brent's method around it. A zero between two ends."""
 
 from collections.abc import Callable, Sequence
 from math import sqrt
@@ -94,3 +94,48 @@ def _by_parabola(best: Point, second: Point, third: Point, before: float, ends: 
     p, q = (-p if q > 0.0 else p), abs(q)
     taken = abs(p) < abs(0.5 * q * before) and q * (ends[0] - x) < p < q * (ends[1] - x)
     return (p + 0.0) / q if taken else None
+
+
+def zero_between(figure: Callable[[float], float], low: float, high: float, tolerance: float, relative: float) -> float:
+    """Where a figure that changes its sign between two ends is zero, to `tolerance` + `relative` |x| in x.
+
+    Brent (as above, ch. 4), in the steps of `scipy.optimize.brentq`, whose package takes longer to import than most
+    figures take. Raises ValueError where the sign is the same at both ends.
+    """
+    before, x, other = low, high, 0.0  # the last place, the best, and one on the other side of the zero
+    f_before, fx, f_other = figure(before), figure(x), 0.0
+    if f_before == 0.0:
+        return before
+    if fx * f_before > 0.0:
+        raise ValueError(f"the figure is {f_before:g} at {low!r} and {fx:g} at {high!r}: no zero is known between")
+    step = last = 0.0
+    for _ in range(MOST_STEPS):
+        if fx != 0.0 and (f_before < 0.0) != (fx < 0.0):
+            other, f_other, step = before, f_before, x - before
+            last = step
+        if abs(f_other) < abs(fx):
+            before, x, other = x, other, x
+            f_before, fx, f_other = fx, f_other, fx
+        finest, half = 0.5 * (tolerance + relative * abs(x)), 0.5 * (other - x)
+        if fx == 0.0 or abs(half) < finest:
+            break
+        tried = _by_line((x, fx), (before, f_before), (other, f_other)) if abs(last) > finest else None
+        if tried is not None and 2.0 * abs(tried) < min(abs(last), 3.0 * abs(half) - finest):
+            last, step = step, tried
+        else:
+            last = step = half
+        before, f_before = x, fx
+        x += step if abs(step) > finest else finest if half > 0.0 else -finest
+        fx = figure(x)
+    return x
+
+
+def _by_line(best: Point, before: Point, other: Point) -> float | None:
+    """The step to zero by a secant or an inverse parabola through three points; None where the best is no better."""
+    (x, fx), (w, fw), (v, fv) = best, before, other
+    if not abs(fx) < abs(fw):
+        return None
+    if w == v:
+        return -fx * (x - w) / (fx - fw)
+    to_before, to_other = (fw - fx) / (w - x), (fv - fx) / (v - x)
+    return -fx * (fv * to_other - fw * to_before) / (to_other * to_before * (fv - fw))

@@ -8,6 +8,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
+from verify.models.search import zero_between
 from verify.motor.records import Feet, Hard, Log, Rubbing
 from verify.slider import Foot, Slider
 
@@ -152,13 +153,11 @@ def put_down(feet: Feet, levels: Array) -> None:
 
 
 def _balanced(falls: Callable[[float], float], reach: float, stiff: float, f: int, feet: Feet) -> float:
-    from scipy.optimize import brentq
-
     wide = 2.0 * reach + 2.0 * (abs(float(feet.given[f, 2])) + stiff * float(feet.points[:, 7].max())) / stiff + 1e-12
     if not falls(-wide) > 0.0 > falls(wide):
         way = "its weight is more than the preload" if feet.given[f, 2] < 0.0 else "nothing presses it on"
         raise InputError(f"slider.preload leaves foot {f + 1} off the beam, {way}: raise slider.preload")
-    return float(brentq(falls, -wide, wide, xtol=1e-15 * max(wide, 1e-9), rtol=1e-14))
+    return zero_between(falls, -wide, wide, 1e-15 * max(wide, 1e-9), 1e-14)
 
 
 def fresh_log(samples: int, feet: Feet, rows: Array, every: int) -> Log:
