@@ -307,14 +307,21 @@ SLOW = {
         (("measure", "mode.frequency", "model=segment", "mode=22", "count=49"), set()),
         (
             ("measure", "mode.frequency", "model=fem", "mode=22", "count=49"),
-            {"scipy.sparse", "numpy.random"},  # of scikit-fem its modules; numpy.random by scipy
+            {"numpy.random"},  # of scikit-fem and scipy.sparse their modules; numpy.random by scipy
         ),
         (
             ("measure", "wave.standing_wave_ratio", "--scene", "paper-wave", "model=segment", "count=49"),
             {"numpy.random"},  # a start vector for the distance to a resonance; of scipy.linalg LAPACK's modules
         ),
+        *(
+            (
+                ("measure", "wave.standing_wave_ratio", "--scene", "paper-wave", "model=segment", *words),
+                {"numpy.random"},
+            )
+            for words in (("count=300",), ("count=49", "theory=timoshenko"))
+        ),
     ],
-    ids=["segment figure", "element figure", "wave figure"],
+    ids=["segment figure", "element figure", "wave figure", "wave on many", "wave on thick links"],
 )
 def test_a_figure_reads_only_the_parts_of_packages_that_it_uses(words, allowed):
     read, asleep = read_by(*words)

@@ -98,7 +98,7 @@ def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
     return block_array([[springs, strain], [strain.T, inertia]], format="csc"), free
 
 
-def on_diagonals(values: Mapping[int, Array], shape: tuple[int, int] | None = None) -> Any:
+def on_diagonals(values: Mapping[int, Any], shape: tuple[int, int] | None = None) -> Any:
     """A sparse array with values (...,) on its diagonals, by how far each lies above the main one; square unless told.
 
     As scipy's `diags_array` makes it, which wakes numpy.ma to tell diagonals apart: longer than a driven field.
