@@ -8,12 +8,14 @@ A package that only gathers names hands on its modules, and some names from thei
 `import verify` does nothing of the kind to whoever imports it.
 """
 
+import os
 import sys
+from collections.abc import Mapping
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from importlib.abc import Loader
     from importlib.machinery import ModuleSpec
 
@@ -38,6 +40,13 @@ GATHERS: "dict[str, Homes]" = {
         **dict.fromkeys(("cg", "gmres"), "_isolve.iterative"),
     },
     **{f"scipy.sparse.linalg.{part}": {} for part in ("_dsolve", "_eigen", "_eigen.arpack", "_isolve")},
+    "scipy._lib.array_api_extra": {},
+    "scipy.sparse": {
+        **{name: f"_{name[:3]}" for name in ("coo_array", "coo_matrix", "csc_array", "csc_matrix", "csr_array")},
+        **dict.fromkeys(("SparseEfficiencyWarning", "issparse", "sparray"), "_base"),
+        **dict.fromkeys(("block_array", "diags_array", "eye", "eye_array", "hstack", "vstack"), "_construct"),
+        "spmatrix": "_matrix",
+    },
     "skfem": {},
     "skfem.assembly": {"BilinearForm": "form.bilinear_form", "CellBasis": "basis.cell_basis"},
     "skfem.assembly.basis": {
@@ -46,6 +55,18 @@ GATHERS: "dict[str, Homes]" = {
         "CellBasis": "cell_basis",
     },
     "skfem.assembly.form": {"Form": "form"},
+    "skfem.element": {
+        "BOUNDARY_ELEMENT_MAP": "verify.asleep:ELEMENTS_OF_BOUNDARIES",
+        "DiscreteField": "discrete_field",
+        "Element": "element",
+        "ElementComposite": "element_composite",
+        "ElementLineP1": "element_line.element_line_p1",
+        "ElementQuad1": "element_quad.element_quad1",
+        "ElementTriP1": "element_tri.element_tri_p1",
+        "ElementVector": "element_vector",
+    },
+    **{f"skfem.element.element_{shape}": {} for shape in ("hex", "line", "quad", "tet", "tri")},
+    "skfem.mapping": {"Mapping": "mapping", "MappingAffine": "mapping_affine"},
     "skfem.mesh": {"Mesh": "mesh", "Mesh2D": "mesh_2d", "Mesh3D": "mesh_3d", "MeshLine1": "mesh_line_1"},
 }
 """Packages whose own file gathers names: their modules do without it. With some names' homes."""
@@ -58,7 +79,9 @@ SPARED: "dict[str, Homes]" = {
     "numpy._typing": _ANNOTATIONS,  # which numpy.linalg and scipy write and nobody reads
     "numpy.typing": _ANNOTATIONS,
     "typing_extensions": {name: f"typing:{name}" for name in ("NotRequired", "Required", "get_type_hints")},
-    **{name: {} for name in ("ctypes", "pickle", "tokenize")},
+    "secrets": {"randbits": "verify.asleep:randbits"},  # which numpy asks for a seed where it is given none
+    "pickle": {name: f"_pickle:{name}" for name in ("dumps", "loads")},
+    **{name: {} for name in ("ctypes", "tokenize")},
 }
 """Modules that are imported again by those who do without them. With what stands for some names of theirs."""
 
@@ -109,6 +132,39 @@ class Gathering(Unread):
         if name.startswith("_") and not name.endswith("__"):  # as a module asks that may lie beside it or not
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
         return super()._read(name)
+
+
+def randbits(k: int) -> int:
+    """As `secrets.randbits`, without what else it reads: a number of so many bits that nobody foresees."""
+    return int.from_bytes(os.urandom((k + 7) // 8), "big") >> (-k % 8)
+
+
+class LateMap(Mapping[Any, Any]):
+    """A mapping that a package of `GATHERS` makes of all that it gathers: made when anybody looks into it."""
+
+    def __init__(self, package: str, name: str) -> None:
+        self.package, self.name = package, name
+
+    def _all(self) -> Any:
+        from importlib import import_module
+
+        package = import_module(self.package)
+        if isinstance(package, Unread):
+            package._read("__all__")
+        return vars(package)[self.name]
+
+    def __getitem__(self, key: Any) -> Any:
+        return self._all()[key]
+
+    def __iter__(self) -> "Iterator[Any]":
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+
+ELEMENTS_OF_BOUNDARIES = LateMap("skfem.element", "BOUNDARY_ELEMENT_MAP")
+"""Asked for where a mesh is made, and looked into where it is curved or solid."""
 
 
 class Later:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.linalg import eigh
+from scipy.sparse import diags_array
 
 from verify.beam import Beam
 from verify.elements import linear as fem_beam
@@ -12,6 +13,7 @@ from verify.elements.pencil import element_pencil
 from verify.errors import InputError
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import distance_answered, forced_response, resonance_distance
+from verify.models.pencil import on_diagonals
 from verify.segments import linear as segment_model
 from verify.segments.links import build_chain, chain_pencil
 
@@ -155,3 +157,23 @@ def test_one_factorisation_answers_a_drive_and_how_far_its_resonance_is(model):
         found = distance_answered(pencil, both[:, 1].real, omega2)
         assert found == pytest.approx(resonance_distance(pencil, omega2), rel=1e-6)
         assert near is None or found == pytest.approx(near, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("values", "shape"),
+    [
+        ({0: [1.5, -2.0, 0.25]}, None),
+        ({-1: [3.0, 4.0], 0: [1.0, 2.0j, 5.0], 1: [-7.0, 8.0]}, None),
+        ({0: [1.0, 2.0], 1: [3.0, 4.0]}, (2, 3)),
+        ({-2: [5.0, 6.0, 7.0]}, (5, 3)),
+        ({3: []}, (0, 3)),
+    ],
+)
+def test_diagonals_lie_where_scipy_lays_them(values, shape):
+    found = on_diagonals({above: np.array(each) for above, each in values.items()}, shape)
+    if shape == (0, 3):
+        assert found.shape == shape
+        return
+    known = diags_array(list(values.values()), offsets=list(values), shape=shape, dtype=found.dtype)
+    assert found.shape == known.shape
+    assert np.array_equal(found.toarray(), known.toarray())

@@ -21,6 +21,7 @@ from verify.errors import ResonanceError
 from verify.judge.workbench import Workbench
 from verify.models import driven_pencil
 from verify.models.catalogue import MODELS
+from verify.models.fields import phasor
 from verify.scenes.scene import load_scene
 from verify.studies.wave_figures import case_on
 from verify.waves.driven import quietest_drive
@@ -203,6 +204,24 @@ def test_a_sweep_solves_its_modes_once(monkeypatch, model):
     for frequencies in (WIDE, WIDE + 0.3):
         module.sweep_harmonic(beam, FORCES, frequencies, *size)
     module.unit_responses(beam, [0.1], [50.0, 60.0], X.ravel(), *size)
+    assert len(solved) == 1
+
+
+@pytest.mark.parametrize(("model", "count"), [("segment", 30), ("fem", 30), ("fem", 130)])
+def test_beams_of_any_loss_factor_share_their_modes(monkeypatch, model, count):
+    """Also above the dense size, where modes are no sharp ones; each keeps its own loss."""
+    solved = []
+    plain = driven_pencil.modal_basis
+    monkeypatch.setattr(driven_pencil, "modal_basis", lambda *a, **k: solved.append(1) or plain(*a, **k))
+    module, _ = SIZED[model]
+    beams = [replace(BEAM, length=0.4703, supports=("clamped", "pinned"), loss_factor=eta) for eta in (0.0, 0.02, 0.3)]
+    for beam in beams:
+        alone = module.solve_harmonic(beam, FORCES, 61.3, count)
+        units = module.unit_responses(beam, [force.position for force in FORCES], [61.3], X.ravel(), count)[0]
+        summed = sum(phasor(force) * unit for force, unit in zip(FORCES, units, strict=True))
+        assert summed == pytest.approx(alone.deflection(X.ravel()), rel=1e-9)
+        assert alone.beam is beam
+    module.solve_harmonic(beams[1], FORCES, 61.3, count, modal_damping=0.01)
     assert len(solved) == 1
 
 

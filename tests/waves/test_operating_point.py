@@ -5,6 +5,7 @@ import pytest
 from msgspec.structs import replace
 
 from verify.beam import PointForce
+from verify.errors import ResonanceError
 from verify.models.catalogue import MODELS
 from verify.waves import measures as travelling_wave
 from verify.waves.driven import own_wavenumber
@@ -108,3 +109,14 @@ def test_the_fastest_point_says_whether_it_is_one_or_where_the_search_ends(titan
     else:
         assert found.frequency_hz == pytest.approx(edge * middle, rel=1e-6)
         assert f"at the edge of the search, {found.frequency_hz:.6g} Hz" in found.note
+
+
+@pytest.mark.parametrize("model", ["analytic", "fem", "segment"])
+def test_a_point_that_resonates_or_whose_neighbour_does_says_so(titanium_strip, model):
+    """A change is read half a hertz to both sides."""
+    here = land(titanium_strip, model, None if model == "analytic" else 90)
+    resonance = float(MODELS[model].solve_modes(titanium_strip, 18, 90).frequencies_hz[17])
+    for away in (-0.5, 0.0, 0.5):
+        with pytest.raises(ResonanceError, match="undamped resonance"):
+            here.point(resonance + away, 77.0, "there")
+    assert here.point(resonance + 0.7, 77.0, "there").per_hertz > 0.0

@@ -15,7 +15,7 @@ from verify.beam import Beam
 from verify.elements.curvatures import axial_weights, curvature_matrix, element_curvatures
 from verify.elements.mesh import Elements, mass_matrix, moving_matrix, slope_matrix
 from verify.models.arrays import Array
-from verify.models.pencil import FactoredPencil
+from verify.models.pencil import FactoredPencil, on_diagonals
 
 SAME_PLACE = 1e-9
 """Of a mean element: what stands so near to a node stands on it."""
@@ -116,13 +116,11 @@ def _springs(elements: Elements) -> Strained:
 
 def added_mass(elements: Elements) -> Any:
     """What masses and rotary inertias add to M, over all degrees of freedom, sparse."""
-    from scipy.sparse import diags_array
-
     beam, unit = elements.beam, elements.parts.unit
     lift = [(mass.position, mass.mass / unit) for mass in beam.mass if mass.mass]
     turn = [(mass.position, mass.rotary_inertia / unit**3) for mass in beam.mass if mass.rotary_inertia]
     matrix, inertia = _felt(elements, lift, turn)
-    return (matrix.T @ diags_array(inertia / beam.mass_per_length) @ matrix).tocsr()
+    return (matrix.T @ on_diagonals({0: inertia / beam.mass_per_length}) @ matrix).tocsr()
 
 
 def _felt(elements: Elements, lift: list[tuple[float, float]], turn: list[tuple[float, float]]) -> tuple[Any, Array]:
@@ -155,8 +153,6 @@ def _rows(elements: Elements, weights: tuple[Any, list[Array]]) -> Any:
 
 def added_matrix(elements: Elements, own: Any) -> Any:
     """K with what scikit-fem assembles of axial force and foundation, and the springs, over all degrees of freedom."""
-    from scipy.sparse import diags_array
-
     beam, parts, basis = elements.beam, elements.parts, elements.basis
     total = own
     if beam.tension:
@@ -167,5 +163,5 @@ def added_matrix(elements: Elements, own: Any) -> Any:
         total = total + (moving_matrix if shear else mass_matrix)(basis, ground)
     if beam.spring:
         _, matrix, stiffness = _springs(elements)
-        total = total + matrix().T @ diags_array(stiffness) @ matrix()
+        total = total + matrix().T @ on_diagonals({0: stiffness}) @ matrix()
     return total.tocsr()

@@ -12,6 +12,7 @@ import numpy as np
 from skfem.assembly import BilinearForm, CellBasis
 from skfem.element import DiscreteField
 from skfem.element.element import Element
+from skfem.mapping import MappingAffine
 from skfem.mesh import MeshLine1
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefLine
@@ -147,7 +148,8 @@ class LineBasis(CellBasis):  # type: ignore[misc]
 def line_basis(nodes: Array) -> LineBasis:
     """Hermite elements between nodes, (N + 1,) ascending."""
     number = np.arange(len(nodes) - 1)
-    return LineBasis(Line(nodes[None], np.array([number, number + 1])), HermiteLine(), quadrature=_MIDDLE)
+    line = Line(nodes[None], np.array([number, number + 1]))
+    return LineBasis(line, HermiteLine(), mapping=MappingAffine(line), quadrature=_MIDDLE)
 
 
 @BilinearForm  # type: ignore[untyped-decorator]

@@ -198,8 +198,10 @@ def force_loads(elements: Elements, forces: Sequence[PointForce]) -> ComplexArra
 
 
 def driven(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
-    """The elements of a beam and their pencil; small ones are kept for the next frequency."""
-    return _kept(beam, n_elements, grading, theory) if n_elements < KEPT else _made(beam, n_elements, grading, theory)
+    """The elements of a beam and their pencil, which knows no loss; small ones are kept for the next frequency."""
+    bare = replace(beam, loss_factor=0.0) if beam.loss_factor else beam
+    elements, pencil = (_kept if n_elements < KEPT else _made)(bare, n_elements, grading, theory)
+    return replace(elements, beam=beam), pencil
 
 
 def _made(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[Elements, FactoredPencil]:
@@ -207,7 +209,7 @@ def _made(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[
     return elements, element_pencil(elements)
 
 
-_kept = lru_cache(maxsize=8)(_made)
+_kept = lru_cache(maxsize=16)(_made)
 
 
 def check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:

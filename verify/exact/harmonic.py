@@ -67,6 +67,8 @@ def uniform_shapes(
     waves = np.array([wavenumber(beam, float(frequency)) for frequency in frequencies])
     fast = abs(waves) * beam.length >= 1.0
     solve = pinned_shapes if beam.supports == ("pinned", "pinned") else spliced_shapes
+    if fast.all():
+        return solve(beam, forces, waves[:, None])
     parts: list[tuple[Indices, Callable[[Array, int], ComplexArray]]] = []
     if fast.any():
         parts.append((np.flatnonzero(fast), solve(beam, forces, waves[fast, None])))
@@ -116,10 +118,10 @@ def pinned_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[
     a = min(x, xi), b = max(x, xi), S_q(z) = 1 - e^{-2qz}. Nothing is truncated and nothing grows. Of many
     wavenumbers in a column, (n, 1): (x, derivative) -> (n, len(x)).
     """
+    if not np.any(k.imag):
+        return _undamped_shapes(beam, forces, k.real)
     scale = 1.0 / (4.0 * beam.bending_stiffness * (1.0 + 1j * beam.loss_factor) * k**3)
-    damped = k.imag.any() if isinstance(k, np.ndarray) else k.imag != 0.0
-    near = k if damped else k.real  # real powers take a fifth of complex ones' time
-    waves = [(force, q, factor) for force in forces for q, factor in ((1j * k, -1j), (near, -1.0))]
+    waves = [(force, q, factor) for force in forces for q, factor in ((1j * k, -1j), (k, -1.0))]
     parts = [_fixed(q, force.position, beam.length) for force, q, _ in waves]
     sizes = [phasor(force) * scale * factor for force, _, factor in waves]
 
@@ -133,6 +135,31 @@ def pinned_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[
         there = known(x.tobytes()) if np.ndim(k) == 0 and len(x) <= READ_AGAIN else decays(x)
         for (_, q, _), fixed, decay, size in zip(waves, parts, there, sizes, strict=True):
             field += size * _green(q, fixed, decay, derivative)
+        return field
+
+    return shapes
+
+
+def _undamped_shapes(beam: Beam, forces: Sequence[PointForce], k: Any) -> Callable[[Array, int], ComplexArray]:
+    """The same of real wavenumbers: the first part is 2 sin(k a) sin(k (L - b)) / sin(k L), all real but the forces."""
+    length, whole = beam.length, np.sin(k * beam.length)
+    scale = 0.25 / (beam.bending_stiffness * k**3)
+    sources = [
+        (phasor(force), at, _fixed(k, at, length), *(2.0 * np.sin(k * far) / whole for far in (length - at, at)))
+        for force in forces
+        for at in (force.position,)
+    ]
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        field = np.zeros((*np.shape(k)[:-1], len(x)), dtype=complex)
+        for size, source, fixed, behind, before in sources:
+            left = x <= source
+            turned = (np.cos if derivative % 2 else np.sin)(k * np.where(left, x, length - x))
+            turned *= np.where(left, behind, before)
+            if derivative:
+                turned *= (-1.0) ** (derivative // 2) * k**derivative * np.where(left, 1.0, -1.0) ** derivative
+            turned -= _green(k, fixed, _decay(k, source, length, x), derivative)
+            field += size * (scale * turned)
         return field
 
     return shapes

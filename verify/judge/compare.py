@@ -10,6 +10,7 @@ from verify.errors import InputError, NoBracketError, NoFigureError, PairingErro
 from verify.judge.bracket import Bracket
 from verify.models.arrays import Array, Indices
 from verify.models.modes import Modes
+from verify.models.search import zero_between
 
 T = TypeVar("T", float, complex)
 EIGENVALUE_FLOOR = 2e-14
@@ -99,8 +100,6 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
 
     `shape` takes (n,) positions. Sampled 40 times per mode number, then Brent's method.
     """
-    from scipy.optimize import brentq
-
     margin = 1e-4 / mode  # the ends themselves are supports, not nodes
     x = np.linspace(margin * length, (1.0 - margin) * length, 40 * mode + 1)
     above = shape(x) >= 0
@@ -109,7 +108,7 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
     def at(position: float) -> float:
         return float(shape(np.array([position]))[0])
 
-    return np.array([brentq(at, x[i], x[i + 1], xtol=1e-14 * length, rtol=1e-14) for i in turns])
+    return np.array([zero_between(at, float(x[i]), float(x[i + 1]), 1e-14 * length, 1e-14) for i in turns])
 
 
 def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:

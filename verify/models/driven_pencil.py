@@ -66,13 +66,13 @@ def check_couples(factors: ComplexArray) -> None:
 def receptance_basis(pencil: FactoredPencil) -> tuple[Array, Array]:
     """All eigenvalues and vectors as `modal_basis`, for sums over modes, which lose what the vectors lose.
 
-    Of a small even pencil from singular values, conditioned like n^2 where K is like n^4, and kept with the pencil.
+    Of a small even pencil from singular values, conditioned like n^2 where K is like n^4. Kept with the pencil.
     """
-    if not takes_all_modes(pencil):
-        return modal_basis(pencil)
-    if not pencil.bases:
-        pencil.bases.append(modal_basis(pencil, sharp=True))
-    return pencil.bases[0]
+    sharp = takes_all_modes(pencil)
+    kept = pencil.bases if sharp else pencil.rough_bases
+    if not kept:
+        kept.append(modal_basis(pencil, sharp=sharp))
+    return kept[0]
 
 
 def takes_all_modes(pencil: FactoredPencil) -> bool:

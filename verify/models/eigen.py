@@ -19,6 +19,7 @@ from verify.models.pencil import (
     factored_quotient,
     factorised,
     mixed_matrix,
+    on_diagonals,
     too_large,
 )
 from verify.models.polishing import homed, is_heavy, polished, sharpened
@@ -174,13 +175,12 @@ def _inverted(lower: Array) -> Array:
 def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     """Vectors by the SVD of diag(d)^{1/2} B L^{-T}, M = L L^T: conditioned like n^2 where K is like n^4."""
     mass = pencil.mass_matrix()
-    lower = np.linalg.cholesky(mass.toarray() if hasattr(mass, "toarray") else mass)
+    inverse = _inverted(np.linalg.cholesky(mass.toarray() if hasattr(mass, "toarray") else mass))
     strain = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(np.eye(pencil.n))
     # full_matrices: where motions are rigid, B has fewer rows than columns, and those come last
-    right = np.linalg.svd(np.linalg.solve(lower, strain.T).T, full_matrices=True)[2]
+    right = np.linalg.svd(strain @ inverse.T, full_matrices=True)[2]
     last = pencil.n - pencil.rigid_modes
-    wanted = right[last - n_modes : last][::-1].T
-    return np.asarray(np.linalg.solve(lower.T, wanted))
+    return np.asarray(inverse.T @ right[last - n_modes : last][::-1].T)
 
 
 def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
@@ -264,10 +264,10 @@ def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness
 
 def _by_sparse_factors(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
     """The same where the mixed matrix is no narrow band. Raises InputError where it is singular."""
-    from scipy.sparse import block_array, csc_array, diags_array
+    from scipy.sparse import block_array, csc_array
 
     strain = csc_array(pencil.strain_matrix())
-    blocks = [[diags_array(-1.0 / stiffness), strain], [strain.T, -omega2 * csc_array(pencil.mass_matrix())]]
+    blocks = [[on_diagonals({0: -1.0 / stiffness}), strain], [strain.T, -omega2 * csc_array(pencil.mass_matrix())]]
     right = np.zeros((len(stiffness) + pencil.n, loads.shape[1]), dtype=complex)
     right[len(stiffness) :] = loads
     return np.asarray(factorised(block_array(blocks, format="csc", dtype=complex)).solve(right)[len(stiffness) :])

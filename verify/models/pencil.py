@@ -5,7 +5,7 @@ beam. Here K stays factored: whatever finds the vectors, each eigenvalue is read
 sum d (B v)^2 / (v^T M v) with B applied as differences of differences, each nearly exact.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import msgspec
@@ -43,7 +43,9 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
     bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
-    """All modes of it, once they were asked for (`driven_pencil.receptance_basis`)."""
+    """All modes of it, sharp ones, once they were asked for (`driven_pencil.receptance_basis`)."""
+    rough_bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
+    """The same where sharp ones are not had."""
     uneven: bool = False
     """Whether d spans many powers of ten or both signs, so that dense vectors are found from the inverse of K."""
 
@@ -86,13 +88,29 @@ def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
     Where all eigenvalues lie above some value, K less M times that. Where motions are rigid, as many unknowns are
     grounded as make the matrix regular.
     """
-    from scipy.sparse import block_array, csc_array, diags_array
+    from scipy.sparse import block_array, csc_array
 
     free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), _grounds(pencil.rigid))
     strain = pencil.strain_matrix()[:, free]
     # None, not stored zeros: they would cost three times the solve
     inertia = -pencil.below * csc_array(pencil.mass_matrix()) if pencil.below else None
-    return block_array([[diags_array(-1.0 / pencil.stiffness), strain], [strain.T, inertia]], format="csc"), free
+    springs = on_diagonals({0: -1.0 / pencil.stiffness})
+    return block_array([[springs, strain], [strain.T, inertia]], format="csc"), free
+
+
+def on_diagonals(values: Mapping[int, Any], shape: tuple[int, int] | None = None) -> Any:
+    """A sparse array with values (...,) on its diagonals, by how far each lies above the main one; square unless told.
+
+    As scipy's `diags_array` makes it, which wakes numpy.ma to tell diagonals apart: longer than a driven field.
+    """
+    from scipy.sparse import csc_array
+
+    rows, columns = (
+        np.concatenate([np.arange(len(each)) + max(sign * above, 0) for above, each in values.items()])
+        for sign in (-1, 1)
+    )
+    size = max(len(each) + abs(above) for above, each in values.items())
+    return csc_array((np.concatenate(list(values.values())), (rows, columns)), shape=shape or (size, size))
 
 
 def _grounds(rigid: Array) -> list[int]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
-from verify.models.pencil import FactoredPencil, factored_quotient, factorised
+from verify.models.pencil import FactoredPencil, factored_quotient, factorised, on_diagonals
 
 _HEAVY = 1e6
 """Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
@@ -65,10 +65,10 @@ def homed(pencil: FactoredPencil, vectors: Array) -> Array:
 
     B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
     """
-    from scipy.sparse import block_array, csc_array, diags_array
+    from scipy.sparse import block_array, csc_array
 
     mass, strain = csc_array(pencil.mass_matrix()), csc_array(pencil.strain_matrix())
-    springs, n_strains = diags_array(-1.0 / pencil.stiffness), len(pencil.stiffness)
+    springs, n_strains = on_diagonals({0: -1.0 / pencil.stiffness}), len(pencil.stiffness)
     homed = vectors.copy()
     for k in range(vectors.shape[1]):
         vector = vectors[:, [k]]

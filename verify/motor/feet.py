@@ -8,6 +8,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
+from verify.models.search import zero_between
 from verify.motor import records
 from verify.motor.records import Feet, Hard, Log, Rubbing
 from verify.slider import Foot, Slider
@@ -149,8 +150,6 @@ def put_down(feet: Feet, levels: Array) -> None:
 
 def _rest_height(f: int, points: Array, levels: Array, given: Array, deepest: float) -> float:
     """Of foot f on its own points over these levels, metres. Raises InputError."""
-    from scipy.optimize import brentq
-
     face, stiff, press = points[:, records.FACE], points[:, records.STIFF], float(given[records.PRESS])
     depths = points[:, records.INSET] + face * points[:, records.IMAGE] * levels
 
@@ -163,7 +162,7 @@ def _rest_height(f: int, points: Array, levels: Array, given: Array, deepest: fl
     if not force(-wide) > 0.0 > force(wide):
         way = "its weight is more than the preload" if press < 0.0 else "nothing presses it on"
         raise InputError(f"slider.preload leaves foot {f + 1} off the beam, {way}: raise slider.preload")
-    return float(brentq(force, -wide, wide, xtol=1e-15 * max(wide, 1e-9), rtol=1e-14))
+    return zero_between(force, -wide, wide, 1e-15 * max(wide, 1e-9), 1e-14)
 
 
 def fresh_log(samples: int, feet: Feet, rows: Array, every: int) -> Log:

@@ -6,6 +6,7 @@ from math import pi, sqrt
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
@@ -248,9 +249,9 @@ KEPT = 4000
 
 
 def driven(beam: Beam, n_segments: int, settings: dict[str, Any]) -> tuple[Chain, FactoredPencil]:
-    """The chain of a beam and its pencil; small ones are kept."""
-    given = tuple(settings.items())
-    return _kept(beam, n_segments, given) if n_segments < KEPT else _made(beam, n_segments, given)
+    """The chain of a beam and its pencil, which know no loss; small ones are kept."""
+    bare = replace(beam, loss_factor=0.0) if beam.loss_factor else beam
+    return (_kept if n_segments < KEPT else _made)(bare, n_segments, tuple(settings.items()))
 
 
 def _made(beam: Beam, n_segments: int, settings: tuple[tuple[str, Any], ...]) -> tuple[Chain, FactoredPencil]:
@@ -258,7 +259,7 @@ def _made(beam: Beam, n_segments: int, settings: tuple[tuple[str, Any], ...]) ->
     return chain, chain_pencil(chain)
 
 
-_kept = lru_cache(maxsize=8)(_made)
+_kept = lru_cache(maxsize=16)(_made)
 
 
 def damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) -> ComplexArray:

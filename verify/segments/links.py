@@ -15,7 +15,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
 from verify.options import Attachment, Joints, Theory, Wall
 from verify.segments.walls import wall_factors, welded_halves
 
@@ -231,11 +231,9 @@ def joint_angles(chain: Chain, free: Array) -> Array:
 
 def _strain_matrix(chain: Chain) -> Any:
     """B of `joint_angles` as a sparse array (m, n)."""
-    from scipy.sparse import diags_array
-
     n = chain.n_segments
-    slopes = diags_array([-1.0 / chain.lengths, 1.0 / chain.lengths], offsets=[0, 1], shape=(n, n + 1)).tocsc()
-    joints = diags_array([np.ones(n), -np.ones(n)], offsets=[0, -1], shape=(n + 1, n)).tocsr()
+    slopes = on_diagonals({0: -1.0 / chain.lengths, 1: 1.0 / chain.lengths}, (n, n + 1))
+    joints = on_diagonals({0: np.ones(n), -1: -np.ones(n)}, (n + 1, n)).tocsr()
     left, right = chain.walls
     rows = slice(0 if left else 1, n + 1 if right else n)
     return joints[rows] @ slopes[:, free_joints(chain)]
@@ -264,9 +262,7 @@ def mass_matrix(chain: Chain, *, dense: bool = False) -> Any:
     diagonal, off = diagonal[free], shared[free.start : free.stop - 1]
     if dense:
         return np.diag(diagonal) + np.diag(off, 1) + np.diag(off, -1)
-    from scipy.sparse import diags_array
-
-    return diags_array([off, diagonal, off], offsets=[-1, 0, 1]).tocsc()
+    return on_diagonals({-1: off, 0: diagonal, 1: off})
 
 
 def with_ends(chain: Chain, free: Any) -> Any:

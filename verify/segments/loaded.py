@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 
 from verify.models.arrays import Array, ComplexArray
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
 from verify.segments.attached import rows_at
 from verify.segments.links import Body, Chain
 
@@ -224,7 +224,7 @@ def _own_slips(chain: Chain, bodies: list[Body]) -> Any:
 
 def _placed_rows(chain: Chain) -> tuple[Array, Any, Any, Any, Any]:
     """What resists middles, turns and places: stiffnesses, and sparse rows over joints, middles, turns, unknowns."""
-    from scipy.sparse import csr_array, eye_array, vstack
+    from scipy.sparse import csr_array, vstack
 
     n = chain.n_segments
     ground = chain.foundation * chain.lengths
@@ -236,7 +236,7 @@ def _placed_rows(chain: Chain) -> tuple[Array, Any, Any, Any, Any]:
     felt = rows_at(chain, [b.position for b in springs], chain.attachment)[0]
     turned = rows_at(chain, [b.position for b in rotational], chain.attachment)[1]
     sizes = (len(grounded), n * len(of_turns), len(springs), len(rotational))
-    links = eye_array(n).tocsr()
+    links = on_diagonals({0: np.ones(n)}).tocsr()
     over_middles = [links[: sizes[0]], *(csr_array((size, n)) for size in sizes[1:])]
     over_turns = [csr_array((sizes[0], n)), *([links] * len(of_turns)), csr_array((sizes[2], n)), csr_array(turned)]
     apart = sizes[0] + sizes[1]
@@ -260,10 +260,10 @@ def _strain(chain: Chain, placed: tuple[Array, Any, Any, Any, Any], free: Array)
 
 def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
     """`positions`, `middles`, `turns` and `end_turns` as sparse arrays over the unknowns."""
-    from scipy.sparse import csr_array, diags_array, eye_array
+    from scipy.sparse import csr_array
 
     n, total, free = chain.n_segments, n_unknowns(chain), _n_free(chain)
-    joints = eye_array(n + 1, free, k=-int(chain.held[0])).tocsr()
+    joints = on_diagonals({-int(chain.held[0]): np.ones(free)}, (n + 1, free)).tocsr()
     joints.resize((n + 1, total))
     ends = csr_array(
         (np.ones(len(_turning(chain))), (_turning(chain), range(free, free + len(_turning(chain))))), (2, total)
@@ -273,7 +273,7 @@ def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
     parts = csr_array((_shares(chain)[there] * roots, (there, range(first, first + len(there)))), (n + 1, total))
     before, after = slice(0, n), slice(1, n + 1)
     centres = 0.5 * (joints[after] + joints[before]) + 0.5 * (parts[before] - parts[after])
-    tilts = diags_array(1.0 / chain.lengths) @ (joints[after] - joints[before] - parts[after] - parts[before])
+    tilts = on_diagonals({0: 1.0 / chain.lengths}) @ (joints[after] - joints[before] - parts[after] - parts[before])
     return joints, centres, tilts.tocsr(), ends
 
 
@@ -288,14 +288,14 @@ def _over_slips(chain: Chain, masses: Array) -> Array:
 
 def _strain_matrix(chain: Chain, placed: tuple[Array, Any, Any, Any, Any]) -> Any:
     """B of `_strain` as a sparse array (m, n)."""
-    from scipy.sparse import eye_array, vstack
+    from scipy.sparse import vstack
 
     joints, centres, tilts, ends = _maps(chain)
     _, over_joints, over_middles, over_turns, over_slips = placed
     around = vstack([ends[[0]], tilts, ends[[1]]]).tocsr()
     bent = (around[1:] - around[:-1])[np.flatnonzero(_jointed(chain))]
     total, slipping = n_unknowns(chain), _n_slips(chain)
-    slipped = eye_array(slipping, total, k=total - slipping)
+    slipped = on_diagonals({total - slipping: np.ones(slipping)}, (slipping, total))
     resisted = over_joints @ joints + over_middles @ centres + over_turns @ tilts + over_slips
     return vstack([bent, slipped, resisted, ends[_held_turns(chain)[0]]]).tocsc()
 
@@ -306,17 +306,18 @@ def _mass(chain: Chain) -> Any:
 
     @cache
     def made() -> Any:
-        from scipy.sparse import csr_array, diags_array, vstack
+        from scipy.sparse import csr_array, vstack
 
         joints, centres, tilts, ends = _maps(chain)
-        mass = centres.T @ diags_array(chain.masses) @ centres + tilts.T @ diags_array(chain.inertias) @ tilts
-        mass = mass + ends.T @ diags_array(np.array(chain.end_inertias)) @ ends
+        inertias = on_diagonals({0: chain.inertias})
+        mass = centres.T @ on_diagonals({0: chain.masses}) @ centres + tilts.T @ inertias @ tilts
+        mass = mass + ends.T @ on_diagonals({0: np.array(chain.end_inertias)}) @ ends
         if chain.joint_inertias is not None:
             around = vstack([ends[[0]], tilts, ends[[1]]]).tocsr()
             bent = around[1:] - around[:-1]
-            mass = mass - bent.T @ diags_array(chain.joint_inertias) @ bent
+            mass = mass - bent.T @ on_diagonals({0: chain.joint_inertias}) @ bent
         if chain.slip_masses is not None:
-            mass = mass - diags_array(_over_slips(chain, chain.slip_masses))
+            mass = mass - on_diagonals({0: _over_slips(chain, chain.slip_masses)})
         for body in chain.bodies:
             if body.mass or body.rotary_inertia:
                 felt, turned = (csr_array(row) for row in rows_at(chain, [body.position], chain.attachment))

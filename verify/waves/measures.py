@@ -86,9 +86,14 @@ def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: co
 
 def check_moving(field: HarmonicField, deflection: ComplexArray) -> None:
     """Raise ZeroFieldError where what was read of a field is rounding beside its forces."""
-    force = sum(abs(phasor(force)) for force in field.forces)
-    if abs(deflection).max() <= STILL * force * unit_response(field.beam, field.frequency_hz):
+    if abs(deflection).max() <= still(field):
         raise zero_field()
+
+
+def still(field: HarmonicField) -> float:
+    """The deflection, metres, up to which a field is rounding beside its forces."""
+    force = sum(abs(phasor(force)) for force in field.forces)
+    return STILL * force * unit_response(field.beam, field.frequency_hz)
 
 
 def amplitudes_of(rule: Rule, k: ComplexArray, deflections: ComplexArray, middle: float) -> ComplexArray:

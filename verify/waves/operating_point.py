@@ -51,12 +51,17 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
 
     def over(self, frequencies: Array, phases_deg: Array) -> tuple[Array, Array]:
         """(reflection, crest speed in m/s) on a grid, (n_frequencies, n_phases) each; window [L/4, 3L/4]."""
+        reflection, speed = self._known(frequencies, phases_deg)
+        return np.where(np.isnan(reflection), 1.0, reflection), np.nan_to_num(speed)  # a gap attracts nobody
+
+    def _known(self, frequencies: Array, phases_deg: Array) -> tuple[Array, Array]:
+        """The same, NaN where there is none. Raises NoFigureError where there is none at all."""
         first, second = self.forces
         turned = np.asarray(second.amplitude * np.exp(1j * np.deg2rad(phases_deg)), dtype=complex)
         gaps, figures = Gaps(), ("reflection", "crest_speed")
         reflection, speed = superposed(self._drive, figures, frequencies, complex(first.amplitude), turned, gaps)
         gaps.reasons(reflection.size)
-        return np.where(np.isnan(reflection), 1.0, reflection), np.nan_to_num(speed)  # a gap attracts nobody
+        return reflection, speed
 
     @property
     def _drive(self) -> UnitDrive:
@@ -91,29 +96,23 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
         rows, best = np.arange(len(frequencies)), allowed.argmax(axis=1)
         return phases[rows, best], allowed[rows, best]
 
-    def at(self, frequency: float, phase_deg: float) -> tuple[float, float]:
-        """(reflection, crest speed) at one point."""
-        reflection, speed = self.over(np.array([frequency]), np.array([phase_deg]))
-        return float(reflection[0, 0]), float(speed[0, 0])
-
     def point(self, frequency: float, phase_deg: float, what: str, note: str = "") -> OperatingPoint:
         """A point with its sensitivity: mean changes over half a hertz and half a degree on both sides.
 
-        Below one hertz it is half of the frequency.
+        Below one hertz it is half of the frequency. Raises NoFigureError where it or a neighbour has none.
         """
-        gamma, speed = self.at(frequency, phase_deg)
-
-        def change(hertz: float, degrees: float) -> float:
-            sides = [self.at(frequency + s * hertz, phase_deg + s * degrees)[0] for s in (1.0, -1.0)]
-            return 0.5 * sum(abs(side - gamma) for side in sides) / (hertz + degrees)
-
+        hertz, degrees, sides = min(0.5, 0.5 * frequency), 0.5, np.array([0.0, 1.0, -1.0])
+        frequencies, phases = frequency + hertz * sides, phase_deg + degrees * sides
+        gamma, speed = self._known(frequencies, phases)
+        for i, j in zip(*np.nonzero(np.isnan(gamma) & (sides * sides[:, None] == 0.0)), strict=True):
+            self._known(frequencies[[i]], phases[[j]])  # which says why
         return OperatingPoint(
             frequency_hz=frequency,
             phase_deg=phase_deg,
-            reflection=gamma,
-            crest_speed=speed,
-            per_hertz=change(min(0.5, 0.5 * frequency), 0.0),
-            per_degree=change(0.0, 0.5),
+            reflection=float(gamma[0, 0]),
+            crest_speed=float(speed[0, 0]),
+            per_hertz=float(abs(gamma[1:, 0] - gamma[0, 0]).mean() / hertz),
+            per_degree=float(abs(gamma[0, 1:] - gamma[0, 0]).mean() / degrees),
             what=what,
             note=note,
         )

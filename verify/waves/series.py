@@ -8,6 +8,7 @@ from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import wavenumber
 from verify.models.places import real_array
+from verify.models.spline import natural_or_flat
 from verify.waves.found import WaveMeasures
 from verify.waves.measures import STILL, fit_waves, fitted_wavenumber, measures_of
 from verify.waves.medium import Medium
@@ -63,8 +64,6 @@ def measure_series(
     Between the positions the field is that of a cubic spline through their phasors; slopes come from the two fitted
     waves. Raises InputError for series or spans that are too short.
     """
-    from scipy.interpolate import CubicSpline
-
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
     start, x = wavenumber(beam, frequency_hz), real_array("x", x, "metres")
     if not (np.isfinite(x).all() and (np.diff(x) > 0).all() and np.shape(values)[1:] == x.shape):
@@ -81,5 +80,5 @@ def measure_series(
         turn = np.exp(1j * waves.wavenumber * (at - middle))
         return np.asarray(1j * waves.wavenumber * (waves.backward * turn - waves.forward / turn))
 
-    spline = CubicSpline(x, deflection)
-    return measures_of(Medium(beam), 2.0 * np.pi * frequency_hz, x, x, spline, slope, waves)
+    line = natural_or_flat(x, deflection[None], (0, 0))
+    return measures_of(Medium(beam), 2.0 * np.pi * frequency_hz, x, x, lambda at: line(at)[0], slope, waves)
