@@ -10,8 +10,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
-from verify.scenes.scene import packaged_scenes
+from verify.run.runner import run_scene
+from verify.scenes.scene import load_scene, packaged_scenes
 
 TESTS = Path(__file__).parent.parent
 INNER = {"chain.recursion_kernels.hub_motion"}
@@ -96,3 +98,16 @@ def test_a_scene_plans_what_it_runs(scene):
     ((ran, planned),) = compared(OF_SCENE, scene, *SHORTER.get(scene, ())).values()
     assert ran <= planned
     assert names(planned) == names(ran)
+
+
+def test_gates_that_need_fewest_kernels_run_first_and_stand_where_the_scene_has_them():
+    scene, heard = load_scene("paper-slider"), []
+    found = run_scene(replace(scene, claim=(), readings=None), heard.append)
+    assert [gate.id for gate in found.gates] == [gate.id for gate in scene.gate]
+    order = [step.removeprefix("gate ") for step in heard if step.startswith("gate ")]
+    assert sorted(order) == sorted(gate.id for gate in scene.gate)
+    assert order.index("beam-segments") < order.index("free-decay") < order.index("slider-segments")
+    assert max(map(order.index, ("slider-segments", "creep"))) < order.index("chain-slider")
+    assert [gate.id for gate in found.gates].index("chain-slider") < [gate.id for gate in found.gates].index(
+        "beam-segments"
+    )

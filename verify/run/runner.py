@@ -1,5 +1,7 @@
 """A scene run: whatever it asks for is evaluated once, and nothing else."""
 
+from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -11,7 +13,7 @@ from verify.errors import InputError
 from verify.judge.workbench import Solve, Workbench
 from verify.models.ahead import compiled_ahead
 from verify.run.applies import applicable, not_applicable
-from verify.run.asks import asks_of
+from verify.run.asks import Ask, asks_of
 from verify.run.gates import GateResult, judge, set_aside
 from verify.run.kernels_asked import kernels_asked
 from verify.scenes.scene import Scene, load_scene
@@ -70,18 +72,19 @@ def run_scene(
     aside = not_applicable(asked_scene, overrides)
     asks = applicable(asked_scene, overrides)
     bench = workbench_for(asks)
-    gates = []
+    gates: dict[int, GateResult] = {}
     found: dict[str, Found] = {}
     with compiled_ahead(partial(kernels_asked, asks)):
-        for gate in asked_scene.gate:
+        for number in in_order_of_kernels(asks_of(asked_scene, gates_only=True)):
+            gate = asked_scene.gate[number]
             progress(f"gate {gate.id}")
             why = aside.get(gate.id)
-            gates.append(set_aside(gate, why) if why else judge(gate, asked_scene, bench))
+            gates[number] = set_aside(gate, why) if why else judge(gate, asked_scene, bench)
         for study, asked in asked_of(asked_scene):
             found[study.name] = _done(study, asked, asked_scene, bench, found, progress)
     return RunResult(
         scene=asked_scene,
-        gates=tuple(gates),
+        gates=tuple(gates[number] for number in range(len(gates))),
         found=found,
         solves=tuple(bench.solves),
         n_fields=bench.n_fields,
@@ -89,6 +92,17 @@ def run_scene(
         seconds=perf_counter() - start,
         others=bench.others,
     )
+
+
+def in_order_of_kernels(asks: Sequence[Ask]) -> list[int]:
+    """Numbers of the asks, those first that need fewest kernels: others are compiled by helpers meanwhile."""
+    return sorted(range(len(asks)), key=lambda number: _n_kernels(asks[number]))
+
+
+def _n_kernels(ask: Ask) -> int:
+    with suppress(InputError):
+        return len({kernel for kernel, _ in ask.kernels()})
+    return 0
 
 
 def _done(
