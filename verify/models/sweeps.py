@@ -3,10 +3,11 @@
 A sweep gives what a loop over `solve_harmonic` or `solve_modes` would, to rounding, arrays in and arrays out.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from math import pi
 from typing import TypeVar
 
+import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_frequency
@@ -18,6 +19,7 @@ from verify.models.eigen import distance_answered, forced_response, lowest, prob
 from verify.models.fields import RESONANCE, HarmonicField, check_forces
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, factored_quotient
 from verify.models.places import Forces, Numbers, in_a_row, places
+from verify.models.stacks import BESIDE, PencilStack, lowest_of_each
 
 MOST_VALUES = 50_000_000
 """Complex numbers that a sweep holds at once: 0.8 GB."""
@@ -25,6 +27,10 @@ FEW = 4
 """Frequencies up to which each is solved by itself."""
 STACK = 64
 """Dense pencils that LAPACK is given at once."""
+LEAST = 8
+"""Beams of one layout from which on a stack takes less time than each by itself."""
+TOGETHER = 256
+"""Beams in a stack: enough to fill numpy's loops, few enough to stay near the processor."""
 FIELD = "frequencies_hz"
 Found = TypeVar("Found")
 
@@ -168,32 +174,79 @@ def _refuse_nearest(distances: Array, refuse: Callable[[int], None]) -> None:
         refuse(int(index))
 
 
-def swept_modes(
-    beams: Sequence[Beam], n_modes: int, theory: str, make: Callable[[Beam], tuple[FactoredPencil, float]]
-) -> Array:
-    """Frequencies of many beams, (n_beams, n_modes) in Hz; `make` checks one and gives its pencil and unit, metres.
+class Stacking(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """How a model takes many beams."""
 
-    Plain uniform beams on the same supports differ by their scale alone and share one solve; all others are taken as a
-    stack. LAPACK's eigenvectors alone are a quarter of the time that a loop takes for these, so that no stack gains
-    more than four times. Raises InputError, naming the beam by its index.
+    make: Callable[[Beam], tuple[FactoredPencil, float]]
+    """Checks a beam and gives its pencil and unit, metres. Raises InputError."""
+    layout: Callable[[Beam], Hashable]
+    """What beams have in common that are stacked and refused alike; None for a beam that is taken alone."""
+    stack: Callable[[Sequence[Beam]], PencilStack]
+    """The pencils of beams of one layout, whose units are the same part of their lengths."""
+
+
+def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stacking) -> Array:
+    """Frequencies of many beams, (n_beams, n_modes) in Hz.
+
+    Plain uniform beams on the same supports differ by their scale alone and share one solve; others of one layout are
+    solved as one stack (`stacks`), and those of it that do not settle, with all that are left, by LAPACK. Raises
+    InputError, naming the beam by its index.
     """
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
     check_held(len(beams), n_modes, "beams")
     leaders = _leaders(beams, theory)
-    solved = sorted(set(leaders))
-    made = of_each(solved, beams, make)
-    rows = dict(zip(solved, _values([pencil for pencil, _ in made], n_modes), strict=True))
-    units = {i: unit / beams[i].length for i, (_, unit) in zip(solved, made, strict=True)}
+    groups = _groups(sorted(set(leaders)), beams, model.layout)
+    made = {group[0]: found for group, found in zip(groups, of_each([g[0] for g in groups], beams, model.make), strict=True)}
+    rows, left = _stacks(groups, beams, n_modes, model, made)
+    later = [i for i in left if i not in made]
+    made |= dict(zip(later, of_each(later, beams, model.make), strict=True))
+    rows |= dict(zip(left, _values([made[i][0] for i in left], n_modes), strict=True))
+    units = {i: made[group[0]][1] / beams[group[0]].length for group in groups for i in group}
     lengths = [units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)]
     scales = [beam.wave_constant / (2.0 * pi) / unit**2 for beam, unit in zip(beams, lengths, strict=True)]
     return np.asarray(np.sqrt([rows[i] for i in leaders]) * np.array(scales)[:, None])
 
 
+def _groups(which: Sequence[int], beams: Sequence[Beam], layout: Callable[[Beam], Hashable]) -> list[list[int]]:
+    """Beams of one layout together, in the order of their first; few are not worth it and stand alone, like others."""
+    together: dict[Hashable, list[int]] = {}
+    for i in which:
+        shared = layout(beams[i])
+        together.setdefault(("alone", i) if shared is None else shared, []).append(i)
+    groups = [[each] for group in together.values() if len(group) < LEAST for each in group]
+    return sorted(groups + [group for group in together.values() if len(group) >= LEAST])
+
+
+def _stacks(
+    groups: list[list[int]],
+    beams: Sequence[Beam],
+    n_modes: int,
+    model: Stacking,
+    made: dict[int, tuple[FactoredPencil, float]],
+) -> tuple[dict[int, Array], list[int]]:
+    """(values of beams that settled in their stack, (n_modes,) each, those that are left)."""
+    rows: dict[int, Array] = {}
+    left = []
+    for group in groups:
+        pencil = made[group[0]][0]
+        wanted = pencil.rigid_modes + n_modes + BESIDE
+        if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or 2 * wanted > pencil.n:
+            left += group
+            continue
+        start = np.hstack([pencil.rigid, lowest(pencil, n_modes + BESIDE).vectors])
+        for first in range(0, len(group), TOGETHER):
+            part = group[first : first + TOGETHER]
+            values, settled = lowest_of_each(model.stack([beams[i] for i in part]), n_modes, start)
+            rows |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
+            left += [i for i, sure in zip(part, settled, strict=True) if not sure]
+    return rows, sorted(left)
+
+
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:
     """For every beam the first that has its pencil: itself, unless it is plain and differs from one by its scale."""
     first: dict[object, int] = {}
-    plain = [theory == "euler-bernoulli" and beam.uniform and not beam.section for beam in beams]
+    plain = [theory == "euler-bernoulli" and not beam.section and beam.uniform for beam in beams]
     keys = (beam.supports if alike else i for i, (beam, alike) in enumerate(zip(beams, plain, strict=True)))
     return [first.setdefault(key, i) for i, key in enumerate(keys)]
 
