@@ -6,10 +6,11 @@ matrices, so that a few hundred of them cost little more than one.
 """
 
 import numpy as np
-from numpy.lib.stride_tricks import as_strided
 
 from verify.models.arrays import Array, Indices
 
+_NEAR = 65536
+"""Numbers that a product takes at once: what stays near the processor."""
 _CAUTION = 100.0
 """Times the rounding of a factorisation, for what the norm of its error and a mass matrix off its diagonal make."""
 
@@ -26,43 +27,54 @@ def of_unknowns(bands: Array, free: Indices) -> Array:
 
 
 def product(bands: Array, vectors: Array) -> Array:
-    """A v, (n, k, c)."""
-    n = len(bands)
-    found: Array = bands[:, :1] * vectors
-    for above in range(1, bands.shape[1]):
-        beside = bands[: n - above, above, None]
-        found[: n - above] += beside * vectors[above:]
-        found[above:] += beside * vectors[: n - above]
+    """A v, (n, k, c); `vectors` (n, k, 1) are the same of all matrices."""
+    n, _, c = bands.shape
+    found = np.empty((n, vectors.shape[1], c))
+    most = max(_NEAR // found[:, :, 0].size, 1)
+    vectors, scratch = np.broadcast_to(vectors, found.shape), np.empty((*found.shape[:2], min(most, c)))
+    for first in range(0, c, most):
+        some = slice(first, first + most)
+        _multiply(bands[..., some], vectors[..., some], found[..., some], scratch[..., : c - first])
     return found
 
 
-def triangles(bands: Array) -> tuple[Array, Array]:
-    """(pivots d (n, c), L (n, w, c)) of A = L diag(d) L^T without row exchanges: entry [i, a, j] is L_{i + 1 + a, i}.
+def _multiply(bands: Array, vectors: Array, out: Array, scratch: Array) -> None:
+    n = len(bands)
+    np.multiply(bands[:, :1], vectors, out=out)
+    for above in range(1, bands.shape[1]):
+        beside, part = bands[: n - above, above, None], scratch[: n - above]
+        out[: n - above] += np.multiply(beside, vectors[above:], out=part)
+        out[above:] += np.multiply(beside, vectors[: n - above], out=part)
 
-    Not a number where a pivot is zero. `bands` are left as they are.
+
+def triangles(stiffness: Array, mass: Array, shifts: Array) -> tuple[Array, Array]:
+    """(pivots d (n, k c), L (n, w, k c)) of K - shift M = L diag(d) L^T without row exchanges, for shifts (k, c).
+
+    L by columns: entry [i, a, j] is L_{i + 1 + a, i}. Not a number below a pivot that is zero.
     """
-    n, width, c = bands.shape
-    w = width - 1
-    rows = np.zeros((n + w, 2 * w + 1, c))
-    rows[:n, w:] = bands
-    by_row, by_column, by_matrix = rows.strides
-    # what is left of the matrix below each row: [i, a, b] is A_{i + 1 + a, i + 1 + b}, of which b >= a is read
-    left = as_strided(rows[1:, w:], (n, w, w, c), (by_row, by_row - by_column, by_column, by_matrix))
-    taken, beside = np.empty((w, w, c)), np.empty((w, c))
+    n, width, c = mass.shape
+    rows, w = np.empty((n + width - 1, width, len(shifts) * c)), width - 1
+    filled = rows[:n].reshape(n, width, len(shifts), c)
+    np.multiply(mass[:, :, None], -shifts, out=filled)
+    filled += stiffness[:, :, None]
+    rows[n:] = 0.0
+    kept, taken = np.empty_like(rows[0, 1:]), np.empty_like(rows[0, 1:])
     for i in range(n):
-        lower = rows[i, w + 1 :]
-        beside[...] = lower
-        np.divide(lower, rows[i, w], out=lower)
-        np.multiply(lower[:, None], beside, out=taken)
-        np.subtract(left[i], taken, out=left[i])
-    return rows[:n, w], rows[:n, w + 1 :]
+        lower = rows[i, 1:]
+        kept[...] = lower
+        np.divide(lower, rows[i, 0], out=lower)
+        for a in range(w):
+            left, part = rows[i + 1 + a, : w - a], taken[: w - a]
+            np.multiply(lower[a], kept[a:], out=part)
+            np.subtract(left, part, out=left)
+    return rows[:n, 0], rows[:n, 1:]
 
 
 def solution(pivots: Array, lower: Array, loads: Array) -> Array:
     """A^-1 b of the triangles of A, (n, k, c)."""
     n, w, _ = lower.shape
-    found = np.zeros((n + w, *loads.shape[1:]))
-    found[:n] = loads
+    found = np.empty((n + w, *loads.shape[1:]))
+    found[:n], found[n:] = loads, 0.0
     taken = np.empty((w, *loads.shape[1:]))
     across = lower[:, :, None]
     for i in range(n - 1):
@@ -82,7 +94,7 @@ def count_below(stiffness: Array, mass: Array, shifts: Array) -> tuple[Array, Ar
     As many as K - shift M has negative pivots (Sylvester), which are those of a matrix as far off as |L| |d| |L|^T times
     the rounding of a row: what that does to the eigenvalues is the second.
     """
-    pivots, lower = triangles(stiffness - shifts * mass)
+    pivots, lower = triangles(stiffness, mass, shifts[None])
     n, w, _ = lower.shape
     sizes = abs(pivots)
     grown = sizes.copy()

@@ -92,7 +92,7 @@ def divide_each(beams: Sequence[Beam], count: int, pieces: Sequence[Sequence[Pie
     units = np.array([beam.length for beam in beams]) / count
     rows = [[(p.length, p.bending_stiffness, p.mass_per_length) for p in each] for each in pieces]
     lengths, stiffnesses, masses = np.array(rows).transpose(2, 1, 0)
-    own = np.array([(beam.bending_stiffness, beam.mass_per_length) for beam in beams]).T
+    own = np.array([(p.bending_stiffness, p.mass_per_length) for p in [beam.own for beam in beams]]).T
     shares = _counts_of_each(lengths, count)
     part, section = np.arange(count)[:, None], np.zeros((count, len(beams)), dtype=np.intp)
     for ends in np.cumsum(shares, axis=0)[:-1]:

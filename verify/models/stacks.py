@@ -19,6 +19,8 @@ BESIDE = 4
 """Vectors carried along beside those wanted."""
 _STEPS = 4
 """Of Rayleigh quotient iteration at most: each triples the digits of a vector."""
+_COLUMNS = 1280
+"""Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
 _STILL = 1e-6
 """Relative: what has moved less in a step has come home in it."""
 _SURE = 1e-13
@@ -27,6 +29,8 @@ _ABOVE = 0.01
 """How far above the last value eigenvalues are counted, relative."""
 _APART = 1e-6
 """Of values, relative: what lies closer is not told apart."""
+_NEXT_TO_NOTHING = 1e-70
+"""For a pivot that is zero: small beside any, and large enough to be divided by twice."""
 _MARGIN = 4.0
 """On a residual, whose own rounding is of the size of that of the assembled matrices."""
 
@@ -70,7 +74,7 @@ def judged(stack: PencilStack, vectors: Array) -> tuple[Array, Array]:
     masses = stack.masses(vectors) if stack.masses else squares
     values = _over_unknowns(stack.springs[:, None] * strains, strains) / masses
     rest = (product(stack.stiffness, vectors) - values * carried) / np.sqrt(squares)
-    residuals = np.sqrt(_over_unknowns(rest, solution(*triangles(stack.mass), rest)))
+    residuals = np.sqrt(_over_unknowns(rest, solution(*triangles(stack.mass, stack.mass, np.zeros((1, 1))), rest)))
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
     return values, _settled(stack, values, _MARGIN * residuals) & ~_unlike(stack)
@@ -109,15 +113,15 @@ def _projected(stack: PencilStack, n_modes: int, start: Array) -> tuple[Array, A
 
     Where motions are rigid the step is shifted below zero by what the first beam's lowest elastic value is about.
     """
-    rigid, load = stack.rigid_modes, product(stack.mass, start[:, :, None])
+    rigid = stack.rigid_modes
     shift = np.zeros(stack.mass.shape[2])
     if rigid:
         first = start[:, [rigid], None]
         shift[:] = (first * product(stack.stiffness, first)).sum(axis=0) / (first * product(stack.mass, first)).sum(axis=0)
-    found = solution(*triangles(stack.stiffness + shift * stack.mass), load)
-    stiff, heavy = (_by_beam(each) for each in (load, product(stack.mass, found)))
-    rows = np.ascontiguousarray(found.transpose(2, 1, 0))
-    energies, weights = rows @ stiff, rows @ heavy
+    grounded = triangles(stack.stiffness, stack.mass, -shift[None])
+    found = solution(*grounded, product(stack.mass, start[:, :, None]))
+    rows, heavy = (np.ascontiguousarray(each.transpose(2, 1, 0)) for each in (found, product(stack.mass, found)))
+    energies, weights = heavy @ start, rows @ heavy.transpose(0, 2, 1)
     inverse = np.linalg.inv(np.linalg.cholesky(weights))
     values, mixed = np.linalg.eigh(inverse @ energies @ inverse.transpose(0, 2, 1))
     wanted = mixed[:, :, rigid : rigid + n_modes]
@@ -125,27 +129,36 @@ def _projected(stack: PencilStack, n_modes: int, start: Array) -> tuple[Array, A
     return (values.T - shift)[rigid : rigid + n_modes], np.ascontiguousarray(vectors.transpose(2, 1, 0))
 
 
-def _by_beam(vectors: Array) -> Array:
-    """(n, k, n_beams) -> (n_beams, n, k), in a row of memory."""
-    return np.ascontiguousarray(vectors.transpose(2, 0, 1))
-
-
 def _homed(stack: PencilStack, values: Array, vectors: Array) -> Array:
     """Vectors (n, k, n_beams) by Rayleigh quotient iteration of every mode of every beam until its value stands still.
 
-    B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4. `values` and `vectors` are written over.
+    B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
     """
-    moved = np.ones_like(values)
-    for _ in range(_STEPS):
-        mode, beam = np.nonzero(~(abs(moved) < _STILL))
+    vectors, moved = _stepped(stack.stiffness, stack.mass, values, vectors)
+    for _ in range(_STEPS - 1):
+        values = values + moved
+        mode, beam = np.nonzero(abs(moved) > _STILL * values)
         if not len(mode):
             break
-        stiffness, mass, shift = stack.stiffness[..., beam], stack.mass[..., beam], values[mode, beam]
-        load = product(mass, vectors[:, None, mode, beam])
-        found = solution(*triangles(stiffness - shift * mass), load)
-        squares = _over_unknowns(found, product(mass, found))
-        step = (_over_unknowns(found, load) / squares)[0]
-        vectors[:, mode, beam] = (found / np.sqrt(squares))[:, 0]
-        values[mode, beam] += step
-        moved[mode, beam] = step / shift
+        bands = (stack.stiffness[..., beam], stack.mass[..., beam])
+        found, step = _stepped(*bands, values[mode, beam][None], vectors[:, None, mode, beam])
+        vectors[:, mode, beam] = found[:, 0]
+        moved = np.zeros_like(values)
+        moved[mode, beam] = step[0]
     return vectors
+
+
+def _stepped(stiffness: Array, mass: Array, values: Array, vectors: Array) -> tuple[Array, Array]:
+    """A step of it: vectors (n, k, c), v^T M v = 1, and by how much the values (k, c) move."""
+    at_once = max(_COLUMNS // values.shape[1], 1)
+    found, moved = np.empty_like(vectors), np.empty_like(values)
+    for first in range(0, len(values), at_once):
+        some = slice(first, first + at_once)
+        load = product(mass, vectors[:, some])
+        pivots, lower = triangles(stiffness, mass, values[some])
+        pivots[pivots == 0.0] = _NEXT_TO_NOTHING  # at an eigenvalue to the last digit
+        part = solution(pivots, lower, load.reshape(len(load), 1, -1)).reshape(load.shape)
+        squares = _over_unknowns(part, product(mass, part))
+        moved[some] = _over_unknowns(part, load) / squares
+        np.divide(part, np.sqrt(squares), out=found[:, some])
+    return found, moved

@@ -231,7 +231,7 @@ def _stacks(
     for group in groups:
         pencil = made[group[0]][0]
         wanted = pencil.rigid_modes + n_modes + BESIDE
-        if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or 2 * wanted > pencil.n:
+        if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or 3 * wanted > 2 * pencil.n:
             left += group
             continue
         start = np.hstack([pencil.rigid, lowest(pencil, n_modes + BESIDE).vectors])
