@@ -145,9 +145,10 @@ class LineBasis(CellBasis):  # type: ignore[misc]
 
 
 def line_basis(nodes: Array) -> LineBasis:
-    """Hermite elements between nodes, (N + 1,) ascending."""
-    number = np.arange(len(nodes) - 1)
-    return LineBasis(Line(nodes[None], np.array([number, number + 1])), HermiteLine(), quadrature=_MIDDLE)
+    """Hermite elements between nodes, (N + 1,) ascending, or of many lines, (lines, N + 1), one after another."""
+    number = np.arange(nodes.size).reshape(nodes.shape)
+    ends = np.array([number[..., :-1].ravel(), number[..., 1:].ravel()])
+    return LineBasis(Line(nodes.reshape(1, -1), ends), HermiteLine(), quadrature=_MIDDLE)
 
 
 @BilinearForm  # type: ignore[untyped-decorator]
