@@ -44,7 +44,8 @@ def _on_ends(beam: Beam, pieces: Sequence[Piece], n_elements: int) -> bool:
     """Whether everything stands where pieces end."""
     near = SAME_PLACE * beam.length / n_elements
     ends = [0.0, *accumulate(piece.length for piece in pieces)]
-    return all(min(abs(body.position - end) for end in ends) < near for body in (*beam.mass, *beam.spring))
+    places = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
+    return all(min(abs(place - end) for end in ends) < near for place in places)
 
 
 def element_stack(beams: Sequence[Beam], n_elements: int) -> PencilStack:

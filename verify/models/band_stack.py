@@ -1,8 +1,8 @@
 """Symmetric bands of many pencils side by side: products, triangular factors, solutions and counts of all at once.
 
-A band is kept by its main diagonal and those above it, (n, w + 1, c): entry [i, a, j] is A_{i, i + a} of matrix j, zero
-beyond the last row. Vectors are (n, k, c), k of each matrix. Loops run over the rows; what numpy is given in each is all
-matrices, so that a few hundred of them cost little more than one.
+A band is kept by its main diagonal and those above it, (n, w + 1, c): entry [i, a, j] is A_{i, i + a} of matrix j,
+zero beyond the last row. Vectors are (n, k, c), k of each matrix. Loops run over the rows; what numpy is given in each
+is all matrices, so that a few hundred of them cost little more than one.
 """
 
 import numpy as np
@@ -91,8 +91,8 @@ def solution(pivots: Array, lower: Array, loads: Array) -> Array:
 def count_below(stiffness: Array, mass: Array, shifts: Array) -> tuple[Array, Array]:
     """(how many eigenvalues of K v = lambda M v lie below each shift, how far rounding may have moved that), (c,) both.
 
-    As many as K - shift M has negative pivots (Sylvester), which are those of a matrix as far off as |L| |d| |L|^T times
-    the rounding of a row: what that does to the eigenvalues is the second.
+    As many as K - shift M has negative pivots (Sylvester), which are those of a matrix as far off as |L| |d| |L|^T
+    times the rounding of a row: what that does to the eigenvalues is the second.
     """
     pivots, lower = triangles(stiffness, mass, shifts[None])
     n, w, _ = lower.shape

@@ -11,27 +11,25 @@ from collections.abc import Callable
 import msgspec
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.models.arrays import Array, BoolArray
 from verify.models.band_stack import count_below, product, solution, triangles
 from verify.models.eigen import UNLIKE
 
-BESIDE = 4
-"""Vectors carried along beside those wanted."""
 _STEPS = 4
 """Of Rayleigh quotient iteration at most: each triples the digits of a vector."""
 _COLUMNS = 1280
 """Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
+_LEVEL = 1e-5
+"""Of the highest value carried along: the least that is inverted, so that vectors stay apart in one step."""
 _STILL = 1e-6
 """Relative: what has moved less in a step has come home in it."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
-_ABOVE = 0.01
-"""How far above the last value eigenvalues are counted, relative."""
 _APART = 1e-6
 """Of values, relative: what lies closer is not told apart."""
 _NEXT_TO_NOTHING = 1e-70
 """For a pivot that is zero: small beside any, and large enough to be divided by twice."""
-_MARGIN = 4.0
+_MARGIN = 2.0
 """On a residual, whose own rounding is of the size of that of the assembled matrices."""
 
 
@@ -52,32 +50,61 @@ class PencilStack(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """V (n, k, n_beams) -> v^T M v, (k, n_beams), where M as one matrix would lose digits in it."""
 
 
-def lowest_of_each(stack: PencilStack, n_modes: int, start: Array) -> tuple[Array, Array]:
+def beside(n_modes: int) -> int:
+    """How many vectors are carried along beside those wanted, so that few beams are left."""
+    return 3 + n_modes // 4
+
+
+class Ground(msgspec.Struct, frozen=True, eq=False):
+    """K + tau M of a stack as triangles: regular where motions are rigid, and no step drowns all in the lowest mode."""
+
+    tau: Array
+    """(n_beams,)."""
+    triangles: tuple[Array, Array]
+
+    def solve(self, loads: Array) -> Array:
+        """Its inverse times loads, (n, k, n_beams)."""
+        return solution(*self.triangles, loads)
+
+
+def lowest_of_each(stack: PencilStack, n_modes: int, start: Array) -> tuple[Array, BoolArray]:
     """(the lowest elastic eigenvalues (n_modes, n_beams), which of the beams have settled (n_beams,)).
 
-    `start` (n, k), k >= rigid + `n_modes`, are the lowest vectors of a pencil like these, rigid motions first. Values
+    `start` (n, k), k > rigid + `n_modes`, are the lowest vectors of a pencil like these, rigid motions first. Values
     of beams that have not settled mean nothing.
     """
     with np.errstate(all="ignore"):
+        ground = grounded(stack, start)
         try:
-            values, vectors = _projected(stack, n_modes, start)
+            values, vectors = _projected(stack, ground, n_modes, start)
         except np.linalg.LinAlgError:
             n_beams = stack.mass.shape[2]
             return np.full((n_modes, n_beams), np.nan), np.zeros(n_beams, dtype=bool)
-        return judged(stack, _homed(stack, values, vectors))
+        return judged(stack, ground, _homed(stack, values[:-1], vectors), 0.5 * (values[-2] + values[-1]))
 
 
-def judged(stack: PencilStack, vectors: Array) -> tuple[Array, Array]:
-    """(the values of vectors (n, k, n_beams), ascending, (k, n_beams); which of the beams have settled (n_beams,))."""
+def grounded(stack: PencilStack, start: Array) -> Ground:
+    """A stack with K + tau M, by the value of the last vector of `start`."""
+    last = start[:, -1:, None]
+    energy, mass = (_over_unknowns(last, product(bands, last)) for bands in (stack.stiffness, stack.mass))
+    tau = _LEVEL * energy / mass
+    return Ground(tau[0], triangles(stack.stiffness, stack.mass, -tau))
+
+
+def judged(stack: PencilStack, ground: Ground, vectors: Array, top: Array) -> tuple[Array, BoolArray]:
+    """(the values of vectors (n, k, n_beams), ascending, (k, n_beams); which of the beams have settled (n_beams,)).
+
+    `top`, (n_beams,), is where there is thought to be none between the last value and the next.
+    """
     strains, carried = stack.strain(vectors), product(stack.mass, vectors)
     squares = _over_unknowns(vectors, carried)
     masses = stack.masses(vectors) if stack.masses else squares
     values = _over_unknowns(stack.springs[:, None] * strains, strains) / masses
     rest = (product(stack.stiffness, vectors) - values * carried) / np.sqrt(squares)
-    residuals = np.sqrt(_over_unknowns(rest, solution(*triangles(stack.mass, stack.mass, np.zeros((1, 1))), rest)))
+    residuals = np.sqrt(_over_unknowns(rest, ground.solve(rest)) / (values + ground.tau))
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
-    return values, _settled(stack, values, _MARGIN * residuals) & ~_unlike(stack)
+    return values, _settled(stack, ground, values, _MARGIN * residuals, top) & _alike(stack)
 
 
 def _over_unknowns(one: Array, other: Array) -> Array:
@@ -85,48 +112,43 @@ def _over_unknowns(one: Array, other: Array) -> Array:
     return np.asarray(np.einsum("i...,i...->...", one, other))
 
 
-def _settled(stack: PencilStack, values: Array, residuals: Array) -> Array:
+def _settled(stack: PencilStack, ground: Ground, values: Array, residuals: Array, top: Array) -> BoolArray:
     """Which beams have their lowest values, all of them and to `_SURE`, (n_beams,).
 
-    An eigenvalue lies within its residual r, in the norm of M^-1, of every value, and within r^2 over its distance to
-    the others (Kato and Temple). Values that lie apart so have eigenvalues of their own, and where no more than these
-    lie below a little above the last none was missed.
+    With A = K + tau M, an eigenvalue of A^-1 M lies within its residual r, in the norm of A and relative, of that of
+    every vector, and within r^2 over its distance to the others (Kato and Temple); the norm of M^-1 would be one of
+    rounding. Values that lie apart so have eigenvalues of their own, and where no more than these lie below `top` none
+    was missed.
     """
-    top = (1.0 + _ABOVE) * values[-1]
     count, moved = count_below(stack.stiffness, stack.mass, top)
-    edges = np.concatenate([np.zeros_like(values[:1]), values, top[None]])
-    steps = np.diff(edges, axis=0)
-    gaps = np.minimum(steps[1:], steps[:-1]) - residuals
-    apart = (gaps > _APART * values) & (gaps > 2.0 * residuals) & (residuals**2 <= _SURE * values * gaps)
-    sure = (count == len(values) + stack.rigid_modes) & (moved < 0.25 * _ABOVE * values[-1])
-    return np.asarray(apart.all(axis=0) & sure)
+    all_values = ground.tau + np.concatenate([values, top[None]])
+    steps = np.diff(all_values, axis=0) / all_values[1:]
+    gaps = np.minimum(steps, np.concatenate([values[:1] / ground.tau, steps[:-1]])) - residuals
+    sure = residuals**2 <= _SURE * gaps * (values / all_values[:-1])
+    apart = (gaps > _APART) & (gaps > 2.0 * residuals)
+    counted = (count == len(values) + stack.rigid_modes) & (moved < 0.25 * (top - values[-1]))
+    return np.asarray((apart & sure).all(axis=0) & counted, dtype=bool)
 
 
-def _unlike(stack: PencilStack) -> Array:
-    """Which beams have parts so unlike that K as a matrix has lost those of the soft, (n_beams,) (`eigen.lowest`)."""
+def _alike(stack: PencilStack) -> BoolArray:
+    """Which beams have parts so alike that K as a matrix keeps those of the soft, (n_beams,) (`eigen.lowest`)."""
     squares = stack.stiffness[:, 0] / stack.mass[:, 0]
-    return np.asarray(~(squares.max(axis=0) <= UNLIKE * squares.min(axis=0)))
+    return np.asarray(squares.max(axis=0) <= UNLIKE * squares.min(axis=0), dtype=bool)
 
 
-def _projected(stack: PencilStack, n_modes: int, start: Array) -> tuple[Array, Array]:
-    """Values (n_modes, n_beams) and vectors (n, n_modes, n_beams) after a step of inverse iteration, by Rayleigh-Ritz.
-
-    Where motions are rigid the step is shifted below zero by what the first beam's lowest elastic value is about.
-    """
-    rigid = stack.rigid_modes
-    shift = np.zeros(stack.mass.shape[2])
-    if rigid:
-        first = start[:, [rigid], None]
-        shift[:] = (first * product(stack.stiffness, first)).sum(axis=0) / (first * product(stack.mass, first)).sum(axis=0)
-    grounded = triangles(stack.stiffness, stack.mass, -shift[None])
-    found = solution(*grounded, product(stack.mass, start[:, :, None]))
+def _projected(stack: PencilStack, ground: Ground, n_modes: int, start: Array) -> tuple[Array, Array]:
+    """Vectors (n, n_modes, n_beams) after a step of inverse iteration by Rayleigh-Ritz, values with the one above."""
+    found = ground.solve(product(stack.mass, start[:, :, None]))
     rows, heavy = (np.ascontiguousarray(each.transpose(2, 1, 0)) for each in (found, product(stack.mass, found)))
     energies, weights = heavy @ start, rows @ heavy.transpose(0, 2, 1)
+    lost = ~_alike(stack)
+    energies[lost] = weights[lost] = np.eye(start.shape[1])  # or one beam would stop all
     inverse = np.linalg.inv(np.linalg.cholesky(weights))
     values, mixed = np.linalg.eigh(inverse @ energies @ inverse.transpose(0, 2, 1))
-    wanted = mixed[:, :, rigid : rigid + n_modes]
-    vectors = (inverse.transpose(0, 2, 1) @ wanted).transpose(0, 2, 1) @ rows
-    return (values.T - shift)[rigid : rigid + n_modes], np.ascontiguousarray(vectors.transpose(2, 1, 0))
+    first = stack.rigid_modes
+    wanted = mixed[:, :, first : first + n_modes].transpose(0, 2, 1) @ inverse
+    vectors = (wanted @ rows).transpose(2, 1, 0)
+    return values.T[first : first + n_modes + 1] - ground.tau, np.ascontiguousarray(vectors)
 
 
 def _homed(stack: PencilStack, values: Array, vectors: Array) -> Array:

@@ -19,7 +19,7 @@ from verify.models.eigen import distance_answered, forced_response, lowest, prob
 from verify.models.fields import RESONANCE, HarmonicField, check_forces
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, factored_quotient
 from verify.models.places import Forces, Numbers, in_a_row, places
-from verify.models.stacks import BESIDE, PencilStack, lowest_of_each
+from verify.models.stacks import PencilStack, beside, lowest_of_each
 
 MOST_VALUES = 50_000_000
 """Complex numbers that a sweep holds at once: 0.8 GB."""
@@ -197,15 +197,20 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     check_held(len(beams), n_modes, "beams")
     leaders = _leaders(beams, theory)
     groups = _groups(sorted(set(leaders)), beams, model.layout)
-    made = {group[0]: found for group, found in zip(groups, of_each([g[0] for g in groups], beams, model.make), strict=True)}
-    rows, left = _stacks(groups, beams, n_modes, model, made)
-    later = [i for i in left if i not in made]
-    made |= dict(zip(later, of_each(later, beams, model.make), strict=True))
-    rows |= dict(zip(left, _values([made[i][0] for i in left], n_modes), strict=True))
+    made = _made([group[0] for group in groups], beams, model)
+    rows = _stacks(groups, beams, n_modes, model, made)
+    left = [i for i in sorted(set(leaders)) if i not in rows]
+    pencils = made | _made([i for i in left if i not in made], beams, model)
+    rows |= dict(zip(left, _values([pencils[i][0] for i in left], n_modes), strict=True))
     units = {i: made[group[0]][1] / beams[group[0]].length for group in groups for i in group}
     lengths = [units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)]
     scales = [beam.wave_constant / (2.0 * pi) / unit**2 for beam, unit in zip(beams, lengths, strict=True)]
     return np.asarray(np.sqrt([rows[i] for i in leaders]) * np.array(scales)[:, None])
+
+
+def _made(which: Sequence[int], beams: Sequence[Beam], model: Stacking) -> dict[int, tuple[FactoredPencil, float]]:
+    """Pencils and units of some beams, by index. Raises InputError."""
+    return dict(zip(which, of_each(which, beams, model.make), strict=True))
 
 
 def _groups(which: Sequence[int], beams: Sequence[Beam], layout: Callable[[Beam], Hashable]) -> list[list[int]]:
@@ -224,23 +229,20 @@ def _stacks(
     n_modes: int,
     model: Stacking,
     made: dict[int, tuple[FactoredPencil, float]],
-) -> tuple[dict[int, Array], list[int]]:
-    """(values of beams that settled in their stack, (n_modes,) each, those that are left)."""
-    rows: dict[int, Array] = {}
-    left = []
+) -> dict[int, Array]:
+    """The lowest values, (n_modes,) each, of the beams that settled in a stack, by index."""
+    found: dict[int, Array] = {}
     for group in groups:
-        pencil = made[group[0]][0]
-        wanted = pencil.rigid_modes + n_modes + BESIDE
-        if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or 3 * wanted > 2 * pencil.n:
-            left += group
+        pencil, wanted = made[group[0]][0], n_modes + beside(n_modes)
+        few = len(group) < LEAST or 3 * (pencil.rigid_modes + wanted) > 2 * pencil.n
+        if few or pencil.n > DENSE_UNKNOWNS:
             continue
-        start = np.hstack([pencil.rigid, lowest(pencil, n_modes + BESIDE).vectors])
+        start = np.hstack([pencil.rigid, lowest(pencil, wanted).vectors])
         for first in range(0, len(group), TOGETHER):
             part = group[first : first + TOGETHER]
             values, settled = lowest_of_each(model.stack([beams[i] for i in part]), n_modes, start)
-            rows |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
-            left += [i for i, sure in zip(part, settled, strict=True) if not sure]
-    return rows, sorted(left)
+            found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
+    return found
 
 
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:

@@ -12,7 +12,7 @@ from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
 from verify.segments.attached import rows_at
-from verify.segments.links import Body, Chain, build_chain, joint_compliance, link_inertia
+from verify.segments.links import Body, build_chain, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
 
 _FIGURES = ("mass", "rotary_inertia", "stiffness", "rotational")
@@ -239,6 +239,8 @@ def _strain(chains: Chains, vectors: Array) -> Array:
 
 def _felt(chains: Chains, places: Array, turns: Array) -> tuple[Array, Array]:
     """Deflections and turns of bodies, (bodies, k, n_beams) both."""
+    assert chains.felt is not None
+    assert chains.turned is not None
     pairs = ((chains.felt, places), (chains.turned, turns))
     felt, turned = (np.einsum("bin,ikn->bkn", weights, values) for weights, values in pairs)
     return felt, turned
