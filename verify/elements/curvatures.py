@@ -33,6 +33,18 @@ def element_curvatures(lengths: Array, nodal: Array) -> Array:
     return np.concatenate([np.diff(nodal[1::2], axis=0), left + right])
 
 
+def curvature_loads(lengths: Array, forces: Array) -> Array:
+    """What forces (2N, ...) in the strains of `element_curvatures` are on nodal values, (2N + 2, ...)."""
+    mean, gradient = np.split(forces, 2)
+    found = np.zeros((len(forces) + 2, *forces.shape[1:]))
+    lift = 2.0 * gradient / lengths[:, None]
+    found[:-2:2] += lift
+    found[2::2] -= lift
+    found[1:-2:2] += gradient - mean
+    found[3::2] += gradient + mean
+    return found
+
+
 def element_shear_strains(lengths: Array, values: Array) -> Array:
     """Mean curvature, its gradient and two shear strains in every element, (4N, k), of all values (4N + 2, k).
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.elements.added import SAME_PLACE
-from verify.elements.curvatures import element_curvatures, weights_beside
+from verify.elements.curvatures import curvature_loads, element_curvatures, weights_beside
 from verify.elements.cuts import stretches
 from verify.elements.mesh import basis_of_lines, free_unknowns, mass_matrix, stiffness_matrix
 from verify.models.arrays import Array, Indices
@@ -72,10 +72,17 @@ def element_stack(beams: Sequence[Beam], n_elements: int) -> PencilStack:
         felt = np.take_along_axis(values, places[:, None], axis=0)
         return np.concatenate([element_curvatures(lengths, values), felt])
 
+    def loads(forces: Array) -> Array:
+        values = curvature_loads(lengths, forces[: 2 * n_elements])
+        for at, force in zip(places, forces[2 * n_elements :], strict=True):
+            values[at, :, np.arange(len(beams))] += force.T
+        return values[free]
+
     return PencilStack(
         stiffness=of_unknowns(stiffness, free),
         mass=of_unknowns(mass, free),
         strain=strain,
+        loads=loads,
         springs=springs,
         rigid_modes=first.rigid_motions,
     )

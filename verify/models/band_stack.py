@@ -11,8 +11,6 @@ from verify.models.arrays import Array, Indices
 
 _NEAR = 65536
 """Numbers that a product takes at once: what stays near the processor."""
-_CAUTION = 100.0
-"""Times the rounding of a factorisation, for what the norm of its error and a mass matrix off its diagonal make."""
 
 
 def of_unknowns(bands: Array, free: Indices) -> Array:
@@ -41,7 +39,7 @@ def product(bands: Array, vectors: Array) -> Array:
 def _multiply(bands: Array, vectors: Array, out: Array, scratch: Array) -> None:
     n = len(bands)
     np.multiply(bands[:, :1], vectors, out=out)
-    for above in range(1, bands.shape[1]):
+    for above in range(1, min(bands.shape[1], n)):
         beside, part = bands[: n - above, above, None], scratch[: n - above]
         out[: n - above] += np.multiply(beside, vectors[above:], out=part)
         out[above:] += np.multiply(beside, vectors[: n - above], out=part)
@@ -88,17 +86,16 @@ def solution(pivots: Array, lower: Array, loads: Array) -> Array:
     return found[:n]
 
 
-def count_below(stiffness: Array, mass: Array, shifts: Array) -> tuple[Array, Array]:
-    """(how many eigenvalues of K v = lambda M v lie below each shift, how far rounding may have moved that), (c,) both.
+def count_below(stiffness: Array, mass: Array, shifts: Array) -> tuple[Indices, Array]:
+    """(how many eigenvalues of K v = lambda M v lie below each shift, (c,), how the factors have grown, (n, c)).
 
-    As many as K - shift M has negative pivots (Sylvester), which are those of a matrix as far off as |L| |d| |L|^T
-    times the rounding of a row: what that does to the eigenvalues is the second.
+    As many as K - shift M has negative pivots (Sylvester). These are the pivots of a matrix that is off by no more than
+    the rounding of |L| |d| |L|^T, whose diagonal is the second.
     """
     pivots, lower = triangles(stiffness, mass, shifts[None])
     n, w, _ = lower.shape
     sizes = abs(pivots)
     grown = sizes.copy()
-    for a in range(w):
+    for a in range(min(w, n - 1)):
         grown[1 + a :] += lower[: n - 1 - a, a] ** 2 * sizes[: n - 1 - a]
-    moved = _CAUTION * (2 * w + 1) * np.finfo(float).eps * (grown / mass[:, 0]).max(axis=0)
-    return (pivots < 0.0).sum(axis=0), moved
+    return np.asarray((pivots < 0.0).sum(axis=0)), grown

@@ -26,7 +26,7 @@ from verify.patience import check_work
 
 _LANCZOS = 1e-10
 """Where Lanczos stops: the error of a vector enters the quotient squared."""
-UNLIKE = 1e5
+_UNLIKE = 1e5
 """Of K_ii / M_ii: between parts so unlike, graded or stepped, assembling drowns what is soft."""
 _WHOLE = 32
 """Rows up to which a triangle is inverted at once."""
@@ -145,7 +145,7 @@ def has_unlike_parts(pencil: FactoredPencil) -> bool:
 def _is_unlike(stiffness: Array, mass: Array) -> bool:
     """Whether the parts' own frequencies, by K_ii (n,) and M, lie so far apart that K has lost those of the soft."""
     squares = stiffness / mass.diagonal()
-    return bool(squares.max() > UNLIKE * squares.min())
+    return bool(squares.max() > _UNLIKE * squares.min())
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int, root: Array, mass: Array) -> Array:

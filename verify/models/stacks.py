@@ -2,8 +2,8 @@
 
 Vectors of a pencil that is alike are taken to all others by a step of inverse iteration and a Rayleigh-Ritz problem
 of a few unknowns, then by Rayleigh quotient iteration, each mode of each pencil with its own shift. What comes out is
-not trusted but judged (`_settled`): by residuals, by the gaps between the values, and by a count of the eigenvalues
-below the last, which finds a mode that was missed. What does not pass is left to who asks.
+not trusted but judged: by residuals of the factored K, by the gaps between the values, and by a count of the
+eigenvalues below the last, which finds a mode that was missed. What does not pass is left to who asks.
 """
 
 from collections.abc import Callable
@@ -13,13 +13,12 @@ import numpy as np
 
 from verify.models.arrays import Array, BoolArray
 from verify.models.band_stack import count_below, product, solution, triangles
-from verify.models.eigen import UNLIKE
 
 _STEPS = 4
 """Of Rayleigh quotient iteration at most: each triples the digits of a vector."""
 _COLUMNS = 1280
 """Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
-_LEVEL = 1e-5
+_LEVEL = 1e-3
 """Of the highest value carried along: the least that is inverted, so that vectors stay apart in one step."""
 _STILL = 1e-6
 """Relative: what has moved less in a step has come home in it."""
@@ -29,8 +28,8 @@ _APART = 1e-6
 """Of values, relative: what lies closer is not told apart."""
 _NEXT_TO_NOTHING = 1e-70
 """For a pivot that is zero: small beside any, and large enough to be divided by twice."""
-_MARGIN = 2.0
-"""On a residual, whose own rounding is of the size of that of the assembled matrices."""
+_CAUTION = 10.0
+"""Times the rounding of a row of a factorisation."""
 
 
 class PencilStack(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -42,6 +41,8 @@ class PencilStack(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """M, likewise."""
     strain: Callable[[Array], Array]
     """v (n, k, n_beams) -> B v (m, k, n_beams), by differences of differences."""
+    loads: Callable[[Array], Array]
+    """Forces in the strains (m, k, n_beams) -> B^T q (n, k, n_beams), likewise."""
     springs: Array
     """d, (m, n_beams)."""
     rigid_modes: int
@@ -67,16 +68,16 @@ class Ground(msgspec.Struct, frozen=True, eq=False):
         return solution(*self.triangles, loads)
 
 
-def lowest_of_each(stack: PencilStack, n_modes: int, start: Array) -> tuple[Array, BoolArray]:
+def lowest_of_each(stack: PencilStack, n_modes: int, start: Array, n_inverted: int = 1) -> tuple[Array, BoolArray]:
     """(the lowest elastic eigenvalues (n_modes, n_beams), which of the beams have settled (n_beams,)).
 
-    `start` (n, k), k > rigid + `n_modes`, are the lowest vectors of a pencil like these, rigid motions first. Values
-    of beams that have not settled mean nothing.
+    `start` (n, k), k > rigid + `n_modes`, are the lowest vectors of a pencil like these, rigid motions first;
+    `n_inverted` steps of inverse iteration are taken. Values of beams that have not settled mean nothing.
     """
     with np.errstate(all="ignore"):
         ground = grounded(stack, start)
         try:
-            values, vectors = _projected(stack, ground, n_modes, start)
+            values, vectors = _projected(stack, ground, n_modes, start, n_inverted)
         except np.linalg.LinAlgError:
             n_beams = stack.mass.shape[2]
             return np.full((n_modes, n_beams), np.nan), np.zeros(n_beams, dtype=bool)
@@ -99,12 +100,13 @@ def judged(stack: PencilStack, ground: Ground, vectors: Array, top: Array) -> tu
     strains, carried = stack.strain(vectors), product(stack.mass, vectors)
     squares = _over_unknowns(vectors, carried)
     masses = stack.masses(vectors) if stack.masses else squares
-    values = _over_unknowns(stack.springs[:, None] * strains, strains) / masses
-    rest = (product(stack.stiffness, vectors) - values * carried) / np.sqrt(squares)
+    forces = stack.springs[:, None] * strains
+    values = _over_unknowns(forces, strains) / masses
+    rest = (stack.loads(forces) - values * carried) / np.sqrt(squares)
     residuals = np.sqrt(_over_unknowns(rest, ground.solve(rest)) / (values + ground.tau))
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
-    return values, _settled(stack, ground, values, _MARGIN * residuals, top) & _alike(stack)
+    return values, _sure(ground, values, residuals, top) & _counted(stack, ground, values, vectors**2 / squares, top)
 
 
 def _over_unknowns(one: Array, other: Array) -> Array:
@@ -112,43 +114,51 @@ def _over_unknowns(one: Array, other: Array) -> Array:
     return np.asarray(np.einsum("i...,i...->...", one, other))
 
 
-def _settled(stack: PencilStack, ground: Ground, values: Array, residuals: Array, top: Array) -> BoolArray:
-    """Which beams have their lowest values, all of them and to `_SURE`, (n_beams,).
+def _sure(ground: Ground, values: Array, residuals: Array, top: Array) -> BoolArray:
+    """Whose values are eigenvalues to `_SURE`, each another one, (n_beams,), if none but they lie below `top`.
 
     With A = K + tau M, an eigenvalue of A^-1 M lies within its residual r, in the norm of A and relative, of that of
-    every vector, and within r^2 over its distance to the others (Kato and Temple); the norm of M^-1 would be one of
-    rounding. Values that lie apart so have eigenvalues of their own, and where no more than these lie below `top` none
-    was missed.
+    every vector, and within r^2 over its distance to the others (Kato and Temple); in the norm of M^-1 the residual of
+    short parts would be rounding alone. Values that lie apart so have eigenvalues of their own.
     """
-    count, moved = count_below(stack.stiffness, stack.mass, top)
-    all_values = ground.tau + np.concatenate([values, top[None]])
-    steps = np.diff(all_values, axis=0) / all_values[1:]
+    lifted = ground.tau + np.concatenate([values, top[None]])
+    steps = np.diff(lifted, axis=0) / lifted[1:]
     gaps = np.minimum(steps, np.concatenate([values[:1] / ground.tau, steps[:-1]])) - residuals
-    sure = residuals**2 <= _SURE * gaps * (values / all_values[:-1])
-    apart = (gaps > _APART) & (gaps > 2.0 * residuals)
-    counted = (count == len(values) + stack.rigid_modes) & (moved < 0.25 * (top - values[-1]))
-    return np.asarray((apart & sure).all(axis=0) & counted, dtype=bool)
+    sharp = residuals**2 <= _SURE * gaps * (values / lifted[:-1])
+    return np.asarray((sharp & (gaps > _APART) & (gaps > 2.0 * residuals)).all(axis=0), dtype=bool)
 
 
-def _alike(stack: PencilStack) -> BoolArray:
-    """Which beams have parts so alike that K as a matrix keeps those of the soft, (n_beams,) (`eigen.lowest`)."""
-    squares = stack.stiffness[:, 0] / stack.mass[:, 0]
-    return np.asarray(squares.max(axis=0) <= UNLIKE * squares.min(axis=0), dtype=bool)
+def _counted(stack: PencilStack, ground: Ground, values: Array, squares: Array, top: Array) -> BoolArray:
+    """Whose eigenvalues below `top` are as many as `values`, by a margin that rounding leaves, (n_beams,).
+
+    `squares` (n, k, n_beams) are those of the vectors, v^T M v = 1: what rounding does to K moves an eigenvalue by as
+    much as it does to the energy of its vector.
+    """
+    count, grown = count_below(stack.stiffness, stack.mass, top)
+    rows = 2 * stack.mass.shape[1] - 1
+    moved = _CAUTION * rows * np.finfo(float).eps * np.einsum("in,ikn->kn", grown, squares).max(axis=0)
+    clear = moved < 0.1 * np.minimum(top - values[-1], values[0] + ground.tau)
+    return np.asarray((count == len(values) + stack.rigid_modes) & clear, dtype=bool)
 
 
-def _projected(stack: PencilStack, ground: Ground, n_modes: int, start: Array) -> tuple[Array, Array]:
-    """Vectors (n, n_modes, n_beams) after a step of inverse iteration by Rayleigh-Ritz, values with the one above."""
-    found = ground.solve(product(stack.mass, start[:, :, None]))
-    rows, heavy = (np.ascontiguousarray(each.transpose(2, 1, 0)) for each in (found, product(stack.mass, found)))
-    energies, weights = heavy @ start, rows @ heavy.transpose(0, 2, 1)
-    lost = ~_alike(stack)
-    energies[lost] = weights[lost] = np.eye(start.shape[1])  # or one beam would stop all
-    inverse = np.linalg.inv(np.linalg.cholesky(weights))
-    values, mixed = np.linalg.eigh(inverse @ energies @ inverse.transpose(0, 2, 1))
-    first = stack.rigid_modes
-    wanted = mixed[:, :, first : first + n_modes].transpose(0, 2, 1) @ inverse
-    vectors = (wanted @ rows).transpose(2, 1, 0)
-    return values.T[first : first + n_modes + 1] - ground.tau, np.ascontiguousarray(vectors)
+def _projected(stack: PencilStack, ground: Ground, n_modes: int, start: Array, n_inverted: int) -> tuple[Array, Array]:
+    """Vectors (n, n_modes, n_beams) after steps of inverse iteration by Rayleigh-Ritz, values with the one above."""
+    rows, first = start.T[None], stack.rigid_modes
+    for _ in range(n_inverted):
+        found = ground.solve(product(stack.mass, rows.transpose(2, 1, 0)))
+        before, heavy = rows, _rows(product(stack.mass, found))
+        rows = _rows(found)
+        inverse = np.linalg.inv(np.linalg.cholesky(rows @ heavy.transpose(0, 2, 1)))
+        energies = heavy @ before.transpose(0, 2, 1)
+        values, mixed = np.linalg.eigh(inverse @ energies @ inverse.transpose(0, 2, 1))
+        rows = (mixed.transpose(0, 2, 1) @ inverse) @ rows
+    vectors = np.ascontiguousarray(rows[:, first : first + n_modes].transpose(2, 1, 0))
+    return values.T[first : first + n_modes + 1] - ground.tau, vectors
+
+
+def _rows(vectors: Array) -> Array:
+    """(n, k, n_beams) -> (n_beams, k, n), in a row of memory."""
+    return np.ascontiguousarray(vectors.transpose(2, 1, 0))
 
 
 def _homed(stack: PencilStack, values: Array, vectors: Array) -> Array:

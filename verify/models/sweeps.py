@@ -17,7 +17,7 @@ from verify.models.arrays import Array, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
 from verify.models.eigen import distance_answered, forced_response, lowest, probe
 from verify.models.fields import RESONANCE, HarmonicField, check_forces
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, factored_quotient
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.models.places import Forces, Numbers, in_a_row, places
 from verify.models.stacks import PencilStack, beside, lowest_of_each
 
@@ -25,10 +25,10 @@ MOST_VALUES = 50_000_000
 """Complex numbers that a sweep holds at once: 0.8 GB."""
 FEW = 4
 """Frequencies up to which each is solved by itself."""
-STACK = 64
-"""Dense pencils that LAPACK is given at once."""
 LEAST = 8
 """Beams of one layout from which on a stack takes less time than each by itself."""
+INVERTED = (1, 3)
+"""Steps of inverse iteration: first one, then of those that have not settled in it three."""
 TOGETHER = 256
 """Beams in a stack: enough to fill numpy's loops, few enough to stay near the processor."""
 FIELD = "frequencies_hz"
@@ -189,7 +189,7 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     """Frequencies of many beams, (n_beams, n_modes) in Hz.
 
     Plain uniform beams on the same supports differ by their scale alone and share one solve; others of one layout are
-    solved as one stack (`stacks`), and those of it that do not settle, with all that are left, by LAPACK. Raises
+    solved as one stack (`stacks`), and those of it that do not settle, with all that are left, each by itself. Raises
     InputError, naming the beam by its index.
     """
     if not beams:
@@ -199,9 +199,9 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     groups = _groups(sorted(set(leaders)), beams, model.layout)
     made = _made([group[0] for group in groups], beams, model)
     rows = _stacks(groups, beams, n_modes, model, made)
-    left = [i for i in sorted(set(leaders)) if i not in rows]
-    pencils = made | _made([i for i in left if i not in made], beams, model)
-    rows |= dict(zip(left, _values([pencils[i][0] for i in left], n_modes), strict=True))
+    for i in sorted(set(leaders) - set(rows)):
+        pencil, _ = made[i] if i in made else model.make(beams[i])
+        rows[i] = lowest(pencil, n_modes).values
     units = {i: made[group[0]][1] / beams[group[0]].length for group in groups for i in group}
     lengths = [units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)]
     scales = [beam.wave_constant / (2.0 * pi) / unit**2 for beam, unit in zip(beams, lengths, strict=True)]
@@ -238,10 +238,14 @@ def _stacks(
         if few or pencil.n > DENSE_UNKNOWNS:
             continue
         start = np.hstack([pencil.rigid, lowest(pencil, wanted).vectors])
-        for first in range(0, len(group), TOGETHER):
-            part = group[first : first + TOGETHER]
-            values, settled = lowest_of_each(model.stack([beams[i] for i in part]), n_modes, start)
-            found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
+        for n_inverted in INVERTED:
+            if len(left := [i for i in group if i not in found]) < LEAST:
+                break
+            for first in range(0, len(left), TOGETHER):
+                part = left[first : first + TOGETHER]
+                stack = model.stack([beams[i] for i in part])
+                values, settled = lowest_of_each(stack, n_modes, start, n_inverted)
+                found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
     return found
 
 
@@ -251,37 +255,3 @@ def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:
     plain = [theory == "euler-bernoulli" and not beam.section and beam.uniform for beam in beams]
     keys = (beam.supports if alike else i for i, (beam, alike) in enumerate(zip(beams, plain, strict=True)))
     return [first.setdefault(key, i) for i, key in enumerate(keys)]
-
-
-def _values(pencils: Sequence[FactoredPencil], n_modes: int) -> list[Array]:
-    """The lowest elastic eigenvalues of every pencil, (n_modes,) each, those of one size together."""
-    found: list[Array] = [np.empty(0)] * len(pencils)
-    together: dict[tuple[int, int, int], list[int]] = {}
-    for i, pencil in enumerate(pencils):
-        if pencil.n <= DENSE_UNKNOWNS and not pencil.uneven:
-            together.setdefault((pencil.n, len(pencil.stiffness), pencil.rigid_modes), []).append(i)
-        else:
-            found[i] = lowest(pencil, n_modes).values
-    for group in together.values():
-        for start in range(0, len(group), STACK):
-            part = group[start : start + STACK]
-            for i, values in zip(part, _stacked([pencils[i] for i in part], n_modes), strict=True):
-                found[i] = values
-    return found
-
-
-def _stacked(pencils: Sequence[FactoredPencil], n_modes: int) -> Array:
-    """The same of dense pencils of one size, (n_pencils, n_modes), by LAPACK on a stack of them as `eigen.lowest` does.
-
-    Every value is read from its own factored quotient.
-    """
-    one = np.eye(pencils[0].n)
-    strains = np.array([pencil.strain(one) for pencil in pencils])
-    stiffness = np.array([pencil.stiffness for pencil in pencils])
-    lower = np.linalg.cholesky(np.array([pencil.mass_matrix() for pencil in pencils]))
-    half = np.linalg.solve(lower, np.swapaxes(strains, 1, 2) @ (stiffness[:, :, None] * strains))
-    _, vectors = np.linalg.eigh(np.linalg.solve(lower, np.swapaxes(half, 1, 2)))
-    first = pencils[0].rigid_modes
-    wanted = np.linalg.solve(np.swapaxes(lower, 1, 2), vectors[:, :, first : first + n_modes])
-    found = [factored_quotient(pencil, own)[0] for pencil, own in zip(pencils, wanted, strict=True)]
-    return np.sort(np.array(found), axis=1)

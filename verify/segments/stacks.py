@@ -73,6 +73,7 @@ def chain_stack(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]
         stiffness=stiffness,
         mass=mass,
         strain=lambda vectors: _strain(chains, vectors),
+        loads=lambda forces: _loads(chains, forces),
         springs=np.concatenate(springs),
         rigid_modes=first.rigid_motions,
         masses=None if chains.bodies is None else lambda vectors: _weighed(chains, vectors),
@@ -235,6 +236,27 @@ def _strain(chains: Chains, vectors: Array) -> Array:
     if chains.bodies is not None:
         found += _felt(chains, places, turns)
     return np.concatenate(found)
+
+
+def _loads(chains: Chains, forces: Array) -> Array:
+    """What forces (m, k, n_beams) in the strains are on the free joints, (n, k, n_beams)."""
+    n = len(chains.joints)
+    turning, forces = forces[: n - 1] - forces[1:n], forces[n:]
+    found = np.zeros((n, *forces.shape[1:]))
+    if chains.ground is not None:
+        halves, forces = 0.5 * forces[: n - 1], forces[n - 1 :]
+        found[1:] += halves
+        found[:-1] += halves
+    if chains.twist is not None:
+        turning, forces = turning + forces[: n - 1], forces[n - 1 :]
+    if chains.felt is not None and chains.turned is not None:
+        of_places, of_turns = np.split(forces, 2)
+        found += np.einsum("bin,bkn->ikn", chains.felt, of_places)
+        turning = turning + np.einsum("bin,bkn->ikn", chains.turned, of_turns)
+    shares = turning / chains.lengths[:, None]
+    found[1:] += shares
+    found[:-1] -= shares
+    return found[chains.free[0] : chains.free[-1] + 1]
 
 
 def _felt(chains: Chains, places: Array, turns: Array) -> tuple[Array, Array]:
