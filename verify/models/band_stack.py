@@ -9,8 +9,8 @@ import numpy as np
 
 from verify.models.arrays import Array, Indices
 
-_NEAR = 65536
-"""Numbers that a product takes at once: what stays near the processor."""
+_NEAR = 32768
+"""Numbers that a product takes at once."""
 
 
 def of_unknowns(bands: Array, free: Indices) -> Array:
@@ -25,24 +25,24 @@ def of_unknowns(bands: Array, free: Indices) -> Array:
 
 
 def product(bands: Array, vectors: Array) -> Array:
-    """A v, (n, k, c); `vectors` (n, k, 1) are the same of all matrices."""
-    n, _, c = bands.shape
+    """A v, (n, k, c); `vectors` (n, k, 1) are the same of all matrices. Some rows at a time stay near the processor."""
+    n, width, c = bands.shape
     found = np.empty((n, vectors.shape[1], c))
-    most = max(_NEAR // found[:, :, 0].size, 1)
-    vectors, scratch = np.broadcast_to(vectors, found.shape), np.empty((*found.shape[:2], min(most, c)))
-    for first in range(0, c, most):
-        some = slice(first, first + most)
-        _multiply(bands[..., some], vectors[..., some], found[..., some], scratch[..., : c - first])
+    most = max(_NEAR // found[0].size, 4)
+    scratch = np.empty((most, *found.shape[1:]))
+    for first in range(0, n, most):
+        last = min(first + most, n)
+        out = found[first:last]
+        np.multiply(bands[first:last, :1], vectors[first:last], out=out)
+        for above in range(1, width):
+            for row, of, to in ((0, 0, above), (above, -above, -above)):
+                start, stop = max(first, row), min(last, n - above + row)
+                if stop > start:
+                    part = scratch[: stop - start]
+                    beside = bands[start + of : stop + of, above, None]
+                    np.multiply(beside, vectors[start + to : stop + to], out=part)
+                    out[start - first : stop - first] += part
     return found
-
-
-def _multiply(bands: Array, vectors: Array, out: Array, scratch: Array) -> None:
-    n = len(bands)
-    np.multiply(bands[:, :1], vectors, out=out)
-    for above in range(1, min(bands.shape[1], n)):
-        beside, part = bands[: n - above, above, None], scratch[: n - above]
-        out[: n - above] += np.multiply(beside, vectors[above:], out=part)
-        out[above:] += np.multiply(beside, vectors[: n - above], out=part)
 
 
 def triangles(stiffness: Array, mass: Array, shifts: Array) -> tuple[Array, Array]:

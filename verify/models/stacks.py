@@ -106,7 +106,9 @@ def judged(stack: PencilStack, ground: Ground, vectors: Array, top: Array) -> tu
     residuals = np.sqrt(_over_unknowns(rest, ground.solve(rest)) / (values + ground.tau))
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
-    return values, _sure(ground, values, residuals, top) & _counted(stack, ground, values, vectors**2 / squares, top)
+    return values, _sure(ground, values, residuals, top) & _counted(
+        stack, ground, values, vectors / np.sqrt(squares), top
+    )
 
 
 def _over_unknowns(one: Array, other: Array) -> Array:
@@ -128,15 +130,15 @@ def _sure(ground: Ground, values: Array, residuals: Array, top: Array) -> BoolAr
     return np.asarray((sharp & (gaps > _APART) & (gaps > 2.0 * residuals)).all(axis=0), dtype=bool)
 
 
-def _counted(stack: PencilStack, ground: Ground, values: Array, squares: Array, top: Array) -> BoolArray:
+def _counted(stack: PencilStack, ground: Ground, values: Array, vectors: Array, top: Array) -> BoolArray:
     """Whose eigenvalues below `top` are as many as `values`, by a margin that rounding leaves, (n_beams,).
 
-    `squares` (n, k, n_beams) are those of the vectors, v^T M v = 1: what rounding does to K moves an eigenvalue by as
-    much as it does to the energy of its vector.
+    Vectors (n, k, n_beams) have v^T M v = 1: what rounding does to K moves an eigenvalue by as much as it does to the
+    energy of its vector.
     """
     count, grown = count_below(stack.stiffness, stack.mass, top)
     rows = 2 * stack.mass.shape[1] - 1
-    moved = _CAUTION * rows * np.finfo(float).eps * np.einsum("in,ikn->kn", grown, squares).max(axis=0)
+    moved = _CAUTION * rows * np.finfo(float).eps * np.einsum("in,ikn,ikn->kn", grown, vectors, vectors).max(axis=0)
     clear = moved < 0.1 * np.minimum(top - values[-1], values[0] + ground.tau)
     return np.asarray((count == len(values) + stack.rigid_modes) & clear, dtype=bool)
 
