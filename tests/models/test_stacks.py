@@ -2,6 +2,7 @@
 
 from time import process_time
 
+import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -227,6 +228,49 @@ def test_a_beam_of_unlike_parts_is_solved_alone(alone, model):
     assert len(alone) == 2
     each = np.array([module.solve_modes(beam, 4, 30).frequencies_hz for beam in beams])
     assert found == pytest.approx(each, rel=1e-12)
+
+
+def in_fifty_digits(chain, near):
+    """The eigenvalue of a clamped-pinned chain next to `near`: its matrices from the links' energies, in 50 digits."""
+    with mp.workdps(50):
+        lengths, masses, inertias, compliances = (
+            [mp.mpf(float(value)) for value in values]
+            for values in (chain.lengths, chain.masses, chain.inertias, chain.compliances)
+        )
+        n = len(lengths)
+        stiffness, mass, turns = mp.zeros(n - 1), mp.zeros(n - 1), mp.zeros(n, n - 1)
+        for link in range(n):
+            for joint, sign in ((link, -1), (link + 1, 1)):
+                if 0 < joint < n:
+                    turns[link, joint - 1] = sign / lengths[link]
+        for link in range(n):
+            middle = lengths[link] * turns[link, :] / 2  # and the joint before it
+            if link > 0:
+                middle[link - 1] += 1
+            mass += masses[link] * (middle.T * middle) + inertias[link] * (turns[link, :].T * turns[link, :])
+        for joint in range(n):
+            angle = turns[joint, :] - (turns[joint - 1, :] if joint else 0 * turns[0, :])
+            stiffness += angle.T * angle / compliances[joint]
+        vector, shift = mp.matrix([mp.mpf(i + 1) for i in range(n - 1)]), mp.mpf(near) * (1 + mp.mpf(10) ** -7)
+        for _ in range(4):
+            vector = mp.lu_solve(stiffness - shift * mass, mass * vector)
+            vector /= mp.norm(vector)
+        return float((vector.T * stiffness * vector)[0] / (vector.T * mass * vector)[0])
+
+
+def test_values_of_strong_steps_are_those_in_fifty_digits():
+    """EI that differs ten-thousandfold, where the matrix of K alone would leave 1e-11."""
+    rng = np.random.default_rng(31)
+    beams = []
+    for beam in many(31, 9, n_sections=2):
+        pieces = (replace(piece, bending_stiffness=EI * float(10.0 ** rng.uniform(-2, 2))) for piece in beam.section)
+        beams.append(replace(beam, section=tuple(pieces)))
+    stack, start, _ = stacked("segment", beams, 2, 31)
+    values, settled = lowest_of_each(stack, 2, start, 3)
+    assert settled.sum() >= 6
+    for i in np.flatnonzero(settled):
+        wanted = in_fifty_digits(build_chain(beams[i], 31), values[0, i])
+        assert values[0, i] == pytest.approx(wanted, rel=1e-13)
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -20,7 +20,7 @@ _COLUMNS = 1280
 """Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
 _LEVEL = 1e-3
 """Of the highest value carried along: the least that is inverted, so that vectors stay apart in one step."""
-_STILL = 1e-6
+_STILL = 1e-5
 """Relative: what has moved less in a step has come home in it."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
@@ -174,8 +174,8 @@ def _homed(stack: PencilStack, values: Array, vectors: Array) -> Array:
         mode, beam = np.nonzero(abs(moved) > _STILL * values)
         if not len(mode):
             break
-        bands = (stack.stiffness[..., beam], stack.mass[..., beam])
-        found, step = _stepped(*bands, values[mode, beam][None], vectors[:, None, mode, beam])
+        stiffness, mass = (np.take(bands, beam, axis=2) for bands in (stack.stiffness, stack.mass))
+        found, step = _stepped(stiffness, mass, values[mode, beam][None], vectors[:, None, mode, beam])
         vectors[:, mode, beam] = found[:, 0]
         moved = np.zeros_like(values)
         moved[mode, beam] = step[0]
