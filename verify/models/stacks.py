@@ -16,7 +16,7 @@ from verify.models.band_stack import count_below, product, solution, triangles
 
 _STEPS = 4
 """Of Rayleigh quotient iteration at most: each triples the digits of a vector."""
-_COLUMNS = 1280
+_COLUMNS = 2000
 """Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
 _LEVEL = 1e-3
 """Of the highest value carried along: the least that is inverted, so that vectors stay apart in one step."""

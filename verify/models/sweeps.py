@@ -4,7 +4,7 @@ A sweep gives what a loop over `solve_harmonic` or `solve_modes` would, to round
 """
 
 from collections.abc import Callable, Hashable, Sequence
-from math import pi
+from math import ceil, pi
 from typing import TypeVar
 
 import msgspec
@@ -29,8 +29,8 @@ LEAST = 8
 """Beams of one layout from which on a stack takes less time than each by itself."""
 INVERTED = (1, 3)
 """Steps of inverse iteration: first one, then of those that have not settled in it three."""
-TOGETHER = 256
-"""Beams in a stack: enough to fill numpy's loops, few enough to stay near the processor."""
+TOGETHER = 384
+"""Beams in a stack at most: enough to fill numpy's loops, few enough to stay near the processor."""
 FIELD = "frequencies_hz"
 Found = TypeVar("Found")
 
@@ -232,21 +232,27 @@ def _stacks(
 ) -> dict[int, Array]:
     """The lowest values, (n_modes,) each, of the beams that settled in a stack, by index."""
     found: dict[int, Array] = {}
+    wanted = n_modes + beside(n_modes)
     for group in groups:
-        pencil, wanted = made[group[0]][0], n_modes + beside(n_modes)
-        few = len(group) < LEAST or 3 * (pencil.rigid_modes + wanted) > 2 * pencil.n
-        if few or pencil.n > DENSE_UNKNOWNS:
+        pencil = made[group[0]][0]
+        small = pencil.n <= DENSE_UNKNOWNS and 3 * (pencil.rigid_modes + wanted) <= 2 * pencil.n
+        if len(group) < LEAST or not small:
             continue
         start = np.hstack([pencil.rigid, lowest(pencil, wanted).vectors])
         for n_inverted in INVERTED:
-            if len(left := [i for i in group if i not in found]) < LEAST:
-                break
-            for first in range(0, len(left), TOGETHER):
-                part = left[first : first + TOGETHER]
+            for part in _parts([i for i in group if i not in found]):
                 stack = model.stack([beams[i] for i in part])
                 values, settled = lowest_of_each(stack, n_modes, start, n_inverted)
                 found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
     return found
+
+
+def _parts(group: list[int]) -> list[list[int]]:
+    """A group in equal parts of `TOGETHER` at most; none of one so small that its beams stand alone."""
+    if len(group) < LEAST:
+        return []
+    each = ceil(len(group) / ceil(len(group) / TOGETHER))
+    return [group[first : first + each] for first in range(0, len(group), each)]
 
 
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:
