@@ -27,6 +27,8 @@ FEW = 4
 """Frequencies up to which each is solved by itself."""
 LEAST = 8
 """Beams of one layout from which on a stack takes less time than each by itself."""
+MOST_IN_STACK = 4_000_000
+"""Numbers in the vectors of a stack."""
 INVERTED = (1, 3)
 """Steps of inverse iteration: first one, then of those that have not settled in it three."""
 TOGETHER = 384
@@ -240,19 +242,20 @@ def _stacks(
             continue
         start = np.hstack([pencil.rigid, lowest(pencil, wanted).vectors])
         for n_inverted in INVERTED:
-            for part in _parts([i for i in group if i not in found]):
+            for part in _parts([i for i in group if i not in found], start.size):
                 stack = model.stack([beams[i] for i in part])
                 values, settled = lowest_of_each(stack, n_modes, start, n_inverted)
                 found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
     return found
 
 
-def _parts(group: list[int]) -> list[list[int]]:
-    """A group in equal parts of `TOGETHER` at most; none of one so small that its beams stand alone."""
+def _parts(group: list[int], each: int) -> list[list[int]]:
+    """A group in equal parts of `TOGETHER` and `MOST_IN_STACK` at most, a beam having `each`; none of a small one."""
     if len(group) < LEAST:
         return []
-    each = ceil(len(group) / ceil(len(group) / TOGETHER))
-    return [group[first : first + each] for first in range(0, len(group), each)]
+    most = min(TOGETHER, max(MOST_IN_STACK // each, LEAST))
+    size = ceil(len(group) / ceil(len(group) / most))
+    return [group[first : first + size] for first in range(0, len(group), size)]
 
 
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:
