@@ -1,6 +1,7 @@
 """How a beam is divided into segments or elements: lengths and properties of the parts. Geometry, no mechanics."""
 
 from collections.abc import Sequence
+from operator import attrgetter
 
 import msgspec
 import numpy as np
@@ -10,6 +11,9 @@ from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.section import Piece
+
+_FIGURES = attrgetter("length", "bending_stiffness", "mass_per_length")
+"""Of a piece, for the parts of many beams."""
 
 
 class Parts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -90,9 +94,9 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
 def divide_each(beams: Sequence[Beam], count: int, pieces: Sequence[Sequence[Piece]]) -> ManyParts:
     """What `divide` makes of each of many beams of equally many pieces, ungraded."""
     units = np.array([beam.length for beam in beams]) / count
-    rows = [[(p.length, p.bending_stiffness, p.mass_per_length) for p in each] for each in pieces]
-    lengths, stiffnesses, masses = np.array(rows).transpose(2, 1, 0)
-    own = np.array([(p.bending_stiffness, p.mass_per_length) for p in [beam.own for beam in beams]]).T
+    rows = np.array([_FIGURES(piece) for each in pieces for piece in each])
+    lengths, stiffnesses, masses = rows.reshape(len(beams), -1, 3).transpose(2, 1, 0)
+    own = np.array([_FIGURES(beam.own)[1:] for beam in beams]).T
     shares = _counts_of_each(lengths, count)
     part, section = np.arange(count)[:, None], np.zeros((count, len(beams)), dtype=np.intp)
     for ends in np.cumsum(shares, axis=0)[:-1]:

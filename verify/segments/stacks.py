@@ -51,13 +51,14 @@ def layout(beam: Beam, wall: str, joints: str, grading: float, theory: str, atta
     """
     if theory != "euler-bernoulli" or wall == "welded" or joints == "printed" or grading != 1.0:
         return None
+    if not (beam.mass or beam.spring or beam.tension or beam.foundation):
+        return (beam.supports, len(beam.section))
     if beam.tension and (beam.tension < 0.0 or joints == "tensioned"):
         return None
-    ends, there = (0.0, beam.length), bool(beam.mass or beam.spring)
-    if there and any(mass.rotary_inertia and mass.position in ends for mass in beam.mass):
+    if any(mass.rotary_inertia and mass.position in (0.0, beam.length) for mass in beam.mass):
         return None
     loads = (len(beam.mass) + len(beam.spring), beam.tension > 0.0, beam.foundation > 0.0)
-    return (beam.supports, len(beam.section), *loads, beam.rigid_motions if any(loads) else 0)
+    return (beam.supports, len(beam.section), *loads, beam.rigid_motions)
 
 
 def chain_stack(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) -> PencilStack:
