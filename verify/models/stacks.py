@@ -24,6 +24,8 @@ _STILL = 1e-5
 """Relative: what has moved less in a step has come home in it."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
+_UNLIKE = 1e6
+"""Of K_ii / M_ii."""
 _APART = 1e-6
 """Of values, relative: what lies closer is not told apart."""
 _NEXT_TO_NOTHING = 1e-70
@@ -106,9 +108,14 @@ def judged(stack: PencilStack, ground: Ground, vectors: Array, top: Array) -> tu
     residuals = np.sqrt(_over_unknowns(rest, ground.solve(rest)) / (values + ground.tau))
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
-    return values, _sure(ground, values, residuals, top) & _counted(
-        stack, ground, values, vectors / np.sqrt(squares), top
-    )
+    sure = _sure(ground, values, residuals, top) & _alike(stack)
+    return values, sure & _counted(stack, ground, values, vectors / np.sqrt(squares), top)
+
+
+def _alike(stack: PencilStack) -> BoolArray:
+    """Whose parts are alike enough for K as a matrix, (n_beams,): of others A has lost what residuals are told by."""
+    squares = stack.stiffness[:, 0] / stack.mass[:, 0]
+    return np.asarray(squares.max(axis=0) <= _UNLIKE * squares.min(axis=0), dtype=bool)
 
 
 def _over_unknowns(one: Array, other: Array) -> Array:
