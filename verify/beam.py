@@ -19,6 +19,8 @@ CONTRAST = 1e15
 """Of EI / l^3 between two sections: beyond it the softer one is lost in the rounding of the stiffer one."""
 MOST_WAVES = 1e6
 """Along a beam, from end to end: more take too many points, and their phase loses its digits."""
+KEPT = 4096
+"""Beams whose pieces are kept, about a kilobyte each: they take as long to make as all the rest of one in a sweep."""
 _HOLDS = {"pinned": (True, False), "clamped": (True, True), "guided": (False, True), "free": (False, False)}
 """Whether a support holds deflection and slope."""
 
@@ -241,12 +243,12 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return sqrt(self.bending_stiffness / self.mass_per_length)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=KEPT)
 def _own(beam: Beam) -> Piece:
     return piece_of(beam, beam.length, "beam", beam.poissons_ratio)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=KEPT)
 def _pieces(beam: Beam) -> tuple[Piece, ...]:
     if not beam.section:
         return (beam.own,)

@@ -16,6 +16,7 @@ from verify.elements.linear import (
 )
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import damped_stiffness, element_pencil
+from verify.elements.stacks import element_stack, layout
 from verify.models.arrays import Array
 from verify.models.driven_pencil import name_resonance
 from verify.models.pencil import FactoredPencil
@@ -23,6 +24,7 @@ from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import (
     FIELD,
     HarmonicSweep,
+    Stacking,
     swept_frequencies,
     swept_modes,
     swept_response,
@@ -83,8 +85,9 @@ def sweep_modes(
 ) -> Array:
     """Frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
 
-    Beams that differ by their scale alone share one solve; others are taken by LAPACK as one stack. Raises InputError
-    as `solve_modes` does, naming the beam by its index.
+    Beams that differ by their scale alone share one solve; those that have as many sections, masses and springs as
+    others are solved together, the rest one by one. Raises InputError as `solve_modes` does, naming the beam by its
+    index.
     """
     beams = several("beams", beams, Beam)
     check_whole("n_modes", n_modes, 1)
@@ -94,4 +97,6 @@ def sweep_modes(
         elements = build_elements(beam, n_elements, grading, theory)
         return element_pencil(elements), elements.parts.unit
 
-    return swept_modes(beams, n_modes, theory, make)
+    alike = partial(layout, n_elements=n_elements, grading=grading, theory=theory)
+    stack = partial(element_stack, n_elements=n_elements)
+    return swept_modes(beams, n_modes, theory, Stacking(make=make, layout=alike, stack=stack))

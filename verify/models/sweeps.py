@@ -3,10 +3,11 @@
 A sweep gives what a loop over `solve_harmonic` or `solve_modes` would, to rounding, arrays in and arrays out.
 """
 
-from collections.abc import Callable, Sequence
-from math import pi
+from collections.abc import Callable, Hashable, Sequence
+from math import ceil, pi
 from typing import TypeVar
 
+import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce, check_frequency
@@ -16,15 +17,22 @@ from verify.models.arrays import Array, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
 from verify.models.eigen import distance_answered, forced_response, lowest, probe
 from verify.models.fields import RESONANCE, HarmonicField, check_forces
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, factored_quotient
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.models.places import Forces, Numbers, in_a_row, places
+from verify.models.stacks import PencilStack, beside, lowest_of_each
 
 MOST_VALUES = 50_000_000
 """Complex numbers that a sweep holds at once: 0.8 GB."""
 FEW = 4
 """Frequencies up to which each is solved by itself."""
-STACK = 64
-"""Dense pencils that LAPACK is given at once."""
+LEAST = 8
+"""Beams of one layout from which on a stack takes less time than each by itself."""
+MOST_IN_STACK = 4_000_000
+"""Numbers in the vectors of a stack."""
+INVERTED = (1, 3)
+"""Steps of inverse iteration: first one, then of those that have not settled in it three."""
+TOGETHER = 384
+"""Beams in a stack at most: enough to fill numpy's loops, few enough to stay near the processor."""
 FIELD = "frequencies_hz"
 Found = TypeVar("Found")
 
@@ -168,65 +176,101 @@ def _refuse_nearest(distances: Array, refuse: Callable[[int], None]) -> None:
         refuse(int(index))
 
 
-def swept_modes(
-    beams: Sequence[Beam], n_modes: int, theory: str, make: Callable[[Beam], tuple[FactoredPencil, float]]
-) -> Array:
-    """Frequencies of many beams, (n_beams, n_modes) in Hz; `make` checks one and gives its pencil and unit, metres.
+class Stacking(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """How a model takes many beams."""
 
-    Plain uniform beams on the same supports differ by their scale alone and share one solve; all others are taken as a
-    stack. LAPACK's eigenvectors alone are a quarter of the time that a loop takes for these, so that no stack gains
-    more than four times. Raises InputError, naming the beam by its index.
+    make: Callable[[Beam], tuple[FactoredPencil, float]]
+    """Checks a beam and gives its pencil and unit, metres. Raises InputError."""
+    layout: Callable[[Beam], Hashable]
+    """What beams have in common that are stacked and refused alike; None for a beam that is taken alone."""
+    stack: Callable[[Sequence[Beam]], PencilStack]
+    """The pencils of beams of one layout, whose units are the same part of their lengths."""
+
+
+def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stacking) -> Array:
+    """Frequencies of many beams, (n_beams, n_modes) in Hz.
+
+    Plain uniform beams on the same supports differ by their scale alone and share one solve; others of one layout are
+    solved as one stack (`stacks`), and those of it that do not settle, with all that are left, each by itself. Raises
+    InputError, naming the beam by its index.
     """
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
     check_held(len(beams), n_modes, "beams")
     leaders = _leaders(beams, theory)
-    solved = sorted(set(leaders))
-    made = of_each(solved, beams, make)
-    rows = dict(zip(solved, _values([pencil for pencil, _ in made], n_modes), strict=True))
-    units = {i: unit / beams[i].length for i, (_, unit) in zip(solved, made, strict=True)}
+    groups = _groups(sorted(set(leaders)), beams, model.layout)
+    made = _made([group[0] for group in groups], beams, model)
+    rows = _stacks(groups, beams, n_modes, model, made)
+    for i in sorted(set(leaders) - set(rows)):
+        pencil, _ = made[i] if i in made else model.make(beams[i])
+        rows[i] = lowest(pencil, n_modes).values
+    units = {i: made[group[0]][1] / beams[group[0]].length for group in groups for i in group}
     lengths = [units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)]
     scales = [beam.wave_constant / (2.0 * pi) / unit**2 for beam, unit in zip(beams, lengths, strict=True)]
-    return np.asarray(np.sqrt([rows[i] for i in leaders]) * np.array(scales)[:, None])
+    values = np.concatenate([rows[i] for i in leaders]).reshape(len(beams), n_modes)
+    return np.asarray(np.sqrt(values) * np.array(scales)[:, None])
+
+
+def _made(which: Sequence[int], beams: Sequence[Beam], model: Stacking) -> dict[int, tuple[FactoredPencil, float]]:
+    """Pencils and units of some beams, by index. Raises InputError."""
+    return dict(zip(which, of_each(which, beams, model.make), strict=True))
+
+
+def _groups(which: Sequence[int], beams: Sequence[Beam], layout: Callable[[Beam], Hashable]) -> list[list[int]]:
+    """Beams of one layout together, in the order of their first; few are not worth it and stand alone, like others."""
+    together: dict[Hashable, list[int]] = {}
+    for i in which:
+        shared = layout(beams[i])
+        together.setdefault(("alone", i) if shared is None else shared, []).append(i)
+    groups = [[each] for group in together.values() if len(group) < LEAST for each in group]
+    return sorted(groups + [group for group in together.values() if len(group) >= LEAST])
+
+
+def _stacks(
+    groups: list[list[int]],
+    beams: Sequence[Beam],
+    n_modes: int,
+    model: Stacking,
+    made: dict[int, tuple[FactoredPencil, float]],
+) -> dict[int, Array]:
+    """The lowest values, (n_modes,) each, of the beams that settled in a stack, by index."""
+    found: dict[int, Array] = {}
+    wanted = n_modes + beside(n_modes)
+    for group in groups:
+        pencil = made[group[0]][0]
+        small = pencil.n <= DENSE_UNKNOWNS and 3 * (pencil.rigid_modes + wanted) <= 2 * pencil.n
+        if len(group) < LEAST or not small:
+            continue
+        _keep_memory()
+        start = np.hstack([pencil.rigid, lowest(pencil, wanted).vectors])
+        for n_inverted in INVERTED:
+            for part in _parts([i for i in group if i not in found], start.size):
+                stack = model.stack([beams[i] for i in part])
+                values, settled = lowest_of_each(stack, n_modes, start, n_inverted)
+                found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
+    return found
+
+
+def _keep_memory() -> None:
+    """Show glibc a block of 31 MB, freed untouched, so that it keeps as much of what is freed for who asks next.
+
+    It would give every array of a stack back to the system and ask for another, which is a quarter of a stack's time.
+    """
+    np.empty(31 * 2**20, dtype=np.uint8)
+
+
+def _parts(group: list[int], each: int) -> list[list[int]]:
+    """A group in equal parts of `TOGETHER` and `MOST_IN_STACK` at most, a beam having `each`; none of a small one."""
+    if len(group) < LEAST:
+        return []
+    most = min(TOGETHER, max(MOST_IN_STACK // each, LEAST))
+    size = ceil(len(group) / ceil(len(group) / most))
+    return [group[first : first + size] for first in range(0, len(group), size)]
 
 
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:
     """For every beam the first that has its pencil: itself, unless it is plain and differs from one by its scale."""
     first: dict[object, int] = {}
-    plain = [theory == "euler-bernoulli" and beam.uniform and not beam.section for beam in beams]
+    plain = [theory == "euler-bernoulli" and not beam.section and beam.uniform for beam in beams]
     keys = (beam.supports if alike else i for i, (beam, alike) in enumerate(zip(beams, plain, strict=True)))
     return [first.setdefault(key, i) for i, key in enumerate(keys)]
-
-
-def _values(pencils: Sequence[FactoredPencil], n_modes: int) -> list[Array]:
-    """The lowest elastic eigenvalues of every pencil, (n_modes,) each, those of one size together."""
-    found: list[Array] = [np.empty(0)] * len(pencils)
-    together: dict[tuple[int, int, int], list[int]] = {}
-    for i, pencil in enumerate(pencils):
-        if pencil.n <= DENSE_UNKNOWNS and not pencil.uneven:
-            together.setdefault((pencil.n, len(pencil.stiffness), pencil.rigid_modes), []).append(i)
-        else:
-            found[i] = lowest(pencil, n_modes).values
-    for group in together.values():
-        for start in range(0, len(group), STACK):
-            part = group[start : start + STACK]
-            for i, values in zip(part, _stacked([pencils[i] for i in part], n_modes), strict=True):
-                found[i] = values
-    return found
-
-
-def _stacked(pencils: Sequence[FactoredPencil], n_modes: int) -> Array:
-    """The same of dense pencils of one size, (n_pencils, n_modes), by LAPACK on a stack of them as `eigen.lowest` does.
-
-    Every value is read from its own factored quotient.
-    """
-    one = np.eye(pencils[0].n)
-    strains = np.array([pencil.strain(one) for pencil in pencils])
-    stiffness = np.array([pencil.stiffness for pencil in pencils])
-    lower = np.linalg.cholesky(np.array([pencil.mass_matrix() for pencil in pencils]))
-    half = np.linalg.solve(lower, np.swapaxes(strains, 1, 2) @ (stiffness[:, :, None] * strains))
-    _, vectors = np.linalg.eigh(np.linalg.solve(lower, np.swapaxes(half, 1, 2)))
-    first = pencils[0].rigid_modes
-    wanted = np.linalg.solve(np.swapaxes(lower, 1, 2), vectors[:, :, first : first + n_modes])
-    found = [factored_quotient(pencil, own)[0] for pencil, own in zip(pencils, wanted, strict=True)]
-    return np.sort(np.array(found), axis=1)

@@ -15,6 +15,7 @@ from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import (
     FIELD,
     HarmonicSweep,
+    Stacking,
     swept_frequencies,
     swept_modes,
     swept_response,
@@ -32,6 +33,7 @@ from verify.segments.linear import (
     swept_shapes,
 )
 from verify.segments.links import Chain, build_chain, chain_pencil
+from verify.segments.stacks import chain_stack, layout
 
 
 @as_typed
@@ -106,8 +108,9 @@ def sweep_modes(
 ) -> Array:
     """Frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
 
-    Beams that differ by their scale alone share one solve; others are taken by LAPACK as one stack. Raises InputError
-    as `solve_modes` does, naming the beam by its index.
+    Beams that differ by their scale alone share one solve; those that have as many sections, masses and springs as
+    others are solved together, the rest one by one. Raises InputError as `solve_modes` does, naming the beam by its
+    index.
     """
     beams = several("beams", beams, Beam)
     check_whole("n_modes", n_modes, 1)
@@ -118,4 +121,6 @@ def sweep_modes(
         chain = build_chain(beam, n_segments, **settings)
         return chain_pencil(chain), chain.unit
 
-    return swept_modes(beams, n_modes, theory, make)
+    alike = partial(layout, **settings)
+    stack = partial(chain_stack, n_segments=n_segments, settings=settings)
+    return swept_modes(beams, n_modes, theory, Stacking(make=make, layout=alike, stack=stack))

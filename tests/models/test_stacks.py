@@ -1,0 +1,352 @@
+"""Beams solved side by side have the values that each has alone, or are left to be solved alone: none on trust."""
+
+from time import process_time
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec.structs import replace
+
+from verify import Beam, InputError, PointMass, PointSpring, Section, fem_beam, segment_model
+from verify.elements import stacks as of_elements
+from verify.elements.mesh import build_elements
+from verify.elements.pencil import element_pencil
+from verify.models import band_stack, sweeps
+from verify.models.eigen import lowest
+from verify.models.stacks import grounded, judged, lowest_of_each
+from verify.options import SUPPORTS
+from verify.segments import stacks as of_segments
+from verify.segments.links import build_chain, chain_pencil
+
+L, EI, LINE = 0.73, 3.7, 0.31
+MODELS = {"segment": segment_model, "fem": fem_beam}
+CHAIN = {
+    "wall": "gregory",
+    "joints": "series",
+    "grading": 1.0,
+    "theory": "euler-bernoulli",
+    "attachment": "reciprocal",
+}
+HELD = {"pinned": (True, False), "clamped": (True, True), "guided": (False, True), "free": (False, False)}
+
+
+def beam_of(rng, supports, n_sections=0, n_masses=0, n_springs=0, **more):
+    """A beam of one layout, all its values drawn."""
+    length = L * rng.uniform(0.6, 1.7)
+    shares = rng.uniform(0.3, 1.0, max(n_sections, 1))
+    lengths = [float(share) for share in shares / shares.sum() * length]
+    sections = tuple(
+        Section(
+            length=one,
+            bending_stiffness=EI * float(rng.uniform(0.3, 3.0)),
+            mass_per_length=LINE * float(rng.uniform(0.5, 2.0)),
+        )
+        for one in lengths[: n_sections * bool(n_sections)]
+    )
+    masses = tuple(
+        PointMass(position=float(rng.uniform(0.07, 0.93) * length), mass=LINE * L * float(rng.uniform(0.05, 2.0)))
+        for _ in range(n_masses)
+    )
+    if masses:
+        masses = (replace(masses[0], rotary_inertia=LINE * L**3 * float(rng.uniform(1e-4, 1e-2))), *masses[1:])
+    springs = tuple(
+        PointSpring(
+            position=float(rng.uniform(0.07, 0.93) * length),
+            stiffness=EI / L**3 * float(rng.uniform(1.0, 300.0)),
+            rotational=EI / L * float(rng.uniform(0.0, 3.0)),
+        )
+        for _ in range(n_springs)
+    )
+    return Beam(
+        length=float(sum(lengths)),
+        bending_stiffness=EI,
+        mass_per_length=LINE,
+        supports=supports,
+        section=sections,
+        mass=masses,
+        spring=springs,
+        **more,
+    )
+
+
+def many(seed, n=9, supports=("clamped", "pinned"), **layout):
+    rng = np.random.default_rng(seed)
+    return [beam_of(rng, supports, **layout) for _ in range(n)]
+
+
+def stacked(model, beams, n_modes, count):
+    """(the beams' stack, what it starts from, the pencil of each)."""
+    if model == "segment":
+        pencils = [chain_pencil(build_chain(beam, count)) for beam in beams]
+        stack = of_segments.chain_stack(beams, count, CHAIN)
+    else:
+        pencils = [element_pencil(build_elements(beam, count)) for beam in beams]
+        stack = of_elements.element_stack(beams, count)
+    start = np.hstack([pencils[0].rigid, lowest(pencils[0], n_modes + 4).vectors])
+    return stack, start, pencils
+
+
+def layouts(draw):
+    return {
+        "supports": draw(st.tuples(st.sampled_from(SUPPORTS), st.sampled_from(SUPPORTS))),
+        "n_sections": draw(st.integers(0, 4)),
+        "n_masses": draw(st.integers(0, 2)),
+        "n_springs": draw(st.integers(0, 2)),
+    }
+
+
+@st.composite
+def batches(draw):
+    """Beams of one layout."""
+    return many(draw(st.integers(0, 2**32 - 1)), **layouts(draw))
+
+
+@settings(max_examples=40, deadline=None)
+@given(batches(), st.integers(1, 9), st.integers(24, 90), st.sampled_from(list(MODELS)))
+def test_any_beams_of_one_layout_have_the_values_of_each(beams, n_modes, count, model):
+    module = MODELS[model]
+    found = module.sweep_modes(beams, n_modes, count)
+    each = np.array([module.solve_modes(beam, n_modes, count).frequencies_hz for beam in beams])
+    assert found == pytest.approx(each, rel=1e-12)
+
+
+@settings(max_examples=15, deadline=None)
+@given(batches(), st.booleans(), st.sampled_from(["lever", "reciprocal"]), st.sampled_from(["half", "five-joint"]))
+def test_any_chains_of_one_layout_take_the_settings_of_each(beams, pulled, attachment, wall):
+    pull = {"tension": 9.0} if pulled else {"foundation": 170.0}
+    beams, chosen = [replace(beam, **pull) for beam in beams], {"attachment": attachment, "wall": wall}
+    found = segment_model.sweep_modes(beams, 4, 37, **chosen)
+    each = [segment_model.solve_modes(beam, 4, 37, **chosen).frequencies_hz for beam in beams]
+    assert found == pytest.approx(np.array(each), rel=1e-12)
+
+
+@pytest.fixture
+def alone(monkeypatch):
+    """The pencils that are solved alone: what a stack starts from, and what has not settled."""
+    found = []
+    plain = sweeps.lowest
+    monkeypatch.setattr(sweeps, "lowest", lambda pencil, n: found.append(pencil) or plain(pencil, n))
+    return found
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("supports", [(a, b) for i, a in enumerate(SUPPORTS) for b in SUPPORTS[i:]])
+@pytest.mark.parametrize(("n_masses", "n_springs"), [(0, 0), (1, 0), (1, 1)])
+def test_stepped_beams_settle_in_their_stack(alone, model, supports, n_masses, n_springs):
+    beams = many(5, 40, supports, n_sections=3, n_masses=n_masses, n_springs=n_springs)
+    MODELS[model].sweep_modes(beams, 5, 49)
+    assert 1 <= len(alone) <= 4
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("supports", [("guided", "pinned"), ("free", "free"), ("clamped", "free")])
+@pytest.mark.parametrize(("n_masses", "n_springs"), [(0, 0), (2, 0), (1, 2)])
+def test_the_matrices_of_a_stack_are_those_of_each_pencil(model, supports, n_masses, n_springs):
+    beams = many(11, 5, supports, n_sections=3, n_masses=n_masses, n_springs=n_springs)
+    stack, _, pencils = stacked(model, beams, 3, 23)
+    vectors = np.random.default_rng(3).standard_normal((pencils[0].n, 2, 5))
+    pairs = ((stack.stiffness, assembled), (stack.mass, lambda pencil: pencil.mass_matrix()))
+    for bands, matrix in pairs:
+        found = band_stack.product(bands, vectors)
+        for i, pencil in enumerate(pencils):
+            wanted = matrix(pencil) @ vectors[..., i]
+            assert found[..., i] == pytest.approx(wanted, rel=0, abs=1e-12 * abs(wanted).max())
+    energies = (stack.springs[:, None] * stack.strain(vectors) ** 2).sum(axis=0)
+    each = [pencil.stiffness @ pencil.strain(vectors[..., i]) ** 2 for i, pencil in enumerate(pencils)]
+    assert energies == pytest.approx(np.array(each).T, rel=1e-12)
+    forces = stack.springs[:, None] * stack.strain(vectors)
+    found = stack.loads(forces)
+    for i, pencil in enumerate(pencils):
+        wanted = assembled(pencil) @ vectors[..., i]
+        assert found[..., i] == pytest.approx(wanted, rel=0, abs=1e-12 * abs(wanted).max())
+    if stack.masses:
+        each = [pencil.masses(vectors[..., i]) for i, pencil in enumerate(pencils)]
+        assert stack.masses(vectors) == pytest.approx(np.array(each).T, rel=1e-12)
+
+
+def assembled(pencil):
+    strain = pencil.strain(np.eye(pencil.n))
+    return strain.T @ (pencil.stiffness[:, None] * strain)
+
+
+def told(stack, pencils, modes, start, top=None):
+    """What `judged` makes of some exact modes, counted from 1, of each beam; `top` between the last and the next."""
+    pairs = [lowest(pencil, max(modes) + 1) for pencil in pencils]
+    vectors = np.array([pair.vectors[:, [mode - 1 for mode in modes]] for pair in pairs])
+    between = [0.5 * (pair.values[max(modes) - 1] + pair.values[max(modes)]) for pair in pairs]
+    top = np.array(between) if top is None else top
+    return judged(stack, grounded(stack, start), np.moveaxis(vectors, 0, -1), top)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("supports", [("clamped", "pinned"), ("free", "free")])
+def test_a_mode_that_was_missed_is_found(model, supports):
+    beams = many(7, 9, supports, n_sections=3, n_masses=1)
+    stack, start, pencils = stacked(model, beams, 4, 31)
+    values, settled = told(stack, pencils, [1, 2, 3, 4], start)
+    assert settled.all()
+    assert values == pytest.approx(np.array([lowest(pencil, 4).values for pencil in pencils]).T, rel=1e-12)
+    for missed in ([2, 3, 4], [1, 3, 4], [1, 2, 4]):
+        assert not told(stack, pencils, missed, start)[1].any()
+    assert not told(stack, pencils, [1, 2, 2], start)[1].any()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_vector_that_is_not_home_does_not_settle(model):
+    beams = many(13, 9, n_sections=2)
+    stack, start, pencils = stacked(model, beams, 3, 31)
+    pairs = [lowest(pencil, 5) for pencil in pencils]
+    vectors = np.moveaxis(np.array([pair.vectors for pair in pairs]), 0, -1)
+    top = np.array([0.5 * (pair.values[2] + pair.values[3]) for pair in pairs])
+    for share, home in ((0.0, True), (1e-5, False)):
+        mixed = vectors[:, :3].copy()
+        mixed[:, 1] += share * vectors[:, 4]
+        assert (judged(stack, grounded(stack, start), mixed, top)[1] == home).all()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_start_that_lacks_a_mode_is_found_out(model):
+    """A mode of which no vector has anything, to rounding, is not seen by any step."""
+    uniform = many(17, 1, ("pinned", "pinned"))[0]
+    stack, start, pencils = stacked(model, [uniform] * 9, 4, 31)
+    values, settled = lowest_of_each(stack, 4, start)
+    assert settled.all()
+    assert values[:, 0] == pytest.approx(lowest(pencils[0], 4).values, rel=1e-12)
+    assert not lowest_of_each(stack, 4, np.delete(start, 1, axis=1))[1].any()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_beam_of_unlike_parts_is_solved_alone(alone, model):
+    """Its K as a matrix has lost what is soft; neither does it keep the others from settling."""
+    thick = Section(length=0.2, bending_stiffness=1e9 * EI, mass_per_length=LINE)
+    beams = many(19, 12, ("free", "clamped"), n_sections=2)
+    beams[3] = replace(beams[3], length=0.7, section=(thick, replace(thick, length=0.5, bending_stiffness=EI)))
+    module = MODELS[model]
+    found = module.sweep_modes(beams, 4, 30)
+    assert len(alone) == 2
+    each = np.array([module.solve_modes(beam, 4, 30).frequencies_hz for beam in beams])
+    assert found == pytest.approx(each, rel=1e-12)
+
+
+def in_fifty_digits(chain, near):
+    """The eigenvalue of a clamped-pinned chain next to `near`: its matrices from the links' energies, in 50 digits."""
+    with mp.workdps(50):
+        lengths, masses, inertias, compliances = (
+            [mp.mpf(float(value)) for value in values]
+            for values in (chain.lengths, chain.masses, chain.inertias, chain.compliances)
+        )
+        n = len(lengths)
+        stiffness, mass, turns = mp.zeros(n - 1), mp.zeros(n - 1), mp.zeros(n, n - 1)
+        for link in range(n):
+            for joint, sign in ((link, -1), (link + 1, 1)):
+                if 0 < joint < n:
+                    turns[link, joint - 1] = sign / lengths[link]
+        for link in range(n):
+            middle = lengths[link] * turns[link, :] / 2  # and the joint before it
+            if link > 0:
+                middle[link - 1] += 1
+            mass += masses[link] * (middle.T * middle) + inertias[link] * (turns[link, :].T * turns[link, :])
+        for joint in range(n):
+            angle = turns[joint, :] - (turns[joint - 1, :] if joint else 0 * turns[0, :])
+            stiffness += angle.T * angle / compliances[joint]
+        vector, shift = mp.matrix([mp.mpf(i + 1) for i in range(n - 1)]), mp.mpf(near) * (1 + mp.mpf(10) ** -7)
+        for _ in range(4):
+            vector = mp.lu_solve(stiffness - shift * mass, mass * vector)
+            vector /= mp.norm(vector)
+        return float((vector.T * stiffness * vector)[0] / (vector.T * mass * vector)[0])
+
+
+def test_values_of_strong_steps_are_those_in_fifty_digits():
+    """EI that differs ten-thousandfold, where the matrix of K alone would leave 1e-11."""
+    rng = np.random.default_rng(31)
+    beams = []
+    for beam in many(31, 9, n_sections=2):
+        pieces = (replace(piece, bending_stiffness=EI * float(10.0 ** rng.uniform(-2, 2))) for piece in beam.section)
+        beams.append(replace(beam, section=tuple(pieces)))
+    stack, start, _ = stacked("segment", beams, 2, 31)
+    values, settled = lowest_of_each(stack, 2, start, 3)
+    assert settled.sum() >= 6
+    for i in np.flatnonzero(settled):
+        wanted = in_fifty_digits(build_chain(beams[i], 31), values[0, i])
+        assert values[0, i] == pytest.approx(wanted, rel=1e-13)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_beams_of_several_layouts_come_back_in_their_order(model):
+    kinds = [many(seed, 10, n_sections=2 + seed % 3, n_masses=seed % 2) for seed in range(4)]
+    beams = [beam for row in zip(*kinds, strict=True) for beam in row]
+    beams += [replace(beams[0], supports=("free", "pinned")), replace(beams[1], section=()), beams[0]]
+    module = MODELS[model]
+    each = np.array([module.solve_modes(beam, 3, 27).frequencies_hz for beam in beams])
+    assert module.sweep_modes(beams, 3, 27) == pytest.approx(each, rel=1e-12)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_beam_that_is_refused_among_many_is_named_by_its_index(model):
+    module, beams = MODELS[model], many(23, 12, n_sections=3)
+    with pytest.raises(InputError, match=r"^beams\[0\]: n_modes = 90"):
+        module.sweep_modes(beams, 90, 40)
+    lengths = [beams[5].length / 50] * 50
+    beams[5] = replace(beams[5], section=tuple(Section(length=n, bending_stiffness=EI) for n in lengths))
+    beams[8] = replace(beams[8], tension=-1e6)
+    with pytest.raises(InputError, match=r"^beams\[5\]: count = 40"):
+        module.sweep_modes(beams, 3, 40)
+    beams[5] = beams[0]
+    with pytest.raises(InputError, match=r"^beams\[8\]: .*tension"):
+        module.sweep_modes(beams, 3, 40)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(1, 12), st.integers(1, 4), st.integers(0, 2**32 - 1))
+def test_bands_are_their_matrices(n, width, seed):
+    """Products, solutions and counts, of three pencils at once."""
+    rng = np.random.default_rng(seed)
+    shapes = rng.standard_normal((3, n, n)) + 0.0
+    near = abs(np.subtract.outer(np.arange(n), np.arange(n))) < width
+    stiffness, mass = (near * (one + np.swapaxes(one, 1, 2)) for one in (shapes, 0.1 * shapes[::-1]))
+    mass = mass + np.eye(n) * (1.0 + abs(mass).sum(axis=2).max())
+    bands, weights = of_matrices(stiffness, width), of_matrices(mass, width)
+    vectors, shift = rng.standard_normal((n, 2, 3)), rng.standard_normal(3)
+    wanted = np.einsum("cij,jkc->ikc", stiffness, vectors)
+    assert band_stack.product(bands, vectors) == pytest.approx(wanted, abs=1e-12)
+    whole = mass + 0.1 * stiffness
+    found = band_stack.solution(*band_stack.triangles(of_matrices(whole, width), weights, 0.0 * shift[None]), vectors)
+    definite = np.linalg.eigvalsh(whole)[:, 0] > 1e-3
+    back = np.einsum("cij,jkc->ikc", whole, found)
+    assert back[..., definite] == pytest.approx(vectors[..., definite], abs=1e-7)
+    count, grown = band_stack.count_below(bands, weights, shift)
+    lower = np.linalg.inv(np.linalg.cholesky(mass))
+    values = np.linalg.eigvalsh(lower @ stiffness @ np.swapaxes(lower, 1, 2))
+    sure = abs(values - shift[:, None]).min(axis=1) > 1e-13 * grown.max(axis=0)
+    assert (grown >= abs((bands - shift * weights)[:, 0]) - 1e-12 * grown).all()
+    assert (count[sure] == (values < shift[:, None]).sum(axis=1)[sure]).all()
+
+
+def of_matrices(matrices, width):
+    """Matrices (c, n, n) as bands."""
+    bands = np.zeros((matrices.shape[1], width, len(matrices)))
+    for above in range(min(width, len(bands))):
+        bands[: len(bands) - above, above] = np.diagonal(matrices, above, 1, 2).T
+    return bands
+
+
+def seconds(job):
+    start = process_time()
+    job()
+    return process_time() - start
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("n_masses", [0, 1])
+def test_many_stepped_beams_take_a_fraction_of_a_loops_time(model, n_masses):
+    """Ten times faster where nothing else runs; four is asked for. Bodies: more."""
+    module, beams = MODELS[model], many(29, 160, ("clamped", "free"), n_sections=3, n_masses=n_masses)
+    some, ratios = beams[:40], []
+    module.sweep_modes(beams, 5, 49)
+    for _ in range(4):
+        loop = seconds(lambda: [module.solve_modes(beam, 5, 49).frequencies_hz for beam in some]) / len(some)
+        ratios.append((loop, seconds(lambda: module.sweep_modes(beams, 5, 49)) / len(beams)))
+    loops, swept = zip(*ratios, strict=True)
+    assert min(loops) > 4.0 * min(swept)

@@ -1,0 +1,280 @@
+"""Chains of many beams of one layout as one stack of pencils: what `chain_pencil` has of each, the beam's axis last."""
+
+from collections.abc import Hashable, Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from verify.beam import Beam
+from verify.models.arrays import Array, Indices
+from verify.models.band_stack import of_unknowns
+from verify.models.division import divide_each
+from verify.models.stacks import PencilStack
+from verify.segments.attached import rows_at
+from verify.segments.links import Body, build_chain, joint_compliance, link_inertia
+from verify.segments.walls import wall_factors
+
+_FIGURES = ("mass", "rotary_inertia", "stiffness", "rotational")
+
+
+class Chains(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Chains of N links of n_beams beams on the same supports, in the units of each (`Chain`)."""
+
+    free: Indices
+    """Joints that the supports leave free, (n,)."""
+    lengths: Array
+    """(N, n_beams)."""
+    joints: Array
+    """(N + 1, n_beams), k of the joints, zero where an end has none."""
+    masses: Array
+    """(N, n_beams)."""
+    inertias: Array
+    """(N, n_beams)."""
+    ground: Array | None = None
+    """(N, n_beams), what resists the links' middles, None where nothing does."""
+    twist: Array | None = None
+    """(N, n_beams), what resists their turns, likewise."""
+    felt: Array | None = None
+    """(bodies, N + 1, n_beams), weights of the joints' positions for bodies and springs, None where there are none."""
+    turned: Array | None = None
+    """(bodies, N, n_beams), of the links' turns."""
+    bodies: Array | None = None
+    """(4, bodies, n_beams), mass, rotary inertia, stiffness and rotational stiffness."""
+
+
+def layout(beam: Beam, wall: str, joints: str, grading: float, theory: str, attachment: str) -> Hashable:
+    """What beams have in common that one stack takes, and whose refusals are the same; None for one to be taken alone.
+
+    Alone are chains that slip or are graded, printed and welded ones, what is compressed and may buckle, and rotary
+    inertias at an end, which turn beyond its joint.
+    """
+    if theory != "euler-bernoulli" or wall == "welded" or joints == "printed" or grading != 1.0:
+        return None
+    if not (beam.mass or beam.spring or beam.tension or beam.foundation):
+        return (beam.supports, len(beam.section))
+    if beam.tension and (beam.tension < 0.0 or joints == "tensioned"):
+        return None
+    if any(mass.rotary_inertia and mass.position in (0.0, beam.length) for mass in beam.mass):
+        return None
+    loads = (len(beam.mass) + len(beam.spring), beam.tension > 0.0, beam.foundation > 0.0)
+    return (beam.supports, len(beam.section), *loads, beam.rigid_motions)
+
+
+def chain_stack(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) -> PencilStack:
+    """The pencils of beams of one `layout`."""
+    first = beams[0]
+    loaded = first.mass or first.spring or first.tension or first.foundation
+    chains = _loaded(beams, n_segments, settings) if loaded else _plain(beams, n_segments, settings["wall"])
+    springs = [chains.joints, *_present(chains.ground, chains.twist)]
+    if chains.bodies is not None:
+        springs += [*chains.bodies[2:]]
+    stiffness, mass = _matrices(chains)
+    return PencilStack(
+        stiffness=stiffness,
+        mass=mass,
+        strain=lambda vectors: _strain(chains, vectors),
+        loads=lambda forces: _loads(chains, forces),
+        springs=np.concatenate(springs),
+        rigid_modes=first.rigid_motions,
+        masses=None if chains.bodies is None else lambda vectors: _weighed(chains, vectors),
+    )
+
+
+def _present(*arrays: Array | None) -> list[Array]:
+    return [array for array in arrays if array is not None]
+
+
+def _free(supports: tuple[str, str], n_segments: int) -> Indices:
+    left, right = (support in ("pinned", "clamped") for support in supports)
+    return np.arange(int(left), n_segments + 1 - right)
+
+
+def _plain(beams: Sequence[Beam], n_segments: int, wall: Any) -> Chains:
+    """Links, joints and walls alone, without a chain for each beam."""
+    supports = beams[0].supports
+    parts = divide_each(beams, n_segments, [beam.pieces for beam in beams])
+    lengths, stiffness = parts.lengths, parts.stiffnesses
+    inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
+    ends = lengths / stiffness
+    factors = wall_factors(supports, n_segments, wall)[:, None]
+    masses = lengths * parts.masses_per_length
+    return Chains(
+        free=_free(supports, n_segments),
+        lengths=lengths,
+        joints=1.0 / (np.concatenate([ends[:1], inner, ends[-1:]]) * factors),
+        masses=masses,
+        inertias=link_inertia(masses, lengths),
+    )
+
+
+def _loaded(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) -> Chains:
+    """The same of chains that carry something, each built by itself."""
+    each = [build_chain(beam, n_segments, **settings) for beam in beams]
+
+    def gathered(field: str) -> Array:
+        return np.array([getattr(chain, field) for chain in each]).T
+
+    lengths, tension, foundation = gathered("lengths"), gathered("tension"), gathered("foundation")
+    ground, twist = foundation * lengths, (tension + foundation * lengths**2 / 12.0) * lengths
+    bodies = [[_figures(body) for body in chain.bodies] for chain in each]
+    rows = [rows_at(chain, [body.position for body in chain.bodies], chain.attachment) for chain in each]
+    there = bool(each[0].bodies)
+    return Chains(
+        free=_free(beams[0].supports, n_segments),
+        lengths=lengths,
+        joints=1.0 / gathered("compliances"),
+        masses=gathered("masses"),
+        inertias=gathered("inertias"),
+        ground=ground if foundation.any() else None,
+        twist=twist if twist.any() else None,
+        felt=_last([felt for felt, _ in rows]) if there else None,
+        turned=_last([turned for _, turned in rows]) if there else None,
+        bodies=np.array(bodies).transpose(2, 1, 0) if there else None,
+    )
+
+
+def _figures(body: Body) -> list[float]:
+    return [getattr(body, figure) for figure in _FIGURES]
+
+
+def _last(arrays: list[Array]) -> Array:
+    """Arrays of each beam as one with the beam's axis last."""
+    return np.ascontiguousarray(np.moveaxis(np.array(arrays), 0, -1))
+
+
+def _matrices(chains: Chains) -> tuple[Array, Array]:
+    """K and M over the free joints as bands."""
+    n = len(chains.joints)
+    felt, tilted = _body_rows(chains)
+    width = 1 + max(2, _reach(felt), _reach(tilted))
+    stiffness, mass = (np.zeros((n, width, chains.joints.shape[1])) for _ in range(2))
+    _add_angles(chains, stiffness)
+    _add_links(chains, mass, chains.masses, chains.inertias)
+    if chains.ground is not None or chains.twist is not None:
+        none = np.zeros_like(chains.lengths)
+        ground, twist = (none if one is None else one for one in (chains.ground, chains.twist))
+        _add_links(chains, stiffness, ground, twist)
+    if chains.bodies is not None:
+        for bands, of_places, of_turns in ((mass, *chains.bodies[:2]), (stiffness, *chains.bodies[2:])):
+            _add_rows(bands, felt, of_places)
+            _add_rows(bands, tilted, of_turns)
+    return of_unknowns(stiffness, chains.free), of_unknowns(mass, chains.free)
+
+
+def _add_angles(chains: Chains, bands: Array) -> None:
+    """Joints that resist the differences of their links' turns."""
+    slopes = _padded(1.0 / chains.lengths)
+    before, at, after, joints = slopes[:-1], -(slopes[:-1] + slopes[1:]), slopes[1:], chains.joints
+    bands[:, 0] += joints * at**2
+    bands[:-1, 0] += (joints * before**2)[1:]
+    bands[1:, 0] += (joints * after**2)[:-1]
+    bands[:-1, 1] += (joints * at * after)[:-1] + (joints * before * at)[1:]
+    bands[:-2, 2] += (joints * before * after)[1:-1]
+
+
+def _add_links(chains: Chains, bands: Array, of_middles: Array, of_turns: Array) -> None:
+    """What acts on the middles and on the turns of the links (`links.joint_masses`)."""
+    spin = of_turns / chains.lengths**2
+    own = of_middles / 4.0 + spin
+    bands[:-1, 0] += own
+    bands[1:, 0] += own
+    bands[:-1, 1] += of_middles / 4.0 - spin
+
+
+def _add_rows(bands: Array, rows: Array, weights: Array) -> None:
+    """Weights (bodies, n_beams) times the squares of rows (bodies, N + 1, n_beams)."""
+    n = len(bands)
+    for row, weight in zip(rows, weights, strict=True):
+        if weight.any():
+            for above in range(bands.shape[1]):
+                bands[: n - above, above] += weight * row[: n - above] * row[above:]
+
+
+def _body_rows(chains: Chains) -> tuple[Array, Array]:
+    """What bodies feel of the joints' positions and of the turns there, over the joints, (bodies, N + 1, n_beams)."""
+    if chains.felt is None or chains.turned is None:
+        return (np.zeros((0, *chains.joints.shape)),) * 2
+    by_slope = chains.turned / chains.lengths
+    padded = np.zeros((len(by_slope), len(chains.joints) + 1, by_slope.shape[2]))
+    padded[:, 1:-1] = by_slope
+    return chains.felt, padded[:, :-1] - padded[:, 1:]
+
+
+def _reach(rows: Array) -> int:
+    """How far apart joints are that one row holds, at most."""
+    there = rows != 0.0
+    if not there.any():
+        return 0
+    n = rows.shape[1]
+    first, last = there.argmax(axis=1), n - 1 - there[:, ::-1].argmax(axis=1)
+    return int((last - first)[there.any(axis=1)].max())
+
+
+def _padded(values: Array) -> Array:
+    """Values (N, ...) with a row of zeros before and after."""
+    padded = np.zeros((len(values) + 2, *values.shape[1:]))
+    padded[1:-1] = values
+    return padded
+
+
+def _positions(chains: Chains, vectors: Array) -> Array:
+    """Of joints 0..N, (N + 1, k, n_beams): zeros at held ends."""
+    found = np.zeros((len(chains.joints), *vectors.shape[1:]))
+    found[chains.free[0] : chains.free[-1] + 1] = vectors
+    return found
+
+
+def _strain(chains: Chains, vectors: Array) -> Array:
+    """Everything that costs energy, (m, k, n_beams), by differences of differences."""
+    places = _positions(chains, vectors)
+    turns = np.diff(places, axis=0) / chains.lengths[:, None]
+    found = [np.diff(_padded(turns), axis=0)]
+    if chains.ground is not None:
+        found.append(0.5 * (places[1:] + places[:-1]))
+    if chains.twist is not None:
+        found.append(turns)
+    if chains.bodies is not None:
+        found += _felt(chains, places, turns)
+    return np.concatenate(found)
+
+
+def _loads(chains: Chains, forces: Array) -> Array:
+    """What forces (m, k, n_beams) in the strains are on the free joints, (n, k, n_beams)."""
+    n = len(chains.joints)
+    turning, forces = forces[: n - 1] - forces[1:n], forces[n:]
+    found = np.zeros((n, *forces.shape[1:]))
+    if chains.ground is not None:
+        halves, forces = 0.5 * forces[: n - 1], forces[n - 1 :]
+        found[1:] += halves
+        found[:-1] += halves
+    if chains.twist is not None:
+        turning, forces = turning + forces[: n - 1], forces[n - 1 :]
+    if chains.felt is not None and chains.turned is not None:
+        of_places, of_turns = np.split(forces, 2)
+        found += np.einsum("bin,bkn->ikn", chains.felt, of_places)
+        turning = turning + np.einsum("bin,bkn->ikn", chains.turned, of_turns)
+    shares = turning / chains.lengths[:, None]
+    found[1:] += shares
+    found[:-1] -= shares
+    return found[chains.free[0] : chains.free[-1] + 1]
+
+
+def _felt(chains: Chains, places: Array, turns: Array) -> tuple[Array, Array]:
+    """Deflections and turns of bodies, (bodies, k, n_beams) both."""
+    assert chains.felt is not None
+    assert chains.turned is not None
+    pairs = ((chains.felt, places), (chains.turned, turns))
+    felt, turned = (np.einsum("bin,ikn->bkn", weights, values) for weights, values in pairs)
+    return felt, turned
+
+
+def _weighed(chains: Chains, vectors: Array) -> Array:
+    """V^T M v by the turns themselves, (k, n_beams) (`loaded`)."""
+    places = _positions(chains, vectors)
+    turns, middles = np.diff(places, axis=0) / chains.lengths[:, None], 0.5 * (places[1:] + places[:-1])
+    felt, turned = _felt(chains, places, turns)
+    assert chains.bodies is not None
+    moving = [chains.masses, chains.inertias, *chains.bodies[:2]]
+    motions = [middles, turns, felt, turned]
+    return np.asarray(sum(np.einsum("in,ikn->kn", one, motion**2) for one, motion in zip(moving, motions, strict=True)))
