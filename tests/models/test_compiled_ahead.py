@@ -95,3 +95,21 @@ os.fork = lambda: (lambda child: os._exit(9) if child == 0 else child)(fork())
 """
     found, _ = told(tmp_path, 2, killed + RUN)
     assert sum(name.endswith("slide_on_belt") for name in found["kernels"]) == 2
+
+
+def test_a_helper_compiles_what_calls_the_kernel_that_was_begun_when_it_began(tmp_path):
+    """`energies` calls what the run is at: numba holds that for begun at the fork, in the helper as well."""
+    code = """
+from verify.chain import kernels as chain, warm as links
+planned = [*links.placed(), *links.energies()]
+with ahead.compiled_ahead(lambda: planned):
+    for kernel, given in planned:
+        kernel.compile(tuple(kernel.typeof_pyval(value) for value in given))
+    mine = {one.kernel for one in compiling.compiled}
+helped = {one.kernel for one in compiling.compiled} - mine
+print(json.dumps({"helped": sorted(helped), "mine": sorted(mine)}))
+"""
+    found, began = told(tmp_path, 2, code)
+    assert len(began) == 1
+    assert "chain.recursion_kernels.hub_motion" in found["mine"]
+    assert "chain.kernels.energies" in found["helped"]

@@ -4,13 +4,13 @@ Gates, claims and studies say it themselves. Where only a size will tell whether
 named; one too many is ended with the run, and one that is left out is compiled when it is asked for.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from verify.errors import InputError
 from verify.models.compiling import Call
-from verify.run.asks import asks_of
+from verify.run.asks import Ask, asks_of
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -18,7 +18,22 @@ if TYPE_CHECKING:
 
 def kernels_asked(scene: "Scene") -> Iterator[Call]:
     """In order of need; one that several ask for comes again."""
-    for ask in asks_of(scene):
-        if not ask.problem:
+    asks = asks_of(scene)
+    for number in in_order_of_kernels(asks):
+        if not asks[number].problem:
             with suppress(InputError):
-                yield from ask.kernels()
+                yield from asks[number].kernels()
+
+
+def in_order_of_kernels(asks: Sequence[Ask]) -> list[int]:
+    """Numbers of the asks: gates first, of those that need fewest kernels; helpers compile from the other end."""
+    return sorted(range(len(asks)), key=lambda number: (asks[number].kind != "gate", _n_kernels(asks[number])))
+
+
+def _n_kernels(ask: Ask) -> int:
+    """How many it needs of those that gates share among them: a study, which comes last, is not counted."""
+    if ask.kind != "gate":
+        return 0
+    with suppress(InputError):
+        return len({kernel for kernel, _ in ask.kernels()})
+    return 0

@@ -1,7 +1,5 @@
 """A scene run: whatever it asks for is evaluated once, and nothing else."""
 
-from collections.abc import Sequence
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -13,9 +11,9 @@ from verify.errors import InputError
 from verify.judge.workbench import Solve, Workbench
 from verify.models.ahead import compiled_ahead
 from verify.run.applies import applicable, not_applicable
-from verify.run.asks import Ask, asks_of
+from verify.run.asks import asks_of
 from verify.run.gates import GateResult, judge, set_aside
-from verify.run.kernels_asked import kernels_asked
+from verify.run.kernels_asked import in_order_of_kernels, kernels_asked
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.kind import Progress, Study
@@ -92,17 +90,6 @@ def run_scene(
         seconds=perf_counter() - start,
         others=bench.others,
     )
-
-
-def in_order_of_kernels(asks: Sequence[Ask]) -> list[int]:
-    """Numbers of the asks, those first that need fewest kernels: others are compiled by helpers meanwhile."""
-    return sorted(range(len(asks)), key=lambda number: _n_kernels(asks[number]))
-
-
-def _n_kernels(ask: Ask) -> int:
-    with suppress(InputError):
-        return len({kernel for kernel, _ in ask.kernels()})
-    return 0
 
 
 def _done(
