@@ -27,8 +27,9 @@ from verify.patience import check_work
 
 _LANCZOS = 1e-10
 """Where Lanczos stops: the error of a vector enters the quotient squared."""
-_UNLIKE = 1e5
-"""Of K_ii / M_ii: between parts so unlike, graded or stepped, assembling drowns what is soft."""
+_UNLIKE = 1e4
+"""Of K_ii / M_ii, or of K_ii: between parts so unlike, graded or stepped, assembling drowns what is soft. Below, values
+of random steps were off by 2e-12 at most, at ten times as much by 4e-10."""
 _WHOLE = 32
 """Rows up to which a triangle is inverted at once."""
 _BYTES_PER_UNKNOWN = 2000
@@ -144,9 +145,8 @@ def has_unlike_parts(pencil: FactoredPencil) -> bool:
 
 
 def _is_unlike(stiffness: Array, mass: Array) -> bool:
-    """Whether the parts' own frequencies, by K_ii (n,) and M, lie so far apart that K has lost those of the soft."""
-    squares = stiffness / mass.diagonal()
-    return bool(squares.max() > _UNLIKE * squares.min())
+    """Whether the parts' own frequencies, by K_ii (n,) and M, or they lie so far apart that K has lost the soft."""
+    return any(bool(size.max() > _UNLIKE * size.min()) for size in (stiffness / mass.diagonal(), stiffness))
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int, root: Array, mass: Array) -> Array:
