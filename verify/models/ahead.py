@@ -134,14 +134,12 @@ class _Crew:
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
             from ctypes import CDLL
 
-            from verify.models.kernels import begin_anew
-
             CDLL(None).prctl(END_WITH_PARENT, signal.SIGTERM)
             if os.getppid() != self.owner:
                 os._exit(0)
             gc.disable()
             compiling.hearers.clear()
-            begin_anew()
+            compiling.begin_anew()
             for index in order:
                 if not self._claimed(index):
                     continue

@@ -112,7 +112,7 @@ _all: list[Any] = []
 """Kernels and parts."""
 
 
-def begin_anew() -> None:
+def _begin_anew() -> None:
     """In a process that was forked while something was compiled: it is not compiled here.
 
     Numba would take a call of it for recursion, which it refuses.
@@ -120,6 +120,9 @@ def begin_anew() -> None:
     for one in _all:
         if hasattr(one, "_compiling_counter"):
             one._compiling_counter.counter = 0
+
+
+compiling.begin_anew = _begin_anew
 
 
 def _refuse(*given: Any, **more: Any) -> NoReturn:
