@@ -31,7 +31,7 @@ def in_order_of_kernels(asks: Sequence[Ask]) -> list[int]:
 
 
 def _n_kernels(ask: Ask) -> int:
-    """How many it needs of those that gates share among them: a study, which comes last, is not counted."""
+    """How many it needs; of studies and claims, which come last as they stand, it is not asked."""
     if ask.kind != "gate":
         return 0
     with suppress(InputError):

@@ -68,11 +68,11 @@ def run_scene(
     asked_scene = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
     start = perf_counter()
     aside = not_applicable(asked_scene, overrides)
-    asks = applicable(asked_scene, overrides)
-    bench = workbench_for(asks)
+    applying = applicable(asked_scene, overrides)
+    bench = workbench_for(applying)
     gates: dict[int, GateResult] = {}
     found: dict[str, Found] = {}
-    with compiled_ahead(partial(kernels_asked, asks)):
+    with compiled_ahead(partial(kernels_asked, applying)):
         for number in in_order_of_kernels(asks_of(asked_scene, gates_only=True)):
             gate = asked_scene.gate[number]
             progress(f"gate {gate.id}")
