@@ -1,5 +1,6 @@
 """The command line. Every command imports what it needs when it runs, and nothing before."""
 
+import atexit
 import os
 import sys
 from contextlib import suppress
@@ -187,7 +188,31 @@ def main() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    sys.exit(status_of())
+    _end(status_of())
+
+
+def _end(status: int) -> NoReturn:
+    """End at once, after whatever asked to be done at the end.
+
+    To take an interpreter down object by object takes a tenth of a second, two where kernels were compiled, and changes
+    nothing. Whoever traces or profiles the run gets the long way, to write down what was seen.
+    """
+    if _is_watched():
+        sys.exit(status)
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except (OSError, ValueError):
+            _hush(stream)
+    os._exit(status)
+
+
+def _is_watched() -> bool:
+    """Whether a tracer, a profiler or, from Python 3.12 on, a monitor looks at this process."""
+    monitoring = getattr(sys, "monitoring", None)
+    tools = () if monitoring is None else map(monitoring.get_tool, range(6))
+    return bool(sys.gettrace() or sys.getprofile() or any(tools))
 
 
 def _end_tidily() -> None:

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -114,3 +115,89 @@ print(json.dumps({"helped": sorted(helped), "mine": sorted(mine)}))
     assert len(began) == 1
     assert "chain.recursion_kernels.hub_motion" in found["mine"]
     assert "chain.kernels.energies" in found["helped"]
+
+
+FIRST = """
+import signal
+from verify.chain import warm as links
+belts, chain = [*warm.on_belt("tanh"), *warm.on_belt("coulomb")], [*links.stretching()]
+planned = [*belts, *chain]
+def compile_(calls):
+    for kernel, given in calls:
+        kernel.compile(tuple(kernel.typeof_pyval(value) for value in given))
+def needed(one):
+    return {"belts": belts, "chain": chain, "one": belts[:1], "other": belts[1:], "none": []}[one]
+reading, writing = os.pipe()
+def begin_and_stop(crew, pipe):
+    assert crew._claimed(1)
+    os.write(writing, b"!")
+    signal.pause()
+ahead._Crew._help = begin_and_stop
+"""
+
+
+def test_what_waits_for_others_comes_after_what_needs_nothing_and_what_is_there(tmp_path):
+    """The helper has begun the other belt, and is not done."""
+    code = """
+with ahead.compiled_ahead(lambda: planned) as first:
+    order = [first.first_ready(["one", "none"], needed)]  # nothing is missing yet: as they stand
+    compile_(belts[:1])
+    os.read(reading, 1)
+    states = [first._state(i) for i in range(len(first.calls))]
+    order += [first.first_ready(["belts", "chain", name], needed) for name in ("none", "one")]
+    order.append(first.first_ready(["belts", "chain"], needed))
+print(json.dumps({"order": order, "states": states}))
+"""
+    found, _ = told(tmp_path, 2, FIRST + code)
+    assert found["order"] == ["one", "none", "one", "chain"]
+    ready, free, begun = 0, 1, 2
+    assert found["states"] == [ready, begun, *[free] * (len(found["states"]) - 2)]
+
+
+def test_while_others_compile_what_all_wait_for_the_run_compiles_what_nobody_has_begun(tmp_path):
+    code = """
+with ahead.compiled_ahead(lambda: planned) as first:
+    compile_(belts[:1])
+    os.read(reading, 1)
+    chosen = first.first_ready(["belts", "other"], needed)
+    states = [first._state(i) for i in range(len(first.calls))]
+print(json.dumps({"chosen": chosen, "states": states}))
+"""
+    found, _ = told(tmp_path, 2, FIRST + code)
+    assert found["chosen"] == "belts"
+    assert len(found["states"]) > 3
+    assert found["states"] == [0, 2, *[0] * (len(found["states"]) - 2)]
+
+
+def test_helpers_begin_with_the_longest_and_leave_what_the_run_is_about_to_ask_for_to_the_end():
+    from verify.chain import warm as links
+    from verify.models import ahead
+    from verify.motion import warm
+
+    belts, chain = [*warm.on_belt("tanh"), *warm.on_belt("coulomb")], [*links.stretching()]
+    crew = ahead._Crew(lambda: [*belts, *chain], 0)
+    assert crew.first_ready([5], lambda _: belts) == 5
+    crew.absent(*crew_typed(chain[0]))
+    order = crew._longest_first()
+    assert order[0] == 1  # a belt is the longest; of its two laws the last that is planned
+    assert order[-1] == 0  # which shares its parts
+    lengths = [ahead._length(crew.calls[index][0]) for index in order[1:-1]]
+    assert all(after < before * ahead.ALIKE for before, after in pairwise(lengths))
+    assert crew._choice(order) == order[1]
+    assert crew._choice([1, 0]) == 0
+
+
+def crew_typed(call):
+    from verify.models import ahead
+
+    return ahead._typed(call)
+
+
+def test_the_length_of_a_kernel_counts_each_of_its_parts_once():
+    from verify.chain import kernels, recursion_kernels
+    from verify.models import ahead
+
+    inner = {one.__name__ for one in ahead._with_parts(kernels.march.py_func, {})}
+    assert {"march", "accelerate", "hub_motion"} <= inner
+    alone = len(recursion_kernels.hub_motion.py_func.__code__.co_code)
+    assert ahead._length(recursion_kernels.hub_motion) == alone < ahead._length(kernels.march) / 20

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from msgspec.structs import replace
 
+from verify.run.asks import Ask, studies_in_turn
+from verify.run.kernels_asked import ready_first
 from verify.run.runner import run_scene
 from verify.scenes.scene import load_scene, packaged_scenes
 
@@ -100,7 +102,8 @@ def test_a_scene_plans_what_it_runs(scene):
     assert names(planned) == names(ran)
 
 
-def test_gates_that_need_fewest_kernels_run_first_and_stand_where_the_scene_has_them():
+def test_gates_that_need_fewest_kernels_run_first_and_stand_where_the_scene_has_them(monkeypatch):
+    monkeypatch.setenv("VERIFY_JOBS", "1")  # nobody compiles ahead
     scene, heard = load_scene("paper-slider"), []
     found = run_scene(replace(scene, claim=(), readings=None), heard.append)
     assert [gate.id for gate in found.gates] == [gate.id for gate in scene.gate]
@@ -111,3 +114,58 @@ def test_gates_that_need_fewest_kernels_run_first_and_stand_where_the_scene_has_
     assert [gate.id for gate in found.gates].index("chain-slider") < [gate.id for gate in found.gates].index(
         "beam-segments"
     )
+
+
+class Slow:
+    """Others compile what some asks need; one ends whenever all that are left wait."""
+
+    def __init__(self, begun):
+        self.begun, self.seen = begun, []
+
+    def first_ready(self, waiting, needed):
+        self.seen.append(list(waiting))
+        ready = [one for one in waiting if not set(needed(one)) & set(self.begun)]
+        if not ready:
+            self.begun.pop(0)
+            return self.first_ready(waiting, needed)
+        return ready[0]
+
+
+def test_what_waits_for_a_kernel_comes_later_and_studies_keep_their_order():
+    def ask(kind, name, *kernels):
+        return Ask(kind=kind, name=name, kernels=lambda: [(kernel, ()) for kernel in kernels])
+
+    asks = [
+        ask("gate", "both", "march", "slide"),
+        ask("gate", "slides", "slide"),
+        ask("gate", "free"),
+        ask("study", "motion", "slide"),
+        ask("study", "wave"),
+    ]
+    ahead = Slow([("slide", ()), ("march", ())])
+    order = [asks[number].name for number in ready_first(asks, ahead)]
+    assert order == ["free", "slides", "motion", "wave", "both"]
+    assert all(4 not in waiting or 3 not in waiting for waiting in ahead.seen)
+    assert [asks[number].name for number in ready_first(asks, Slow([]))] == ["free", "slides", "both", "motion", "wave"]
+
+
+def test_a_study_of_claims_names_the_kernels_of_claims_that_stand_alone():
+    """Those about the run of its slider's study run nothing more."""
+    scene = load_scene("paper-slider")
+    assert not list(of_claims(scene).kernels())
+    elsewhere = replace(scene.claim[0], arguments={"count": 24, "model": "segment"})
+    assert {kernel.__name__ for kernel, _ in of_claims(replace(scene, claim=(elsewhere,))).kernels()} == {
+        "look",
+        "slide",
+    }
+
+
+def of_claims(scene):
+    return next(ask for ask in studies_in_turn(scene) if ask.name == "claims")
+
+
+def test_solves_are_told_in_an_order_of_their_own():
+    found = run_scene("thick-bar").solves
+    keys = [(one.model, one.count, repr(one.settings)) for one in found]
+    assert len(keys) > 4
+    assert keys == sorted(keys)

@@ -1,9 +1,10 @@
 """Kernels that a run will ask for, compiled by other processes while it compiles the first of them.
 
-Nothing begins before a kernel is missing, so that a run that finds all of them pays nothing. From then on the run goes
-through what is planned from the front and a helper from the back, until they meet; what comes back stands in numba's
-cache on disk. Who compiles a kernel holds a lock on its byte of a file without a name, which the system gives back
-when a process ends: nobody waits for the dead, and nothing is compiled twice.
+Nothing begins before a kernel is missing, so that a run that finds all of them pays nothing. From then on helpers go
+through what is planned from the longest on; what they compile stands in numba's cache on disk. The run does meanwhile
+what needs no kernel that is missing, then compiles itself what nobody has begun. Who compiles a kernel holds a lock on
+its byte of a file without a name, which the system gives back when a process ends: nobody waits for the dead, and
+nothing is compiled twice. The byte tells what is done.
 """
 
 import gc
@@ -13,7 +14,9 @@ import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from typing import Any, NoReturn
+from functools import cache, partial
+from math import log
+from typing import Any, NoReturn, Protocol
 
 from verify.cores import jobs
 from verify.models import compiling
@@ -27,23 +30,46 @@ MOST = 4
 """Helpers; there are no more kernels than would keep these busy."""
 
 
-@contextmanager
-def compiled_ahead(planned: Callable[[], Iterable[Call]]) -> Iterator[None]:
-    """Where a kernel is missing in the meantime, have other processes compile what is `planned`, in order of need.
+DONE, WANTED = b"1", b"2"
+"""What stands at a kernel that is on disk, and at one that the run is about to ask for."""
+ALIKE = 1.25
+"""Ratio of lengths that say nothing about which of two compilations is the longer."""
+READY, FREE, BEGUN = range(3)
+"""All there; nobody compiles what is missing; somebody else does."""
 
-    What is planned twice is compiled once.
+
+class Ahead(Protocol):
+    """What is known of kernels that are compiled ahead."""
+
+    def first_ready(self, waiting: Sequence[int], needed: Callable[[int], Iterable[Call]]) -> int:
+        """Which of those that wait should be done first, by the kernels that each needs."""
+
+
+class _Alone:
+    """Nobody compiles ahead."""
+
+    def first_ready(self, waiting: Sequence[int], needed: Callable[[int], Iterable[Call]]) -> int:
+        """The first."""
+        return waiting[0]
+
+
+@contextmanager
+def compiled_ahead(planned: Callable[[], Iterable[Call]]) -> Iterator[Ahead]:
+    """Where a kernel is missing in the meantime, have other processes compile what is `planned`.
+
+    What is planned twice is compiled once. What is yielded tells what to do first.
 
     As many as `jobs` says, and none where the system does not fork safely (all but Linux). None is left at the end,
     whatever happens; what they compiled is in `compiling.compiled`. Raises InputError for a wrong number of jobs.
     """
     n = min(jobs() - 1, MOST)
     if n < 1 or sys.platform != "linux" or compiling.absent is not None:
-        yield
+        yield _Alone()
         return
     crew = _Crew(planned, n)
     compiling.absent, compiling.kept = crew.absent, crew.keeping
     try:
-        yield
+        yield crew
     finally:
         compiling.absent, compiling.kept = None, compiling.keep_alone
         crew.end()
@@ -57,6 +83,10 @@ class _Crew:
         self.calls: list[Typed] = []
         self.locks = -1
         """A byte for every call, and one more for who writes."""
+        self.needs: dict[int, tuple[int, ...]] = {}
+        """Numbers of the calls that those who wait need."""
+        self.asking: Callable[[], Iterable[Call]] = tuple
+        """What is needed by what was begun before a kernel was missing."""
         self.helpers: list[tuple[int, int]] = []
         """Process and the reading end of its pipe."""
 
@@ -65,9 +95,9 @@ class _Crew:
         if self.locks < 0:
             if os.getpid() != self.owner or compiling.unkept:
                 return False
-            typed = ((one, tuple(one.typeof_pyval(value) for value in given)) for one, given in self.planned())
-            self.calls = list(dict.fromkeys(typed))  # each once
+            self.calls = list(dict.fromkeys(map(_typed, self.planned())))  # each once
             self.locks = os.memfd_create("kernels")
+            self._want(self._numbers(self.asking()))
         found = [i for i, call in enumerate(self.calls) if call[0] is kernel and call[1] == tuple(types)]
         if not found:
             return False
@@ -81,6 +111,66 @@ class _Crew:
         if not self.helpers and os.getpid() == self.owner:
             self._start()
         return True
+
+    def first_ready(self, waiting: Sequence[int], needed: Callable[[int], Iterable[Call]]) -> int:
+        """The first whose kernels are all there, else whose kernels nobody compiles.
+
+        Where others compile what all of them need, what nobody has begun is compiled meanwhile.
+        """
+        if self.locks < 0:
+            self.asking = partial(needed, waiting[0])
+            return waiting[0]
+        while True:
+            states = [max(map(self._state, self._needs(one, needed)), default=READY) for one in waiting]
+            if min(states) < BEGUN or not self._compiled_one():
+                one = waiting[states.index(min(states))]
+                self._want(self._needs(one, needed))
+                return one
+
+    def _want(self, indices: Iterable[int]) -> None:
+        """Have helpers begin these last: the run itself is about to."""
+        for index in indices:
+            if self._state(index) == FREE:
+                os.pwrite(self.locks, WANTED, index)
+
+    def _needs(self, one: int, needed: Callable[[int], Iterable[Call]]) -> tuple[int, ...]:
+        if one not in self.needs:
+            self.needs[one] = self._numbers(needed(one))
+        return self.needs[one]
+
+    def _numbers(self, calls: Iterable[Call]) -> tuple[int, ...]:
+        """Of these calls."""
+        asked = set(map(_typed, calls))
+        return tuple(i for i, call in enumerate(self.calls) if call in asked)
+
+    def _state(self, index: int) -> int:
+        """Of a kernel."""
+        if os.pread(self.locks, 1, index) == DONE:
+            return READY
+        os.lseek(self.locks, index, os.SEEK_SET)
+        try:
+            os.lockf(self.locks, os.F_TEST, 1)
+        except OSError:
+            return BEGUN
+        return FREE
+
+    def _compiled_one(self) -> bool:
+        """Compile what nobody has begun; whether there was any."""
+        free = [index for index in range(len(self.calls)) if self._state(index) == FREE]
+        return any(self._made(index) for index in free)
+
+    def _made(self, index: int) -> bool:
+        """Compile this, unless somebody else has begun."""
+        if not self._claimed(index):
+            return False
+        kernel, types = self.calls[index]
+        kernel.compile(types)
+        self._done(index)
+        return True
+
+    def _done(self, index: int) -> None:
+        os.pwrite(self.locks, DONE, index)
+        self._give_back(index)
 
     def _claimed(self, index: int) -> bool:
         """Whether nobody else compiles this, from here on."""
@@ -110,24 +200,21 @@ class _Crew:
             self._give_back(len(self.calls))
             for index, call in enumerate(self.calls):
                 if call[0] is kernel and call[1] == tuple(types):
-                    self._give_back(index)
+                    self._done(index)
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     def _start(self) -> None:
         for stream in (sys.stdout, sys.stderr):
             with suppress(OSError, ValueError, AttributeError):
                 stream.flush()
-        count = len(self.calls)
-        for helper in range(min(self.n, count - 1)):
-            first = count - helper * count // self.n
-            order = [*range(first - 1, -1, -1), *range(count - 1, first - 1, -1)]
+        for _ in range(min(self.n, len(self.calls) - 1)):
             reading, writing = os.pipe()
             if (child := os.fork()) == 0:
-                self._help(order, writing)
+                self._help(writing)
             os.close(writing)
             self.helpers.append((child, reading))
 
-    def _help(self, order: Sequence[int], writing: int) -> NoReturn:
+    def _help(self, writing: int) -> NoReturn:
         """In a helper: compile what nobody has begun, and tell at each what it took."""
         try:
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started it ends it
@@ -140,16 +227,26 @@ class _Crew:
             gc.disable()
             compiling.hearers.clear()
             compiling.begin_anew()
-            for index in order:
-                if not self._claimed(index):
-                    continue
+            left = self._longest_first()
+            while left := [index for index in left if self._state(index) == FREE]:
                 compiling.compiled.clear()
-                kernel, types = self.calls[index]
-                kernel.compile(types)
-                self._give_back(index)
-                os.write(writing, pickle.dumps(compiling.compiled))
+                if self._made(self._choice(left)):
+                    os.write(writing, pickle.dumps(compiling.compiled))
         finally:
             os._exit(0)
+
+    def _choice(self, left: Sequence[int]) -> int:
+        """The first that the run is not about to ask for, else the last."""
+        return next((index for index in left if os.pread(self.locks, 1, index) != WANTED), left[-1])
+
+    def _longest_first(self) -> list[int]:
+        """Numbers of the calls; of those about as long the last comes first, since the run begins at the other end.
+
+        One kernel's other types come after all kernels: they share parts with its first.
+        """
+        kernels = [kernel for kernel, _ in self.calls]
+        size = {kernel: -round(log(_length(kernel), ALIKE)) for kernel in kernels}
+        return sorted(range(len(kernels)), key=lambda i: (kernels[i + 1 :].count(kernels[i]), size[kernels[i]], -i))
 
     def end(self) -> None:
         """End the helpers, and hear what they did."""
@@ -166,3 +263,25 @@ class _Crew:
                     compiling.compiled.extend(pickle.load(pipe))
         if self.locks >= 0:
             os.close(self.locks)
+
+
+def _typed(call: Call) -> Typed:
+    kernel, given = call
+    return kernel, tuple(map(kernel.typeof_pyval, given))
+
+
+@cache
+def _length(kernel: Any) -> int:
+    """Bytes of Python in a kernel and its parts: what its compilation takes goes by them."""
+    return sum(len(one.__code__.co_code) for one in _with_parts(kernel.py_func, {}))
+
+
+def _with_parts(function: Any, found: dict[Any, None]) -> dict[Any, None]:
+    """A function and those that it calls, and so on, each once."""
+    if function not in found:
+        found[function] = None
+        for name in function.__code__.co_names:
+            part = getattr(function.__globals__.get(name), "py_func", None)
+            if part is not None:
+                _with_parts(part, found)
+    return found

@@ -66,6 +66,14 @@ def asks_of(scene: "Scene", *, gates_only: bool = False) -> list[Ask]:
     return [*gates, *(_figure_ask("claim", claim, scene) for claim in scene.claim), *_study_asks(scene)]
 
 
+def studies_in_turn(scene: "Scene") -> list[Ask]:
+    """Every study, listed or not, by its name and kernels alone."""
+    return [
+        Ask(kind="study", name=study.name, kernels=partial(study.kernels, asked, scene))
+        for study, asked in asked_of(scene)
+    ]
+
+
 def _figure_ask(kind: str, one: "Gate | Claim", scene: "Scene") -> Ask:
     """A figure that a gate or a claim names."""
     try:

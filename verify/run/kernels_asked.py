@@ -13,6 +13,7 @@ from verify.models.compiling import Call
 from verify.run.asks import Ask, asks_of
 
 if TYPE_CHECKING:
+    from verify.models.ahead import Ahead
     from verify.scenes.scene import Scene
 
 
@@ -30,10 +31,26 @@ def in_order_of_kernels(asks: Sequence[Ask]) -> list[int]:
     return sorted(range(len(asks)), key=lambda number: (asks[number].kind != "gate", _n_kernels(asks[number])))
 
 
+def ready_first(asks: Sequence[Ask], ahead: "Ahead") -> Iterator[int]:
+    """Their numbers in the same order, but that none waits for what others compile while there is something to do.
+
+    Studies keep their order: one may take what those before it found.
+    """
+    left = in_order_of_kernels(asks)
+    while left:
+        gates, studies = ([n for n in left if (asks[n].kind == "gate") is of_gate] for of_gate in (True, False))
+        number = ahead.first_ready([*gates, *studies[:1]], lambda number: _kernels(asks[number]))
+        left.remove(number)
+        yield number
+
+
+def _kernels(ask: Ask) -> list[Call]:
+    """None where it cannot be run."""
+    with suppress(InputError):
+        return list(ask.kernels())
+    return []
+
+
 def _n_kernels(ask: Ask) -> int:
     """How many it needs; of studies and claims, which come last as they stand, it is not asked."""
-    if ask.kind != "gate":
-        return 0
-    with suppress(InputError):
-        return len({kernel for kernel, _ in ask.kernels()})
-    return 0
+    return len({kernel for kernel, _ in _kernels(ask)}) if ask.kind == "gate" else 0

@@ -1,5 +1,6 @@
 """A scene run: whatever it asks for is evaluated once, and nothing else."""
 
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -11,9 +12,9 @@ from verify.errors import InputError
 from verify.judge.workbench import Solve, Workbench
 from verify.models.ahead import compiled_ahead
 from verify.run.applies import applicable, not_applicable
-from verify.run.asks import asks_of
+from verify.run.asks import Ask, asks_of, studies_in_turn
 from verify.run.gates import GateResult, judge, set_aside
-from verify.run.kernels_asked import in_order_of_kernels, kernels_asked
+from verify.run.kernels_asked import kernels_asked, ready_first
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.kind import Progress, Study
@@ -72,24 +73,34 @@ def run_scene(
     bench = workbench_for(applying)
     gates: dict[int, GateResult] = {}
     found: dict[str, Found] = {}
-    with compiled_ahead(partial(kernels_asked, applying)):
-        for number in in_order_of_kernels(asks_of(asked_scene, gates_only=True)):
-            gate = asked_scene.gate[number]
-            progress(f"gate {gate.id}")
-            why = aside.get(gate.id)
-            gates[number] = set_aside(gate, why) if why else judge(gate, asked_scene, bench)
-        for study, asked in asked_of(asked_scene):
-            found[study.name] = _done(study, asked, asked_scene, bench, found, progress)
+    studies = list(asked_of(asked_scene))
+    tasks = [*_gate_asks(asked_scene, aside), *studies_in_turn(asked_scene)]
+    with compiled_ahead(partial(kernels_asked, applying)) as ahead:
+        for number in ready_first(tasks, ahead):
+            if number < len(asked_scene.gate):
+                gate = asked_scene.gate[number]
+                progress(f"gate {gate.id}")
+                why = aside.get(gate.id)
+                gates[number] = set_aside(gate, why) if why else judge(gate, asked_scene, bench)
+            else:
+                study, asked = studies[number - len(asked_scene.gate)]
+                found[study.name] = _done(study, asked, asked_scene, bench, found, progress)
     return RunResult(
         scene=asked_scene,
         gates=tuple(gates[number] for number in range(len(gates))),
         found=found,
-        solves=tuple(bench.solves),
+        solves=tuple(sorted(bench.solves, key=lambda one: (one.model, one.count, repr(one.settings)))),
         n_fields=bench.n_fields,
         n_motions=bench.n_motions + sum(one.motions() for one in found.values()),
         seconds=perf_counter() - start,
         others=bench.others,
     )
+
+
+def _gate_asks(scene: Scene, aside: Mapping[str, str]) -> list[Ask]:
+    """Of every gate; those set aside need nothing."""
+    asks = zip(scene.gate, asks_of(scene, gates_only=True), strict=True)
+    return [Ask(kind="gate", name=gate.id) if gate.id in aside else ask for gate, ask in asks]
 
 
 def _done(

@@ -1,6 +1,7 @@
 """Published claims beside what is found, with the condition under which it was found. They are shown, not judged."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from verify.studies.told import Column, Found, Table
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import Call
     from verify.scenes.scene import Scene
     from verify.studies.slider_figures import SliderFound
 
@@ -149,6 +151,16 @@ class ClaimsStudy(Study[tuple[Claim, ...], ClaimsFound]):
     def n_steps(self, asked: tuple[Claim, ...], scene: "Scene") -> int:
         """A step for each."""
         return len(asked)
+
+    def kernels(self, asked: tuple[Claim, ...], scene: "Scene") -> "Iterator[Call]":
+        """Those of every figure that is not of the slider's study."""
+        from verify.quantities.catalogue import arguments_of, quantity
+
+        for claim in asked:
+            with suppress(InputError):
+                if not is_of_study(claim, scene):
+                    found = quantity(claim.quantity)
+                    yield from found.kernels(arguments_of(found, claim.arguments), scene)
 
     def run(
         self, asked: tuple[Claim, ...], scene: "Scene", bench: "Workbench", done: Mapping[str, Found], step: Progress
