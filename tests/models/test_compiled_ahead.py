@@ -8,6 +8,7 @@ import sys
 import time
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -98,25 +99,6 @@ os.fork = lambda: (lambda child: os._exit(9) if child == 0 else child)(fork())
     assert sum(name.endswith("slide_on_belt") for name in found["kernels"]) == 2
 
 
-def test_a_helper_compiles_what_calls_the_kernel_that_was_begun_when_it_began(tmp_path):
-    """`energies` calls what the run is at: numba holds that for begun at the fork, in the helper as well."""
-    code = """
-from verify.chain import kernels as chain, warm as links
-planned = [*links.placed(), *links.energies()]
-with ahead.compiled_ahead(lambda: planned):
-    kernel, given = planned[0]
-    kernel.compile(tuple(kernel.typeof_pyval(value) for value in given))
-    os.waitid(os.P_PID, forked[0], os.WEXITED | os.WNOWAIT)
-    mine = {one.kernel for one in compiling.compiled}
-helped = {one.kernel for one in compiling.compiled} - mine
-print(json.dumps({"helped": sorted(helped), "mine": sorted(mine)}))
-"""
-    found, began = told(tmp_path, 2, code)
-    assert len(began) == 1
-    assert "chain.recursion_kernels.hub_motion" in found["mine"]
-    assert "chain.kernels.energies" in found["helped"]
-
-
 FIRST = """
 import signal
 from verify.chain import warm as links
@@ -140,7 +122,7 @@ def test_what_waits_for_others_comes_after_what_needs_nothing_and_what_is_there(
     """The helper has begun the other belt, and is not done."""
     code = """
 with ahead.compiled_ahead(lambda: planned) as first:
-    order = [first.first_ready(["one", "none"], needed)]  # nothing is missing yet: as they stand
+    order = [first.first_ready(["one", "chain"], needed)]  # nothing is there: as they stand
     compile_(belts[:1])
     os.read(reading, 1)
     states = [first._state(i) for i in range(len(first.calls))]
@@ -169,15 +151,16 @@ print(json.dumps({"chosen": chosen, "states": states}))
     assert found["states"] == [0, 2, *[0] * (len(found["states"]) - 2)]
 
 
-def test_helpers_begin_with_the_longest_and_leave_what_the_run_is_about_to_ask_for_to_the_end():
+def test_helpers_begin_with_the_longest_and_leave_what_the_run_is_about_to_ask_for_to_the_end(monkeypatch):
     from verify.chain import warm as links
     from verify.models import ahead
     from verify.motion import warm
 
     belts, chain = [*warm.on_belt("tanh"), *warm.on_belt("coulomb")], [*links.stretching()]
+    monkeypatch.setattr(ahead, "_is_kept", lambda call: False)
     crew = ahead._Crew(lambda: [*belts, *chain], 0)
+    crew.begin()
     assert crew.first_ready([5], lambda _: belts) == 5
-    crew.absent(*crew_typed(chain[0]))
     order = crew._longest_first()
     assert order[0] == 1  # a belt is the longest; of its two laws the last that is planned
     assert order[-1] == 0  # which shares its parts
@@ -185,12 +168,6 @@ def test_helpers_begin_with_the_longest_and_leave_what_the_run_is_about_to_ask_f
     assert all(after < before * ahead.ALIKE for before, after in pairwise(lengths))
     assert crew._choice(order) == order[1]
     assert crew._choice([1, 0]) == 0
-
-
-def crew_typed(call):
-    from verify.models import ahead
-
-    return ahead._typed(call)
 
 
 def test_the_length_of_a_kernel_counts_each_of_its_parts_once():
@@ -201,3 +178,20 @@ def test_the_length_of_a_kernel_counts_each_of_its_parts_once():
     assert {"march", "accelerate", "hub_motion"} <= inner
     alone = len(recursion_kernels.hub_motion.py_func.__code__.co_code)
     assert ahead._length(recursion_kernels.hub_motion) == alone < ahead._length(kernels.march) / 20
+
+
+def test_a_kernel_of_which_numba_does_not_tell_is_taken_for_kept_and_a_damaged_index_for_none():
+    from verify.models import ahead
+
+    def broken():
+        raise ValueError("damaged")
+
+    unknown = SimpleNamespace()
+    assert ahead._is_kept((unknown, ()))
+    file = SimpleNamespace(_load_index=broken)
+    kept = SimpleNamespace(_cache_file=file, _index_key=lambda types, codegen: types)
+    damaged = SimpleNamespace(_cache=kept, targetctx=SimpleNamespace(codegen=lambda: None))
+    assert not ahead._is_kept((damaged, ()))
+    file._load_index = lambda: {("float64",): "a file"}
+    assert ahead._is_kept((damaged, ("float64",)))
+    assert not ahead._is_kept((damaged, ("int64",)))

@@ -66,8 +66,6 @@ SHORTER = {
     "multi-contact-slider": ("motor.speeds=2", "motor.periods=40"),
 }
 """Overrides that leave every loop to be run, for less long."""
-OF_THEIR_OWN = {"stress"}
-"""Scenes whose beams are not the scene's, nor of one law."""
 
 
 def compared(code, *given):
@@ -95,7 +93,7 @@ def test_every_quantity_says_which_kernels_it_runs():
     assert sum(bool(ran) for ran, _ in found.values()) > 45
 
 
-@pytest.mark.parametrize("scene", sorted({*packaged_scenes()} - OF_THEIR_OWN))
+@pytest.mark.parametrize("scene", packaged_scenes())
 def test_a_scene_plans_what_it_runs(scene):
     ((ran, planned),) = compared(OF_SCENE, scene, *SHORTER.get(scene, ())).values()
     assert ran <= planned

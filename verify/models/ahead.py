@@ -1,6 +1,6 @@
 """Kernels that a run will ask for, compiled by other processes while it compiles the first of them.
 
-Nothing begins before a kernel is missing, so that a run that finds all of them pays nothing. From then on helpers go
+Where a kernel that is planned is not on disk helpers begin at once, and in a run that finds all of them none. They go
 through what is planned from the longest on; what they compile stands in numba's cache on disk. The run does meanwhile
 what needs no kernel that is missing, then compiles itself what nobody has begun. Who compiles a kernel holds a lock on
 its byte of a file without a name, which the system gives back when a process ends: nobody waits for the dead, and
@@ -14,7 +14,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from functools import cache, partial
+from functools import cache
 from math import log
 from typing import Any, NoReturn, Protocol
 
@@ -69,6 +69,7 @@ def compiled_ahead(planned: Callable[[], Iterable[Call]]) -> Iterator[Ahead]:
     crew = _Crew(planned, n)
     compiling.absent, compiling.kept = crew.absent, crew.keeping
     try:
+        crew.begin()
         yield crew
     finally:
         compiling.absent, compiling.kept = None, compiling.keep_alone
@@ -85,19 +86,20 @@ class _Crew:
         """A byte for every call, and one more for who writes."""
         self.needs: dict[int, tuple[int, ...]] = {}
         """Numbers of the calls that those who wait need."""
-        self.asking: Callable[[], Iterable[Call]] = tuple
-        """What is needed by what was begun before a kernel was missing."""
         self.helpers: list[tuple[int, int]] = []
         """Process and the reading end of its pipe."""
+
+    def begin(self) -> None:
+        """Where a kernel is missing, have helpers begin."""
+        self.calls = list(dict.fromkeys(map(_typed, self.planned())))  # each once
+        if not compiling.unkept and not all(map(_is_kept, self.calls)):
+            self.locks = os.memfd_create("kernels")
+            self._start()
 
     def absent(self, kernel: Any, types: Any) -> bool:
         """Wait until nobody else compiles a kernel that is not on disk; whether it is worth another look there."""
         if self.locks < 0:
-            if os.getpid() != self.owner or compiling.unkept:
-                return False
-            self.calls = list(dict.fromkeys(map(_typed, self.planned())))  # each once
-            self.locks = os.memfd_create("kernels")
-            self._want(self._numbers(self.asking()))
+            return False
         found = [i for i, call in enumerate(self.calls) if call[0] is kernel and call[1] == tuple(types)]
         if not found:
             return False
@@ -108,8 +110,6 @@ class _Crew:
             os.lockf(self.locks, os.F_LOCK, 1)
             for hear in compiling.hearers:
                 hear("")
-        if not self.helpers and os.getpid() == self.owner:
-            self._start()
         return True
 
     def first_ready(self, waiting: Sequence[int], needed: Callable[[int], Iterable[Call]]) -> int:
@@ -118,7 +118,6 @@ class _Crew:
         Where others compile what all of them need, what nobody has begun is compiled meanwhile.
         """
         if self.locks < 0:
-            self.asking = partial(needed, waiting[0])
             return waiting[0]
         while True:
             states = [max(map(self._state, self._needs(one, needed)), default=READY) for one in waiting]
@@ -207,7 +206,7 @@ class _Crew:
         for stream in (sys.stdout, sys.stderr):
             with suppress(OSError, ValueError, AttributeError):
                 stream.flush()
-        for _ in range(min(self.n, len(self.calls) - 1)):
+        for _ in range(min(self.n, len(self.calls))):
             reading, writing = os.pipe()
             if (child := os.fork()) == 0:
                 self._help(writing)
@@ -226,7 +225,6 @@ class _Crew:
                 os._exit(0)
             gc.disable()
             compiling.hearers.clear()
-            compiling.begin_anew()
             left = self._longest_first()
             while left := [index for index in left if self._state(index) == FREE]:
                 compiling.compiled.clear()
@@ -268,6 +266,18 @@ class _Crew:
 def _typed(call: Call) -> Typed:
     kernel, given = call
     return kernel, tuple(map(kernel.typeof_pyval, given))
+
+
+def _is_kept(call: Typed) -> bool:
+    """Whether a kernel stands in numba's index on disk; one of which a later numba does not tell is taken for kept."""
+    kernel, types = call
+    try:
+        index, key = kernel._cache._cache_file, kernel._cache._index_key(types, kernel.targetctx.codegen())
+        return key in index._load_index()
+    except AttributeError:
+        return True
+    except Exception:  # whatever a damaged pickle raises
+        return False
 
 
 @cache

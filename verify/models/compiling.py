@@ -42,10 +42,6 @@ kept: Callable[[Any, Any], AbstractContextManager[None]] = keep_alone
 """Around the writing of a kernel for these types."""
 
 
-def begin_anew() -> None:
-    """In a process that was forked while something was compiled; for whoever compiles to set."""
-
-
 def told() -> tuple[str, ...]:
     """What to say at the end of a run, in sentences."""
     return (AT_EVERY_RUN,) if unkept and compiled else ()

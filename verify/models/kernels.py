@@ -108,23 +108,6 @@ LINKED = all(hasattr(JITCodeLibrary, name) for name in INNER)
 PART = {**ALWAYS, "_nrt": False, "no_cpython_wrapper": True} | ({"pipeline_class": _PartCompiler} if LINKED else {})
 
 
-_all: list[Any] = []
-"""Kernels and parts."""
-
-
-def _begin_anew() -> None:
-    """In a process that was forked while something was compiled: it is not compiled here.
-
-    Numba would take a call of it for recursion, which it refuses.
-    """
-    for one in _all:
-        if hasattr(one, "_compiling_counter"):
-            one._compiling_counter.counter = 0
-
-
-compiling.begin_anew = _begin_anew
-
-
 def _refuse(*given: Any, **more: Any) -> NoReturn:
     raise TypeError("a part of kernels is called by kernels alone: give it @lean() to call it from Python")
 
@@ -134,7 +117,6 @@ def part(**options: Any) -> Callable[[Function], Function]:
 
     def compile_one(function: Function) -> Function:
         found = njit(**{**PART, **options})(function)
-        _all.append(found)
         found._compile_for_args = _refuse
         found.add_overload = lambda made: found.overloads.__setitem__(tuple(made.signature.args), made)
         return found  # type: ignore[no-any-return]
@@ -147,7 +129,6 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
 
     def compile_one(function: Function) -> Function:
         found = njit(**{**ALWAYS, "pipeline_class": _ScalarCompiler, **options})(function)
-        _all.append(found)
         nothing = found._cache
         try:
             found.enable_caching()

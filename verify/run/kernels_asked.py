@@ -18,12 +18,14 @@ if TYPE_CHECKING:
 
 
 def kernels_asked(scene: "Scene") -> Iterator[Call]:
+    """Of all that a scene asks for."""
+    return kernels_of(asks_of(scene))
+
+
+def kernels_of(asks: Sequence[Ask]) -> Iterator[Call]:
     """In order of need; one that several ask for comes again."""
-    asks = asks_of(scene)
     for number in in_order_of_kernels(asks):
-        if not asks[number].problem:
-            with suppress(InputError):
-                yield from asks[number].kernels()
+        yield from _kernels(asks[number])
 
 
 def in_order_of_kernels(asks: Sequence[Ask]) -> list[int]:
@@ -47,7 +49,7 @@ def ready_first(asks: Sequence[Ask], ahead: "Ahead") -> Iterator[int]:
 def _kernels(ask: Ask) -> list[Call]:
     """None where it cannot be run."""
     with suppress(InputError):
-        return list(ask.kernels())
+        return [] if ask.problem else list(ask.kernels())
     return []
 
 

@@ -1,6 +1,6 @@
 """A scene run: whatever it asks for is evaluated once, and nothing else."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -14,7 +14,7 @@ from verify.models.ahead import compiled_ahead
 from verify.run.applies import applicable, not_applicable
 from verify.run.asks import Ask, asks_of, studies_in_turn
 from verify.run.gates import GateResult, judge, set_aside
-from verify.run.kernels_asked import kernels_asked, ready_first
+from verify.run.kernels_asked import kernels_of, ready_first
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.studies.kind import Progress, Study
@@ -55,7 +55,11 @@ class RunResult(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def workbench_for(scene: Scene, *, gates_only: bool = False) -> Workbench:
     """A workbench that knows everything the scene will ask for, so that each size is solved once."""
-    return Workbench(scene.beam, (need for ask in asks_of(scene, gates_only=gates_only) for need in ask.needs))
+    return _workbench(scene, asks_of(scene, gates_only=gates_only))
+
+
+def _workbench(scene: Scene, asks: Iterable[Ask]) -> Workbench:
+    return Workbench(scene.beam, (need for ask in asks for need in ask.needs))
 
 
 def run_scene(
@@ -70,12 +74,13 @@ def run_scene(
     start = perf_counter()
     aside = not_applicable(asked_scene, overrides)
     applying = applicable(asked_scene, overrides)
-    bench = workbench_for(applying)
+    asks = asks_of(applying)
+    bench = _workbench(applying, asks)
     gates: dict[int, GateResult] = {}
     found: dict[str, Found] = {}
     studies = list(asked_of(asked_scene))
-    tasks = [*_gate_asks(asked_scene, aside), *studies_in_turn(asked_scene)]
-    with compiled_ahead(partial(kernels_asked, applying)) as ahead:
+    tasks = [*_gate_asks(asked_scene, asks), *studies_in_turn(asked_scene)]
+    with compiled_ahead(partial(kernels_of, asks)) as ahead:
         for number in ready_first(tasks, ahead):
             if number < len(asked_scene.gate):
                 gate = asked_scene.gate[number]
@@ -97,10 +102,10 @@ def run_scene(
     )
 
 
-def _gate_asks(scene: Scene, aside: Mapping[str, str]) -> list[Ask]:
-    """Of every gate; those set aside need nothing."""
-    asks = zip(scene.gate, asks_of(scene, gates_only=True), strict=True)
-    return [Ask(kind="gate", name=gate.id) if gate.id in aside else ask for gate, ask in asks]
+def _gate_asks(scene: Scene, asks: Iterable[Ask]) -> list[Ask]:
+    """Of every gate; those that are set aside ask for nothing."""
+    asked = {ask.name: ask for ask in asks if ask.kind == "gate"}
+    return [asked.get(gate.id, Ask(kind="gate", name=gate.id)) for gate in scene.gate]
 
 
 def _done(

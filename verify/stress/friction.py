@@ -1,8 +1,11 @@
 """Friction from loose to locked: slopes, coefficients and pulls over many powers of ten."""
 
+from collections.abc import Iterator
 from decimal import Decimal, localcontext
+from functools import partial
 from math import atan, pi, sqrt, tanh
 
+from verify.models.compiling import Call
 from verify.slider import GRAVITY
 from verify.stress.decimals import asinh, exp, sinh
 from verify.stress.kind import Floor, Refusal, Row
@@ -108,6 +111,13 @@ def _slow_belt(speed: float) -> float:
     return stick_slip_times(1.3, 170.0, 5.1, 3.7, speed)[0]
 
 
+def _belt(law: str) -> Iterator[Call]:
+    """Loops of a slider on a belt."""
+    from verify.motion.warm import on_belt
+
+    return on_belt(law)
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="friction-slope",
@@ -121,6 +131,7 @@ ROWS: tuple[Row, ...] = (
         beside=lambda slope: rk4_error(MU, slope),
         textbook="RK4 in as many steps",
         seconds=5.0,
+        kernels=partial(_belt, "tanh"),
     ),
     Floor(
         id="friction-coefficient",
@@ -133,6 +144,7 @@ ROWS: tuple[Row, ...] = (
         error=lambda mu: decay_error(mu, STEEP),
         beside=lambda mu: rk4_error(mu, STEEP),
         textbook="RK4 in as many steps",
+        kernels=partial(_belt, "tanh"),
     ),
     Floor(
         id="friction-comes-to-rest",
@@ -144,6 +156,7 @@ ROWS: tuple[Row, ...] = (
         error=stop_error,
         beside=lambda mu: abs(_rk4(mu, STEEP, _long(mu))) / SPEED,
         textbook="RK4 in as many steps",
+        kernels=partial(_belt, "tanh"),
     ),
     Floor(
         id="friction-creep",
@@ -153,6 +166,7 @@ ROWS: tuple[Row, ...] = (
         at=(0.9, 0.1, 1e-3, 1e-5, 2e-6),
         promise=1e-10,
         error=creep_error,
+        kernels=partial(_belt, "tanh"),
     ),
     Refusal(
         id="friction-creep-beyond",
@@ -163,6 +177,7 @@ ROWS: tuple[Row, ...] = (
         names=("pull", "mu g"),
         ask=_pulled,
         taken=(-2e-6,),
+        kernels=partial(_belt, "tanh"),
     ),
     Floor(
         id="stick-slip",
@@ -173,6 +188,7 @@ ROWS: tuple[Row, ...] = (
         promise=(2.0 * pi / 4000) ** 2 / 12.0,
         error=belt_error,
         seconds=3.0,
+        kernels=partial(_belt, "coulomb"),
     ),
     Refusal(
         id="stick-slip-beyond",
@@ -183,5 +199,6 @@ ROWS: tuple[Row, ...] = (
         names=("speed", "stretches the spring"),
         ask=_slow_belt,
         taken=(0.03,),
+        kernels=partial(_belt, "coulomb"),
     ),
 )

@@ -8,6 +8,7 @@ from typing import ClassVar, Literal, TypeAlias
 import msgspec
 
 from verify.errors import InputError
+from verify.models.compiling import Call
 
 Kind: TypeAlias = Literal["floor", "refusal", "growth"]
 Figure: TypeAlias = Callable[[float], float]
@@ -82,6 +83,8 @@ class Row(msgspec.Struct, frozen=True, kw_only=True, eq=False):
     """An estimate from above."""
     quick: bool = True
     """Whether a scene takes it unless it names rows."""
+    kernels: Callable[[], Iterable[Call]] = tuple
+    """Compiled loops that it runs, called with values of the right kinds."""
 
     def run(self) -> Outcome:
         """Measure it. Never raises for what it measures."""

@@ -8,6 +8,9 @@ from verify.judge.workbench import Workbench
 from verify.quantities.kind import Arguments, Quantity
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from verify.models.compiling import Call
     from verify.scenes.scene import Scene
 
 
@@ -24,6 +27,12 @@ def _share(a: OfRow, scene: "Scene", bench: Workbench) -> float:
     return outcome_on(bench, a.row).share
 
 
+def _kernels(a: OfRow, scene: "Scene") -> "Iterable[Call]":
+    from verify.stress.catalogue import row
+
+    return row(a.row).kernels()
+
+
 SHARE = Quantity(
     "stress.share",
     "1",
@@ -31,4 +40,5 @@ SHARE = Quantity(
     OfRow,
     "modes",
     _share,
+    kernels=_kernels,
 )

@@ -1,5 +1,6 @@
 """Long runs: free vibration over many periods, the slider's loop over many steps."""
 
+from collections.abc import Iterator
 from decimal import Decimal, localcontext
 from functools import cache
 from math import pi
@@ -7,6 +8,7 @@ from math import pi
 import numpy as np
 
 from verify.beam import PointForce
+from verify.models.compiling import Call
 from verify.motion.result import Motion
 from verify.slider import Slider
 from verify.stress.beams import STRIP
@@ -124,6 +126,13 @@ def bounded_error(mu: float) -> float:
     return max(worst - 1.0, travel - 1.0, 0.0)
 
 
+def _loops() -> Iterator[Call]:
+    """Of a slider that the beam does not feel."""
+    from verify.motion.warm import on_beam
+
+    return on_beam("tanh", "one-way")
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="free-for-long",
@@ -149,6 +158,7 @@ ROWS: tuple[Row, ...] = (
         textbook="central differences",
         seconds=20.0,
         quick=False,
+        kernels=_loops,
     ),
     Floor(
         id="ten-million-steps",
@@ -163,6 +173,7 @@ ROWS: tuple[Row, ...] = (
         textbook="central differences",
         seconds=60.0,
         quick=False,
+        kernels=_loops,
     ),
     Floor(
         id="books-over-slope",
@@ -174,6 +185,7 @@ ROWS: tuple[Row, ...] = (
         error=books_error,
         seconds=20.0,
         quick=False,
+        kernels=_loops,
     ),
     Floor(
         id="friction-never-too-large",
@@ -185,5 +197,6 @@ ROWS: tuple[Row, ...] = (
         error=bounded_error,
         seconds=20.0,
         quick=False,
+        kernels=_loops,
     ),
 )

@@ -7,9 +7,10 @@ import msgspec
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from verify.judge.workbench import Workbench
+    from verify.models.compiling import Call
     from verify.scenes.scene import Scene
     from verify.stress.figures import StressFound
     from verify.studies.told import Found
@@ -44,6 +45,13 @@ class StressStudy(Study[Stress, "StressFound"]):
         from verify.stress.figures import chosen
 
         return len(chosen(asked.rows, quick=True))
+
+    def kernels(self, asked: Stress, scene: "Scene") -> "Iterable[Call]":
+        """Of its rows, in turn."""
+        from verify.stress.figures import chosen
+
+        for row in chosen(asked.rows, quick=True):
+            yield from row.kernels()
 
     def run(
         self, asked: Stress, scene: "Scene", bench: "Workbench", done: "Mapping[str, Found]", step: Progress

@@ -1,15 +1,18 @@
 """The nonlinear chain bent, rolled up and turned many times, and its steps about their limit."""
 
+from collections.abc import Iterator
 from functools import cache
 from math import asin, exp, hypot, inf, pi, sin, sqrt
 
 import numpy as np
 from msgspec.structs import replace as changed
 
+from verify.chain import warm
 from verify.chain.dynamics import at_rest
 from verify.chain.result import ChainMotion
 from verify.chain.stepping import simulate, step_limit
 from verify.chain.system import ChainState, ChainSystem, build_system
+from verify.models.compiling import Call
 from verify.stress.beams import STRIP
 from verify.stress.kind import Floor, Refusal, Row
 
@@ -168,6 +171,12 @@ def _too_steep(amplitude: float) -> float:
     return energy_drift(changed(STRIP), SHORT, amplitude, 0.1, None, 1e-6)
 
 
+def _with_energies() -> Iterator[Call]:
+    """Rigid links in steps, and their energies."""
+    yield from warm.rigid()
+    yield from warm.energies()
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="rolled-up",
@@ -181,6 +190,7 @@ ROWS: tuple[Row, ...] = (
         beside=straight_gap,
         textbook="linear theory",
         seconds=8.0,
+        kernels=warm.placed,
     ),
     Floor(
         id="dead-load",
@@ -194,6 +204,7 @@ ROWS: tuple[Row, ...] = (
         beside=linear_tip_error,
         textbook="linear theory",
         seconds=3.0,
+        kernels=warm.placed,
     ),
     Floor(
         id="spun",
@@ -204,6 +215,7 @@ ROWS: tuple[Row, ...] = (
         promise=1e-10,
         error=spun_error,
         seconds=8.0,
+        kernels=warm.rigid,
     ),
     Floor(
         id="whirled",
@@ -214,6 +226,7 @@ ROWS: tuple[Row, ...] = (
         promise=2.0,
         error=whirled_error,
         seconds=8.0,
+        kernels=_with_energies,
     ),
     Floor(
         id="steps-below-the-limit",
@@ -227,6 +240,7 @@ ROWS: tuple[Row, ...] = (
         beside_at=(0.99, 1.01, 1.05, 2.0),
         textbook="the same loop without the refusal",
         seconds=3.0,
+        kernels=_with_energies,
     ),
     Refusal(
         id="steps-beyond-the-limit",
@@ -237,6 +251,7 @@ ROWS: tuple[Row, ...] = (
         names=("step", "stability limit", "smaller step"),
         ask=grown,
         taken=(0.5, 0.99),
+        kernels=_with_energies,
     ),
     Floor(
         id="step-limit",
@@ -247,6 +262,7 @@ ROWS: tuple[Row, ...] = (
         promise=1e-3,
         error=limit_error,
         seconds=4.0,
+        kernels=warm.rigid,
     ),
     Refusal(
         id="amplitude-beyond-the-links",
@@ -257,5 +273,6 @@ ROWS: tuple[Row, ...] = (
         names=("amplitude", "L / 10"),
         ask=_too_steep,
         taken=(0.01,),
+        kernels=_with_energies,
     ),
 )
