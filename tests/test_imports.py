@@ -266,6 +266,13 @@ def test_importing_the_package_loads_nothing_heavy():
         _ = verify.Baem
 
 
+def test_until_the_command_can_answer_an_interrupt_nothing_is_read_but_the_package_and_its_door():
+    code = "import sys\nbefore = set(sys.modules)\nimport verify.__main__\nprint(*sorted(set(sys.modules) - before))"
+    path = {"PYTHONPATH": str(Path(verify.__file__).parents[1])}
+    done = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=True, env=path)
+    assert done.stdout.split() == ["verify", "verify.__main__"]
+
+
 def read_by(*words):
     """Modules that a command line really read in a fresh process, started as `verify` is; those asleep are not read."""
     code = (

@@ -21,9 +21,12 @@ What there is (`help` of each says its fields, shapes and units; everything is S
 The command line is `verify --help`.
 """
 
-from typing import TYPE_CHECKING, Any
-
+TYPE_CHECKING = (
+    False  # `typing` takes longer than all of this, and an interrupt while it is read finds nobody to answer
+)
 if TYPE_CHECKING:
+    from typing import Any
+
     from verify import analytic_modes, fem_beam, segment_model, travelling_wave
     from verify.attached import PointMass, PointSpring
     from verify.beam import Beam, PointForce
@@ -108,7 +111,7 @@ _FACES = {"analytic_modes", "fem_beam", "segment_model", "simulate", "travelling
 """Modules below this one; `simulate` is also the verb, since it can be called."""
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     """Import a public name from its home when it is first asked for, so that `import verify` costs nothing."""
     from importlib import import_module
 

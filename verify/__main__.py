@@ -1,10 +1,13 @@
 """`verify` and `python -m verify`: an interrupt is answered from the first import on."""
 
 import sys
-from typing import NoReturn
+
+TYPE_CHECKING = False  # as in the package
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 
-def main() -> NoReturn:
+def main() -> "NoReturn":
     """Run the command line; end quietly where it is interrupted before it is ready to answer."""
     try:
         from verify.cli import main as run

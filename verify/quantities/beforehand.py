@@ -13,7 +13,7 @@ from verify.quantities.motion_arguments import InTime, SliderInTime, Steady
 from verify.quantities.wave_arguments import AxisRatio, BestFrequency, Driven, InWindow, Sensitivity, WaveOrder
 
 if TYPE_CHECKING:
-    from verify.quantities.chain import FromRest, Ridden
+    from verify.quantities.chain_arguments import FromRest, Ridden
     from verify.scenes.scene import Scene
     from verify.waves.case import DrivenCase
 

@@ -21,6 +21,7 @@ from verify.quantities.kind import A, Arguments, Figure, Quantity
 from verify.quantities.modes import MODE_QUANTITIES
 from verify.quantities.motion import MOTION_QUANTITIES
 from verify.quantities.motor import MOTOR_QUANTITIES
+from verify.quantities.over_wave import WAVE_FORCE_QUANTITIES
 from verify.quantities.statics import STATIC_QUANTITIES
 from verify.quantities.waves import WAVE_QUANTITIES
 from verify.registry import Registry
@@ -43,6 +44,7 @@ QUANTITIES: Registry[Quantity[Any]] = Registry(
         *STATIC_QUANTITIES,
         *CONTACT_QUANTITIES,
         *MOTOR_QUANTITIES,
+        *WAVE_FORCE_QUANTITIES,
     ),
     homes={"stress.share": "verify.stress.quantity:SHARE"},
 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from verify.models.compiling import Call
 
 if TYPE_CHECKING:
-    from verify.quantities.chain import Departing, FromRest, Ridden
+    from verify.quantities.chain_arguments import Departing, FromRest, Ridden
     from verify.quantities.motion_arguments import SliderInTime
     from verify.quantities.motor import Motor
     from verify.scenes.scene import Scene

@@ -9,7 +9,7 @@ from verify.checks import Relative
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.quantities import compiled
-from verify.quantities.chain import Chained
+from verify.quantities.chain_arguments import Chained
 from verify.quantities.kind import Arguments, MovingModel, Quantity, Size, check_count
 from verify.quantities.motion_arguments import InTime
 
