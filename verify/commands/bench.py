@@ -1,10 +1,14 @@
 """Run time against error of every method that a scene gives something to do."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared import json_alone, load, overridden, progress, scene_name
+
+if TYPE_CHECKING:
+    from verify.bench.found import BenchFound
 
 
 @click.command()
@@ -57,11 +61,7 @@ def bench(
     asked = load(scene, overrides)
     given = {"sets": sets, "counts": counts, "modes": modes, "seconds": seconds}
     request = asked_of(asked, {name: text for name, text in given.items() if text is not None}, cold=cold, push=push)
-    earlier = None
-    if against is not None:
-        from verify.bench.against import read_earlier
-
-        earlier = read_earlier(against)
+    earlier = _earlier(against)
     if keep is not None:
         from verify.files import writable_folder
 
@@ -78,10 +78,24 @@ def bench(
         from verify.files import write_whole
 
         write_whole(keep / f"{asked.name}.md", page(found), "--keep")
-    if as_json or layout:
+    _tell(found, "json" if as_json else layout)
+
+
+def _earlier(against: Path | None) -> Any:
+    """What an earlier run found, None where none is named. Raises InputError."""
+    if against is None:
+        return None
+    from verify.bench.against import read_earlier
+
+    return read_earlier(against)
+
+
+def _tell(found: "BenchFound", layout: str | None) -> None:
+    """As a person reads it, or in a layout."""
+    if layout:
         from verify.report.plain import text_of
 
-        click.echo(text_of(found, layout or "json"), nl=False)
+        click.echo(text_of(found, layout), nl=False)
     else:
         from verify.report.terminal import print_found
 

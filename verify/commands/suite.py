@@ -1,6 +1,6 @@
 """Several scenes run side by side, and one page over all."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ from verify.errors import InputError, one_line, raise_all
 
 if TYPE_CHECKING:
     from verify.apart import Died
-    from verify.report.suite import Card, Refused
+    from verify.report.suite import Card, Refused, Suite
     from verify.scenes.scene import Scene
 
 NOT_RUN = 2
@@ -56,7 +56,7 @@ def run_several(
     from verify.apart import each_apart
     from verify.cores import jobs
     from verify.files import writable_folder
-    from verify.models.compiling import hearers, told
+    from verify.models.compiling import hearers
     from verify.report.suite import suite_of
     from verify.scenes.problems import MOST
     from verify.scenes.scene import packaged_scenes
@@ -78,6 +78,15 @@ def run_several(
     every = tuple(run for run in runs if isinstance(run, Ran))
     scenes = tuple(run.card for run in every)
     suite = suite_of(scenes, perf_counter() - began, command_line("run", given, overrides), min(at_once, len(asked)))
+    _show(suite, every, folder, as_json)
+    if not suite.passed:
+        raise SystemExit(NOT_RUN if suite.refused else GATE_FAILED)
+
+
+def _show(suite: "Suite", every: Sequence[Ran], folder: Path | None, as_json: bool) -> None:
+    """Its page, what the runs have to say, and its table or plain data."""
+    from verify.models.compiling import told
+
     page = None
     if folder is not None:
         from verify.report.suite import write_suite
@@ -95,8 +104,6 @@ def run_several(
         from verify.report.terminal_suite import print_suite
 
         print_suite(suite, page)
-    if not suite.passed:
-        raise SystemExit(NOT_RUN if suite.refused else GATE_FAILED)
 
 
 def _sentences(run: Ran) -> tuple[str, ...]:
