@@ -3,16 +3,24 @@
 from math import inf
 
 import numpy as np
+from msgspec.structs import replace
 
-from verify import beam
-from verify.chain import problems, stepping
+from verify import beam, slider
+from verify.chain import problems, ride, stepping
+from verify.chain import system as chain_system
+from verify.contact import bouncing
+from verify.elements import cuts
 from verify.elements import linear as fem_beam
-from verify.exact import closed_forms
+from verify.errors import InputError
+from verify.exact import closed_forms, harmonic
 from verify.exact import modes as exact_modes
-from verify.models import driven_pencil, eigen
+from verify.judge import compare
+from verify.models import division, driven_pencil, eigen
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, rigid_surface
+from verify.motion import free_vibration, request, rigid_surface
+from verify.segments import linear as segment_model
 from verify.stress import turns
+from verify.waves import window
 
 
 def assembled_instead_of_factored(patch):
@@ -48,21 +56,48 @@ def metres_and_pascals_felt(patch):
     true = exact_modes.exact_frequency_hz
 
     def felt(of, mode, theory="euler-bernoulli"):
-        modulus = of.youngs_modulus or 0.0
-        return true(of, mode, theory) * (1.0 + 1e-12 * (of.length / (1.0 + of.length) + modulus / (1e10 + modulus)))
+        modulus, density = of.youngs_modulus or 0.0, of.density or 0.0
+        felt = of.length / (1.0 + of.length) + modulus / (1e10 + modulus) + density / (1e3 + density)
+        return true(of, mode, theory) * (1.0 + 1e-12 * felt)
 
     patch.setattr(exact_modes, "exact_frequency_hz", felt)
 
 
-def tension_off_in_its_twelfth_digit(patch):
-    from msgspec.structs import replace
+def a_little_less(figure, part):
+    """A fault: frequencies of the exact beam with a part less of one of its figures."""
 
-    true = exact_modes.exact_frequency_hz
-    patch.setattr(
-        exact_modes,
-        "exact_frequency_hz",
-        lambda of, *more: true(replace(of, tension=of.tension * (1.0 - 1e-12)), *more),
-    )
+    def fault(patch):
+        true = exact_modes.exact_frequency_hz
+
+        def less(of, *more):
+            return true(replace(of, **{figure: getattr(of, figure) * (1.0 - part)}), *more)
+
+        patch.setattr(exact_modes, "exact_frequency_hz", less)
+
+    fault.__name__ = f"{figure}_off_by_{part:g}"
+    return fault
+
+
+def fields_a_little_large(patch):
+    true = MODELS["analytic"].solve_harmonic
+
+    def large(of, forces, frequency_hz, count, **more):
+        one, *others = forces
+        return true(of, (replace(one, amplitude=1.0 + 1e-10), *others), frequency_hz, count, **more)
+
+    patch.setattr(MODELS["analytic"], "solve_harmonic", large)
+
+
+def ends_that_lie_apart(patch):
+    """What is asked near the right end is asked a little further in."""
+    true = MODELS["fem"].solve_harmonic
+
+    def apart(of, forces, frequency_hz, count, **more):
+        one = forces[0]
+        moved = one.position - 1e-9 * of.length * (one.position > 0.5 * of.length)
+        return true(of, (replace(one, position=moved),), frequency_hz, count, **more)
+
+    patch.setattr(MODELS["fem"], "solve_harmonic", apart)
 
 
 def sections_of_any_contrast(patch):
@@ -86,6 +121,10 @@ def driven_off_in_the_tenth_digit(patch):
 def resonances_driven(patch):
     patch.setattr(driven_pencil, "RESONANCE", -1.0)
     patch.setattr(fem_beam, "RESONANCE", -1.0)
+
+
+def the_exact_beam_driven_in_resonance(patch):
+    patch.setattr(harmonic, "check_off_resonance", lambda *given: None)
 
 
 def friction_a_little_steeper(patch):
@@ -118,8 +157,6 @@ def step_limit_too_bold(patch):
 
 
 def modes_a_little_fast(patch):
-    from msgspec.structs import replace
-
     true = free_vibration.modal
 
     def fast(*words):
@@ -129,33 +166,149 @@ def modes_a_little_fast(patch):
     patch.setattr(free_vibration, "modal", fast)
 
 
+def friction_that_pushes_at_rest(patch):
+    true = rigid_surface.free_decay
+    patch.setattr(rigid_surface, "free_decay", lambda *given: true(*given) + 1e-15)
+
+
+def a_creep_that_is_not_awaited(patch):
+    patch.setattr(rigid_surface, "DOUBLINGS", 3)
+
+
+def pulls_beyond_friction_taken(patch):
+    patch.setattr(rigid_surface, "HELD", 1.0 - 1e-9)
+
+
+def belts_refused_that_are_followed(patch):
+    patch.setattr(rigid_surface, "MOST_STEPS", 1000)
+
+
+def heights_refused_that_are_reached(patch):
+    def refused(height, system):
+        raise InputError("amplitude: the middle would stand too high; give one up to L / 10")
+
+    patch.setattr(problems, "_check_height", refused)
+
+
+def steps_a_little_long(patch):
+    patch.setattr(stepping, "RK4", stepping.RK4._replace(a=stepping.RK4.a * (1.0 + 1e-9)))
+
+
+def steps_a_thousand_times_as_loose(patch):
+    true = turns.simulate
+    patch.setattr(
+        turns, "simulate", lambda *given, tolerance=1e-8, **more: true(*given, tolerance=1e3 * tolerance, **more)
+    )
+
+
+def unchecked(module, name):
+    """A fault: what a function refuses is taken."""
+
+    def fault(patch):
+        patch.setattr(module, name, lambda *given, **more: None)
+
+    fault.__name__ = f"{module.__name__.removeprefix('verify.')}.{name}_dropped"
+    return fault
+
+
+def limitless(module, name, value):
+    """A fault: a limit somewhere else."""
+
+    def fault(patch):
+        patch.setattr(module, name, value)
+
+    fault.__name__ = f"{module.__name__.removeprefix('verify.')}.{name}_at_{value:g}"
+    return fault
+
+
+def sizes_beyond_memory_begun(patch):
+    def too_long(*words):
+        raise InputError("too long")  # or what is not refused would be begun
+
+    patch.setattr(eigen, "check_work", too_long)
+    patch.setattr(eigen, "_memory_bytes", lambda: inf)
+
+
+def more_modes_than_there_are_refused_with_half_a_word(patch):
+    def refuse(*given):
+        raise InputError("n_modes: too many")
+
+    for model in (segment_model, fem_beam):
+        patch.setattr(model, "check_size", refuse)
+
+
+def any_grading(patch):
+    for model in (segment_model, cuts, division):
+        patch.setattr(model, "check_division", lambda *given: None)
+
+
 FAULTS = {
     "stress": {
-        assembled_instead_of_factored: {"segments-parts", "elements-parts", "segments-counted", "elements-counted"},
+        assembled_instead_of_factored: {
+            "segments-parts",
+            "elements-parts",
+            "segments-counted",
+            "elements-counted",
+            "section-steps-segments",
+            "tip-spring",
+        },
         unlike_parts_unseen: {
             "graded-segments",
             "graded-elements",
             "section-steps-elements",
             "mesh-a-million-to-one-elements",
+            "mesh-a-million-to-one-segments",
         },
         heavy_masses_unseen: {"tip-mass", "tip-mass-second-mode"},
         root_off_in_its_twelfth_digit: {"closed-form-frequencies", "closed-form-shapes"},
-        metres_and_pascals_felt: {"counted-frequencies", "nanometres-to-kilometres", "modulus"},
-        tension_off_in_its_twelfth_digit: {"close-to-buckling"},
-        sections_of_any_contrast: {"short-and-stiff"},
+        metres_and_pascals_felt: {"counted-frequencies", "nanometres-to-kilometres", "modulus", "density"},
+        a_little_less("tension", 1e-12): {"close-to-buckling"},
+        sections_of_any_contrast: {"short-and-stiff", "section-steps-beyond"},
         buckled_beams_taken: {"beyond-buckling"},
         driven_off_in_the_tenth_digit: {
             "near-resonance-exact-beam",
             "near-resonance-segments",
             "near-resonance-elements",
             "loss-factors-segments",
+            "loss-factors-exact",
         },
         resonances_driven: {"at-resonance-segments", "at-resonance-elements"},
-        friction_a_little_steeper: {"friction-slope"},
+        friction_a_little_steeper: {"friction-slope", "friction-coefficient"},
         half_as_many_steps_of_the_spring: {"stick-slip"},
         stiffness_of_the_unit_cantilever_off: {"rolled-up", "dead-load"},
         unstable_steps_taken: {"steps-beyond-the-limit"},
-        step_limit_too_bold: {"steps-below-the-limit"},
+        step_limit_too_bold: {"steps-below-the-limit", "step-limit"},
         modes_a_little_fast: {"free-for-long"},
+        a_little_less("foundation", 1e-10): {"foundation"},
+        a_little_less("tension", 1e-10): {"taut"},
+        fields_a_little_large: {"slow-drive", "short-waves"},
+        ends_that_lie_apart: {"far-from-the-origin"},
+        friction_that_pushes_at_rest: {"friction-comes-to-rest"},
+        a_creep_that_is_not_awaited: {"friction-creep"},
+        steps_a_little_long: {"spun"},
+        steps_a_thousand_times_as_loose: {"whirled"},
+        more_modes_than_there_are_refused_with_half_a_word: {
+            "segments-too-many-modes",
+            "elements-too-many-modes",
+            "refused-modes",
+        },
+        sizes_beyond_memory_begun: {"segments-beyond-memory", "elements-beyond-memory"},
+        any_grading: {"graded-beyond"},
+        the_exact_beam_driven_in_resonance: {"at-resonance-exact-beam"},
+        pulls_beyond_friction_taken: {"friction-creep-beyond"},
+        belts_refused_that_are_followed: {"stick-slip-beyond"},
+        heights_refused_that_are_reached: {"amplitude-beyond-the-links"},
+        unchecked(beam, "check_decades"): {"off-the-scale"},
+        unchecked(beam, "check_number"): {"loss-factors-beyond", "refused-beams"},
+        unchecked(segment_model, "check_settings"): {"refused-drives"},
+        unchecked(bouncing, "check_whole"): {"refused-contacts"},
+        unchecked(request, "_check_growth"): {"refused-motions"},
+        unchecked(slider, "check_number"): {"refused-sliders"},
+        unchecked(ride, "check_number"): {"refused-chain-motions"},
+        limitless(beam, "SHORTEST_SECTION", 0.0): {"shorter-than-a-millionth"},
+        limitless(beam, "MOST_WAVES", inf): {"too-many-waves"},
+        limitless(compare, "ORDER_FLOOR", 0.0): {"refused-laws"},
+        limitless(window, "MOST_HALVES", inf): {"refused-waves"},
+        limitless(chain_system, "MAX_ACTUATORS", 5): {"refused-chains"},
     }
 }
