@@ -11,14 +11,16 @@ from verify.chain import system as chain_system
 from verify.contact import bouncing
 from verify.elements import cuts
 from verify.elements import linear as fem_beam
+from verify.elements import stacks as element_stacks
 from verify.errors import InputError
 from verify.exact import closed_forms, harmonic
 from verify.exact import modes as exact_modes
-from verify.judge import compare
+from verify.judge import compare, crossing
 from verify.models import division, driven_pencil, eigen
 from verify.models.catalogue import MODELS
 from verify.motion import free_vibration, request, rigid_surface
 from verify.segments import linear as segment_model
+from verify.segments import stacks as segment_stacks
 from verify.stress import turns
 from verify.waves import window
 
@@ -242,6 +244,39 @@ def any_grading(patch):
         patch.setattr(model, "check_division", lambda *given: None)
 
 
+def stacks_of_a_little_more_mass(patch):
+    for stacks, name in ((segment_stacks, "link_inertia"), (element_stacks, "mass_matrix")):
+        true = getattr(stacks, name)
+        patch.setattr(stacks, name, lambda *given, _true=true: (1.0 + 1e-6) * _true(*given))
+
+
+def stacks_of_a_little_stiffer_springs(patch):
+    for stacks, name in ((segment_stacks, "_loaded"), (element_stacks, "_springs")):
+        true = getattr(stacks, name)
+
+        def stiffer(*given, _true=true):
+            found = _true(*given)
+            if isinstance(found, tuple):
+                return found[0], (1.0 + 1e-6) * found[1]
+            return replace(found, bodies=found.bodies * [[[1.0]], [[1.0]], [[1.0 + 1e-6]], [[1.0]]])
+
+        patch.setattr(stacks, name, stiffer)
+
+
+def swept_off_in_the_tenth_digit(patch):
+    for name in ("analytic", "segment"):
+        true = MODELS[name].sweep_harmonic
+
+        def off(of, forces, hertz, count, _true=true, **more):
+            return _true(of, forces, hertz * (1.0 + 3e-10), count, **more)
+
+        patch.setattr(MODELS[name], "sweep_harmonic", off)
+
+
+def costs_on_straight_lines(patch):
+    patch.setattr(crossing, "at_error", lambda errors, values, error: np.interp(error, errors[::-1], values[::-1]))
+
+
 FAULTS = {
     "stress": {
         assembled_instead_of_factored: {
@@ -309,6 +344,10 @@ FAULTS = {
         limitless(beam, "MOST_WAVES", inf): {"too-many-waves"},
         limitless(compare, "ORDER_FLOOR", 0.0): {"refused-laws"},
         limitless(window, "MOST_HALVES", inf): {"refused-waves"},
+        stacks_of_a_little_more_mass: {"many-stepped-segments", "many-stepped-elements"},
+        stacks_of_a_little_stiffer_springs: {"many-loaded-segments", "many-loaded-elements"},
+        swept_off_in_the_tenth_digit: {"many-frequencies-the-exact-beam", "many-frequencies-segments"},
+        costs_on_straight_lines: {"cost-at-an-error"},
         limitless(chain_system, "MAX_ACTUATORS", 5): {"refused-chains"},
     }
 }
