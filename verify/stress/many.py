@@ -158,7 +158,7 @@ ROWS: tuple[Row, ...] = (
             title=f"Fields of {name} at many frequencies in one call, loss factor 3 %, against all modes",
             why="exact/sweeps.py, segments/sweeps.py: as one by one, 1e-12 of 40 parts.",
             along="frequencies",
-            at=(2.0, 9.0, 40.0),
+            at=(2.0, 9.0, 20.0),
             promise=SMALL,
             error=fields_error(model),
         )
