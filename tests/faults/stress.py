@@ -1,14 +1,16 @@
 """Faults that the gates of the scene stress have to find: small ones, for the promises are tight."""
 
+from dataclasses import replace as changed
 from math import inf
 
 import numpy as np
 from msgspec.structs import replace
 
 from verify import beam, slider
-from verify.chain import problems, ride, stepping
+from verify.chain import problems, ride, splitting, stepping, stretching
 from verify.chain import system as chain_system
-from verify.contact import bouncing
+from verify.chain.result import ChainMotion
+from verify.contact import bouncing, foot
 from verify.elements import cuts
 from verify.elements import linear as fem_beam
 from verify.elements import stacks as element_stacks
@@ -16,7 +18,7 @@ from verify.errors import InputError
 from verify.exact import closed_forms, harmonic
 from verify.exact import modes as exact_modes
 from verify.judge import compare, crossing
-from verify.models import division, driven_pencil, eigen
+from verify.models import division, driven_pencil, eigen, spline
 from verify.models.catalogue import MODELS
 from verify.motion import free_vibration, request, rigid_surface
 from verify.segments import linear as segment_model
@@ -193,14 +195,24 @@ def heights_refused_that_are_reached(patch):
 
 
 def steps_a_little_long(patch):
-    patch.setattr(stepping, "RK4", stepping.RK4._replace(a=stepping.RK4.a * (1.0 + 1e-9)))
+    for name, part in (("RK4", 1e-9), ("DORMAND_PRINCE", 1e-6)):
+        scheme = getattr(stepping, name)
+        patch.setattr(stepping, name, changed(scheme, a=scheme.a * (1.0 + part)))
 
 
-def steps_a_thousand_times_as_loose(patch):
-    true = turns.simulate
-    patch.setattr(
-        turns, "simulate", lambda *given, tolerance=1e-8, **more: true(*given, tolerance=1e3 * tolerance, **more)
-    )
+def friction_a_little_harder(patch):
+    true = rigid_surface._law
+    patch.setattr(rigid_surface, "_law", lambda c, k, s, slope: true(c, 1.000001 * k, s, slope))
+
+
+def tip_springs_a_little_stiffer(patch):
+    true = MODELS["fem"].solve_modes
+
+    def stiffer(of, *given, **more):
+        springs = tuple(replace(spring, stiffness=(1.0 + 1e-10) * spring.stiffness) for spring in of.spring)
+        return true(replace(of, spring=springs), *given, **more)
+
+    patch.setattr(MODELS["fem"], "solve_modes", stiffer)
 
 
 def unchecked(module, name):
@@ -277,6 +289,76 @@ def costs_on_straight_lines(patch):
     patch.setattr(crossing, "at_error", lambda errors, values, error: np.interp(error, errors[::-1], values[::-1]))
 
 
+def clamped_pinned_roots_off_in_their_twelfth_digit(patch):
+    true = closed_forms.root_parts
+
+    def off(supports, mode):
+        turned, remainder = true(supports, mode)
+        return turned, remainder + 1e-12 * ("pinned" in supports and "clamped" in supports)
+
+    patch.setattr(closed_forms, "root_parts", off)
+
+
+def splines_straight_at_their_ends(patch):
+    patch.setattr(spline, "_at_end", lambda pieces, chords, ends, end: chords[:, 0])
+
+
+def kicks_at_equal_distances(patch):
+    for kicks in (1, 2, 3):
+        patch.setitem(splitting.SCHEMES, kicks, ((1.0 / (kicks + 1),) * (kicks + 1), (1.0 / kicks,) * kicks))
+
+
+def a_tip_that_answers_with_its_own_mass(patch):
+    true = splitting.lowest_modes
+
+    def heavy(system, n_modes):
+        omega, modes, duals, tilt = true(system, n_modes)
+        return omega, modes, 1.0001 * duals, tilt
+
+    patch.setattr(splitting, "lowest_modes", heavy)
+
+
+def rest_taken_for_straight(patch):
+    true = splitting.simulate_linear
+
+    def straight(basis, *given):
+        moved = true(basis, *given)
+        return changed(moved, angles=moved.angles - basis.rest.angles)
+
+    patch.setattr(splitting, "simulate_linear", straight)
+
+
+def work_before_the_books_are_opened(patch):
+    def residual(motion):
+        total = np.sum(motion.energies(), axis=0)
+        return total - total[0] - motion.work_in + motion.dissipated
+
+    patch.setattr(ChainMotion, "residual", residual)
+
+
+def stretched_links_with_a_weaker_spring_in_the_books(patch):
+    true = stretching.kernels.energy
+    patch.setattr(
+        stretching.kernels,
+        "energy",
+        lambda flat, diagonal, coupling, u, v: true(flat, diagonal, 0.99 * coupling, u, v) * 1.0001,
+    )
+
+
+def half_of_what_touches_a_little_wider(patch):
+    true = foot.contact_half_angle
+    patch.setattr(foot, "contact_half_angle", lambda load: 1.0001 * true(load))
+
+
+def limits_of_another_width(patch):
+    true = bouncing.bouncing_limits
+    patch.setattr(bouncing, "bouncing_limits", lambda e: (true(e)[0], 1.0001 * true(e)[1]))
+
+
+def orders_of_gregory_alone(patch):
+    patch.setattr(type(MODELS["segment"]), "order", lambda model, of, **settings: 4)
+
+
 FAULTS = {
     "stress": {
         assembled_instead_of_factored: {
@@ -285,7 +367,6 @@ FAULTS = {
             "segments-counted",
             "elements-counted",
             "section-steps-segments",
-            "tip-spring",
         },
         unlike_parts_unseen: {
             "graded-segments",
@@ -308,7 +389,9 @@ FAULTS = {
             "loss-factors-exact",
         },
         resonances_driven: {"at-resonance-segments", "at-resonance-elements"},
-        friction_a_little_steeper: {"friction-slope", "friction-coefficient"},
+        friction_a_little_steeper: {"friction-slope"},
+        friction_a_little_harder: {"friction-coefficient"},
+        tip_springs_a_little_stiffer: {"tip-spring"},
         half_as_many_steps_of_the_spring: {"stick-slip"},
         stiffness_of_the_unit_cantilever_off: {"rolled-up", "dead-load"},
         unstable_steps_taken: {"steps-beyond-the-limit"},
@@ -320,8 +403,7 @@ FAULTS = {
         ends_that_lie_apart: {"far-from-the-origin"},
         friction_that_pushes_at_rest: {"friction-comes-to-rest"},
         a_creep_that_is_not_awaited: {"friction-creep"},
-        steps_a_little_long: {"spun"},
-        steps_a_thousand_times_as_loose: {"whirled"},
+        steps_a_little_long: {"spun", "whirled"},
         more_modes_than_there_are_refused_with_half_a_word: {
             "segments-too-many-modes",
             "elements-too-many-modes",
@@ -348,6 +430,16 @@ FAULTS = {
         stacks_of_a_little_stiffer_springs: {"many-loaded-segments", "many-loaded-elements"},
         swept_off_in_the_tenth_digit: {"many-frequencies-the-exact-beam", "many-frequencies-segments"},
         costs_on_straight_lines: {"cost-at-an-error"},
+        clamped_pinned_roots_off_in_their_twelfth_digit: {"frequencies-of-all-supports", "many-exact-beams"},
+        splines_straight_at_their_ends: {"splines"},
+        kicks_at_equal_distances: {"kick-schemes"},
+        a_tip_that_answers_with_its_own_mass: {"chain-modes"},
+        rest_taken_for_straight: {"linear-about-bent"},
+        work_before_the_books_are_opened: {"books-opened-late"},
+        stretched_links_with_a_weaker_spring_in_the_books: {"stretching-energy", "stretching-work"},
+        half_of_what_touches_a_little_wider: {"contacts-as-integrals"},
+        limits_of_another_width: {"bounces-at-their-limits"},
+        orders_of_gregory_alone: {"orders-as-told"},
         limitless(chain_system, "MAX_ACTUATORS", 5): {"refused-chains"},
     }
 }
