@@ -4,6 +4,7 @@ from dataclasses import replace as changed
 from math import inf
 
 import numpy as np
+from faults.chain import recursion_with_another_inertia_than_the_energy
 from msgspec.structs import replace
 
 from verify import beam, slider
@@ -21,6 +22,7 @@ from verify.judge import compare, crossing
 from verify.models import division, driven_pencil, eigen, spline
 from verify.models.catalogue import MODELS
 from verify.motion import free_vibration, request, rigid_surface
+from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
 from verify.stress import turns
@@ -195,7 +197,7 @@ def heights_refused_that_are_reached(patch):
 
 
 def steps_a_little_long(patch):
-    for name, part in (("RK4", 1e-9), ("DORMAND_PRINCE", 1e-6)):
+    for name, part in (("RK4", 1e-9), ("DORMAND_PRINCE", 1e-5)):
         scheme = getattr(stepping, name)
         patch.setattr(stepping, name, changed(scheme, a=scheme.a * (1.0 + part)))
 
@@ -359,6 +361,36 @@ def orders_of_gregory_alone(patch):
     patch.setattr(type(MODELS["segment"]), "order", lambda model, of, **settings: 4)
 
 
+def longer_steps_than_the_tolerance_takes(patch):
+    scheme = stepping.DORMAND_PRINCE
+    patch.setattr(stepping, "DORMAND_PRINCE", changed(scheme, weights=1e-5 * scheme.weights))
+
+
+def modes_that_take_too_much_of_a_kick(patch):
+    true = splitting._all_modes
+
+    def heavy(*given):
+        omega, modes, duals, tilt = true(*given)
+        return omega, modes, 1.0001 * duals, tilt
+
+    patch.setattr(splitting, "_all_modes", heavy)
+
+
+def curvatures_of_the_other_sign(patch):
+    true = segment_model.joint_curvatures
+    patch.setattr(segment_model, "joint_curvatures", lambda *given: -true(*given))
+
+
+def links_a_little_steeper_than_they_are(patch):
+    true = segments_in_time._straight
+
+    def steeper(*given):
+        shapes = true(*given)
+        return lambda x, derivative: shapes(x, derivative) * (1.0 + 1e-6 * derivative)
+
+    patch.setattr(segments_in_time, "_straight", steeper)
+
+
 FAULTS = {
     "stress": {
         assembled_instead_of_factored: {
@@ -440,6 +472,11 @@ FAULTS = {
         half_of_what_touches_a_little_wider: {"contacts-as-integrals"},
         limits_of_another_width: {"bounces-at-their-limits"},
         orders_of_gregory_alone: {"orders-as-told"},
+        recursion_with_another_inertia_than_the_energy: {"shaken-at-two-points"},
+        longer_steps_than_the_tolerance_takes: {"kept-between-steps"},
+        modes_that_take_too_much_of_a_kick: {"energy-over-kicks"},
+        curvatures_of_the_other_sign: {"curvatures"},
+        links_a_little_steeper_than_they_are: {"edges-of-links"},
         limitless(chain_system, "MAX_ACTUATORS", 5): {"refused-chains"},
     }
 }

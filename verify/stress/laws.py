@@ -1,14 +1,14 @@
-"""Figures with a law of their own that no scene's beam shows: roots of all supports, splines, schemes, contacts."""
+"""Figures with a law of their own that no scene's beam shows: roots of all supports, splines, contacts, orders."""
 
 from collections.abc import Callable
-from dataclasses import replace as changed
 from decimal import Decimal, localcontext
 from math import acos, asin, cos, pi, sin, sqrt
 
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import Beam, PointForce
+from verify.attached import PointMass
+from verify.beam import Beam
 from verify.stress.beams import STEPPED, STRIP, held
 from verify.stress.decimals import PI
 from verify.stress.decimals import cos as cosine
@@ -79,7 +79,7 @@ def many_exact_error(n: float) -> float:
     return worst
 
 
-# --- Splines and schemes ----------------------------------------------------------------------------------------------
+# --- Splines ----------------------------------------------------------------------------------------------
 
 
 def spline_error(pieces: float) -> float:
@@ -98,99 +98,38 @@ def spline_error(pieces: float) -> float:
     return worst / float(nodes.size) ** 2
 
 
-def kicks_error(kicks: float) -> float:
-    """Error of a scheme of so many kicks as Gauss's quadrature of a step: moments up to 2 kicks - 1."""
-    from verify.chain.splitting import SCHEMES
-
-    flows, weights = SCHEMES[int(kicks)]
-    at = np.cumsum(flows)
-    moments = [abs(float(np.dot(weights, at[:-1] ** p)) - 1.0 / (p + 1)) for p in range(2 * int(kicks))]
-    return max(*moments, abs(float(at[-1]) - 1.0))
+# --- Shapes -----------------------------------------------------------------------------------------------------------
 
 
-# --- The chain about rest ---------------------------------------------------------------------------------------------
+def curvature_error(parts: float) -> float:
+    """Curvatures of modes 1 and 2 where models know them best, against -k^2 of their sines, by (k l)^2 / 12."""
+    from verify.models.catalogue import MODELS
 
-CLAMPED, TAUT = held("clamped", "free"), replace(STRIP, tension=70.0)
-FINE = 0.025
-"""Of the longest step of links that stretch: what RK4 takes off their waves is then nothing."""
-FEW = 4
-"""Of its lowest modes."""
-
-
-def chain_modes_error(n: float) -> float:
-    """Of n hinged links, all modes and the lowest alone: frequencies in closed form, and duals of their modes."""
-    from verify.chain.splitting import modal_basis
-    from verify.chain.system import build_system
-
-    system, worst = build_system(STRIP, int(n)), 0.0
-    for basis in (modal_basis(system), modal_basis(system, n_modes=FEW)):
-        omega = basis.omega[:-1]  # last stands the motion off the roller's line
-        s2 = np.sin(np.arange(1.0, len(omega) + 1.0) * pi / (2.0 * n)) ** 2
-        exact = np.sqrt(48.0 * s2 * s2 / (3.0 - 2.0 * s2)) * STRIP.wave_constant * (n / STRIP.length) ** 2
-        apart = basis.duals @ basis.modes.T - np.eye(len(basis.omega))
-        worst = max(worst, float(abs(omega[:FEW] / exact[:FEW] - 1.0).max()), float(abs(apart).max()))
+    worst, n = 0.0, int(parts)
+    for model in ("segment", "fem"):
+        modes = MODELS[model].solve_modes(STRIP, 2, n)
+        for mode, found in enumerate(modes.curvatures(), start=1):
+            k = mode * pi / STRIP.length
+            size = sqrt(2.0 / (STRIP.mass_per_length * STRIP.length))
+            exact = -size * k**2 * np.sin(k * modes.curvature_points)
+            worst = max(worst, float(abs(found - exact).max()) / (size * k**2) / ((mode * pi / n) ** 2 / 12.0))
     return worst
 
 
-def bent_rest_error(n: float) -> float:
-    """By how much a chain that hangs still by its weight moves by linear flow, over how far it is bent."""
-    from verify.chain.splitting import modal_basis, simulate_linear
-    from verify.chain.statics import solve_static
-    from verify.chain.system import build_system
+def edges_error(links: float) -> float:
+    """Deflection, slope and bend of the rigid links themselves against straight lines between joints of a sine."""
+    from verify.models.catalogue import MODELS
 
-    system = changed(build_system(held("clamped", "free"), int(n)), gravity=(0.0, -9.81))
-    rest = solve_static(system)
-    moved = simulate_linear(modal_basis(system, rest), rest, np.linspace(0.0, 0.3, 5))
-    return float(abs(moved.angles - rest.angles).max() / abs(rest.angles).max())
-
-
-def late_books_error(n: float) -> float:
-    """What is missing in the books of a driven chain that are opened late, over what was put in, by its tolerance."""
-    from verify.chain.dynamics import at_rest
-    from verify.chain.stepping import simulate
-    from verify.chain.system import build_system
-
-    beam, tolerance = held("clamped", "free"), 1e-9
-    system = build_system(beam, int(n), (PointForce(position=0.6, amplitude=0.3),), 9.0, joint_dashpot=1e-3)
-    motion = simulate(system, at_rest(system), np.linspace(0.05, 0.2, 4), tolerance=tolerance)
-    given = float(np.ptp(motion.work_in)) + float(np.ptp(motion.dissipated))
-    return float(abs(motion.residual()).max()) / given / (tolerance * motion.statistics.steps)
-
-
-def stretching_books_error(n: float) -> float:
-    """Energy of links let go from a sine and followed, against its closed form at first.
-
-    Joints bend by 4 sin^2(pi / 2N) A / l sin(pi j / N) each, links stretch by half the square of their slopes,
-    2 sin(pi / 2N) A / l cos(pi (j - 1/2) / N); what is left out is the square of the largest slope.
-    """
-    from verify.chain.stretching import elastic_step_limit, simulate_elastic
-    from verify.chain.system import build_system
-
-    links, size, stiffness = int(n), 1e-4 * STRIP.length, 8.05e6
-    system = build_system(STRIP, links)
-    link = STRIP.length / links
-    shape = size * np.sin(pi * np.arange(links + 1.0) / links)
-    step = FINE * elastic_step_limit(system, stiffness)
-    motion = simulate_elastic(system, stiffness, np.linspace(0.0, 1e-3, 3), step=step, deflected=shape)
-    slope = 2.0 * sin(pi / (2.0 * links)) * size / link
-    bent = STRIP.bending_stiffness / link * (2.0 * sin(pi / (2.0 * links)) * slope) ** 2 * links / 4.0
-    stretched = stiffness * link * slope**4 * 3.0 * links / 64.0
-    return max(abs(float(energy) / (bent + stretched) - 1.0) for energy in motion.energies) / slope**2
-
-
-def stretching_work_error(n: float) -> float:
-    """Energy of links that a constant force pulls along and across, over its work, less one."""
-    from verify.chain.stretching import elastic_step_limit, simulate_elastic
-    from verify.chain.system import LinkLoad, build_system
-
-    links, stiffness, along, across = int(n), 8.05e6, 300.0, 0.2
-    system = build_system(CLAMPED, links)
-    end = LinkLoad(link=links, at=STRIP.length / links, force=(along, across))
-    system = changed(system, loads=(end,))
-    step = FINE * elastic_step_limit(system, stiffness)
-    motion = simulate_elastic(system, stiffness, np.linspace(0.0, 1e-3, 4), step=step)
-    x, y = motion.displacements[1:, -1].T
-    return float(abs((motion.energies[1:] - motion.energies[0]) / (along * x + across * y) - 1.0).max())
+    n = int(links)
+    basis = MODELS["segment"].time_basis(STRIP, n, 2, "raw")
+    x = (np.arange(n) + 0.37) * STRIP.length / n
+    places, slopes, bends = (basis.shapes(x, derivative)[0] for derivative in range(3))
+    joints = np.sin(pi * np.arange(n + 1.0) / n)
+    exact = joints[:-1] + 0.37 * np.diff(joints)
+    rises = np.diff(joints) * n / STRIP.length
+    size = places[0] / exact[0]
+    off = [places / size - exact, (slopes / size - rises) * STRIP.length, bends / size]
+    return max(float(abs(one).max()) for one in off)
 
 
 # --- Contacts ---------------------------------------------------------------------------------------------------------
@@ -237,6 +176,8 @@ def bounce_error(restitution: float) -> float:
 
 # --- Orders -----------------------------------------------------------------------------------------------------------
 
+TURNING = replace(STRIP, mass=(PointMass(position=0.29, mass=0.05, rotary_inertia=3e-4),))
+CLAMPED, TAUT = held("clamped", "free"), replace(STRIP, tension=70.0)
 RULES: tuple[tuple[str, Beam, dict[str, str | float]], ...] = (
     ("segment", STRIP, {}),
     ("segment", STRIP, {"grading": 2.0}),
@@ -244,6 +185,7 @@ RULES: tuple[tuple[str, Beam, dict[str, str | float]], ...] = (
     ("segment", CLAMPED, {"wall": "third-order"}),
     ("segment", TAUT, {}),
     ("segment", TAUT, {"joints": "tensioned"}),
+    ("segment", TURNING, {}),
     ("segment", STRIP, {"theory": "timoshenko", "joints": "tensioned"}),
     ("fem", CLAMPED, {}),
     ("fem", STEPPED, {"grading": 2.0}),
@@ -294,58 +236,23 @@ ROWS: tuple[Row, ...] = (
         error=spline_error,
     ),
     Floor(
-        id="kick-schemes",
-        title="Steps of 1, 2 and 3 kicks as Gauss's quadrature, moments up to twice the kicks less one",
-        why="chain/splitting.py: kicks stand and weigh as Gauss's points do.",
-        along="kicks",
-        at=(1, 2, 3),
-        promise=1e-15,
-        error=kicks_error,
+        id="curvatures",
+        title="Curvatures of modes 1 and 2 with their signs, over (k l)^2 / 12",
+        why="segments/links.py, elements/linear.py: read where they are of order 4; a plain difference "
+        "leaves a twelfth of (k l)^2.",
+        along="parts",
+        at=(10, 20, 40),
+        promise=0.05,
+        error=curvature_error,
     ),
     Floor(
-        id="chain-modes",
-        title="All modes of hinged links, and the lowest alone: frequencies in closed form, duals of their modes",
-        why="chain/splitting.py, chain/modes.py: K is assembled, whose rounding grows like N^4.",
+        id="edges-of-links",
+        title="Deflection, slope and bend of the rigid links themselves, against lines between joints of a sine",
+        why="segments/in_time.py: straight between joints that lie on a sine, to rounding.",
         along="links",
-        at=(8, 12, 20),
-        promise=2e-11,
-        error=chain_modes_error,
-    ),
-    Floor(
-        id="linear-about-bent",
-        title="A chain that hangs still by its weight, moved by the linear flow about there",
-        why="chain/splitting.py: an equilibrium stands still to rounding.",
-        along="links",
-        at=(6, 20),
-        promise=1e-13,
-        error=bent_rest_error,
-    ),
-    Floor(
-        id="books-opened-late",
-        title="Work, loss and energy of a driven chain from a later time on, over the tolerance of all steps",
-        why="chain/stepping.py: the error of a step is held to the tolerance; energy is of second degree: twice that.",
-        along="links",
-        at=(6, 12),
-        promise=2.0,
-        error=late_books_error,
-    ),
-    Floor(
-        id="stretching-energy",
-        title="Energy of links that stretch, let go from a sine, over the square of its slope",
-        why="Half the square of the slope is left out of a link's stretch, and a quarter of its joints' angles.",
-        along="links",
-        at=(6, 20),
-        promise=1.0,
-        error=stretching_books_error,
-    ),
-    Floor(
-        id="stretching-work",
-        title="Energy of links that stretch under a constant force along and across, against its work",
-        why="Energy is work; RK4 in a fortieth of its limit loses 4e-8.",
-        along="links",
-        at=(6, 20),
-        promise=1e-7,
-        error=stretching_work_error,
+        at=(6, 49),
+        promise=1e-12,
+        error=edges_error,
     ),
     Floor(
         id="contacts-as-integrals",
@@ -367,7 +274,7 @@ ROWS: tuple[Row, ...] = (
     ),
     Floor(
         id="orders-as-told",
-        title="Observed orders of nine beams and rules against those that models say",
+        title="Observed orders of ten beams and rules against those that models say",
         why="judge/subjects.py: the leading order; from 20 parts on the next one takes off a tenth at most.",
         along="parts",
         at=(20, 30),

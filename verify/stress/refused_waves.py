@@ -27,7 +27,6 @@ WITH_MASS = replace(STRIP, mass=(PointMass(position=0.3, mass=0.02),))
 TIMES, PLACES = np.linspace(0.0, 0.01, 101), np.linspace(0.1, 0.6, 21)
 SEEN = np.cos(2.0 * pi * HERTZ * TIMES[:, None] - 26.0 * PLACES)
 SPRING = Device(position=0.2, stiffness=3000.0)
-LEAST = bouncing.bouncing_limits(0.3)[0]
 
 
 def window(*ends: float, on: Beam = STRIP) -> Ask:
@@ -43,6 +42,11 @@ def halves(*ends: float, on: Beam = STRIP, hertz: float = HERTZ) -> Ask:
 def series(x: Array = PLACES, times: Array = TIMES, values: Array = SEEN, hertz: float = HERTZ) -> Ask:
     """Of a wave seen at 21 places."""
     return lambda: measure_series(STRIP, x, times, values, hertz)
+
+
+def bouncing_at(share: float) -> Ask:
+    """In step, at a share of the least ratio."""
+    return lambda: bouncing.bounce_in_step(share * bouncing.bouncing_limits(0.3)[0], 0.3)
 
 
 def driven(*devices: Device, forces: tuple[PointForce, ...] = FORCES) -> Ask:
@@ -130,11 +134,7 @@ ROWS: tuple[Row, ...] = (
         ),
         Case("restitution = 1.0", lambda: bouncing.bouncing_limits(1.0), lambda: bouncing.bouncing_limits(0.999)),
         Case("restitution = -1e-09", lambda: bouncing.bouncing_limits(-1e-9), lambda: bouncing.bouncing_limits(0.0)),
-        Case(
-            "acceleration_ratio = ",
-            lambda: bouncing.bounce_in_step(0.999 * LEAST, 0.3),
-            lambda: bouncing.bounce_in_step(1.001 * LEAST, 0.3),
-        ),
+        Case("acceleration_ratio = ", bouncing_at(0.999), bouncing_at(1.001)),
         Case("periods = 0", lambda: bouncing.bounce_in_step(3.0, 0.3, 0)),
         Case("load = 0.0", lambda: foot.contact_half_angle(0.0), lambda: foot.contact_half_angle(1e-9)),
         Case("span = -1e-09", lambda: foot.short_foot_force(-1e-9, 0.3), lambda: foot.short_foot_force(0.0, 0.3)),
