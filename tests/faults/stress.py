@@ -26,7 +26,7 @@ from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
 from verify.stress import turns
-from verify.waves import window
+from verify.waves import series, unit_waves, window
 
 
 def assembled_instead_of_factored(patch):
@@ -391,6 +391,15 @@ def links_a_little_steeper_than_they_are(patch):
     patch.setattr(segments_in_time, "_straight", steeper)
 
 
+def phasors_a_little_large(patch):
+    true = series.phasors
+    patch.setattr(series, "phasors", lambda *given: 1.0001 * true(*given))
+
+
+def maps_of_reflections_alone(patch):
+    patch.setitem(unit_waves.FIGURES, "standing_wave_ratio", unit_waves._reflection)
+
+
 FAULTS = {
     "stress": {
         assembled_instead_of_factored: {
@@ -477,6 +486,8 @@ FAULTS = {
         modes_that_take_too_much_of_a_kick: {"energy-over-kicks"},
         curvatures_of_the_other_sign: {"curvatures"},
         links_a_little_steeper_than_they_are: {"edges-of-links"},
+        phasors_a_little_large: {"waves-seen-in-time"},
+        maps_of_reflections_alone: {"figures-of-a-map"},
         limitless(chain_system, "MAX_ACTUATORS", 5): {"refused-chains"},
     }
 }

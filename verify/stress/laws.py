@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.attached import PointMass
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
 from verify.stress.beams import STEPPED, STRIP, held
 from verify.stress.decimals import PI
 from verify.stress.decimals import cos as cosine
@@ -132,6 +132,41 @@ def edges_error(links: float) -> float:
     return max(float(abs(one).max()) for one in off)
 
 
+def seen_error(places: float) -> float:
+    """Of two waves seen in time at so many places: reflection, power and speed of the crests, k given, worst."""
+    from verify.waves.series import measure_series
+
+    hertz, forward, backward = 370.0, 1.3e-6, 0.4e-6
+    omega, k = 2.0 * pi * hertz, sqrt(2.0 * pi * hertz / STRIP.wave_constant)
+    times, x = np.linspace(0.0, 3.0 / hertz, 91)[:-1, None], np.linspace(0.1, 0.6, int(places))
+    values = forward * np.cos(omega * times - k * x) + backward * np.cos(omega * times + k * x + 0.7)
+    found = measure_series(STRIP, x, times[:, 0], values, hertz, k)
+    apart, size = forward**2 - backward**2, sqrt(forward**2 + backward**2)
+    power = STRIP.bending_stiffness * k**3 * omega * apart
+    crests = -omega * STRIP.surface_distance * k * apart / size
+    pairs = ((found.reflection, backward / forward), (found.energy_flux, power), (found.crest_speed, crests))
+    return max(abs(value / exact - 1.0) for value, exact in pairs)
+
+
+def map_error(phase: float) -> float:
+    """Figures of a map under two forces at a phase, degrees, against those of the field measured by itself, worst."""
+    from verify.exact.harmonic import solve_harmonic
+    from verify.waves.measures import measure
+    from verify.waves.unit_waves import FIGURES, Gaps, UnitDrive, superposed
+
+    places, window, hertz = (0.1, 0.6), (0.2, 0.5), np.array([370.0])
+    beam = replace(STRIP, loss_factor=0.013)
+    drive = UnitDrive(beam=beam, model="analytic", count=None, kind="force", places=places, window=window)
+    turned = np.array([0.8 * np.exp(1j * np.deg2rad(phase))])
+    found, worst = superposed(drive, tuple(FIGURES), hertz, 1.0 + 0.0j, turned, Gaps()), 0.0
+    forces = (PointForce(position=places[0]), PointForce(position=places[1], amplitude=0.8, phase_deg=phase))
+    for i, frequency in enumerate(hertz):
+        measured = measure(solve_harmonic(beam, forces, float(frequency)), window)
+        for name, one in zip(FIGURES, found, strict=True):
+            worst = max(worst, abs(float(one[i, 0]) / getattr(measured, name) - 1.0))
+    return worst
+
+
 # --- Contacts ---------------------------------------------------------------------------------------------------------
 
 
@@ -253,6 +288,24 @@ ROWS: tuple[Row, ...] = (
         at=(6, 49),
         promise=1e-12,
         error=edges_error,
+    ),
+    Floor(
+        id="waves-seen-in-time",
+        title="Reflection, power and speed of crests of two waves seen in time at some places",
+        why="waves/series.py: phasors by least squares, two waves by their wavenumber, to rounding.",
+        along="places",
+        at=(5, 9, 33),
+        promise=1e-11,
+        error=seen_error,
+    ),
+    Floor(
+        id="figures-of-a-map",
+        title="Reflection, standing-wave ratio, crest speed and power of a map, against fields measured one by one",
+        why="waves/unit_waves.py: unit waves superposed, the same waves to rounding.",
+        along="degrees",
+        at=(10.0, 90.0, 170.0),
+        promise=1e-9,
+        error=map_error,
     ),
     Floor(
         id="contacts-as-integrals",

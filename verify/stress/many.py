@@ -112,7 +112,7 @@ def cost_error(order: float) -> float:
 
     Errors n^-p and 2 n^-p, costs n and n^1.5 times what makes both cost 20 at the error 20^-p.
     """
-    sizes, wanted = (8.0, 16.0, 32.0, 64.0), 20.0**-order
+    sizes, wanted = (12.0, 24.0, 48.0), 20.0**-order
     needed = 20.0 * 2.0 ** (1.0 / order)
     one = converging([Point(1.0 / n, n**-order, n) for n in sizes], (order, order), 1e-30)
     points = [Point(1.0 / n, 2.0 * n**-order, 20.0 * (n / needed) ** 1.5) for n in sizes]

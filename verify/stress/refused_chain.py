@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.chain import bending, dynamics, problems, ride, splitting, stepping, stretching
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
-from verify.chain.work import check_kept
+from verify.chain.work import check_kept, refuse_work
 from verify.slider import Slider
 from verify.stress.beams import PLAIN, STEPPED, STRIP, held
 from verify.stress.kind import Row
@@ -242,5 +242,6 @@ ROWS: tuple[Row, ...] = (
             lambda: ride.ride_from_rest(CANTILEVER, FORCES, HERTZ, SLIDER, LINKS, 1e-4, step=1e-5),
         ),
         Case("time = 1.0 s would keep", lambda: check_kept(1e9, LINKS, "time = 1.0 s")),
+        Case("time = 2 s takes", lambda: refuse_work(1001.0, 1000.0, 2.0), lambda: refuse_work(1000.0, 1000.0, 2.0)),
     ),
 )
