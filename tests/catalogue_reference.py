@@ -530,6 +530,7 @@ HEAVY_SLIDER = {
     "books-damped": lambda: ridden("massless")["damped"],
     "books-reaction": lambda: ridden("held")["normal_on_beam"],
     "books-way": lambda: ridden("held")["displacement"],
+    "coulomb-slides": lambda: 0.5 * 0.021 * ((0.4 - 0.31 * GRAVITY * 4e-4) ** 2 - 0.4**2),
 }
 
 # --- The nonlinear chain --------------------------------------------------------------------------------------------------

@@ -136,6 +136,11 @@ def weight_of_another_load(patch):
     patch.setattr(carried, "law_of", lambda *given: law_with(true(*given), load=1.001))
 
 
+def friction_of_a_millionth_more(patch):
+    true = carried.law_of
+    patch.setattr(carried, "law_of", lambda *given: law_with(true(*given), kinetic=1.000001))
+
+
 def steady_start_without_the_mass(patch):
     patch.setattr(carried, "carried_along", lambda basis, *given: (np.zeros(len(basis.omegas)),) * 2)
 
@@ -373,6 +378,7 @@ FAULTS = {
         one_way_for_two_way: {"books-contact", "books-way"},
         held_slider_without_inertia: {"books-reaction", "books-way"},
         two_way_for_one_way: {"books-contact-one-way"},
+        friction_of_a_millionth_more: {"coulomb-slides"},
         loss_of_the_beam_booked_at_a_thousandth_less: {
             "books-damped",
             "books-close",

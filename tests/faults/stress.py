@@ -1,18 +1,32 @@
 """Faults that the gates of the scene stress have to find: small ones, for the promises are tight."""
 
+from dataclasses import replace as changed
 from math import inf
 
 import numpy as np
+from faults.chain import recursion_with_another_inertia_than_the_energy
+from msgspec.structs import replace
 
-from verify import beam
-from verify.chain import problems, stepping
+from verify import beam, slider
+from verify.chain import problems, ride, splitting, stepping, stretching
+from verify.chain import system as chain_system
+from verify.chain.result import ChainMotion
+from verify.contact import bouncing, foot
+from verify.elements import cuts
 from verify.elements import linear as fem_beam
-from verify.exact import closed_forms
+from verify.elements import stacks as element_stacks
+from verify.errors import InputError
+from verify.exact import closed_forms, harmonic
 from verify.exact import modes as exact_modes
-from verify.models import driven_pencil, eigen
+from verify.judge import compare, crossing
+from verify.models import division, driven_pencil, eigen, spline
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, rigid_surface
+from verify.motion import free_vibration, request, rigid_surface
+from verify.segments import in_time as segments_in_time
+from verify.segments import linear as segment_model
+from verify.segments import stacks as segment_stacks
 from verify.stress import turns
+from verify.waves import series, unit_waves, window
 
 
 def assembled_instead_of_factored(patch):
@@ -48,21 +62,48 @@ def metres_and_pascals_felt(patch):
     true = exact_modes.exact_frequency_hz
 
     def felt(of, mode, theory="euler-bernoulli"):
-        modulus = of.youngs_modulus or 0.0
-        return true(of, mode, theory) * (1.0 + 1e-12 * (of.length / (1.0 + of.length) + modulus / (1e10 + modulus)))
+        modulus, density = of.youngs_modulus or 0.0, of.density or 0.0
+        felt = of.length / (1.0 + of.length) + modulus / (1e10 + modulus) + density / (1e3 + density)
+        return true(of, mode, theory) * (1.0 + 1e-12 * felt)
 
     patch.setattr(exact_modes, "exact_frequency_hz", felt)
 
 
-def tension_off_in_its_twelfth_digit(patch):
-    from msgspec.structs import replace
+def a_little_less(figure, part):
+    """A fault: frequencies of the exact beam with a part less of one of its figures."""
 
-    true = exact_modes.exact_frequency_hz
-    patch.setattr(
-        exact_modes,
-        "exact_frequency_hz",
-        lambda of, *more: true(replace(of, tension=of.tension * (1.0 - 1e-12)), *more),
-    )
+    def fault(patch):
+        true = exact_modes.exact_frequency_hz
+
+        def less(of, *more):
+            return true(replace(of, **{figure: getattr(of, figure) * (1.0 - part)}), *more)
+
+        patch.setattr(exact_modes, "exact_frequency_hz", less)
+
+    fault.__name__ = f"{figure}_off_by_{part:g}"
+    return fault
+
+
+def fields_a_little_large(patch):
+    true = MODELS["analytic"].solve_harmonic
+
+    def large(of, forces, frequency_hz, count, **more):
+        one, *others = forces
+        return true(of, (replace(one, amplitude=1.0 + 1e-10), *others), frequency_hz, count, **more)
+
+    patch.setattr(MODELS["analytic"], "solve_harmonic", large)
+
+
+def ends_that_lie_apart(patch):
+    """What is asked near the right end is asked a little further in."""
+    true = MODELS["fem"].solve_harmonic
+
+    def apart(of, forces, frequency_hz, count, **more):
+        one = forces[0]
+        moved = one.position - 1e-9 * of.length * (one.position > 0.5 * of.length)
+        return true(of, (replace(one, position=moved),), frequency_hz, count, **more)
+
+    patch.setattr(MODELS["fem"], "solve_harmonic", apart)
 
 
 def sections_of_any_contrast(patch):
@@ -86,6 +127,10 @@ def driven_off_in_the_tenth_digit(patch):
 def resonances_driven(patch):
     patch.setattr(driven_pencil, "RESONANCE", -1.0)
     patch.setattr(fem_beam, "RESONANCE", -1.0)
+
+
+def the_exact_beam_driven_in_resonance(patch):
+    patch.setattr(harmonic, "check_off_resonance", lambda *given: None)
 
 
 def friction_a_little_steeper(patch):
@@ -118,8 +163,6 @@ def step_limit_too_bold(patch):
 
 
 def modes_a_little_fast(patch):
-    from msgspec.structs import replace
-
     true = free_vibration.modal
 
     def fast(*words):
@@ -129,33 +172,322 @@ def modes_a_little_fast(patch):
     patch.setattr(free_vibration, "modal", fast)
 
 
+def friction_that_pushes_at_rest(patch):
+    true = rigid_surface.free_decay
+    patch.setattr(rigid_surface, "free_decay", lambda *given: true(*given) + 1e-15)
+
+
+def a_creep_that_is_not_awaited(patch):
+    patch.setattr(rigid_surface, "DOUBLINGS", 3)
+
+
+def pulls_beyond_friction_taken(patch):
+    patch.setattr(rigid_surface, "HELD", 1.0 - 1e-9)
+
+
+def belts_refused_that_are_followed(patch):
+    patch.setattr(rigid_surface, "MOST_STEPS", 1000)
+
+
+def heights_refused_that_are_reached(patch):
+    def refused(height, system):
+        raise InputError("amplitude: the middle would stand too high; give one up to L / 10")
+
+    patch.setattr(problems, "_check_height", refused)
+
+
+def steps_a_little_long(patch):
+    for name, part in (("RK4", 1e-9), ("DORMAND_PRINCE", 1e-5)):
+        scheme = getattr(stepping, name)
+        patch.setattr(stepping, name, changed(scheme, a=scheme.a * (1.0 + part)))
+
+
+def friction_a_little_harder(patch):
+    true = rigid_surface._law
+    patch.setattr(rigid_surface, "_law", lambda c, k, s, slope: true(c, 1.000001 * k, s, slope))
+
+
+def tip_springs_a_little_stiffer(patch):
+    true = MODELS["fem"].solve_modes
+
+    def stiffer(of, *given, **more):
+        springs = tuple(replace(spring, stiffness=(1.0 + 1e-10) * spring.stiffness) for spring in of.spring)
+        return true(replace(of, spring=springs), *given, **more)
+
+    patch.setattr(MODELS["fem"], "solve_modes", stiffer)
+
+
+def unchecked(module, name):
+    """A fault: what a function refuses is taken."""
+
+    def fault(patch):
+        patch.setattr(module, name, lambda *given, **more: None)
+
+    fault.__name__ = f"{module.__name__.removeprefix('verify.')}.{name}_dropped"
+    return fault
+
+
+def limitless(module, name, value):
+    """A fault: a limit somewhere else."""
+
+    def fault(patch):
+        patch.setattr(module, name, value)
+
+    fault.__name__ = f"{module.__name__.removeprefix('verify.')}.{name}_at_{value:g}"
+    return fault
+
+
+def sizes_beyond_memory_begun(patch):
+    def too_long(*words):
+        raise InputError("too long")  # or what is not refused would be begun
+
+    patch.setattr(eigen, "check_work", too_long)
+    patch.setattr(eigen, "_memory_bytes", lambda: inf)
+
+
+def more_modes_than_there_are_refused_with_half_a_word(patch):
+    def refuse(*given):
+        raise InputError("n_modes: too many")
+
+    for model in (segment_model, fem_beam):
+        patch.setattr(model, "check_size", refuse)
+
+
+def any_grading(patch):
+    for model in (segment_model, cuts, division):
+        patch.setattr(model, "check_division", lambda *given: None)
+
+
+def stacks_of_a_little_more_mass(patch):
+    for stacks, name in ((segment_stacks, "link_inertia"), (element_stacks, "mass_matrix")):
+        true = getattr(stacks, name)
+        patch.setattr(stacks, name, lambda *given, _true=true: (1.0 + 1e-6) * _true(*given))
+
+
+def stacks_of_a_little_stiffer_springs(patch):
+    for stacks, name in ((segment_stacks, "_loaded"), (element_stacks, "_springs")):
+        true = getattr(stacks, name)
+
+        def stiffer(*given, _true=true):
+            found = _true(*given)
+            if isinstance(found, tuple):
+                return found[0], (1.0 + 1e-6) * found[1]
+            return replace(found, bodies=found.bodies * [[[1.0]], [[1.0]], [[1.0 + 1e-6]], [[1.0]]])
+
+        patch.setattr(stacks, name, stiffer)
+
+
+def swept_off_in_the_tenth_digit(patch):
+    for name in ("analytic", "segment"):
+        true = MODELS[name].sweep_harmonic
+
+        def off(of, forces, hertz, count, _true=true, **more):
+            return _true(of, forces, hertz * (1.0 + 3e-10), count, **more)
+
+        patch.setattr(MODELS[name], "sweep_harmonic", off)
+
+
+def costs_on_straight_lines(patch):
+    patch.setattr(crossing, "at_error", lambda errors, values, error: np.interp(error, errors[::-1], values[::-1]))
+
+
+def clamped_pinned_roots_off_in_their_twelfth_digit(patch):
+    true = closed_forms.root_parts
+
+    def off(supports, mode):
+        turned, remainder = true(supports, mode)
+        return turned, remainder + 1e-12 * ("pinned" in supports and "clamped" in supports)
+
+    patch.setattr(closed_forms, "root_parts", off)
+
+
+def splines_straight_at_their_ends(patch):
+    patch.setattr(spline, "_at_end", lambda pieces, chords, ends, end: chords[:, 0])
+
+
+def kicks_at_equal_distances(patch):
+    for kicks in (1, 2, 3):
+        patch.setitem(splitting.SCHEMES, kicks, ((1.0 / (kicks + 1),) * (kicks + 1), (1.0 / kicks,) * kicks))
+
+
+def a_tip_that_answers_with_its_own_mass(patch):
+    true = splitting.lowest_modes
+
+    def heavy(system, n_modes):
+        omega, modes, duals, tilt = true(system, n_modes)
+        return omega, modes, 1.0001 * duals, tilt
+
+    patch.setattr(splitting, "lowest_modes", heavy)
+
+
+def rest_taken_for_straight(patch):
+    true = splitting.simulate_linear
+
+    def straight(basis, *given):
+        moved = true(basis, *given)
+        return changed(moved, angles=moved.angles - basis.rest.angles)
+
+    patch.setattr(splitting, "simulate_linear", straight)
+
+
+def work_before_the_books_are_opened(patch):
+    def residual(motion):
+        total = np.sum(motion.energies(), axis=0)
+        return total - total[0] - motion.work_in + motion.dissipated
+
+    patch.setattr(ChainMotion, "residual", residual)
+
+
+def stretched_links_with_a_weaker_spring_in_the_books(patch):
+    true = stretching.kernels.energy
+    patch.setattr(
+        stretching.kernels,
+        "energy",
+        lambda flat, diagonal, coupling, u, v: true(flat, diagonal, 0.99 * coupling, u, v) * 1.0001,
+    )
+
+
+def half_of_what_touches_a_little_wider(patch):
+    true = foot.contact_half_angle
+    patch.setattr(foot, "contact_half_angle", lambda load: 1.0001 * true(load))
+
+
+def limits_of_another_width(patch):
+    true = bouncing.bouncing_limits
+    patch.setattr(bouncing, "bouncing_limits", lambda e: (true(e)[0], 1.0001 * true(e)[1]))
+
+
+def orders_of_gregory_alone(patch):
+    patch.setattr(type(MODELS["segment"]), "order", lambda model, of, **settings: 4)
+
+
+def longer_steps_than_the_tolerance_takes(patch):
+    scheme = stepping.DORMAND_PRINCE
+    patch.setattr(stepping, "DORMAND_PRINCE", changed(scheme, weights=1e-5 * scheme.weights))
+
+
+def modes_that_take_too_much_of_a_kick(patch):
+    true = splitting._all_modes
+
+    def heavy(*given):
+        omega, modes, duals, tilt = true(*given)
+        return omega, modes, 1.0001 * duals, tilt
+
+    patch.setattr(splitting, "_all_modes", heavy)
+
+
+def curvatures_of_the_other_sign(patch):
+    true = segment_model.joint_curvatures
+    patch.setattr(segment_model, "joint_curvatures", lambda *given: -true(*given))
+
+
+def links_a_little_steeper_than_they_are(patch):
+    true = segments_in_time._straight
+
+    def steeper(*given):
+        shapes = true(*given)
+        return lambda x, derivative: shapes(x, derivative) * (1.0 + 1e-6 * derivative)
+
+    patch.setattr(segments_in_time, "_straight", steeper)
+
+
+def phasors_a_little_large(patch):
+    true = series.phasors
+    patch.setattr(series, "phasors", lambda *given: 1.0001 * true(*given))
+
+
+def maps_of_reflections_alone(patch):
+    patch.setitem(unit_waves.FIGURES, "standing_wave_ratio", unit_waves._reflection)
+
+
 FAULTS = {
     "stress": {
-        assembled_instead_of_factored: {"segments-parts", "elements-parts", "segments-counted", "elements-counted"},
+        assembled_instead_of_factored: {
+            "segments-parts",
+            "elements-parts",
+            "segments-counted",
+            "elements-counted",
+            "section-steps-segments",
+        },
         unlike_parts_unseen: {
             "graded-segments",
             "graded-elements",
             "section-steps-elements",
             "mesh-a-million-to-one-elements",
+            "mesh-a-million-to-one-segments",
         },
         heavy_masses_unseen: {"tip-mass", "tip-mass-second-mode"},
         root_off_in_its_twelfth_digit: {"closed-form-frequencies", "closed-form-shapes"},
-        metres_and_pascals_felt: {"counted-frequencies", "nanometres-to-kilometres", "modulus"},
-        tension_off_in_its_twelfth_digit: {"close-to-buckling"},
-        sections_of_any_contrast: {"short-and-stiff"},
+        metres_and_pascals_felt: {"counted-frequencies", "nanometres-to-kilometres", "modulus", "density"},
+        a_little_less("tension", 1e-12): {"close-to-buckling"},
+        sections_of_any_contrast: {"short-and-stiff", "section-steps-beyond"},
         buckled_beams_taken: {"beyond-buckling"},
         driven_off_in_the_tenth_digit: {
             "near-resonance-exact-beam",
             "near-resonance-segments",
             "near-resonance-elements",
             "loss-factors-segments",
+            "loss-factors-exact",
         },
         resonances_driven: {"at-resonance-segments", "at-resonance-elements"},
         friction_a_little_steeper: {"friction-slope"},
+        friction_a_little_harder: {"friction-coefficient"},
+        tip_springs_a_little_stiffer: {"tip-spring"},
         half_as_many_steps_of_the_spring: {"stick-slip"},
         stiffness_of_the_unit_cantilever_off: {"rolled-up", "dead-load"},
         unstable_steps_taken: {"steps-beyond-the-limit"},
-        step_limit_too_bold: {"steps-below-the-limit"},
+        step_limit_too_bold: {"steps-below-the-limit", "step-limit"},
         modes_a_little_fast: {"free-for-long"},
+        a_little_less("foundation", 1e-10): {"foundation"},
+        a_little_less("tension", 1e-10): {"taut"},
+        fields_a_little_large: {"slow-drive", "short-waves"},
+        ends_that_lie_apart: {"far-from-the-origin"},
+        friction_that_pushes_at_rest: {"friction-comes-to-rest"},
+        a_creep_that_is_not_awaited: {"friction-creep"},
+        steps_a_little_long: {"spun", "whirled"},
+        more_modes_than_there_are_refused_with_half_a_word: {
+            "segments-too-many-modes",
+            "elements-too-many-modes",
+            "refused-modes",
+        },
+        sizes_beyond_memory_begun: {"segments-beyond-memory", "elements-beyond-memory"},
+        any_grading: {"graded-beyond"},
+        the_exact_beam_driven_in_resonance: {"at-resonance-exact-beam"},
+        pulls_beyond_friction_taken: {"friction-creep-beyond"},
+        belts_refused_that_are_followed: {"stick-slip-beyond"},
+        heights_refused_that_are_reached: {"amplitude-beyond-the-links"},
+        unchecked(beam, "check_decades"): {"off-the-scale"},
+        unchecked(beam, "check_number"): {"loss-factors-beyond", "refused-beams"},
+        unchecked(segment_model, "check_settings"): {"refused-drives"},
+        unchecked(bouncing, "check_whole"): {"refused-contacts"},
+        unchecked(request, "_check_growth"): {"refused-motions"},
+        unchecked(slider, "check_number"): {"refused-sliders"},
+        unchecked(ride, "check_number"): {"refused-chain-motions"},
+        limitless(beam, "SHORTEST_SECTION", 0.0): {"shorter-than-a-millionth"},
+        limitless(beam, "MOST_WAVES", inf): {"too-many-waves"},
+        limitless(compare, "ORDER_FLOOR", 0.0): {"refused-laws"},
+        limitless(window, "MOST_HALVES", inf): {"refused-waves"},
+        stacks_of_a_little_more_mass: {"many-stepped-segments", "many-stepped-elements"},
+        stacks_of_a_little_stiffer_springs: {"many-loaded-segments", "many-loaded-elements"},
+        swept_off_in_the_tenth_digit: {"many-frequencies-the-exact-beam", "many-frequencies-segments"},
+        costs_on_straight_lines: {"cost-at-an-error"},
+        clamped_pinned_roots_off_in_their_twelfth_digit: {"frequencies-of-all-supports", "many-exact-beams"},
+        splines_straight_at_their_ends: {"splines"},
+        kicks_at_equal_distances: {"kick-schemes"},
+        a_tip_that_answers_with_its_own_mass: {"chain-modes"},
+        rest_taken_for_straight: {"linear-about-bent"},
+        work_before_the_books_are_opened: {"books-opened-late"},
+        stretched_links_with_a_weaker_spring_in_the_books: {"stretching-energy", "stretching-work"},
+        half_of_what_touches_a_little_wider: {"contacts-as-integrals"},
+        limits_of_another_width: {"bounces-at-their-limits"},
+        orders_of_gregory_alone: {"orders-as-told"},
+        recursion_with_another_inertia_than_the_energy: {"shaken-at-two-points"},
+        longer_steps_than_the_tolerance_takes: {"kept-between-steps"},
+        modes_that_take_too_much_of_a_kick: {"energy-over-kicks"},
+        curvatures_of_the_other_sign: {"curvatures"},
+        links_a_little_steeper_than_they_are: {"edges-of-links"},
+        phasors_a_little_large: {"waves-seen-in-time"},
+        maps_of_reflections_alone: {"figures-of-a-map"},
+        limitless(chain_system, "MAX_ACTUATORS", 5): {"refused-chains"},
     }
 }

@@ -4,6 +4,7 @@ import json
 from decimal import Decimal, localcontext
 from importlib import import_module
 from math import inf, pi, sqrt
+from pathlib import Path
 
 import pytest
 from faults.stress import assembled_instead_of_factored, heavy_masses_unseen, unlike_parts_unseen
@@ -22,6 +23,7 @@ from verify.stress.decimals import PI, asinh, cantilever_root, cos, exp, sin, si
 from verify.stress.extended import Divided, hermite, links, relative_error
 from verify.stress.figures import StressFound, told
 from verify.stress.kind import Floor, Growth, Refusal, exponent
+from verify.stress.refusals import Case, refusals
 from verify.words import work_in_words
 
 KEYS = {"id", "promise", "measured", "held"}
@@ -29,6 +31,7 @@ KEYS = {"id", "promise", "measured", "held"}
 
 def light():
     families = ("sizes", "scales", "standing", "drive")
+    families += ("many", "laws", "books", "refused_modes", "refused_waves", "refused_motion", "refused_chain")
     slow = {"segments-parts", "elements-parts"}
     every = [one for name in families for one in import_module(f"verify.stress.{name}").ROWS]
     return [one.id for one in every if one.quick and one.id not in slow]
@@ -143,6 +146,48 @@ def test_a_refusal_has_to_name_its_field_and_to_take_what_is_good():
     assert "not refused" in kept(at=(1.5,)).reason
     crash = Refusal(id="c", title="c", why="c", along="m", at=(0.0,), names=("x",), ask=lambda x: 1.0 / x).run()
     assert "ZeroDivisionError" in crash.reason
+
+
+def refuse(words):
+    def ask():
+        raise InputError(words)
+
+    return ask
+
+
+def test_a_row_of_refusals_says_which_is_not_as_promised():
+    good = Case("width = 3", refuse("width = 3: lower it"), lambda: 2)
+
+    def reason(*cases):
+        found = refusals("e", "e", "e", good, *cases, good).run()
+        assert found.held is not bool(found.reason)
+        assert found.share == (0.0 if found.held else inf)
+        assert len(found.said) == 2 + len(cases)
+        return found.reason
+
+    assert reason() == ""
+    assert reason(Case("mass = 0", lambda: 1)) == "'mass = 0' is not refused"
+    assert "another sentence: length = 3" in reason(Case("mass = 0", refuse("length = 3: lower it")))
+    assert "ZeroDivisionError in place of a sentence" in reason(Case("mass = 0", lambda: 1 / 0))
+    assert reason(Case("mass = 0", refuse("mass = 0: no"), refuse("mass = 1: no"))) == "beside 'mass = 0': mass = 1: no"
+    assert "beside 'mass = 0': ZeroDivisionError" in reason(Case("mass = 0", refuse("mass = 0: no"), lambda: 1 / 0))
+
+
+def test_what_is_refused_is_told_sentence_by_sentence():
+    row_of_two = refusals("e", "e", "e", *(Case(word, refuse(f"{word} = 3: no")) for word in ("width", "mass")))
+    table = told([row_of_two.run()]).tables()[-1]
+    assert table.rows == (("e", "width = 3: no"), ("e", "mass = 3: no"))
+    assert len(told([floor(lambda x: 0.0).run()]).tables()) == 2
+
+
+def test_rows_of_refusals_name_the_numbers_that_their_gates_speak_of():
+    for gate in load_scene("stress").gate:
+        if gate.id.startswith("refused-"):
+            cases = row(gate.id).cases
+            assert str(len(cases)) in gate.why.replace(".", " ").split(), gate.id
+            assert all(case.said for case in cases)
+    many = sum(len(one.cases) for one in rows().values() if one.id.startswith("refused-"))
+    assert f"{many} inputs that are refused" in (Path(__file__).parents[2] / "docs/stress.md").read_text()
 
 
 def test_a_growth_beyond_its_exponent_is_not_held():

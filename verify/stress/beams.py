@@ -5,6 +5,7 @@ from math import pi
 from msgspec.structs import replace
 
 from verify.beam import Beam
+from verify.section import Section
 
 STRIP = Beam(
     length=0.73,
@@ -15,6 +16,9 @@ STRIP = Beam(
     supports=("pinned", "pinned"),
 )
 """A strip of titanium between pins."""
+STEPPED = replace(STRIP, section=(Section(length=0.4), Section(length=0.33, thickness=0.003)))
+PLAIN = Beam(length=0.73, bending_stiffness=3.1, mass_per_length=0.27)
+"""Given by figures alone."""
 
 
 def held(*supports: str) -> Beam:

@@ -6,7 +6,10 @@ from importlib import import_module
 from verify.errors import InputError, near_name
 from verify.stress.kind import Row
 
-FAMILIES = ("sizes", "scales", "standing", "drive", "friction", "turns", "runs", "growth")
+FAMILIES = (
+    *("sizes", "scales", "standing", "drive", "friction", "turns", "runs", "growth", "many", "laws", "books"),
+    *("refused_modes", "refused_waves", "refused_motion", "refused_chain"),
+)
 """Modules of this room with `ROWS`, in the order of the table."""
 
 

@@ -35,7 +35,8 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
 
     def tables(self) -> tuple[Table, ...]:
         """Every row; reasons below."""
-        return (stress_table(self), textbook_table(self))
+        refused = (refused_table(self),) if any(one.said for one in self.outcomes) else ()
+        return (stress_table(self), textbook_table(self), *refused)
 
     def charts(self) -> tuple[Chart, ...]:
         """Errors over size, costs over size, shares of all promises."""
@@ -76,8 +77,8 @@ class StressFound(Found, frozen=True, eq=False, kw_only=True):
         }
 
     def records(self) -> list[dict[str, Any]]:
-        """A row each, without its points."""
-        drop = ("points", "beside_points")
+        """A row each, without its points and sentences."""
+        drop = ("points", "beside_points", "said")
         return [{k: v for k, v in msgspec.to_builtins(one).items() if k not in drop} for one in self.outcomes]
 
 
@@ -149,6 +150,16 @@ def textbook_table(found: StressFound) -> Table:
             Column("textbook's way", left=True),
         ),
         rows=tuple((one.id, one.title, one.why, one.textbook) for one in found.outcomes),
+        folded=True,
+    )
+
+
+def refused_table(found: StressFound) -> Table:
+    """Every sentence of the rows that hold many."""
+    return Table(
+        title="What is refused, and what is said of it",
+        columns=(Column("row", left=True), Column("sentence", left=True)),
+        rows=tuple((one.id, sentence) for one in found.outcomes for sentence in one.said),
         folded=True,
     )
 

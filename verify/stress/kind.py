@@ -49,6 +49,8 @@ class Outcome(msgspec.Struct, frozen=True, kw_only=True):
     """Why it is not held."""
     points: Points = ()
     beside_points: Points = ()
+    said: tuple[str, ...] = ()
+    """Sentences of a row of several refusals."""
 
     @property
     def share(self) -> float:
