@@ -10,8 +10,7 @@ from verify.models.compiling import Call
 
 def calls() -> Iterator[Call]:
     """Rigid links in steps and in modes, links that stretch."""
-    yield from rigid()
-    yield from energies()
+    yield from with_energies()
     yield from modal()
     yield from stretching()
     yield from stretching_energy()
@@ -35,14 +34,26 @@ def resting() -> Iterator[Call]:
     yield held_kernels.project, (_flat(), 0.0, one, one, np.zeros(1, dtype=np.int64), 0.0, np.zeros((1, 1)))
 
 
+def accelerations() -> Iterator[Call]:
+    """Of links as they stand."""
+    from verify.chain import kernels
+
+    one = np.zeros(1)
+    yield kernels.accelerate, (_flat(), 0.0, one, one, np.zeros((1, 1)), one)
+
+
+def accelerated() -> Iterator[Call]:
+    """Links on their constraints and their accelerations, from which modes and steps are found."""
+    yield from resting()
+    yield from accelerations()
+
+
 def rigid() -> Iterator[Call]:
     """Rigid links in steps."""
     from verify.chain import kernels
 
-    flat, one = np.zeros((1, 1)), np.zeros(1)
-    yield from resting()
-    yield kernels.accelerate, (_flat(), 0.0, one, one, flat, one)
-    yield kernels.march, (_flat(), _march(), 1, flat)
+    yield from accelerated()
+    yield kernels.march, (_flat(), _march(), 1, np.zeros((1, 1)))
 
 
 def energies() -> Iterator[Call]:
@@ -51,6 +62,12 @@ def energies() -> Iterator[Call]:
 
     one = np.zeros(1)
     yield kernels.energies, (_flat(), 0.0, one, one, np.zeros((1, 1)))
+
+
+def with_energies() -> Iterator[Call]:
+    """Rigid links in steps, and their energies."""
+    yield from rigid()
+    yield from energies()
 
 
 def modal() -> Iterator[Call]:

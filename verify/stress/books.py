@@ -1,11 +1,14 @@
 """Books of the nonlinear chain that no scene opens: about rest, over kicks, of held points, of links that stretch."""
 
+from collections.abc import Iterator
 from dataclasses import replace as changed
 from math import pi, sin
 
 import numpy as np
 
 from verify.beam import PointForce
+from verify.chain import warm
+from verify.models.compiling import Call
 from verify.stress.beams import STRIP, held
 from verify.stress.kind import Floor, Row
 
@@ -146,6 +149,19 @@ def kicks_energy_error(kicks: float) -> float:
     return float(abs(total / total[0] - 1.0).max())
 
 
+def _stretching() -> Iterator[Call]:
+    """Links that stretch, and their energy."""
+    yield from warm.stretching()
+    yield from warm.stretching_energy()
+
+
+def _kicked() -> Iterator[Call]:
+    """Rigid links in modes, and their energies."""
+    yield from warm.accelerated()
+    yield from warm.energies()
+    yield from warm.modal()
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="kick-schemes",
@@ -164,6 +180,7 @@ ROWS: tuple[Row, ...] = (
         at=(8, 12, 20),
         promise=2e-11,
         error=chain_modes_error,
+        kernels=warm.accelerated,
     ),
     Floor(
         id="linear-about-bent",
@@ -173,6 +190,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 20),
         promise=1e-13,
         error=bent_rest_error,
+        kernels=warm.accelerations,
     ),
     Floor(
         id="books-opened-late",
@@ -182,6 +200,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 12),
         promise=2.0,
         error=late_books_error,
+        kernels=warm.with_energies,
     ),
     Floor(
         id="stretching-energy",
@@ -191,6 +210,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 20),
         promise=1.0,
         error=stretching_books_error,
+        kernels=_stretching,
     ),
     Floor(
         id="stretching-work",
@@ -200,6 +220,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 20),
         promise=1e-7,
         error=stretching_work_error,
+        kernels=_stretching,
     ),
     Floor(
         id="shaken-at-two-points",
@@ -209,6 +230,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 9),
         promise=2.0,
         error=held_books_error,
+        kernels=warm.with_energies,
     ),
     Floor(
         id="kept-between-steps",
@@ -218,6 +240,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 9),
         promise=2.0,
         error=kept_between_error,
+        kernels=warm.rigid,
     ),
     Floor(
         id="energy-over-kicks",
@@ -227,5 +250,6 @@ ROWS: tuple[Row, ...] = (
         at=(1, 2, 3),
         promise=1e-7,
         error=kicks_energy_error,
+        kernels=_kicked,
     ),
 )

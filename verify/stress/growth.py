@@ -5,6 +5,7 @@ from functools import cache
 from time import process_time
 from typing import Literal
 
+from verify.chain import warm
 from verify.models.catalogue import MODELS
 from verify.stress.beams import STRIP, held
 from verify.stress.kind import Growth, Row
@@ -160,6 +161,7 @@ ROWS: tuple[Row, ...] = (
         rounds=5,
         cost=chain_seconds,
         seconds=4.0,
+        kernels=warm.accelerated,
     ),
     *(
         Growth(

@@ -1,12 +1,13 @@
 """A row of what is refused: input after input, each by the beginning of its sentence, and what stands beside it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from time import perf_counter
 from typing import ClassVar, TypeAlias
 
 import msgspec
 
 from verify.errors import InputError
+from verify.models.compiling import Call
 from verify.stress.kind import Kind, Outcome, Row
 
 Ask: TypeAlias = Callable[[], object]
@@ -65,6 +66,7 @@ class Refusals(Row, frozen=True, kw_only=True, eq=False):
         return msgspec.structs.replace(found, said=sentences)
 
 
-def refusals(name: str, title: str, why: str, *cases: Case) -> Refusals:
-    """A row of such cases."""
-    return Refusals(id=name, title=title, why=why, along="refusals", at=(float(len(cases)),), cases=cases)
+def refusals(name: str, title: str, why: str, *cases: Case, kernels: Callable[[], Iterable[Call]] = tuple) -> Refusals:
+    """A row of such cases, with the compiled loops that what is taken runs."""
+    at = (float(len(cases)),)
+    return Refusals(id=name, title=title, why=why, along="refusals", at=at, cases=cases, kernels=kernels)

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.chain import bending, dynamics, problems, ride, splitting, stepping, stretching
+from verify.chain import bending, dynamics, problems, ride, splitting, stepping, stretching, warm
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.chain.work import check_kept, refuse_work
 from verify.slider import Slider
@@ -170,6 +170,7 @@ ROWS: tuple[Row, ...] = (
         Case("beam.supports = ['pinned', 'pinned']", ridden(on=STRIP)),
         Case("beam.supports = ['clamped', 'free'], beam.length = 0.74", ridden(on=replace(CANTILEVER, length=0.74))),
         Case("chain.rotation", ridden(chain(rotation=Rotation(rate=1.0)))),
+        kernels=warm.resting,
     ),
     refusals(
         "refused-chain-motions",
@@ -243,5 +244,6 @@ ROWS: tuple[Row, ...] = (
         ),
         Case("time = 1.0 s would keep", lambda: check_kept(1e9, LINKS, "time = 1.0 s")),
         Case("time = 2 s takes", lambda: refuse_work(1001.0, 1000.0, 2.0), lambda: refuse_work(1000.0, 1000.0, 2.0)),
+        kernels=warm.accelerated,
     ),
 )

@@ -1,6 +1,5 @@
 """The nonlinear chain bent, rolled up and turned many times, and its steps about their limit."""
 
-from collections.abc import Iterator
 from functools import cache
 from math import asin, exp, hypot, inf, pi, sin, sqrt
 
@@ -12,7 +11,6 @@ from verify.chain.dynamics import at_rest
 from verify.chain.result import ChainMotion
 from verify.chain.stepping import simulate, step_limit
 from verify.chain.system import ChainState, ChainSystem, build_system
-from verify.models.compiling import Call
 from verify.stress.beams import STRIP
 from verify.stress.kind import Floor, Refusal, Row
 
@@ -171,12 +169,6 @@ def _too_steep(amplitude: float) -> float:
     return energy_drift(changed(STRIP), SHORT, amplitude, 0.1, None, 1e-6)
 
 
-def _with_energies() -> Iterator[Call]:
-    """Rigid links in steps, and their energies."""
-    yield from warm.rigid()
-    yield from warm.energies()
-
-
 ROWS: tuple[Row, ...] = (
     Floor(
         id="rolled-up",
@@ -226,7 +218,7 @@ ROWS: tuple[Row, ...] = (
         promise=2.0,
         error=whirled_error,
         seconds=8.0,
-        kernels=_with_energies,
+        kernels=warm.with_energies,
     ),
     Floor(
         id="steps-below-the-limit",
@@ -240,7 +232,7 @@ ROWS: tuple[Row, ...] = (
         beside_at=(0.99, 1.01, 1.05, 2.0),
         textbook="the same loop without the refusal",
         seconds=3.0,
-        kernels=_with_energies,
+        kernels=warm.with_energies,
     ),
     Refusal(
         id="steps-beyond-the-limit",
@@ -251,7 +243,7 @@ ROWS: tuple[Row, ...] = (
         names=("step", "stability limit", "smaller step"),
         ask=grown,
         taken=(0.5, 0.99),
-        kernels=_with_energies,
+        kernels=warm.with_energies,
     ),
     Floor(
         id="step-limit",
@@ -262,7 +254,7 @@ ROWS: tuple[Row, ...] = (
         promise=1e-3,
         error=limit_error,
         seconds=4.0,
-        kernels=warm.rigid,
+        kernels=warm.accelerated,
     ),
     Refusal(
         id="amplitude-beyond-the-links",
@@ -273,6 +265,6 @@ ROWS: tuple[Row, ...] = (
         names=("amplitude", "L / 10"),
         ask=_too_steep,
         taken=(0.01,),
-        kernels=_with_energies,
+        kernels=warm.with_energies,
     ),
 )
