@@ -123,7 +123,8 @@ def _streams(line, said):
             yield f"the terminal is sent {raw[0]!r}"
     if line.words[0] not in ("quantities", "show", "compare") and said.status in (0, 1) and "--json" not in line.words:
         for told in re.findall(r"[^\n]*(?<![\w.])(?:nan|inf)(?!\w)[^\n]*", said.out):
-            if not told.startswith(("report: ", "gate ", "cannot run: ")):  # which show what was given
+            given = any(f'"{told.strip()}"'.encode() in data for data in line.files.values())  # a title, for one
+            if not given and not told.startswith(("report: ", "gate ", "cannot run: ")):  # which show what was given
                 yield f"a figure is no number: {told[:150]!r}"
 
 
