@@ -206,7 +206,7 @@ class _Crew:
         for stream in (sys.stdout, sys.stderr):
             with suppress(OSError, ValueError, AttributeError):
                 stream.flush()
-        for _ in range(min(self.n, len(self.calls))):
+        for _ in range(min(self.n, len(self.calls) - 1)):
             reading, writing = os.pipe()
             if (child := os.fork()) == 0:
                 self._help(writing)
