@@ -4,6 +4,9 @@ import pytest
 from msgspec.structs import replace
 
 from verify import Beam, Contact, Foot, InputError, PointForce, Slider, run_motor, run_motors, simulate
+from verify.judge.workbench import Workbench
+from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
+from verify.scenes.scene import load_scene
 
 BEAM = Beam(length=0.31, width=0.013, thickness=0.0012, youngs_modulus=68e9, density=2650.0, loss_factor=0.01)
 FORCES = [PointForce(position=0.021, amplitude=0.4), PointForce(position=0.27, amplitude=0.3, phase_deg=70.0)]
@@ -150,3 +153,12 @@ def test_a_slider_that_is_in_the_air_at_the_end_says_since_when():
 def test_a_beam_that_its_own_compression_buckles_carries_no_motor():
     with pytest.raises(InputError, match=r"beam\.tension"):
         run_motor(replace(BEAM, tension=-1e6), FORCES, 3130.0, 6e-4, slider=a_slider(), model="fem", count=17)
+
+
+def test_a_foot_whose_springs_all_stand_clear_of_a_wave_has_no_force_over_its_pressure():
+    """Drawn by chance: three springs in a wavelength, and a contact of a fiftieth of a degree about the crest."""
+    quantity = QUANTITIES["slider.wave_force"]
+    narrow = {"contact_half_angle": 0.003, "speed_ratio": 0.83, "points": 3, "frequency_hz": 4276.0}
+    scene = load_scene("driving-layer")
+    with pytest.raises(InputError, match=r"points = 3: none touches within 0\.003 rad of a crest, give more"):
+        evaluate(quantity, arguments_of(quantity, narrow), scene, Workbench(scene.beam))

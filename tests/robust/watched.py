@@ -124,7 +124,9 @@ def _streams(line, said):
     if line.words[0] not in ("quantities", "show", "compare") and said.status in (0, 1) and "--json" not in line.words:
         for told in re.findall(r"[^\n]*(?<![\w.])(?:nan|inf)(?!\w)[^\n]*", said.out):
             given = any(f'"{told.strip()}"'.encode() in data for data in line.files.values())  # a title, for one
-            if not given and not told.startswith(("report: ", "gate ", "cannot run: ")):  # which show what was given
+            if not given and not told.startswith(
+                ("report: ", "kept: ", "gate ", "cannot run: ")
+            ):  # which show what was given
                 yield f"a figure is no number: {told[:150]!r}"
 
 

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import Meta
 
+from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.quantities import compiled
 from verify.quantities.cases import drive_frequency
@@ -37,7 +38,7 @@ class OverWaveOrder(_OverWave, frozen=True, kw_only=True):
 
 
 def _over_wave(a: OverWave, scene: "Scene", bench: Workbench) -> float:
-    """F/(mu N), along the way of the crests."""
+    """F/(mu N), along the way of the crests. Raises InputError where no spring touches the wave."""
     from verify.motor.on_wave import over_a_wave
 
     found, _ = over_a_wave(
@@ -51,6 +52,10 @@ def _over_wave(a: OverWave, scene: "Scene", bench: Workbench) -> float:
         steps_per_period=a.steps_per_period,
         amplitude=a.amplitude,
     )
+    if found.normal_force <= 0.0:
+        raise InputError(
+            f"points = {a.points!r}: none touches within {a.contact_half_angle!r} rad of a crest, give more"
+        )
     return -found.force / (a.mu * found.normal_force)
 
 
