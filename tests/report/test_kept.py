@@ -176,3 +176,8 @@ def test_a_folder_without_a_run_is_refused(tmp_path):
         runs_at(tmp_path, "B")
     with pytest.raises(InputError, match=r"A = '.*nowhere' is not there"):
         runs_at(tmp_path / "nowhere", "A")
+
+
+def test_a_name_that_no_file_can_have_is_refused(capsys):
+    assert status_of(["report", "1" * 400]) == 2
+    assert "run = " in capsys.readouterr().err

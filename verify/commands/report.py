@@ -13,10 +13,11 @@ def report(run: str, target: str | None) -> None:
 
     Example: `verify report reports/paper/2026-03-01_14-05-09/run.json --to paper.html`
     """
-    from verify.files import write_whole
+    from verify.files import exists, write_whole
     from verify.report.html import rendered
     from verify.report.kept import FILE, PAGE, read_kept
 
+    exists(Path(run), "run")  # which refuses a name that no file can have
     path = Path(run) / FILE if Path(run).is_dir() else Path(run)
     kept = read_kept(path, "run")
     page = Path(target) if target else path.parent / (PAGE if path.name == FILE else f"{path.stem}.html")
