@@ -83,13 +83,13 @@ def many_exact_error(n: float) -> float:
 
 
 def spline_error(pieces: float) -> float:
-    """Error of a spline through a cubic and of its derivatives, over the largest value of each; a parabola of two."""
+    """Error of a spline and its derivatives through a cubic (one piece: a line, two: a parabola), over nodes^2."""
     from verify.models.spline import natural_or_flat
 
     n = int(pieces)
     nodes = np.cumsum(1.0 + 0.4 * np.cos(np.arange(n + 1.0)))
     nodes = (nodes - nodes[0]) / (nodes[-1] - nodes[0])
-    powers = np.polynomial.Polynomial([0.3, -1.1, 0.7, 1.9][: min(n, 3) + (1 if n < 3 else 0) + (n > 2)])
+    powers = np.polynomial.Polynomial([0.3, -1.1, 0.7, 1.9][: min(n, 3) + 1])
     found = natural_or_flat(nodes, powers(nodes)[None], (0, 0))
     x, worst = np.linspace(0.0, 1.0, 41)[:-1], 0.0
     for derivative in range(4):
