@@ -228,7 +228,9 @@ def test_choose_names_the_smaller_number_that_happens_to_do(verify):
     assert abs(segment["smaller_error"]) <= 1e-6
     words = " ".join(verify("choose", *clamped)[1].split())
     assert "enough from" in words
-    assert "N = 54 does not; every larger N does, solved for all N up to 100 and some up to 105, beyond that" in words
+    assert (
+        "N = 54 does not; all N from 55 to 100 do, and those tried up to 105; larger ones do by the error law" in words
+    )
     assert "N = 33 happens to do as well" in words
     assert "fewest" not in words
 
@@ -245,6 +247,40 @@ def test_choose_confirms_its_answer_by_solves_for_any_beam(verify, scene):
         sizes = (choice["count"], choice["count"] - 1)
         here, less = (abs(bench.frequency_error(choice["model"], n, 5, settings)) for n in sizes)
         assert here <= 0.002 < less
+
+
+def test_choose_takes_all_of_several_modes_and_names_the_one_that_asks_for_most(verify):
+    line = ("--error", "0.1%", "--scene", "instrument-arm", "--set", "beam.mass=[{position=0.8, mass=0.35}]")
+    twelve, out = (verify("choose", "--mode", mode, *line, "--json")[1] for mode in ("12", "1-12"))
+    lower = {c["model"] + c["settings"].get("wall", ""): c["lower"] for c in json.loads(twelve)["choices"]}
+    data = json.loads(out)
+    assert data["modes"] == list(range(1, 13))
+    assert all(c["lower"] == [] for c in data["choices"])
+    counts = {c["model"] + c["settings"].get("wall", ""): c["count"] for c in data["choices"]}
+    before = {c["model"] + c["settings"].get("wall", ""): c["count"] for c in json.loads(twelve)["choices"]}
+    assert {name for name in lower if lower[name]} == {name for name in counts if counts[name] > before[name]}
+    words = verify("choose", "--mode", "1-3", "--error", "1%")[1]
+    assert "modes 1 to 3 within 1.0000 % of the exact frequencies: enough from" in words
+    assert "for mode" in words
+    status, _, err = verify("choose", "--mode", "5-2", "--error", "1%")
+    assert (status, "write 2-5" in err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        ("0.5", "error = '0.5' has no per cent sign: for 0.5 per cent write 0.5% or 0.005, for 50 per cent 50%"),
+        ("5", "error = '5' has no per cent sign: for 5 per cent write 5% or 0.05"),
+        ("0.1", "for 0.1 per cent write 0.1% or 0.001, for 10 per cent 10%"),
+        ("-0.5", "give a relative error from 1e-12 up to 1"),
+        ("120%", "give a relative error from 1e-12 up to 1"),
+    ],
+)
+def test_an_error_of_a_tenth_or_more_needs_its_per_cent_sign(verify, error, said):
+    status, _, err = verify("choose", "--mode", "2", f"--error={error}")
+    assert status == 2
+    assert said in " ".join(err.split())
+    assert verify("choose", "--mode", "2", "--error", "50%", "--json")[0] == 0
 
 
 def test_a_complex_figure_has_a_real_and_an_imaginary_part(verify):

@@ -12,9 +12,11 @@ from verify.cli import status_of
 from verify.elements.linear import solve_modes as fem_modes
 from verify.errors import InputError
 from verify.exact.closed_forms import frequency_hz
+from verify.exact.modes import exact_frequency_hz
 from verify.identify.compare import Asked, check_patience, compare
 from verify.identify.matrices import chain
 from verify.scenes.scene import load_scene
+from verify.segments.linear import solve_modes as segment_modes
 
 DATA = Path(__file__).parent / "data"
 CLAMPED_PINNED = ('beam.supports=["clamped","pinned"]',)
@@ -157,6 +159,79 @@ def test_eq_1_as_printed_is_found_on_a_stepped_beam(told):
     assert chosen(found, "model", "wall", "joints", "order") == ("segment", "half", "printed", 1)
     assert "takes Eq. (1) as printed" in found["answer"]
     assert found["certainty"]["told_apart"]
+
+
+# --- bodies that fall anywhere within a link, sections that share the parts ----------------------------------------
+
+
+def arm(place, mass, rotary=0.0):
+    return scene("steel-cantilever", f"beam.mass=[{{position={place!r}, mass={mass!r}, rotary_inertia={rotary!r}}}]")
+
+
+@pytest.mark.parametrize("drawn", range(8))
+def test_a_chain_with_a_body_is_found_at_its_size_without_being_told(told, tmp_path, drawn):
+    """The error of a body on a rigid link goes up and down with N; whatever the beam, the size is found again."""
+    random = np.random.default_rng(700 + drawn)
+    attachment, wall = ("lever", "reciprocal")[drawn % 4 == 3], ("half", "gregory")[drawn // 4]
+    beam = scene("steel-cantilever").beam
+    whole = sum(piece.mass_per_length * piece.length for piece in beam.pieces)
+    rotary = 0.0 if drawn % 2 else 1e-4 * whole * beam.length**2
+    of = arm(float(random.uniform(0.15, 0.9) * beam.length), float(random.uniform(0.2, 1.5) * whole), rotary)
+    count = int(random.integers(15, 220))
+    given = segment_modes(of.beam, 8, n_segments=count, attachment=attachment, wall=wall).frequencies_hz
+    path = tmp_path / "list.csv"
+    path.write_text("\n".join(repr(float(f)) for f in given))
+    found = compare(of, Asked(frequencies=path, mode=1, error=0.5)).plain()
+    assert chosen(found, "model", "wall", "count") == ("segment", wall, count)
+    assert found["best"]["residual"] < 1e-8
+    assert ("links as they are" in found["answer"]) == (attachment == "lever")
+    assert not found["told"]
+    assert found["passed"]
+
+
+def test_a_chain_on_an_elastic_clamp_is_found_with_its_wall(told):
+    beam = scene("instrument-arm").beam
+    for settings in ({"attachment": "lever"}, {"wall": "half"}):
+        given = segment_modes(beam, 8, n_segments=49, **settings).frequencies_hz
+        found = told(given, "instrument-arm", mode=1, error=0.5)
+        assert found["best"]["count"] == 49
+        assert found["best"]["residual"] < 1e-8
+        assert found["best"]["wall"] == settings.get("wall")
+        assert not found["told"]
+
+
+def test_such_a_chain_in_another_unit_is_found_too(told):
+    beam = arm(0.21, 0.03).beam
+    given = 2 * np.pi * segment_modes(beam, 8, n_segments=41, attachment="lever").frequencies_hz
+    body = ("beam.mass=[{position=0.21, mass=0.03}]",)
+    found = told(given, "steel-cantilever", body, mode=1, error=0.5)
+    assert kinds(found) == ["unit"]
+    assert (found["best"]["count"], found["best"]["residual"] < 1e-8) == (41, True)
+
+
+@pytest.mark.parametrize(("settings", "count"), [({}, 37), ({"joints": "printed"}, 61)])
+def test_a_stepped_chain_is_found_at_its_size(told, settings, count):
+    given = segment_modes(scene("stepped-beam").beam, 8, n_segments=count, **settings).frequencies_hz
+    found = told(given, "stepped-beam", mode=1, error=0.5)
+    assert found["best"]["count"] == count
+    assert found["best"]["residual"] < 1e-8
+    assert not found["told"]
+
+
+def test_parts_needed_of_a_body_on_its_link_hold_for_larger_numbers_too(told):
+    of = arm(0.2113, 0.05)
+    given = segment_modes(of.beam, 6, n_segments=40, attachment="lever", wall="half").frequencies_hz
+    found = told(given, overrides=("beam.mass=[{position=0.2113, mass=0.05, rotary_inertia=0.0}]",), count=40, mode=4)
+    needed = found["parts_needed"]
+    assert needed["known_by"].startswith(f"all N from {needed['count']} to ")
+    exact = exact_frequency_hz(of.beam, 4)
+
+    def off(n):
+        modes = segment_modes(of.beam, 4, n_segments=n, attachment="lever", wall="half")
+        return abs(float(modes.frequencies_hz[3]) / exact - 1.0)
+
+    assert off(needed["count"] - 1) > 1e-3
+    assert max(off(n) for n in range(needed["count"], needed["count"] + 30)) <= 1e-3
 
 
 # --- what is wrong with a list ------------------------------------------------------------------------------------

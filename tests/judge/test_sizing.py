@@ -74,7 +74,74 @@ def test_a_stepped_beam_goes_by_what_was_solved_and_says_so(error, settings):
     found = sizing.enough_from(bench, "segment", 3, error, settings)
     assert found.count <= 40
     assert (found.count, found.smaller) == by_brute_force(errors, error)
-    assert found.known_by.endswith("beyond that nothing is known")
+    assert found.known_by.startswith(f"all N from {found.count} to ")
+    assert found.known_by.endswith("do; larger ones were not solved")
+
+
+def test_a_body_that_falls_anywhere_within_its_link_is_followed_to_the_last_size_that_fails():
+    """The error goes up and down with N: 106 links do, 107 do not."""
+    bench, settings = Workbench(load_scene("instrument-arm").beam), (("attachment", "lever"),)
+    found = sizing.enough_from(bench, "segment", 3, 1e-3, settings)
+    assert (found.count, found.smaller) == (108, 106)
+    last = int(found.known_by.removeprefix("all N from 108 to ").split()[0])
+    assert last >= 200
+    errors = errors_of(bench, "segment", 3, range(102, last + 1), settings)
+    assert by_brute_force(errors, 1e-3) == (108, 106)
+    assert found.known_by == f"all N from 108 to {last} do; larger ones were not solved"
+
+
+@pytest.mark.parametrize("place", [0.3875, 0.80511, 0.417])
+def test_sizes_after_the_last_that_fails_are_gone_through_one_by_one(place):
+    def reached(count):
+        s = place * count % 1.0
+        return (1.0 + 40.0 * s * (1.0 - s)) / count**2 <= 2e-4
+
+    enough, _, does = sizing._scanned(reached, 2, 3, "segment", 2e-4, uneven=True)
+    assert enough == max(n for n in range(2, 2000) if not reached(n)) + 1
+    assert all(does[n] for n in range(enough, enough + 100))
+
+
+def test_an_error_that_goes_up_and_down_far_out_is_refused_and_not_guessed():
+    with pytest.raises(InputError, match="goes up and down with count here, is still beyond it at count = "):
+        sizing._scanned(lambda count: count % 7 != 0 or count > 2050, 2, 30, "segment", 1e-3, uneven=True)
+
+
+def test_what_is_said_of_larger_sizes_is_what_was_solved():
+    assert (
+        sizing.solved(5, {3: False, 5: True, 6: True, 7: True}) == "all N from 5 to 7 do; larger ones were not solved"
+    )
+    some = {4: False, 5: True, 6: True, 9: True}
+    assert (
+        sizing.solved(5, some, law=True)
+        == "all N from 5 to 6 do, and those tried up to 9; larger ones do by the error law"
+    )
+    assert sizing.solved(5, {4: False, 8: True}) == "those tried up to 8 do; larger ones were not solved"
+
+
+def test_a_high_mode_of_a_beam_without_an_error_law_goes_by_no_law():
+    found = sizing.enough_from(Workbench(load_scene("stepped-beam").beam), "segment", 101, 0.06)
+    assert "law" not in found.known_by
+
+
+def test_all_of_several_modes_are_kept_and_the_one_that_asks_for_most_is_named():
+    """With 2EI/l at the clamp mode 10 needs more links than mode 12."""
+    bench, settings = Workbench(load_scene("instrument-arm").beam), (("wall", "half"),)
+    found = sizing.enough_from(bench, "segment", range(1, 13), 1e-3, settings)
+    alone = {mode: sizing.enough_from(bench, "segment", mode, 1e-3, settings).count for mode in (10, 12)}
+    assert (found.count, found.mode) == (alone[10], 10)
+    assert alone[12] < alone[10]
+    twelve = next(one for one in sizing.choose(bench, 12, 1e-3, (sizing.Variant("segment", settings),)))
+    assert twelve.lower == (10,)
+
+
+@pytest.mark.parametrize(("model", "error"), [("segment", 0.01), ("fem", 0.035), ("fem", 1e-4)])
+def test_all_of_several_modes_by_the_dispersion(titanium_strip, model, error):
+    bench = Workbench(titanium_strip)
+    errors = [errors_of(bench, model, mode, range(9, 60)) for mode in (7, 8, 9)]
+    expected = by_brute_force({n: max(each[n] for each in errors) for n in errors[0]}, error)
+    found = sizing.enough_from(bench, model, range(7, 10), error)
+    assert (found.count, found.smaller) == expected
+    assert found.mode == 9
 
 
 def test_sections_alike_leave_unequal_parts_which_no_dispersion_describes(titanium_strip):

@@ -153,7 +153,21 @@ def test_a_wall_that_makes_no_difference_is_said_to_make_none():
 
 def test_an_elastic_clamp_is_a_wall_and_a_spring_on_the_way_is_none():
     arm = load_scene("instrument-arm").beam
-    assert labels(beside(arm)) == ["segment wall=half"]
+    assert labels(beside(arm)) == ["segment wall=half", "segment attachment=lever"]
     assert labels(every_rule(arm))[0] == "segment wall=half"
     on_the_way = replace(arm, supports=("pinned", "free"), spring=(replace(arm.spring[0], position=0.3),))
-    assert beside(on_the_way) == ()
+    assert labels(beside(on_the_way)) == ["segment wall=half", "segment attachment=lever"]  # the instrument's inertia
+    light = tuple(replace(one, rotary_inertia=0.0) for one in arm.mass)
+    assert labels(beside(replace(on_the_way, mass=light))) == ["segment attachment=lever"]
+
+
+def test_bodies_on_rigid_links_stand_beside_wherever_they_differ():
+    on_the_way = replace(CANTILEVER, mass=(PointMass(position=0.1, mass=0.02),))
+    at_the_end = replace(CANTILEVER, mass=(PointMass(position=CANTILEVER.length, mass=0.02),))
+    assert labels(beside(on_the_way)) == ["segment wall=half", "segment attachment=lever"]
+    assert labels(beside(at_the_end)) == ["segment wall=half"]
+    chosen = labels(beside(on_the_way, (("wall", "half"),)))
+    assert chosen[-1] == "segment wall=half attachment=lever"
+    heavy = replace(on_the_way, mass=(PointMass(position=0.1, mass=0.2),))
+    found = {one.variant.label: one.count for one in choose_of_all(Workbench(heavy), 4, 1e-3)[0]}
+    assert (found["segment"], found["segment attachment=lever"]) == (15, 22)

@@ -12,21 +12,21 @@ from verify.commands.shared import (
 
 
 @click.command()
-@click.option("--mode", required=True, metavar="N", help="Mode number from 1.")
+@click.option("--mode", required=True, metavar="N", help="Mode number from 1, or all of several: 1-12.")
 @click.option("--error", required=True, metavar="E", help="Largest frequency error: 1% or 0.01.")
 @click.option("--scene", default="paper", show_default=True, help="Whose beam.")
 @overridden
 @ruled
 @json_alone
 def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool, rules: dict[str, str]) -> None:
-    """From how many segments or elements on an accuracy is kept, how that is known, and what they cost.
+    """From how many segments or elements on an accuracy is kept, as far as it was solved, and what they cost.
 
     Example: `verify choose --mode 5 --error 0.1% --scene steel-cantilever`
     """
     from verify.judge.workbench import Workbench
-    from verify.report.plain import accuracy, choice_as_plain, mode_number
+    from verify.report.plain import accuracy, choice_as_plain, mode_numbers
 
-    wanted, number = accuracy(error), mode_number(mode)
+    wanted, number = accuracy(error), mode_numbers(mode)
     beam = load(scene, overrides).beam
     from verify.judge.sizing import choose_of_all
     from verify.run.tables import rules_of

@@ -10,6 +10,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.identify import matrices
+from verify.judge.variants import falls_within, has_wall, told_by_lever
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.options import JOINTS, THEORIES, WALLS
@@ -125,13 +126,15 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
     walls: tuple[str | None, ...] = (
         ("half", *(w for w in WALLS if w != "half"), "full", "rigid") if clamped else (None,)
     )
+    elastic = has_wall(beam) and not clamped  # an end that turns against a spring has the joint of a wall
+    made: tuple[str | None, ...] = ("half", *(w for w in WALLS if w not in ("half", "welded"))) if elastic else walls
     rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
-    for joints, wall, theory in product(rules, walls, THEORIES):
+    for joints, wall, theory in product(rules, made, THEORIES):
         euler_alone = wall == "welded" and theory != "euler-bernoulli"
         if not euler_alone and (theory != "timoshenko" or wall not in ("full", "rigid")):
             order = _order(beam, wall, joints, theory)
             yield Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", theory=theory, order=order)
-    if _told_by_lever(beam):
+    if told_by_lever(beam):
         turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
         for joints, wall in product(rules, [wall for wall in walls if wall in (None, "half", "gregory")]):
             order = min(_order(beam, wall, joints), 1 if turning else 2)
@@ -149,11 +152,15 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
         )
 
 
-def _told_by_lever(beam: Beam) -> bool:
-    """Whether links that carry bodies and springs as they are differ from others: not at an end, where none turns."""
-    turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
-    places = [m.position for m in beam.mass] + [s.position for s in beam.spring]
-    return turning or any(0.0 < place < beam.length for place in places)
+def goes_up_and_down(beam: Beam, candidate: Candidate) -> bool:
+    """Whether the errors of a candidate go up and down with its size, by what falls within a part."""
+    return candidate.sized and falls_within(beam)
+
+
+def inner_places(beam: Beam) -> tuple[float, ...]:
+    """Where bodies and springs stand between the ends, of the length."""
+    places = {m.position for m in beam.mass} | {s.position for s in beam.spring}
+    return tuple(sorted(place / beam.length for place in places if 0.0 < place < beam.length))
 
 
 def _order(beam: Beam, wall: str | None, joints: str, theory: str = "euler-bernoulli") -> int:

@@ -6,14 +6,15 @@ something in the comparison, so that none is taken up unless it explains what th
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from itertools import pairwise, product
+from itertools import product
 from math import exp, inf, log, pi, sqrt
 
 import msgspec
 import numpy as np
 
 from verify.identify.alignment import BAND, Pairs, aligned_pairs, in_order_of
-from verify.identify.family import EXACT, Candidate, Solver
+from verify.identify.family import EXACT, Candidate, Solver, goes_up_and_down, inner_places
+from verify.identify.searching import best_size, closest
 from verify.models.arrays import Array
 
 FLOOR = 1e-9
@@ -35,8 +36,6 @@ UNITS = {
     0.5e-3 / pi: "1/(2000 pi): they are in rad/ms, or divided by 2 pi and 1000",
 }
 """Factors that a wrong unit brings, and which."""
-COUNTS = (2, 400)
-"""Sizes that are tried where nobody says the size."""
 _UNKNOWN_NOISE = 1e-4
 """Relative; of a list that is too short to show its own."""
 _ANYWHERE_NEAR = 0.7
@@ -45,8 +44,8 @@ _SMALL_FACTOR = 5e-3
 """A common factor nearer to one is believed only where it leaves nothing to explain."""
 _UNIT_COST, _SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
 """In natural logarithms of likelihood."""
-_GRID = 1.5
-"""Ratio of neighbouring sizes in a first look."""
+_CLOSER = 6
+"""Candidates that are looked at closely on a beam with steps."""
 
 
 class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -197,6 +196,8 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     solver: Solver
     paired: Pairs | None = None
     """Where mode numbers or shapes say which mode each entry is."""
+    sizes: dict[Candidate, tuple[int, ...]] = {}
+    """Sizes that were found by a closer look."""
 
     def fit(self, candidate: Candidate, count: int | None, reading: Reading, paired: Pairs | None) -> Fit | None:
         """One candidate at one size."""
@@ -238,80 +239,77 @@ def _credible(found: Identified) -> bool:
 
 
 def _best_of(data: Data, count: int | None, among: Sequence[Reading]) -> Identified | None:
+    fits = _fits(data, count, among)
+    plainly = any(_settled(one) for (_, reading), one in fits.items() if reading == among[0])
+    if count is None and not plainly and _looked_closer(data, fits, among):
+        fits = _fits(data, count, among)
     best: Fit | None = None
     of_it = PLAIN
-    for candidate, reading in product(data.family, among):
-        one = _sized(partial(_tried, data, candidate, reading, data.paired), candidate, count)
-        if one is not None and (best is None or one.score < best.score - 1e-6 * abs(best.score)):
+    for (_, reading), one in fits.items():
+        if best is None or one.score < best.score - 1e-6 * abs(best.score):
             best, of_it = one, reading
     return None if best is None else _ranked(data, best, of_it, count)
+
+
+def _fits(data: Data, count: int | None, among: Sequence[Reading]) -> dict[tuple[Candidate, Reading], Fit]:
+    """The best of every candidate by every reading."""
+    tried = (
+        (candidate, reading, _sized(partial(_tried, data, candidate, reading, data.paired), data, candidate, count))
+        for candidate, reading in product(data.family, among)
+    )
+    return {(candidate, reading): one for candidate, reading, one in tried if one is not None}
 
 
 def _tried(data: Data, candidate: Candidate, reading: Reading, paired: Pairs | None, count: int | None) -> Fit | None:
     return data.fit(candidate, count, reading, paired)
 
 
-def _sized(tried: Callable[[int | None], Fit | None], candidate: Candidate, count: int | None) -> Fit | None:
-    """The fit at a size, or at the best of all sizes: a look at some, then downhill from where those around point."""
+def _sized(
+    tried: Callable[[int | None], Fit | None], data: Data, candidate: Candidate, count: int | None
+) -> Fit | None:
+    """The fit at a size, or at the best of all sizes."""
     if not candidate.sized or count is not None:
         return tried(count if candidate.sized else None)
-    known: dict[int, Fit | None] = {}
-    for size in _grid():
-        known[size] = tried(size)
-        if _rising([one.score for one in known.values() if one is not None]):
-            break
-
-    def score(size: int) -> float:
-        if size not in known:
-            known[size] = tried(size) if COUNTS[0] <= size <= COUNTS[1] else None
-        one = known[size]
-        return inf if one is None else one.score
-
-    sizes = sorted(known)
-    at = min(range(len(sizes)), key=lambda i: score(sizes[i]))
-    if score(sizes[at]) == inf:
-        return None
-    here = min({sizes[at], _pointed_to([known[n] for n in sizes[max(at - 1, 0) : at + 2]])}, key=score)
-    while (there := min(here - 1, here + 1, key=score)) and score(there) < score(here):
-        here = there
-    return known[here]
+    return best_size(tried, data.sizes.get(candidate, ()))
 
 
-def _rising(scores: list[float]) -> bool:
-    """Whether the best size lies behind: the last three scores go up from the least."""
-    return len(scores) > 3 and scores[-4] == min(scores) and scores[-4] < scores[-3] < scores[-2] <= scores[-1]
+def _settled(one: Fit) -> bool:
+    """Whether but rounding is left over."""
+    return one.residual <= 10.0 * FLOOR
 
 
-def _pointed_to(around: "list[Fit | None]") -> int:
-    """The size at which differences that go straight with 1/N^p between neighbours would be least."""
-    fits = [one for one in around if one is not None and one.count is not None]
-    best = min(fits, key=lambda one: one.score)
-    assert best.count is not None
-    size, least = float(best.count), inf
-    for one, other in pairwise(fits):
-        if one.count is None or other.count is None or len(one.differences) != len(other.differences):
-            continue
-        step = other.differences - one.differences
-        part = float(-(step @ one.differences) / max(float(step @ step), 1e-300))
-        left = float(np.sum((one.differences + part * step) ** 2))
-        if 0.0 <= part <= 1.0 and left < least:
-            squares = one.count**-2.0 + part * (other.count**-2.0 - one.count**-2.0)
-            size, least = squares**-0.5, left
-    return round(size)
+def _looked_closer(data: Data, fits: dict[tuple[Candidate, Reading], Fit], among: Sequence[Reading]) -> bool:
+    """Whether there are better sizes, kept in `data.sizes`: those of other readings, or where errors go up and down.
 
-
-def _grid() -> list[int]:
-    sizes, size = [], COUNTS[0]
-    while size < COUNTS[1]:
-        sizes.append(size)
-        size = max(size + 1, round(_GRID * size))
-    return [*sizes, COUNTS[1]]
+    Of all chains that carry bodies on their links, and, of a beam with steps, of the candidates that are nearest.
+    """
+    by_another = {one.candidate: one.count for one in fits.values() if one.count is not None and _settled(one)}
+    if by_another:
+        data.sizes.update({one: (*data.sizes.get(one, ()), count) for one, count in by_another.items()})
+        return True
+    beam, score = data.solver.beam, {key: one.score for key, one in fits.items()}
+    uneven = [one for one in data.family if one.sized and goes_up_and_down(beam, one)]
+    best = {one: min(among, key=lambda reading: score.get((one, reading), inf)) for one in uneven}
+    nearest = sorted(uneven, key=lambda one: (one.attachment is None, score.get((one, best[one]), inf)))
+    carrying = sum(one.attachment is not None for one in uneven)
+    places = inner_places(beam)
+    found = False
+    for one in nearest[: max(carrying, _CLOSER)]:
+        for reading in dict.fromkeys([among[0], best[one]]):
+            tried = partial(_tried, data, one, reading, data.paired)
+            fit = closest(tried, places if one.attachment is not None else (), data.sizes.get(one, ()), _settled)
+            if fit is not None and fit.count is not None:
+                data.sizes[one] = (*data.sizes.get(one, ()), fit.count)
+                found = True
+                if _settled(fit):
+                    return True
+    return found
 
 
 def _ranked(data: Data, best: Fit, reading: Reading, count: int | None) -> Identified:
     """All candidates by the best one's pairs and factor, those as near as the best named."""
     known = Reading(factor=reading.factor, aligned=False, cost=reading.cost)
-    sized = (_sized(partial(_tried, data, one, known, best.pairs), one, count) for one in data.family)
+    sized = (_sized(partial(_tried, data, one, known, best.pairs), data, one, count) for one in data.family)
     place = {candidate: i for i, candidate in enumerate(data.family)}
     found = [one for one in sized if one is not None]
     fits = _preferred(sorted(found, key=lambda one: (max(one.residual, FLOOR), place[one.candidate])), place)

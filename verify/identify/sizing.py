@@ -8,7 +8,8 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.identify.family import CHAIN, ELEMENTS, Candidate, exact_hz, frequencies_hz
-from verify.judge.sizing import enough_from
+from verify.judge.sizing import between, enough_from, solved, walked
+from verify.judge.variants import falls_within
 from verify.judge.workbench import Workbench
 
 _MOST = 1000
@@ -24,6 +25,8 @@ class Enough(msgspec.Struct, frozen=True, kw_only=True):
     error: float
     count: int | None
     """Of the user's own kind of model; None where none is found."""
+    known_by: str
+    """Which larger numbers do, and how it is known; empty where none is found."""
     better: str
     """What does with fewer, in words; empty where nothing known does."""
     better_count: int | None
@@ -31,28 +34,38 @@ class Enough(msgspec.Struct, frozen=True, kw_only=True):
 
 def enough(beam: Beam, candidate: Candidate, mode: int, error: float) -> Enough:
     """From which size on `candidate` keeps `error` at `mode`, and from which the best of its kind does."""
-    count = parts_for(beam, candidate, mode, error)
+    own = parts_for(beam, candidate, mode, error)
+    count, known_by = own or (None, "")
     other, words = _better(beam, candidate)
-    fewer = parts_for(beam, other, mode, error) if other is not None else None
-    worth = fewer is not None and (count is None or fewer < count)
+    found = parts_for(beam, other, mode, error) if other is not None else None
+    fewer = found[0] if found is not None and (count is None or found[0] < count) else None
     return Enough(
-        mode=mode, error=error, count=count, better=words if worth else "", better_count=fewer if worth else None
+        mode=mode,
+        error=error,
+        count=count,
+        known_by=known_by,
+        better="" if fewer is None else words,
+        better_count=fewer,
     )
 
 
 @lru_cache(maxsize=256)
-def parts_for(beam: Beam, candidate: Candidate, mode: int, error: float) -> int | None:
-    """From which size on the error is kept, by the package's own search where the model is the package's; or None."""
+def parts_for(beam: Beam, candidate: Candidate, mode: int, error: float) -> tuple[int, str] | None:
+    """(from which size on the error is kept, how that is known); by the package's search for its models; or None."""
     try:
         if candidate.packaged and candidate.theory == "euler-bernoulli":
-            return enough_from(Workbench(beam), candidate.model, mode, error, candidate.settings).count
+            found = enough_from(Workbench(beam), candidate.model, mode, error, candidate.settings)
+            return found.count, found.known_by
         return _searched(beam, candidate, mode, error)
     except InputError:
         return None
 
 
-def _searched(beam: Beam, candidate: Candidate, mode: int, error: float) -> int | None:
-    """Sizes 15 % apart until five in a row do, and between the last that fails and the next. Raises InputError."""
+def _searched(beam: Beam, candidate: Candidate, mode: int, error: float) -> tuple[int, str] | None:
+    """Sizes 15 % apart until five in a row do, and between the last that fails and the next. Raises InputError.
+
+    On a beam with steps those after the last that fails are gone through one by one, as the package's search does.
+    """
     exact = float(exact_hz(beam, mode, candidate.theory)[-1])
 
     def reached(count: int) -> bool:
@@ -60,20 +73,20 @@ def _searched(beam: Beam, candidate: Candidate, mode: int, error: float) -> int 
         return len(found) == mode and bool(np.isfinite(found[-1])) and abs(float(found[-1]) / exact - 1.0) <= error
 
     size = max(mode, len(beam.pieces), 2)
-    low, does = size - 1, list[int]()
+    low, does = size - 1, dict[int, bool]()
     while len(does) < _IN_A_ROW:
         if reached(size):
-            does.append(size)
+            does[size] = True
         else:
-            low, does = size, []
+            low, does = size, {}
         size = max(size + 1, round(_STEP * size))
         if size > _MOST and not does:
             return None
-    high = does[0]
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high
+    if falls_within(beam):
+        low, does = walked(reached, low, does)
+        return low + 1, solved(low + 1, does)
+    high = between(reached, low, min(does))
+    return high, solved(high, does)
 
 
 def _better(beam: Beam, candidate: Candidate) -> tuple[Candidate | None, str]:

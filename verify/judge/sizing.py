@@ -1,14 +1,14 @@
 """How many segments or elements an accuracy takes: from which size on it is kept, and how that is known."""
 
 from collections.abc import Callable
-from math import ceil
-from typing import TYPE_CHECKING
+from math import ceil, inf
+from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
 from verify.errors import InputError
 from verify.exact.error_laws import LAWS, expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
-from verify.judge.variants import Rules, Variant, beside, without_effect
+from verify.judge.variants import Rules, Variant, beside, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.timing import interleaved_medians
@@ -18,24 +18,34 @@ if TYPE_CHECKING:
 
 _LARGEST_COUNT = 200_000
 _LARGEST_UNKNOWN = 2000
-"""Of a model without an error law: nobody says beforehand whether it gets there."""
+"""Of a model without an error law: nobody says beforehand whether it gets there. Also of an error that goes up and
+down with N, where every size has to be solved."""
 _EVERY, _CLOSELY = 100, 2000
 """Sizes are gone through one by one up to the first, 5 % apart up to the second, then doubled."""
 _LOWER_BRANCH = 0.05
 """Above the lower branch Hermite elements are at least 7.9 % off: smaller errors are found on it."""
+_WALK = (40, 100_000, 100)
+"""Sizes one by one after the last that fails: the second number over it, no fewer than the first, no more than the
+third, and never beyond its double."""
+_LOWER = 100
+"""Modes up to which those below are looked at."""
 
 Reached = Callable[[int], bool]
+Modes: TypeAlias = int | range
+"""One mode, or all of several, numbered from 1."""
 
 
 class Enough(msgspec.Struct, frozen=True, kw_only=True):
     """From which size on an accuracy is kept."""
 
     count: int
-    """At this size and every larger one, as far as `known_by` says, the error is within what was asked."""
+    """At this size, and at larger ones as far as `known_by` says, the error is within what was asked."""
+    mode: int
+    """The mode that asks for so many: the one that was asked for, or of several the worst with one part less."""
     smaller: int | None = None
     """The smallest size below it that happens to do, though one between does not; None where none was found."""
     known_by: str
-    """How it is known that larger sizes do."""
+    """Which larger sizes do, and how it is known."""
 
 
 class Choice(msgspec.Struct, frozen=True, kw_only=True):
@@ -46,9 +56,13 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     """Other than the model's defaults: (("wall", "half"),) is the literature's wall."""
     count: int
     """From here on enough."""
+    mode: int
+    """The mode that asks for so many."""
+    lower: tuple[int, ...]
+    """Modes below the one asked for whose error at `count` is beyond what was asked; empty where all were asked for."""
     unknowns: int
     error: float
-    """Signed relative frequency error at `count`, solved."""
+    """Signed relative frequency error of `mode` at `count`, solved."""
     expected_error: float | None
     """The same from the error law; None where there is none (stepped beams)."""
     run_time_s: float
@@ -58,7 +72,7 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     smaller_error: float | None
     """Its error."""
     known_by: str
-    """How it is known that every larger size does."""
+    """Which larger sizes do, and how it is known."""
 
     @property
     def variant(self) -> Variant:
@@ -83,73 +97,156 @@ def check_reachable(beam: "Beam", model: str, settings: Settings) -> None:
     MODELS.named(model).check(beam, 1, _CLOSELY, **dict(settings))
 
 
-def enough_from(bench: Workbench, model: str, mode: int, error: float, settings: Settings = ()) -> Enough:
+def enough_from(bench: Workbench, model: str, mode: Modes, error: float, settings: Settings = ()) -> Enough:
     """From which size on the solved frequency error is within `error`; one part less is outside it.
 
-    Where the discrete dispersion is known, it proves it. Elsewhere an error may change its sign and dip under `error`
-    before it stays there: sizes are gone through from the smallest to twice the last that fails, and what holds
-    beyond is the error law's word. Where the law asks for more than 2000 parts, and for modes beyond the hundredth,
-    its answer alone is looked around. Raises InputError where no size up to 200 000 reaches the error.
+    `mode` may be a range: all its modes are within. Where the discrete dispersion is known, it proves it. Elsewhere an
+    error may change its sign and dip under `error` before it stays there: sizes are gone through from the smallest to
+    twice the last that fails. Where a body, a spring or a step falls anywhere within a part, the error goes up and down
+    with N, and those after the last that fails are solved one by one (`_walked`). What holds beyond is the error law's
+    word, where there is one. Where the law asks for more than 2000 parts, and for modes beyond the hundredth, its
+    answer alone is looked around. Raises InputError where no size up to 200 000 reaches the error, or, where it goes
+    up and down, where one beyond 2000 fails.
     """
+    check_reachable(bench.beam, model, settings)
+    modes = _several(mode)
+    smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
+    law = model in LAWS and bench.beam.uniform and not (bench.beam.section or settings)
+    guess = max(count_guess(model, bench.beam, one, error) for one in modes)
+    proven = law and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH
+    if proven or (law and (guess > _CLOSELY or modes[-1] > _EVERY)):
+        beside = {one: _beside_guess(bench, model, one, error, smallest) for one in modes}
+        worst = max(beside, key=lambda one: (beside[one], one))
+        if not proven:
+            known_by = "every larger N does by the error law; smaller ones were not looked through"
+            return Enough(count=beside[worst], mode=worst, known_by=known_by)
+        smaller = _dip(model, bench.beam, mode, error, beside[worst])
+        known_by = "every larger N does, proven by the discrete dispersion"
+        return Enough(count=beside[worst], mode=worst, smaller=smaller, known_by=known_by)
+    reached = _reached(bench, model, modes, error, settings)
+    uneven = falls_within(bench.beam)
+    count, smaller, does = _scanned(reached, smallest, guess, model, error, uneven)
+    worst = _worst(bench, model, modes, count - 1, settings)
+    return Enough(count=count, mode=worst, smaller=smaller, known_by=solved(count, does, law))
+
+
+def _several(mode: Modes) -> range:
+    return mode if isinstance(mode, range) else range(mode, mode + 1)
+
+
+def _reached(bench: Workbench, model: str, modes: range, error: float, settings: Settings) -> Reached:
+    """Whether all modes are within `error` at a size."""
 
     def reached(count: int) -> bool:
-        if MODELS.named(model).n_elastic(bench.beam, count, **dict(settings)) < mode:
+        if MODELS.named(model).n_elastic(bench.beam, count, **dict(settings)) < modes[-1]:
             return False
         try:
-            return abs(bench.frequency_error(model, count, mode, settings)) <= error
+            return all(abs(bench.frequency_error(model, count, mode, settings)) <= error for mode in reversed(modes))
         except InputError:  # of so few parts: what they refuse at any number is refused above
             return False
 
-    guess = count_guess(model, bench.beam, mode, error)
-    check_reachable(bench.beam, model, settings)
-    smallest = max(len(bench.beam.pieces), MODELS.named(model).fewest)
-    uniform = model in LAWS and bench.beam.uniform and not (bench.beam.section or settings)
-    if uniform and sine_fits(bench.beam.supports) and error < _LOWER_BRANCH:
-        count = _around(reached, guess, smallest, model, error)
-        return Enough(
-            count=count,
-            smaller=_dip(model, bench.beam, mode, error, count),
-            known_by="every larger N does, proven by the discrete dispersion",
-        )
-    if guess > _CLOSELY or mode > _EVERY:
-        known_by = "every larger N does by the error law; smaller ones were not looked through"
-        return Enough(count=_around(reached, guess, smallest, model, error), known_by=known_by)
-    count, smaller, end = _scanned(reached, smallest, guess, model, error)
-    tried = f"all N up to {end}" if end <= _EVERY else f"all N up to {_EVERY} and some up to {end}"
-    beyond = "beyond that by the error law" if uniform else "beyond that nothing is known"
-    return Enough(count=count, smaller=smaller, known_by=f"every larger N does, solved for {tried}, {beyond}")
+    return reached
 
 
-def _dip(model: str, beam: "Beam", mode: int, error: float, count: int) -> int | None:
+def _beside_guess(bench: Workbench, model: str, mode: int, error: float, smallest: int) -> int:
+    """From where one mode is within `error`, next to the error law's answer."""
+    reached = _reached(bench, model, _several(mode), error, ())
+    return _around(reached, count_guess(model, bench.beam, mode, error), smallest, model, error)
+
+
+def _worst(bench: Workbench, model: str, modes: range, count: int, settings: Settings) -> int:
+    """Which of the modes has the largest error at a size; the highest where the size has not all of them."""
+    if len(modes) == 1:
+        return modes[0]
+    found = {mode: bench.error_or_why(model, count, mode, settings)[0] for mode in modes}
+    return max(modes, key=lambda mode: (inf if (error := found[mode]) is None else abs(error), mode))
+
+
+def solved(count: int, does: dict[int, bool], law: bool = False) -> str:
+    """Which sizes from `count` on do, by what was solved, and what of larger ones."""
+    last = count
+    while does.get(last + 1):
+        last += 1
+    end = max(does)
+    one_by_one = f"all N from {count} to {last} do" * (last > count)
+    tried = f"those tried up to {end}" * (end > last)
+    said = f"{one_by_one}, and {tried}" if one_by_one and tried else one_by_one or f"{tried or f'N = {count}'} do"
+    return f"{said}; larger ones {'do by the error law' if law else 'were not solved'}"
+
+
+def _dip(model: str, beam: "Beam", mode: Modes, error: float, count: int) -> int | None:
     """The smallest size below `count` within `error` by the discrete dispersion."""
-    sizes = range(smallest_count(beam, mode), count)
-    if law_of(model).hump is None or len(sizes) == 0 or abs(expected_error(model, beam, mode, sizes[0])) > error:
+    modes = _several(mode)
+    sizes = range(smallest_count(beam, modes[-1]), count)
+    if law_of(model).hump is None or len(sizes) == 0:
+        return None
+
+    def within(size: int) -> bool:
+        return all(abs(expected_error(model, beam, one, size)) <= error for one in modes)
+
+    if len(modes) > 1:
+        return next((size for size in sizes[:-1] if within(size)), None)  # one part less than `count` is outside
+    if not within(sizes[0]):
         return None  # towards the cut-off the error falls again: if the smallest size does not do, none does
-    return sizes[0] if any(abs(expected_error(model, beam, mode, n)) > error for n in sizes) else None
+    return sizes[0] if any(not within(size) for size in sizes) else None
 
 
-def _scanned(reached: Reached, smallest: int, guess: int, model: str, error: float) -> tuple[int, int | None, int]:
-    """(the size from which on all that were tried reach, the smallest below it that does, the last tried)."""
+def _scanned(
+    reached: Reached, smallest: int, guess: int, model: str, error: float, uneven: bool = False
+) -> tuple[int, int | None, dict[int, bool]]:
+    """(the size from which on all that were tried reach, the smallest below it that does, what was tried).
+
+    `uneven`: the error goes up and down with the size, so that those after the last that fails are gone through.
+    """
     does: dict[int, bool] = {}
     count, failed = smallest, smallest - 1
+    largest = 2 * _LARGEST_UNKNOWN if uneven else _LARGEST_COUNT if model in LAWS else _LARGEST_UNKNOWN
     while count <= max(2 * failed, guess, smallest + 4):
-        if count > (_LARGEST_COUNT if model in LAWS else _LARGEST_UNKNOWN):
+        if count > largest:
             raise _unreached(model, error, count)
         does[count] = reached(count)
         failed = failed if does[count] else count
-        count = count + 1 if count < _EVERY else ceil(1.05 * count) if count < _CLOSELY else 2 * count
-    enough = _between(reached, failed, min(n for n in does if n > failed))
-    return enough, next((n for n in does if n < failed and does[n]), None), max(does)
+        closely = uneven or count < _CLOSELY
+        count = count + 1 if count < _EVERY else ceil(1.05 * count) if closely else 2 * count
+    if uneven:
+        failed, does = walked(reached, failed, does) if failed <= _LARGEST_UNKNOWN else (failed, does)
+        if failed > _LARGEST_UNKNOWN:
+            raise InputError(
+                f"error = {error!r}: the {model} model, whose error goes up and down with count here, is still beyond "
+                f"it at count = {failed}, and larger ones are not looked through"
+            )
+        enough = failed + 1
+    else:
+        enough = between(reached, failed, min(n for n in does if n > failed))
+    return enough, next((n for n in does if n < failed and does[n]), None), does
+
+
+def walked(reached: Reached, failed: int, does: dict[int, bool]) -> tuple[int, dict[int, bool]]:
+    """(the last size that fails, what was tried, ascending), sizes after the last that fails solved one by one.
+
+    A place on the beam wanders through the parts as N grows, and so does what it does to the error: after some tens
+    of sizes it has been nearly everywhere, and they begin anew after each that fails.
+    """
+    does, at = dict(does), failed
+    while at < failed + min(failed, _WALK[2], max(_WALK[0], _WALK[1] // max(failed, 1))):
+        at += 1
+        if at not in does:
+            does[at] = reached(at)
+        if not does[at]:
+            failed = at
+            if failed > _LARGEST_UNKNOWN:
+                break
+    return max([failed, *(n for n in does if not does[n])]), dict(sorted(does.items()))
 
 
 def _around(reached: Reached, guess: int, smallest: int, model: str, error: float) -> int:
     """The size that reaches with one part less that does not, next to a guess: a right guess costs two solves."""
     if reached(guess):
-        return _between(reached, *_gallop_down(reached, guess, smallest))
-    return _between(reached, *_gallop_up(reached, guess, model, error))
+        return between(reached, *_gallop_down(reached, guess, smallest))
+    return between(reached, *_gallop_up(reached, guess, model, error))
 
 
-def _between(reached: Reached, low: int, high: int) -> int:
+def between(reached: Reached, low: int, high: int) -> int:
     """The first that reaches between one that fails and one that reaches."""
     while high - low > 1:
         middle = (low + high) // 2
@@ -181,7 +278,7 @@ def _unreached(model: str, error: float, count: int) -> InputError:
 
 
 def choose_of_all(
-    bench: Workbench, mode: int, error: float, rules: Rules | None = None
+    bench: Workbench, mode: Modes, error: float, rules: Rules | None = None
 ) -> tuple[list[Choice], dict[str, str]]:
     """(choices of every model of parts, why those are left out that have none). Raises InputError.
 
@@ -199,41 +296,56 @@ def choose_of_all(
             left_out[model.name] = str(problem)
     asked = (rules or Rules()).variants(names)
     left_out |= without_effect(bench.beam, rules or Rules())
-    variants, more = list(asked), beside(bench.beam, (rules or Rules()).settled)
-    for one in more:
+    found = {one: enough_from(bench, one.model, mode, error, one.settings) for one in asked}
+    for one in beside(bench.beam, (rules or Rules()).settled):
         try:
-            enough_from(bench, one.model, mode, error, one.settings)
-            variants.append(one)
+            if one not in found:
+                found[one] = enough_from(bench, one.model, mode, error, one.settings)
         except InputError as problem:
             left_out[one.title] = str(problem)
-    return choose(bench, mode, error, tuple(dict.fromkeys(variants))), left_out
+    return _choices(bench, found, mode, error), left_out
 
 
-def choose(bench: Workbench, mode: int, error: float, variants: tuple[Variant, ...] = ()) -> list[Choice]:
+def choose(bench: Workbench, mode: Modes, error: float, variants: tuple[Variant, ...] = ()) -> list[Choice]:
     """For each variant the size from which on it keeps `error`, and its time, taken in turns. Raises InputError.
 
     The models of the package by their defaults, unless `variants` names others.
     """
     asked = variants or tuple(Variant(name) for name in MODELS.built_in if MODELS[name].sized)
     found = {one: enough_from(bench, one.model, mode, error, one.settings) for one in asked}
-    jobs = [_solver(bench, one, enough.count, mode) for one, enough in found.items()]
+    return _choices(bench, found, mode, error)
+
+
+def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error: float) -> list[Choice]:
+    highest = _several(mode)[-1]
+    jobs = [_solver(bench, one, enough.count, highest) for one, enough in found.items()]
     return [
         Choice(
             model=one.model,
             settings=one.settings,
             count=enough.count,
+            mode=enough.mode,
+            lower=() if isinstance(mode, range) else _lower(bench, one, enough, error),
             unknowns=MODELS.named(one.model).unknowns(bench.beam, enough.count, **dict(one.settings)),
-            error=bench.frequency_error(one.model, enough.count, mode, one.settings),
+            error=bench.frequency_error(one.model, enough.count, enough.mode, one.settings),
             run_time_s=seconds,
-            expected_error=None if one.settings else _expected(one.model, bench.beam, mode, enough.count),
+            expected_error=None if one.settings else _expected(one.model, bench.beam, enough.mode, enough.count),
             smaller=enough.smaller,
             known_by=enough.known_by,
             smaller_error=None
             if enough.smaller is None
-            else bench.frequency_error(one.model, enough.smaller, mode, one.settings),
+            else bench.frequency_error(one.model, enough.smaller, enough.mode, one.settings),
         )
         for (one, enough), seconds in zip(found.items(), interleaved_medians(jobs), strict=True)
     ]
+
+
+def _lower(bench: Workbench, one: Variant, enough: Enough, error: float) -> tuple[int, ...]:
+    """Modes below that are outside `error` at a size that is enough for a higher one: they were solved with it."""
+    if enough.mode > _LOWER:
+        return ()
+    found = {n: bench.error_or_why(one.model, enough.count, n, one.settings)[0] for n in range(1, enough.mode)}
+    return tuple(n for n, off in found.items() if off is not None and abs(off) > error)
 
 
 def _solver(bench: Workbench, one: Variant, count: int, mode: int) -> Callable[[], object]:

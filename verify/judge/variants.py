@@ -107,18 +107,32 @@ def models_with(name: str) -> tuple[str, ...]:
 
 
 def has_wall(beam: Beam) -> bool:
-    """Whether an end turns against something, so that a chain has a joint at a wall there."""
-    turned = [spring.position for spring in beam.spring if spring.rotational]
+    """Whether an end turns against something or turns something, so that a chain has a joint at a wall there."""
+    turned = [s.position for s in beam.spring if s.rotational] + [m.position for m in beam.mass if m.rotary_inertia]
     return "clamped" in beam.supports or 0.0 in turned or beam.length in turned
 
 
+def falls_within(beam: Beam) -> bool:
+    """Whether something may fall anywhere within a part, so that errors go up and down with the number of parts."""
+    places = [m.position for m in beam.mass] + [s.position for s in beam.spring]
+    return len(beam.pieces) > 1 or any(0.0 < place < beam.length for place in places)
+
+
+def told_by_lever(beam: Beam) -> bool:
+    """Whether links that carry bodies and springs as they are differ from others: not at an end, where none turns."""
+    turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
+    places = [m.position for m in beam.mass] + [s.position for s in beam.spring]
+    return turning or any(0.0 < place < beam.length for place in places)
+
+
 def beside(beam: Beam, chosen: Settings = ()) -> tuple[Variant, ...]:
-    """The rules that stand beside the default on this beam: the literature's wall, the joint that mends an order.
+    """The rules that stand beside the default on this beam: the literature's wall and attachment, the joint that mends.
 
     Axial force and thickness take two orders from joints in series; what else is chosen is kept.
     """
     loses = bool(beam.tension) or dict(chosen).get("theory", DEFAULTS["theory"]) != DEFAULTS["theory"]
     other = [("wall", "half")] * has_wall(beam) + [("joints", "tensioned")] * loses
+    other += [("attachment", "lever")] * told_by_lever(beam)
     return tuple(Variant(model, told(dict(chosen) | dict([one]))) for one in other for model in models_with(one[0]))
 
 

@@ -87,24 +87,51 @@ def mode_number(text: str) -> int:
     return value
 
 
+def mode_numbers(text: str) -> int | range:
+    """A mode number, or all of several, as typed: '12', '1-12'. Raises InputError."""
+    first, dash, last = text.strip().partition("-")
+    if not (first and dash):
+        return mode_number(text)
+    low, high = mode_number(first), mode_number(last)
+    if high < low:
+        raise InputError(f"mode = {text!r}: the last is below the first, write {high}-{low}")
+    return range(low, high + 1)
+
+
 def accuracy(text: str, field: str = "error") -> float:
-    """A relative error as typed, '1%' or '0.01'. Raises InputError unless it lies between 1e-12 and 1."""
+    """A relative error as typed, '1%' or '0.01'. Raises InputError unless it lies between 1e-12 and 1.
+
+    A plain number of 0.1 or more is meant in per cent by most who write it, and is refused.
+    """
     value = literal(text.strip().removesuffix("%"), field)
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    error = float(value) / (100.0 if text.strip().endswith("%") else 1.0) if number else 0.0
-    if not 1e-12 <= error < 1.0:
+    in_percent = text.strip().endswith("%")
+    error = float(value) / (100.0 if in_percent else 1.0) if number else 0.0
+    if not 1e-12 <= error < 1.0 and not (in_percent is False and 1.0 <= error < 100.0):
         raise InputError(f"{field} = {text!r}: give a relative error from 1e-12 up to 1, for instance 1% or 0.01")
+    if error >= _PLAIN and not in_percent:
+        below = f" or {error / 100.0:g}" if error / 100.0 < _PLAIN else ""
+        whole = f", for {100.0 * error:g} per cent {100.0 * error:g}%" if error < 1.0 else ""
+        raise InputError(
+            f"{field} = {text!r} has no per cent sign: for {error:g} per cent write {error:g}%{below}{whole}"
+        )
     return error
 
 
+_PLAIN = 0.1
+"""From here on an error needs its per cent sign."""
+
+
 def choice_as_plain(
-    bench: "Workbench", mode: int, error: float, choices: "list[Choice]", left_out: dict[str, str]
+    bench: "Workbench", mode: int | range, error: float, choices: "list[Choice]", left_out: dict[str, str]
 ) -> dict[str, Any]:
-    """An answer of `verify choose --json`."""
+    """An answer of `verify choose --json`; of several modes, `mode` is the last."""
+    modes = [mode] if isinstance(mode, int) else list(mode)
     return {
-        "mode": mode,
+        "mode": modes[-1],
+        "modes": modes,
         "error": error,
-        "exact_hz": bench.exact_hz(mode),
+        "exact_hz": bench.exact_hz(modes[-1]),
         "choices": [msgspec.to_builtins(one) | {"settings": dict(one.settings)} for one in choices],
         "left_out": left_out,
     }
