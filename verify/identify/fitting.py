@@ -275,7 +275,7 @@ def _sized(
 
 def _settled(one: Fit) -> bool:
     """Whether but rounding is left over."""
-    return one.residual <= 10.0 * FLOOR
+    return one.residual <= FLOOR
 
 
 def _looked_closer(data: Data, fits: dict[tuple[Candidate, Reading], Fit], among: Sequence[Reading]) -> bool:
