@@ -4,7 +4,7 @@ Links are straight bars with their mass in the middle; all that can work on a ch
 compiled chain, of its equilibria or of its small motion but the numbers that describe it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace as changed
 from functools import cache, partial
 from math import pi
@@ -16,6 +16,7 @@ from verify.beam import Beam
 from verify.chain import warm
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.models.arrays import Array
+from verify.models.compiling import Call
 from verify.section import Section
 from verify.stress.beams import held
 from verify.stress.kind import Floor, Row
@@ -291,6 +292,12 @@ def evaluations_error(links: float) -> float:
     return float(abs(told.evaluations - 6 * (told.steps + told.rejected)))
 
 
+def _energies() -> Iterator[Call]:
+    """Links on their constraints, and their energies."""
+    yield from warm.resting()
+    yield from warm.energies()
+
+
 NUMBERS = tuple(float(n) for n in range(5))
 _row: Callable[..., Floor] = partial(Floor, along="chain", at=NUMBERS)
 
@@ -301,7 +308,7 @@ ROWS: tuple[Row, ...] = (
         why="chain/recursion_kernels.py: the recursion to rounding.",
         promise=1e-10,
         error=acceleration_error,
-        kernels=warm.accelerations,
+        kernels=warm.accelerated,
     ),
     _row(
         id="energies-written-out",
@@ -309,7 +316,7 @@ ROWS: tuple[Row, ...] = (
         why="chain/kernels.py: to rounding.",
         promise=1e-13,
         error=energy_error,
-        kernels=warm.energies,
+        kernels=_energies,
     ),
     _row(
         id="rest-written-out",
@@ -317,7 +324,7 @@ ROWS: tuple[Row, ...] = (
         why="chain/statics.py: Newton's method to 1e-12 of the loads.",
         promise=1e-9,
         error=rest_error,
-        kernels=warm.accelerations,
+        kernels=warm.resting,
     ),
     _row(
         id="small-motion-written-out",
@@ -325,7 +332,7 @@ ROWS: tuple[Row, ...] = (
         why="chain/dynamics.py: exact; differences over 1e-5 keep seven digits.",
         promise=1e-6,
         error=small_motion_error,
-        kernels=warm.accelerations,
+        kernels=warm.resting,
     ),
     Floor(
         id="chains-upright",
@@ -335,7 +342,7 @@ ROWS: tuple[Row, ...] = (
         at=(1, 3, 9),
         promise=1e-9,
         error=upright_error,
-        kernels=warm.accelerations,
+        kernels=warm.resting,
     ),
     Floor(
         id="runge-kutta-conditions",

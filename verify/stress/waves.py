@@ -193,7 +193,8 @@ def held_resonance() -> float:
         parts = [of(k * 0.3) * of(k * (STRIP.length - 0.3)) / of(k * STRIP.length) for of in (np.sin, np.sinh)]
         return float(parts[0] - parts[1])
 
-    return float(brentq(receptance, 40.0, 60.0, xtol=1e-13, rtol=1e-15))
+    low, high = (pi * STRIP.wave_constant / (2.0 * STRIP.length**2) * n**2 for n in (1.0, 2.0))
+    return float(brentq(receptance, 1.001 * low, 0.999 * high, xtol=1e-13, rtol=1e-15))
 
 
 # --- The best drive ---------------------------------------------------------------------------------------------------

@@ -1,12 +1,10 @@
 """Elements and links of beams with anything on them, against matrices that are written out in full and solved densely.
 
-Textbook elements of 4 by 4, and rigid links with a spring in every joint, in metres and newtons. Only where a beam is
-cut comes from the models.
+Only where a beam is cut comes from the models.
 """
 
-from collections.abc import Callable, Sequence
-from functools import cache, cached_property, partial
-from math import pi
+from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -14,20 +12,12 @@ from msgspec.structs import replace
 
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import phasor
-from verify.section import Piece
-from verify.stress.anything import ANY, FORCES, PLACES, SECTIONS
+from verify.models.arrays import Array
+from verify.stress.anything import ANY, FORCES, PLACES, PLAIN, SECTIONS
+from verify.stress.dense import Elements, Links, Reciprocal, Sheared
 from verify.stress.kind import Floor, Row
 
 PARTS, MODES = 13, 6
-HELD = {"pinned": (0,), "clamped": (0, 1), "guided": (1,), "free": ()}
-"""Which of deflection and slope an end holds."""
-WALLS = ("clamped", "guided")
-GREGORY = np.array([3.0 / 8.0, 7.0 / 6.0, 23.0 / 24.0])
-"""How soft joints are from a clamp on, over those of links alike inside."""
-CUBICS = np.array([[1.0, 0.0, -3.0, 2.0], [0.0, 1.0, -2.0, 1.0], [0.0, 0.0, 3.0, -2.0], [0.0, 0.0, -1.0, 1.0]])
-"""Hermite's, of deflection and slope at both ends, over the length."""
 THIN = tuple(n for n, (_, theory) in enumerate(ANY) if theory == "euler-bernoulli")
 LOSS, RATIO, DASHPOT = 0.037, 0.021, 0.013
 HERTZ = np.array([3.1, 67.0, 131.0, 293.0, 431.0])
@@ -40,177 +30,6 @@ def beams() -> tuple[Beam, ...]:
     spring = PointSpring(position=0.0, stiffness=510.0)
     last = replace(ANY[7][0], section=SECTIONS, mass=(mass,), spring=(spring,), supports=("guided", "clamped"))
     return (*(ANY[n][0] for n in THIN), last)
-
-
-class Written:
-    """Dense matrices over all unknowns: of bending, of all else that is stiff, of mass."""
-
-    bent: Array
-    rest: Array
-    mass: Array
-    free: list[int]
-
-    def __init__(self, beam: Beam, nodes: Array) -> None:
-        self.beam, self.nodes, self.lengths = beam, nodes, np.diff(nodes)
-        ends = np.cumsum([piece.length for piece in beam.pieces])
-        middles = np.clip(np.searchsorted(ends, nodes[:-1] + 0.5 * self.lengths), 0, len(ends) - 1)
-        self.pieces: list[Piece] = [beam.pieces[int(i)] for i in middles]
-
-    def kept(self, matrix: Any) -> Any:
-        """Of the unknowns that the ends leave free."""
-        return matrix[np.ix_(self.free, self.free)]
-
-    @cached_property
-    def modes(self) -> tuple[Array, Array]:
-        """(omega^2, shapes over all unknowns in columns, of modal mass 1)."""
-        from scipy.linalg import eigh
-
-        values, vectors = eigh(self.kept(self.bent + self.rest), self.kept(self.mass))
-        values[: self.beam.rigid_motions] = 0.0
-        every = np.zeros((len(self.mass), len(values)))
-        every[self.free] = vectors
-        return values, every
-
-    def hertz(self, n_modes: int) -> Array:
-        """Of the first elastic modes."""
-        rigid = self.beam.rigid_motions
-        return np.asarray(np.sqrt(self.modes[0][rigid : rigid + n_modes]) / (2.0 * pi))
-
-    def under(self, load: ComplexArray, hertz: float, ratio: float = 0.0, more: Array | None = None) -> ComplexArray:
-        """All unknowns under a load: bending with the beam's loss, `more` dashpots, a ratio of every mode."""
-        omega, lossy = 2.0 * pi * hertz, 1.0 + 1j * self.beam.loss_factor
-        found = np.zeros(len(self.mass), dtype=complex)
-        if ratio:
-            values, vectors = self.modes
-            answers = (vectors.T @ load) / (values - omega**2 + 2j * ratio * omega * np.sqrt(np.maximum(values, 0.0)))
-            return np.asarray(vectors @ answers)
-        stiffness = self.bent * lossy + self.rest + (0.0 if more is None else 1j * omega * more)
-        matrix: Any = self.kept(stiffness - omega**2 * self.mass)
-        found[self.free] = np.linalg.solve(matrix, load[self.free])
-        return found
-
-    def buckling(self, turned: Array) -> float:
-        """The least compression under which no stiffness is left, `turned` being that of a tension of 1."""
-        from scipy.linalg import eigh
-
-        values = eigh(self.kept(turned), self.kept(self.bent + self.rest), eigvals_only=True)
-        return float(1.0 / values[-1])
-
-
-class Elements(Written):
-    """Hermite elements by their textbook entries."""
-
-    def __init__(self, beam: Beam, nodes: Array) -> None:
-        super().__init__(beam, nodes)
-        size = 2 * len(nodes)
-        self.bent, self.rest, self.mass, self.turned = np.zeros((4, size, size))
-        for i, (piece, n) in enumerate(zip(self.pieces, self.lengths, strict=True)):
-            at = slice(2 * i, 2 * i + 4)
-            bending, pulled, inertia = _hermite(float(n))
-            self.bent[at, at] += piece.bending_stiffness * bending
-            self.turned[at, at] += pulled
-            self.rest[at, at] += beam.foundation * inertia
-            self.mass[at, at] += piece.mass_per_length * inertia
-        self.rest += beam.tension * self.turned
-        for mass in beam.mass:
-            self._stands(self.mass, mass.position, mass.mass, mass.rotary_inertia)
-        for spring in beam.spring:
-            self._stands(self.rest, spring.position, spring.stiffness, spring.rotational)
-        held = list(HELD[beam.supports[0]]) + [size - 2 + k for k in HELD[beam.supports[1]]]
-        self.free = [i for i in range(size) if i not in held]
-
-    def _stands(self, matrix: Array, at: float, across: float, turning: float) -> None:
-        for derivative, value in ((0, across), (1, turning)):
-            row = self.row(at, derivative)
-            matrix += value * np.outer(row, row)
-
-    def row(self, x: float, derivative: int) -> Array:
-        """What reads a derivative at x off the nodal values."""
-        i = int(np.clip(np.searchsorted(self.nodes, x + 1e-12, side="right") - 1, 0, len(self.lengths) - 1))
-        n, z = float(self.lengths[i]), (x - float(self.nodes[i])) / float(self.lengths[i])
-        powers = ((1.0, z, z**2, z**3), (0.0, 1.0, 2.0 * z, 3.0 * z**2), (0.0, 0.0, 2.0, 6.0 * z))[derivative]
-        row = np.zeros(2 * len(self.nodes))
-        row[2 * i : 2 * i + 4] = CUBICS @ powers * (1.0, n, 1.0, n) / n**derivative
-        return row
-
-    def load(self, forces: Sequence[PointForce]) -> ComplexArray:
-        """Of point forces."""
-        return np.asarray(sum(phasor(force) * self.row(force.position, 0) for force in forces), dtype=complex)
-
-    def read(self, found: ComplexArray, x: Array, derivative: int) -> ComplexArray:
-        """At places."""
-        return np.asarray(np.array([self.row(at, derivative) for at in x.tolist()]) @ found)
-
-
-def _hermite(n: float) -> tuple[Array, Array, Array]:
-    """K of bending, of a tension of 1, and M of an element of length n, EI = rho A = 1."""
-    d = np.array([1.0, n, 1.0, n])
-    scale = np.outer(d, d)
-    bending = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]]) * scale / n**3
-    pulled = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]]) * scale / (30.0 * n)
-    mass = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) * scale * n / 420.0
-    return bending, pulled, mass
-
-
-class Links(Written):
-    """Rigid links, half of each one's give in the joint at either end; what stands on one moves as it does there."""
-
-    def __init__(self, beam: Beam, nodes: Array, wall: Array = GREGORY) -> None:
-        super().__init__(beam, nodes)
-        n, (left, right) = len(self.lengths), beam.supports
-        eye = np.eye(n + 1)
-        self.tilt, middle = np.diff(eye, axis=0) / self.lengths[:, None], 0.5 * (eye[1:] + eye[:-1])
-        none = np.zeros((1, n + 1))
-        walled = [self.tilt, *([none] if right in WALLS else [])]
-        self.bend = np.diff(np.vstack([none, *walled] if left in WALLS else walled), axis=0)
-        half = np.array([0.5 * a / piece.bending_stiffness for piece, a in zip(self.pieces, self.lengths, strict=True)])
-        give = half[1:] + half[:-1]
-        self.give = np.concatenate([2.0 * half[: left in WALLS], give, 2.0 * half[n - (right in WALLS) :]])
-        for side, support in ((1, left), (-1, right)):
-            along = self.give[::side]
-            along[: len(wall) if support == "clamped" else 0] *= wall[: len(wall) if support == "clamped" else 0]
-            along[: int(support == "guided")] *= 0.5
-        self.bent = (self.bend.T / self.give) @ self.bend
-        line = np.array([piece.mass_per_length for piece in self.pieces]) * self.lengths
-        bed = beam.foundation * self.lengths
-        self.turned = (self.tilt.T * self.lengths) @ self.tilt
-        self.mass, self.rest = (
-            (middle.T * own) @ middle + (self.tilt.T * (own * self.lengths**2 / 12.0)) @ self.tilt
-            for own in (line, bed)
-        )
-        self.rest += beam.tension * self.turned
-        for mass in beam.mass:
-            self._stands(self.mass, mass.position, mass.mass, mass.rotary_inertia)
-        for spring in beam.spring:
-            self._stands(self.rest, spring.position, spring.stiffness, spring.rotational)
-        held = [end for end, support in zip((0, n), beam.supports, strict=True) if support in ("pinned", "clamped")]
-        self.free = [i for i in range(n + 1) if i not in held]
-
-    def _link(self, x: float) -> int:
-        return int(np.clip(np.searchsorted(self.nodes, x, side="right") - 1, 0, len(self.lengths) - 1))
-
-    def _stands(self, matrix: Array, at: float, across: float, turning: float) -> None:
-        row, tilt = self.row(at), self.tilt[self._link(at)]
-        matrix += across * np.outer(row, row) + turning * np.outer(tilt, tilt)
-
-    def row(self, x: float) -> Array:
-        """Shares of both joints of a link by the lever rule."""
-        i = self._link(x)
-        share = (x - self.nodes[i]) / self.lengths[i]
-        row = np.zeros(len(self.nodes))
-        row[i : i + 2] = 1.0 - share, share
-        return row
-
-    def load(self, forces: Sequence[PointForce]) -> ComplexArray:
-        """Of point forces, by the lever rule."""
-        return np.asarray(sum(phasor(force) * self.row(force.position) for force in forces), dtype=complex)
-
-    def read(self, found: ComplexArray, x: Array, derivative: int) -> ComplexArray:
-        """At places of the cubic spline through the joints, level at walls and without moment at other ends."""
-        from scipy.interpolate import CubicSpline
-
-        ends = tuple((1 if support in WALLS else 2, 0.0) for support in self.beam.supports)
-        return np.asarray(CubicSpline(self.nodes, found, bc_type=ends)(x, derivative))
 
 
 def _nodes(beam: Beam, model: str, grading: float = 1.0) -> Array:
@@ -303,6 +122,44 @@ def fields_error(model: str) -> Callable[[float], float]:
     return error
 
 
+ENDS = (("pinned", "free"), ("clamped", "pinned"), ("guided", "clamped"), ("free", "guided"), ("clamped", "free"))
+"""Each kind of end on either side."""
+
+
+def beside_ends_error(number: float) -> float:
+    """Worst error of links under forces on their first and last ones, read beside both ends; and of their modes."""
+    from verify.models.catalogue import MODELS
+
+    beam = replace(PLAIN, supports=ENDS[int(number)], loss_factor=LOSS)
+    own, link, worst = Reciprocal(beam, np.linspace(0.0, beam.length, PARTS + 1)), beam.length / PARTS, 0.0
+    places = (0.4 * link, 1.3 * link, beam.length - 1.6 * link, beam.length - 0.2 * link)
+    forces = [PointForce(position=at, amplitude=0.7 + i, phase_deg=40.0 * i) for i, at in enumerate(places)]
+    x = np.array([0.0, 0.2, 1.4, 6.3, PARTS - 1.2, PARTS - 0.3, PARTS]) * link
+    for dashpot in (0.0, DASHPOT):
+        settings = {"joint_dashpot": dashpot} if dashpot else {}
+        more = dashpot * own.bend.T @ own.bend if dashpot else None
+        sweep = MODELS["segment"].sweep_harmonic(beam, forces, HERTZ, PARTS, **settings)
+        for i, hertz in enumerate(HERTZ):
+            states = own.under(own.load(forces), float(hertz), 0.0, more)
+            alone = MODELS["segment"].solve_harmonic(beam, forces, float(hertz), PARTS, **settings)
+            for derivative in range(3):
+                exact = own.read(states, x, derivative)
+                for found in (alone.shapes(x, derivative), sweep.shapes(x, derivative)[i]):
+                    worst = max(worst, float(abs(found - exact).max() / abs(exact).max()))
+    units = MODELS["segment"].unit_responses(beam, places, HERTZ, x, PARTS)
+    for i, hertz in enumerate(HERTZ):
+        for j, at in enumerate(places):
+            exact = own.read(own.under(own.load([PointForce(position=at)]), float(hertz)), x, 0)
+            worst = max(worst, float(abs(units[i, j] - exact).max() / abs(exact).max()))
+    modes, rigid = MODELS["segment"].solve_modes(beam, MODES, PARTS), beam.rigid_motions
+    for derivative in range(3):
+        exact = own.read(own.modes[1][:, rigid : rigid + MODES], x, derivative).T
+        found = modes.shapes(x, derivative)
+        sides = np.sign(np.sum(found * exact, axis=1))[:, None]
+        worst = max(worst, float((abs(sides * found - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
+    return worst
+
+
 def units_error(number: float) -> float:
     """Worst error of elements' deflections under unit forces at two places, without and with loss."""
     from verify.models.catalogue import MODELS
@@ -316,6 +173,37 @@ def units_error(number: float) -> float:
                 states = own.under(own.load([PointForce(position=at)]), float(hertz))
                 exact = own.read(states, PLACES, 0)
                 worst = max(worst, float(abs(found[i, j] - exact).max() / abs(exact).max()))
+    return worst
+
+
+THICK = tuple(n for n, (_, theory) in enumerate(ANY) if theory == "timoshenko")
+
+
+def thick_error(number: float) -> float:
+    """Of elements that shear, with sections, bodies, springs and ground: frequencies, deflections of modes, fields."""
+    from verify.models.catalogue import MODELS
+
+    beam, worst, theory = ANY[THICK[int(number)]][0], 0.0, {"theory": "timoshenko"}
+    own = Sheared(beam, _nodes(beam, "fem"))
+    found, rigid = MODELS["fem"].solve_modes(beam, MODES, PARTS, **theory), beam.rigid_motions
+    worst = float(abs(found.frequencies_hz / own.hertz(MODES) - 1.0).max())
+    shapes, exact = found.shapes(PLACES, 0), own.read(own.modes[1][:, rigid : rigid + MODES], PLACES).T
+    sides = np.sign(np.sum(shapes * exact, axis=1))[:, None]
+    worst = max(worst, float((abs(sides * shapes - exact).max(axis=1) / abs(exact).max(axis=1)).max()))
+    for loss, ratio in ((0.0, 0.0), (LOSS, 0.0), (0.0, RATIO)):
+        lossy = replace(beam, loss_factor=loss)
+        own.beam = lossy
+        settings = theory | ({"modal_damping": ratio} if ratio else {})
+        sweep = MODELS["fem"].sweep_harmonic(lossy, FORCES, HERTZ, PARTS, **settings)
+        units = None if ratio else MODELS["fem"].unit_responses(lossy, (0.48,), HERTZ, PLACES, PARTS, **theory)
+        for i, hertz in enumerate(HERTZ):
+            exact = own.read(own.under(own.load(FORCES), float(hertz), ratio), PLACES)
+            alone = MODELS["fem"].solve_harmonic(lossy, FORCES, float(hertz), PARTS, **settings).shapes(PLACES, 0)
+            for seen in (alone, sweep.shapes(PLACES, 0)[i]):
+                worst = max(worst, float(abs(seen - exact).max() / abs(exact).max()))
+            if units is not None:
+                exact = own.read(own.under(own.load([PointForce(position=0.48)]), float(hertz)), PLACES)
+                worst = max(worst, float(abs(units[i, 0] - exact).max() / abs(exact).max()))
     return worst
 
 
@@ -421,6 +309,24 @@ ROWS: tuple[Row, ...] = (
         why="segments/linear.py, segments/sweeps.py: the same matrices, solved densely.",
         promise=1e-9,
         error=fields_error("segment"),
+    ),
+    Floor(
+        id="links-beside-their-ends",
+        title="Links under forces on their first and last ones, read there: fields, unit forces and shapes",
+        why="segments/loads.py, segments/reading.py: the same rules, mirrored at pinned and guided ends.",
+        along="pair of ends",
+        at=(0, 1, 2, 3, 4),
+        promise=1e-9,
+        error=beside_ends_error,
+    ),
+    Floor(
+        id="elements-that-shear-written-out",
+        title="Elements by Timoshenko's theory with sections, bodies, springs and ground: modes, fields, unit forces",
+        why="elements/shear.py: a cubic line and a linear shear strain in each, tied at nodes and solved densely.",
+        along="beam",
+        at=(0, 1, 2),
+        promise=1e-8,
+        error=thick_error,
     ),
     _row(
         id="unit-forces-of-elements",
