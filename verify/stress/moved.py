@@ -332,7 +332,6 @@ ROWS: tuple[Row, ...] = (
         why="chain/dynamics.py: exact; differences over 1e-5 keep seven digits.",
         promise=1e-6,
         error=small_motion_error,
-        kernels=warm.resting,
     ),
     Floor(
         id="chains-upright",
