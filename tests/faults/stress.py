@@ -470,7 +470,7 @@ FAULTS = {
         stacks_of_a_little_more_mass: {"many-stepped-segments", "many-stepped-elements"},
         stacks_of_a_little_stiffer_springs: {"many-loaded-segments", "many-loaded-elements"},
         swept_off_in_the_tenth_digit: {"many-frequencies-the-exact-beam", "many-frequencies-segments"},
-        costs_on_straight_lines: {"cost-at-an-error"},
+        costs_on_straight_lines: {"where-the-cheaper-changes", "cost-at-an-error"},
         clamped_pinned_roots_off_in_their_twelfth_digit: {"frequencies-of-all-supports", "many-exact-beams"},
         splines_straight_at_their_ends: {"splines"},
         kicks_at_equal_distances: {"kick-schemes"},

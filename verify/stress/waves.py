@@ -89,15 +89,15 @@ POWERED: tuple[tuple[Beam, str, float], ...] = (
 def power_error(number: float) -> float:
     """Power through the middle of a window against what the force behind it gives, with nothing lost on the way."""
     from verify.exact.harmonic import solve_harmonic
-    from verify.waves.measures import measure
+    from verify.waves.measures import measured_figure
 
     beam, theory, hertz = POWERED[int(number)]
     forces = (PointForce(position=0.05), PointForce(position=0.57, amplitude=1.2, phase_deg=66.0))
     states = States(beam, theory, (2.0 * pi * hertz) ** 2, [force.position for force in forces])
     speed = 2j * pi * hertz * states.read(states.under(forces), forces[0].position, 0)
     given = 0.5 * (phasor(forces[0]) * np.conj(speed)).real
-    found = measure(solve_harmonic(beam, forces, hertz, theory), (0.2, 0.42))
-    return float(abs(found.energy_flux / given - 1.0))
+    field = solve_harmonic(beam, forces, hertz, theory)
+    return abs(measured_figure(field, (0.2, 0.42), field.wavenumber, "energy_flux") / float(given) - 1.0)
 
 
 # --- Devices and held places ------------------------------------------------------------------------------------------
