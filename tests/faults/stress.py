@@ -444,7 +444,7 @@ FAULTS = {
         ends_that_lie_apart: {"far-from-the-origin"},
         friction_that_pushes_at_rest: {"friction-comes-to-rest"},
         a_creep_that_is_not_awaited: {"friction-creep"},
-        steps_a_little_long: {"spun", "whirled"},
+        steps_a_little_long: {"spun", "whirled", "transients-written-out"},
         more_modes_than_there_are_refused_with_half_a_word: {
             "segments-too-many-modes",
             "elements-too-many-modes",

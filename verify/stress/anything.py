@@ -64,8 +64,13 @@ ANY: tuple[tuple[Beam, str], ...] = (
     (replace(PLAIN, mass=MASSES[:1], foundation=1.3e5, supports=("pinned", "clamped")), "euler-bernoulli"),
     (replace(PLAIN, section=SECTIONS[::-1], supports=("free", "free")), "euler-bernoulli"),
     (replace(PLAIN, shear_stiffness=640.0, rotary_inertia=6.4e-4, supports=("clamped", "guided")), "timoshenko"),
+    (
+        replace(PLAIN, shear_stiffness=60.0, foundation=1e5, mass=MASSES[:1], supports=("free", "pinned")),
+        "timoshenko",
+    ),
 )
-"""Each with the theory that it is taken by; of the last the section's own turning is soon fast enough for a wave."""
+"""Each with the theory that it is taken by; of the last but one the section's own
+turning is soon fast enough for a wave, the last hardly resists shear and lies on stiff ground."""
 MODES = 8
 SHAPES = (1, 2, 5)
 HERTZ = (3.1, 67.0, 431.0)
@@ -310,7 +315,7 @@ _row = partial(Floor, along="beam")
 ROWS: tuple[Row, ...] = (
     _row(
         id="fields-of-any-beam",
-        title="Exact fields of nine beams with anything on them, alone and in a sweep, against states by exponentials",
+        title="Exact fields of ten beams with anything on them, alone and in a sweep, against states by exponentials",
         why="exact/spans.py: power series to rounding; the exponential's own rounding is what is left.",
         at=NUMBERS,
         promise=1e-10,

@@ -22,6 +22,8 @@ from verify.stress.beams import held
 from verify.stress.kind import Floor, Row
 
 LINKS = 7
+FIXED = 2e-5
+"""Seconds of a fixed step."""
 STEP = 1e-5
 """Of angles, for derivatives by differences."""
 
@@ -240,48 +242,6 @@ def upright_error(links: float) -> float:
     return float(abs(np.sort(-up) / np.sort(down) - 1.0).max())
 
 
-def tableau_error(order: float) -> float:
-    """Of Runge-Kutta's conditions up to an order, and of the error estimate's, which vanishes below order 5."""
-    from verify.chain.stepping import DORMAND_PRINCE, RK4
-
-    worst = 0.0
-    for tableau, reached in ((RK4, 4), (DORMAND_PRINCE, 5)):
-        a, b, c = tableau.a[:-1], tableau.a[-1], tableau.c
-        worst = max(worst, float(abs(a.sum(axis=1) - c).max()), abs(tableau.order - reached))
-        for weights, exact in _conditions(a, c, min(int(order), reached)):
-            worst = max(worst, abs(float(b @ weights) - exact))
-        if len(tableau.weights):
-            every, at_end = np.vstack([a, b]), np.append(c, 1.0)
-            for weights, _ in _conditions(np.hstack([every, np.zeros((len(every), 1))]), at_end, min(int(order), 4)):
-                worst = max(worst, abs(float(tableau.weights @ weights)))
-    return worst
-
-
-def _conditions(a: Array, c: Array, order: int) -> list[tuple[Array, float]]:
-    """(what weights are multiplied with, what comes of it) for every rooted tree of up to so many vertices."""
-    one, ac = np.ones(len(c)), a @ c
-    trees = [
-        (1, one, 1.0),
-        (2, c, 1 / 2),
-        (3, c**2, 1 / 3),
-        (3, ac, 1 / 6),
-        (4, c**3, 1 / 4),
-        (4, c * ac, 1 / 8),
-        (4, a @ c**2, 1 / 12),
-        (4, a @ ac, 1 / 24),
-        (5, c**4, 1 / 5),
-        (5, c**2 * ac, 1 / 10),
-        (5, ac**2, 1 / 20),
-        (5, c * (a @ c**2), 1 / 15),
-        (5, a @ c**3, 1 / 20),
-        (5, c * (a @ ac), 1 / 30),
-        (5, a @ (c * ac), 1 / 40),
-        (5, a @ (a @ c**2), 1 / 60),
-        (5, a @ (a @ ac), 1 / 120),
-    ]
-    return [(weights, exact) for size, weights, exact in trees if size <= order]
-
-
 def evaluations_error(links: float) -> float:
     """Accelerations of a run that it says it took, less six for every step, kept or not."""
     from verify.chain.dynamics import at_rest
@@ -292,10 +252,61 @@ def evaluations_error(links: float) -> float:
     return float(abs(told.evaluations - 6 * (told.steps + told.rejected)))
 
 
+def _in_time() -> Iterator[Call]:
+    """Rigid links in steps and in modes, and where they stand."""
+    yield from warm.rigid()
+    yield from warm.modal()
+
+
 def _energies() -> Iterator[Call]:
     """Links on their constraints, and their energies."""
     yield from warm.resting()
     yield from warm.energies()
+
+
+def transient_error(number: float) -> float:
+    """Of a pushed chain from rest by adaptive and fixed steps, and by kicks, where their joints stand and move."""
+    from scipy.integrate import solve_ivp
+
+    from verify.chain.dynamics import at_rest, positions
+    from verify.chain.splitting import modal_basis, simulate_modal
+    from verify.chain.stepping import simulate
+
+    system, times = _pushed(int(number)), np.array([0.011, 0.017, 0.03])
+    n = system.n_links
+
+    def rates(t: float, y: Array) -> Array:
+        return np.concatenate([y[n:], accelerated(system, t, y[:n], y[n:])])
+
+    start = at_rest(system)
+    begin = np.concatenate([start.angles, start.rates])
+    found = solve_ivp(rates, (0.0, times[-1]), begin, method="DOP853", t_eval=times, rtol=1e-9, atol=1e-13)
+    exact = found.y.T
+    motions = [simulate(system, start, times, tolerance=1e-9, ledger=False)]
+    motions.append(simulate(system, start, times, method="rk4", step=FIXED, ledger=False))
+    if number:
+        motions.append(simulate_modal(modal_basis(system), start, times, step=FIXED))
+    worst = 0.0
+    for motion in motions:
+        for seen, true in ((motion.angles, exact[:, :n]), (motion.rates, exact[:, n:])):
+            worst = max(worst, float(abs(seen - true).max() / abs(true).max()))
+        x = np.array([0.13, 0.6])
+        joints = np.array(
+            [positions(system, ChainState(*np.split(y, 2), t))[0] for y, t in zip(exact, times, strict=True)]
+        )
+        across = np.array([np.interp(x, system.nodes, one[:, 1]) for one in joints])
+        worst = max(worst, float(abs(motion.deflection(x.tolist()) - across).max() / abs(across).max()))
+    return worst
+
+
+def _pushed(number: int) -> ChainSystem:
+    """Without dashpots: heavy, and turned; or on a roller and pushed alone."""
+    system, *_ = systems()
+    load = LinkLoad(link=6, at=0.02, force=(0.02, -0.05), moment=0.003, frequency_hz=23.0, phase_deg=41.0)
+    still: dict[str, Any] = {"dashpots": np.zeros(LINKS), "loads": (load,)}
+    if number:
+        return changed(systems()[3], axial_spring=0.0, **still)
+    return changed(system, rotation=Rotation(), gravity=(0.0, 0.0), **still)
 
 
 NUMBERS = tuple(float(n) for n in range(5))
@@ -334,6 +345,16 @@ ROWS: tuple[Row, ...] = (
         error=small_motion_error,
     ),
     Floor(
+        id="transients-written-out",
+        title="Two chains from rest by adaptive and fixed steps and by kicks, against their equations by DOP853",
+        why="chain/stepping.py, chain/splitting.py: steps of orders 5 and 4, two kicks a step, to 1e-8 here.",
+        along="chain",
+        at=(0.0, 1.0),
+        promise=1e-7,
+        error=transient_error,
+        kernels=_in_time,
+    ),
+    Floor(
         id="chains-upright",
         title="Growth of a chain that stands on its head, against the swing of the one that hangs",
         why="chain/small_motion.py: without springs K is of gravity alone and changes its sign with it.",
@@ -342,15 +363,6 @@ ROWS: tuple[Row, ...] = (
         promise=1e-9,
         error=upright_error,
         kernels=warm.resting,
-    ),
-    Floor(
-        id="runge-kutta-conditions",
-        title="Coefficients of the chain's steps against the conditions of orders 1 to 5, and of the error estimate",
-        why="chain/stepping.py: fractions to rounding (Hairer, Norsett and Wanner, II.2 and II.5).",
-        along="order",
-        at=(1, 2, 3, 4, 5),
-        promise=2e-15,
-        error=tableau_error,
     ),
     Floor(
         id="accelerations-counted",
