@@ -292,7 +292,7 @@ def transient_error(number: float) -> float:
             worst = max(worst, float(abs(seen - true).max() / abs(true).max()))
         x = np.array([0.13, 0.6])
         joints = np.array(
-            [positions(system, ChainState(*np.split(y, 2), t))[0] for y, t in zip(exact, times, strict=True)]
+            [positions(system, ChainState(y[:n], y[n:], float(t)))[0] for y, t in zip(exact, times, strict=True)]
         )
         across = np.array([np.interp(x, system.nodes, one[:, 1]) for one in joints])
         worst = max(worst, float(abs(motion.deflection(x.tolist()) - across).max() / abs(across).max()))
