@@ -7,13 +7,14 @@ from msgspec.structs import replace
 
 from verify.chain import dynamics, statics, stepping
 from verify.chain.small_motion import Linearisation
+from verify.contact import foot
 from verify.device import Device
 from verify.exact import buckling, closed_forms, error_laws, in_time, roots, spans
 from verify.exact import modes as exact_modes
-from verify.judge import sizing
+from verify.judge import extended_precision, sizing
 from verify.models import sweeps
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, simulate
+from verify.motion import free_vibration, simulate, step_size
 from verify.stress import anything, refused_runs
 from verify.waves import imposed, lumped, operating_point
 from verify.waves.found import TwoWaves
@@ -207,6 +208,26 @@ def waves_a_little_long(patch):
     patch.setattr(modes, "quarter_wavelength", closed_forms.quarter_wavelength, raising=False)
 
 
+def steps_that_miss_a_little_more(patch):
+    true = step_size.missed
+    patch.setattr(step_size, "missed", lambda *given: 1.01 * true(*given))
+
+
+def pivots_of_a_fifth(patch):
+    patch.setattr(dynamics, "PIVOT_LOSS", 0.2)
+
+
+def feet_a_little_high(patch):
+    for name in ("height_swing", "standing_height"):
+        true = getattr(foot, name)
+        patch.setattr(foot, name, lambda given, _true=true: _true(given) + 0.01)
+
+
+def a_judge_of_heavier_matrices(patch):
+    true = extended_precision.count_below
+    patch.setattr(extended_precision, "count_below", lambda stiffness, mass, value: true(stiffness, mass, value * 2))
+
+
 FAULTS = {
     "driven-cantilever": {waves_a_little_long: {"quarter-wavelength"}},
     "stress": {
@@ -247,6 +268,10 @@ FAULTS = {
         let_go_a_little_fast: {"beams-let-go"},
         every_section_as_the_first: {"modes-to-move-in"},
         cut_off_under_forces_in_phase: {"modes-cut-off"},
+        steps_that_miss_a_little_more: {"speed-that-steps-miss"},
+        pivots_of_a_fifth: {"pivots-kept"},
+        feet_a_little_high: {"short-feet", "long-feet"},
+        a_judge_of_heavier_matrices: {"judge-of-eigenvalues"},
         unchecked(imposed, "check_held"): {"refused-once-solved"},
         unchecked(refused_runs, "check_count"): {"refused-sizes-and-chains"},
     },

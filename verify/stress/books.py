@@ -91,17 +91,19 @@ def stretching_books_error(n: float) -> float:
 
 
 def stretching_work_error(n: float) -> float:
-    """Energy of heavy links that a constant force pulls along and across, over its work, less one."""
+    """Energy of heavy links that a constant force pulls both ways and a moment turns, over its work, less one."""
     from verify.chain.stretching import elastic_step_limit, simulate_elastic
     from verify.chain.system import LinkLoad, build_system
 
     links, stiffness, along, across = int(n), 8.05e6, 300.0, 0.2
-    end = LinkLoad(link=links, at=STRIP.length / links, force=(along, across))
+    length, moment = STRIP.length / links, 0.02
+    end = LinkLoad(link=links, at=length, force=(along, across), moment=moment)
     system = changed(build_system(CLAMPED, links), loads=(end,), gravity=(170.0, -9.81))
     step = FINE * elastic_step_limit(system, stiffness)
     motion = simulate_elastic(system, stiffness, np.linspace(0.0, 1e-3, 4), step=step)
-    x, y = motion.displacements[1:, -1].T
-    return float(abs((motion.energies[1:] - motion.energies[0]) / (along * x + across * y) - 1.0).max())
+    (x, y), (before, under) = (motion.displacements[1:, joint].T for joint in (-1, -2))
+    work = along * x + across * y + moment * np.arctan2(y - under, length + x - before)
+    return float(abs((motion.energies[1:] - motion.energies[0]) / work - 1.0).max())
 
 
 def held_books_error(n: float) -> float:

@@ -217,7 +217,9 @@ def fastest_error(phase: float) -> float:
 
 def quietest_error(phase: float) -> float:
     """By how much a reflection close by lies below the least that is found, over it."""
-    from verify.waves.operating_point import landscape, operating_points
+    from verify.judge.workbench import Workbench
+    from verify.waves.driven import driven, measures
+    from verify.waves.operating_point import driven_point, landscape, operating_points
 
     case = _case(phase)
     (quiet, fast), problems = operating_points(case, 0.2)
@@ -229,6 +231,8 @@ def quietest_error(phase: float) -> float:
     ]
     slope = float(np.mean([abs(side[0, 0] - quiet.reflection) for side in sides]) / 0.5)
     off = max(abs(quiet.per_hertz / slope - 1.0), float(len(problems)), abs(fast.reflection - 0.2))
+    here, told = driven_point(case), measures(driven(case, Workbench(case.beam)), None)
+    off = max(off, abs(here.reflection / told.reflection - 1.0), abs(here.crest_speed / told.crest_speed - 1.0))
     return max(off, quiet.reflection / float(gamma.min()) - 1.0, 0.0)
 
 
