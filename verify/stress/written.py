@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.models.arrays import Array
+from verify.options import Attachment
 from verify.stress.anything import ANY, FORCES, PLACES, PLAIN, SECTIONS
 from verify.stress.dense import Elements, Links, Reciprocal, Sheared
 from verify.stress.kind import Floor, Row
@@ -242,10 +243,10 @@ def stacked_error(model: str) -> Callable[[float], float]:
         from verify.models.stacks import lowest_of_each
 
         several = [_like(beams()[int(number)], 1.0 + 0.07 * i) for i in range(9)]
-        room, settings = ("elements", {}) if model == "fem" else ("segments", {"attachment": "lever"})
+        room, settings = "elements" if model == "fem" else "segments", {} if number else {"attachment": "lever"}
         together = import_module(f"verify.{room}.sweeps").sweep_modes(several, 2, 20, **settings)
         alone = [MODELS[model].solve_modes(beam, 2, 20, **settings).frequencies_hz for beam in several]
-        stack, pencil = _stacked(model, several, 20)
+        stack, pencil = _stacked(model, several, 20, "reciprocal" if number else "lever")
         start = np.hstack([pencil.rigid, lowest(pencil, 5).vectors])
         left = sum(not sure for sure in lowest_of_each(stack, 2, start)[1])
         return max(float(abs(together / np.array(alone) - 1.0).max()), float(left))
@@ -253,7 +254,7 @@ def stacked_error(model: str) -> Callable[[float], float]:
     return error
 
 
-def _stacked(model: str, several: list[Beam], count: int) -> tuple[Any, Any]:
+def _stacked(model: str, several: list[Beam], count: int, attachment: Attachment) -> tuple[Any, Any]:
     """(a stack of beams, the pencil of the first). Raises ArithmeticError where they are not of one layout."""
     if model == "fem":
         from verify.elements.mesh import build_elements
@@ -267,7 +268,7 @@ def _stacked(model: str, several: list[Beam], count: int) -> tuple[Any, Any]:
         from verify.segments.linear import settings_of
         from verify.segments.links import build_chain, chain_pencil
 
-        settings = settings_of("gregory", "series", 1.0, "euler-bernoulli", "lever")
+        settings = settings_of("gregory", "series", 1.0, "euler-bernoulli", attachment)
         shared = {stacks.layout(beam, **settings) for beam in several}
         found = stacks.chain_stack(several, count, settings), chain_pencil(build_chain(several[0], count, **settings))
     if len(shared) != 1 or None in shared:
