@@ -18,6 +18,7 @@ has the mean of the shear on either side: too little, by `shear_give`. No weight
 stands on as much of a slip of its own does: order 2, as everything there.
 """
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -104,10 +105,15 @@ def _mended(chain: Chain, link: int, s: float) -> tuple[Array, Array]:
 
 def _five(s: float) -> Array:
     """Weights of five joints -2..2 for w and w' at s, right for powers up to the fourth, of y + l^2 y''/12, (2, 5)."""
-    powers = np.vander(np.arange(-2.0, 3.0), increasing=True).T
     value = [s**p + p * (p - 1) / 12.0 * s ** max(p - 2, 0) for p in range(5)]
     slope = [p * s ** max(p - 1, 0) + p * (p - 1) * (p - 2) / 12.0 * s ** max(p - 3, 0) for p in range(5)]
-    return np.asarray(np.linalg.solve(powers, np.array([value, slope]).T).T)
+    return np.asarray(np.array([value, slope]) @ _of_powers())
+
+
+@cache
+def _of_powers() -> Array:
+    """What weights of joints -2..2 are of the sums of powers 0 to 4 that they give, (5, 5); kept, for reading alone."""
+    return np.asarray(np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True)))
 
 
 def _without_self(weights: Array, share: Array, kernel: Array) -> Array:
@@ -129,11 +135,21 @@ def _without_selves(weights: Array, shares: Array, kernel: Array, other: Array) 
     for _ in range(_NEWTON):
         errors = np.array([found @ kernel @ found, found @ other])
         slopes = np.array([2.0 * shares @ kernel @ found, shares @ other])
-        step = np.linalg.lstsq(slopes, errors, rcond=1e-9)[0]
+        step = _solved(slopes, errors)
         found = found - step @ shares
         if abs(step).max() < 1e-14:
             return np.asarray(found)
     return weights
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """A x = b of two unknowns, the shortest of the nearest where A is singular to 1e-9."""
+    (a, b), (c, d) = matrix.tolist()
+    determinant = a * d - b * c
+    if abs(determinant) <= 1e-8 * (a * a + b * b + c * c + d * d):
+        return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-9)[0])
+    first, second = right.tolist()
+    return np.asarray(np.array([d * first - b * second, a * second - c * first]) / determinant)
 
 
 def shear_give(weights: Array) -> float:

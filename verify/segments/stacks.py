@@ -5,6 +5,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.models.arrays import Array, Indices
@@ -12,10 +13,10 @@ from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
 from verify.segments.attached import rows_at
-from verify.segments.links import Body, build_chain, joint_compliance, link_inertia
+from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
 
-_FIGURES = ("mass", "rotary_inertia", "stiffness", "rotational")
+_OWN = ("mass_per_length", "bending_stiffness")
 
 
 class Chains(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -58,7 +59,7 @@ def layout(beam: Beam, wall: str, joints: str, grading: float, theory: str, atta
     if any(mass.rotary_inertia and mass.position in (0.0, beam.length) for mass in beam.mass):
         return None
     loads = (len(beam.mass) + len(beam.spring), beam.tension > 0.0, beam.foundation > 0.0)
-    return (beam.supports, len(beam.section), *loads, beam.rigid_motions)
+    return (beam.supports, len(beam.section), *loads, beam.rigid_motions, elastic_ends(beam, attachment))
 
 
 def chain_stack(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) -> PencilStack:
@@ -90,14 +91,14 @@ def _free(supports: tuple[str, str], n_segments: int) -> Indices:
     return np.arange(int(left), n_segments + 1 - right)
 
 
-def _plain(beams: Sequence[Beam], n_segments: int, wall: Any) -> Chains:
-    """Links, joints and walls alone, without a chain for each beam."""
+def _plain(beams: Sequence[Beam], n_segments: int, wall: Any, elastic: tuple[bool, bool] = (False, False)) -> Chains:
+    """Links, joints and walls alone, without a chain for each beam; `elastic` ends have joints of their own."""
     supports = beams[0].supports
     parts = divide_each(beams, n_segments, [beam.pieces for beam in beams])
     lengths, stiffness = parts.lengths, parts.stiffnesses
     inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
     ends = lengths / stiffness
-    factors = wall_factors(supports, n_segments, wall)[:, None]
+    factors = wall_factors(supports, n_segments, wall, elastic)[:, None]
     masses = lengths * parts.masses_per_length
     return Chains(
         free=_free(supports, n_segments),
@@ -109,33 +110,66 @@ def _plain(beams: Sequence[Beam], n_segments: int, wall: Any) -> Chains:
 
 
 def _loaded(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) -> Chains:
-    """The same of chains that carry something, each built by itself."""
-    each = [build_chain(beam, n_segments, **settings) for beam in beams]
+    """The same of chains that carry something, as `carried` has it of each."""
+    attachment = settings["attachment"]
+    elastic = elastic_ends(beams[0], attachment)
+    chains = _plain(beams, n_segments, settings["wall"], elastic)
+    lengths, unit = chains.lengths, np.array([beam.length for beam in beams]) / n_segments
+    scale = unit**2 / np.array([beam.bending_stiffness for beam in beams])
+    ground = np.array([beam.foundation for beam in beams]) * unit**2 * scale * lengths
+    twist = np.array([beam.tension for beam in beams]) * scale * lengths + ground * lengths**2 / 12.0
+    chains = replace(chains, ground=ground if ground.any() else None, twist=twist if twist.any() else None)
+    if not (beams[0].mass or beams[0].spring):
+        return chains
+    joints, bodies = _beyond(beams, chains.joints, _bodies(beams, unit), elastic)
+    rows = [_rows_of(beam, chains, j, attachment) for j, beam in enumerate(beams)]
+    felt, turned = (_last(list(each)) for each in zip(*rows, strict=True))
+    return replace(chains, joints=joints, bodies=bodies, felt=felt, turned=turned)
 
-    def gathered(field: str) -> Array:
-        return np.array([getattr(chain, field) for chain in each]).T
 
-    lengths, tension, foundation = gathered("lengths"), gathered("tension"), gathered("foundation")
-    ground, twist = foundation * lengths, (tension + foundation * lengths**2 / 12.0) * lengths
-    bodies = [[_figures(body) for body in chain.bodies] for chain in each]
-    rows = [rows_at(chain, [body.position for body in chain.bodies], chain.attachment) for chain in each]
-    there = bool(each[0].bodies)
-    return Chains(
-        free=_free(beams[0].supports, n_segments),
-        lengths=lengths,
-        joints=1.0 / gathered("compliances"),
-        masses=gathered("masses"),
-        inertias=gathered("inertias"),
-        ground=ground if foundation.any() else None,
-        twist=twist if twist.any() else None,
-        felt=_last([felt for felt, _ in rows]) if there else None,
-        turned=_last([turned for _, turned in rows]) if there else None,
-        bodies=np.array(bodies).transpose(2, 1, 0) if there else None,
+def _positions_of(beam: Beam) -> list[float]:
+    """Where masses and then springs stand, metres."""
+    return [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
+
+
+def _bodies(beams: Sequence[Beam], unit: Array) -> Array:
+    """Mass, rotary inertia, stiffness and rotational stiffness of all bodies in units, (4, bodies, n_beams)."""
+    rows = [
+        [(mass.mass, mass.rotary_inertia, 0.0, 0.0) for mass in beam.mass]
+        + [(0.0, 0.0, spring.stiffness, spring.rotational) for spring in beam.spring]
+        for beam in beams
+    ]
+    mass, stiffness = (np.array([getattr(beam, own) for beam in beams]) for own in _OWN)
+    scales = np.array([1.0 / (mass * unit), 1.0 / (mass * unit**3), unit**3 / stiffness, unit / stiffness])
+    return np.asarray(np.array(rows).transpose(2, 1, 0) * scales[:, None])
+
+
+def _beyond(beams: Sequence[Beam], joints: Array, bodies: Array, elastic: tuple[bool, bool]) -> tuple[Array, Array]:
+    """(k of the joints, bodies) with the rotational springs at elastic ends put beyond their joints."""
+    places = np.array([_positions_of(beam) for beam in beams]).T
+    joints, bodies = joints.copy(), bodies.copy()
+    for end, there, at in zip((0, -1), elastic, (0.0, np.array([beam.length for beam in beams])), strict=True):
+        if there:
+            of_end = np.where(places == at, bodies[3], 0.0)
+            joints[end] = 1.0 / (1.0 / joints[end] + 1.0 / of_end.sum(axis=0))
+            bodies[3] -= of_end
+    return joints, bodies
+
+
+def _rows_of(beam: Beam, chains: Chains, index: int, attachment: str) -> tuple[Array, Array]:
+    """Where the bodies of a beam are felt (`rows_at`)."""
+    n_segments = len(chains.lengths)
+    chain = Chain(
+        supports=beam.supports,
+        rigid_motions=beam.rigid_motions,
+        unit=beam.length / n_segments,
+        start=0.0,
+        lengths=chains.lengths[:, index],
+        compliances=chains.joints[:, index],  # which nothing here asks for
+        masses=chains.masses[:, index],
+        inertias=chains.inertias[:, index],
     )
-
-
-def _figures(body: Body) -> list[float]:
-    return [getattr(body, figure) for figure in _FIGURES]
+    return rows_at(chain, _positions_of(beam), attachment)
 
 
 def _last(arrays: list[Array]) -> Array:
