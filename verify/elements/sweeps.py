@@ -98,5 +98,5 @@ def sweep_modes(
         return element_pencil(elements), elements.parts.unit
 
     alike = partial(layout, n_elements=n_elements, grading=grading, theory=theory)
-    stack = partial(element_stack, n_elements=n_elements)
+    stack = partial(element_stack, n_elements=n_elements, grading=grading, theory=theory)
     return swept_modes(beams, n_modes, theory, Stacking(make=make, layout=alike, stack=stack))

@@ -12,6 +12,7 @@ from verify.models.arrays import Array, Indices
 from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
+from verify.models.theory import has_figures
 from verify.segments.attached import rows_at
 from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
@@ -47,15 +48,17 @@ class Chains(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def layout(beam: Beam, wall: str, joints: str, grading: float, theory: str, attachment: str) -> Hashable:
     """What beams have in common that one stack takes, and whose refusals are the same; None for one to be taken alone.
 
-    Alone are chains that slip or are graded, printed and welded ones, what is compressed and may buckle, and rotary
+    Alone are chains that slip, printed, tensioned thick and welded ones, what is compressed and may buckle, and rotary
     inertias at an end, which turn beyond its joint.
     """
-    if theory != "euler-bernoulli" or wall == "welded" or joints == "printed" or grading != 1.0:
+    if theory == "timoshenko" or wall == "welded" or joints == "printed" or beam.tension < 0.0:
+        return None
+    if joints == "tensioned" and (beam.tension or theory != "euler-bernoulli"):
+        return None
+    if theory != "euler-bernoulli" and (beam.tension or not has_figures(beam, theory)):
         return None
     if not (beam.mass or beam.spring or beam.tension or beam.foundation):
         return (beam.supports, len(beam.section))
-    if beam.tension and (beam.tension < 0.0 or joints == "tensioned"):
-        return None
     if any(mass.rotary_inertia and mass.position in (0.0, beam.length) for mass in beam.mass):
         return None
     loads = (len(beam.mass) + len(beam.spring), beam.tension > 0.0, beam.foundation > 0.0)
@@ -66,7 +69,7 @@ def chain_stack(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]
     """The pencils of beams of one `layout`."""
     first = beams[0]
     loaded = first.mass or first.spring or first.tension or first.foundation
-    chains = _loaded(beams, n_segments, settings) if loaded else _plain(beams, n_segments, settings["wall"])
+    chains = (_loaded if loaded else _plain)(beams, n_segments, settings)
     springs = [chains.joints, *_present(chains.ground, chains.twist)]
     if chains.bodies is not None:
         springs += [*chains.bodies[2:]]
@@ -91,21 +94,28 @@ def _free(supports: tuple[str, str], n_segments: int) -> Indices:
     return np.arange(int(left), n_segments + 1 - right)
 
 
-def _plain(beams: Sequence[Beam], n_segments: int, wall: Any, elastic: tuple[bool, bool] = (False, False)) -> Chains:
+def _plain(
+    beams: Sequence[Beam], n_segments: int, settings: dict[str, Any], elastic: tuple[bool, bool] = (False, False)
+) -> Chains:
     """Links, joints and walls alone, without a chain for each beam; `elastic` ends have joints of their own."""
     supports = beams[0].supports
-    parts = divide_each(beams, n_segments, [beam.pieces for beam in beams])
+    parts = divide_each(beams, n_segments, [beam.pieces for beam in beams], settings["grading"])
     lengths, stiffness = parts.lengths, parts.stiffnesses
     inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
     ends = lengths / stiffness
-    factors = wall_factors(supports, n_segments, wall, elastic)[:, None]
+    factors = wall_factors(supports, n_segments, settings["wall"], elastic)[:, None]
     masses = lengths * parts.masses_per_length
+    inertias = link_inertia(masses, lengths)
+    if settings["theory"] == "rayleigh":
+        rotary = np.array([[piece.rotary_inertia for piece in beam.pieces] for beam in beams]).T
+        own = np.array([beam.mass_per_length for beam in beams])
+        inertias = inertias + lengths * parts.of_pieces(rotary) / (own * parts.unit**2)
     return Chains(
         free=_free(supports, n_segments),
         lengths=lengths,
         joints=1.0 / (np.concatenate([ends[:1], inner, ends[-1:]]) * factors),
         masses=masses,
-        inertias=link_inertia(masses, lengths),
+        inertias=inertias,
     )
 
 
@@ -113,7 +123,7 @@ def _loaded(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) ->
     """The same of chains that carry something, as `carried` has it of each."""
     attachment = settings["attachment"]
     elastic = elastic_ends(beams[0], attachment)
-    chains = _plain(beams, n_segments, settings["wall"], elastic)
+    chains = _plain(beams, n_segments, settings, elastic)
     lengths, unit = chains.lengths, np.array([beam.length for beam in beams]) / n_segments
     scale = unit**2 / np.array([beam.bending_stiffness for beam in beams])
     ground = np.array([beam.foundation for beam in beams]) * unit**2 * scale * lengths
