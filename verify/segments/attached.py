@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.models.arrays import Array, BoolArray, Indices
 from verify.segments.links import Chain
 from verify.segments.loads import joint_weights
 
@@ -41,13 +41,18 @@ def felt_at(chain: Chain, position: float, rule: str) -> tuple[Array, Array]:
     At an end that nothing holds the end joint and the end link themselves; the turn of such an end, where it has a
     joint of its own, is not read here (`loaded`).
     """
-    n, place, link, s = _place(chain, position)
-    deflection, turn = np.zeros(n + 1), np.zeros(n)
-    if rule == "reciprocal" and n >= _WIDE and _even(chain, link):
-        return _mended(chain, link, s)
+    n, place = chain.n_segments, position / chain.unit - chain.start
+    links, on, even = places_on(chain.lengths[:, None], np.array([place]))
+    if is_mended(rule, n) and even[0]:
+        deflections, turns = mended(chain.supports, n, links, on)
+        return deflections[0], turns[0]
+    deflection, turn, link, s = np.zeros(n + 1), np.zeros(n), int(links[0]), float(on[0])
     if rule == "reciprocal" and n >= 3:
         middles = np.cumsum(chain.lengths) - 0.5 * chain.lengths
-        return joint_weights(chain, position, rule), np.array([np.interp(place, middles, row) for row in np.eye(n)])
+        after = int(np.clip(np.searchsorted(middles, place), 1, n - 1))
+        share = (place - middles[after - 1]) / (middles[after] - middles[after - 1])
+        turn[after - 1 : after + 1] = np.clip([1.0 - share, share], 0.0, 1.0)
+        return joint_weights(chain, position, rule), turn
     deflection[link], deflection[link + 1] = 1.0 - s, s
     turn[link] = 1.0
     if link > 0 and s == 0.0:
@@ -55,59 +60,67 @@ def felt_at(chain: Chain, position: float, rule: str) -> tuple[Array, Array]:
     return deflection, turn
 
 
-def _place(chain: Chain, position: float) -> tuple[int, float, int, float]:
-    """N, the place in units, its link and where on it, 0 to 1; a place that is a joint to rounding is that joint."""
-    n, nodes = chain.n_segments, chain.nodes / chain.unit
-    place = float(np.clip(position / chain.unit, nodes[0], nodes[-1]))
-    nearest = int(abs(nodes - place).argmin())
-    if abs(nodes[nearest] - place) < 1e-9:
-        link = min(nearest, n - 1)
-        return n, float(nodes[nearest]), link, float(nearest - link)
-    link = int(np.clip(np.searchsorted(nodes, place, side="right") - 1, 0, n - 1))
-    return n, place, link, float((place - nodes[link]) / chain.lengths[link])
+def is_mended(rule: str, n: int) -> bool:
+    """Whether a chain of n links has mended weights where they are about equally long."""
+    return rule == "reciprocal" and n >= _WIDE
 
 
-def _even(chain: Chain, link: int) -> bool:
-    """Whether the links around are about equally long."""
-    near = chain.lengths[max(link - 4, 0) : link + 5]
-    return bool(np.ptp(near) < _ABOUT * near[0])
+def places_on(lengths: Array, places: Array) -> tuple[Indices, Array, BoolArray]:
+    """(links, where on them, 0 to 1, whether links around are about equally long) of places, (p,) all.
+
+    `lengths` (N, p) are those of each place's own chain, from whose left end it is told in the same unit. A place that
+    is a joint to rounding is that joint.
+    """
+    n, every = len(lengths), np.arange(len(places))
+    nodes = np.concatenate([np.zeros_like(lengths[:1]), np.cumsum(lengths, axis=0)])
+    places = np.clip(places, 0.0, nodes[-1])
+    nearest = abs(nodes - places).argmin(axis=0)
+    links = np.clip((nodes <= places).sum(axis=0) - 1, 0, n - 1)
+    joint = abs(nodes[nearest, every] - places) < 1e-9
+    links = np.where(joint, np.minimum(nearest, n - 1), links)
+    on = np.where(joint, nearest - links, (places - nodes[links, every]) / lengths[links, every])
+    near = lengths[np.clip(links + np.arange(-4, 5)[:, None], 0, n - 1), every]
+    return links, on, np.asarray(np.ptp(near, axis=0) < _ABOUT * near[0])
 
 
-def _mended(chain: Chain, link: int, s: float) -> tuple[Array, Array]:
-    """The reciprocal weights of a place, mended; symmetric about it and continuous in s."""
-    n = chain.n_segments
-    if chain.supports[0] == "free" and link + s == 0.0:
-        return np.eye(n + 1)[0], np.eye(n)[0]
-    if chain.supports[1] == "free" and link + s == n:
-        return np.eye(n + 1)[n], np.eye(n)[n - 1]
-    ends = [support in ("pinned", "guided") for support in chain.supports]
-    lowest, highest = -9 if ends[0] else 2, n + 9 if ends[1] else n - 2
-    at = np.clip(np.arange(link - 1, link + 3), lowest, highest)
-    first = int(at[0]) - 2
-    width = int(at[-1]) - first + 3
-    lagrange = np.zeros((2, width))
-    for centre, share in ((at[1], 1.0 - s), (at[2], s)):
-        window = slice(centre - 2 - first, centre + 3 - first)
-        lagrange[:, window] += share * _five(link + s - centre)
-    fourths = np.zeros((4, width))
-    for row, centre in zip(fourths, at, strict=True):
-        row[centre - 2 - first : centre + 3 - first] = _SECOND_DIFFERENCE
-    even = (1.0 - s) * fourths[1] + s * fourths[2]
-    odd = (1.0 - s) * (fourths[2] - fourths[0]) + s * (fourths[3] - fourths[1])
-    apart = abs(np.subtract.outer(np.arange(width), np.arange(width))).astype(float)
+def mended(supports: tuple[str, str], n: int, links: Indices, s: Array) -> tuple[Array, Array]:
+    """The reciprocal weights of places, (p, N + 1) and (p, N), mended; symmetric about each and continuous in s.
+
+    Places are told by their links and where on them, 0 to 1, (p,) both.
+    """
+    reflects = [support in ("pinned", "guided") for support in supports]
+    at = links[:, None] + np.arange(-1, 3)
+    at = np.clip(at, -9 if reflects[0] else 2, n + 9 if reflects[1] else n - 2)
+    first, centres = at[:, 0] - 2, at - at[:, :1]
+    lagrange, fourths = np.zeros((len(s), 2, _WIDE)), np.zeros((len(s), 4, _WIDE))
+    places, own = np.arange(len(s))[:, None], np.arange(5)
+    for row in range(4):
+        fourths[places, row, centres[:, [row]] + own] = _SECOND_DIFFERENCE
+    for row, share in ((1, 1.0 - s), (2, s)):
+        five = share[:, None, None] * _five(links + s - at[:, row])
+        for which in (0, 1):
+            lagrange[places, which, centres[:, [row]] + own] += five[:, which]
+    even = (1.0 - s)[:, None] * fourths[:, 1] + s[:, None] * fourths[:, 2]
+    odd = (1.0 - s)[:, None] * (fourths[:, 2] - fourths[:, 0]) + s[:, None] * (fourths[:, 3] - fourths[:, 1])
+    apart = abs(np.subtract.outer(np.arange(_WIDE), np.arange(_WIDE))).astype(float)
     bending = (apart**3 - apart) / 12.0
-    slope = _without_self(lagrange[1], odd, bending)
-    value = _without_selves(lagrange[0], np.array([even, odd]), bending, bending @ slope)
-    turn = -np.cumsum(_folded(chain, first, slope, True))[:-1]
-    turn[: max(first, 0)] = turn[max(first, 0) + width :] = 0.0  # but for the rounding of the sum
-    return _folded(chain, first, value, False), turn
+    slopes = _without_self(lagrange[:, 1], odd, bending)
+    values = _without_selves(lagrange[:, 0], np.stack([even, odd], axis=1), bending, slopes @ bending)
+    turns = -np.cumsum(_folded(supports, n, first, slopes, True), axis=1)[:, :-1]
+    link, begin = np.arange(n), np.maximum(first, 0)[:, None]
+    turns[(link < begin) | (link >= begin + at[:, -1:] - first[:, None] + 3)] = 0.0  # but for the rounding of the sum
+    deflections = _folded(supports, n, first, values, False)
+    for free, end in ((supports[0] == "free", 0), (supports[1] == "free", n)):
+        if free and (there := links + s == end).any():
+            deflections[there], turns[there] = np.eye(n + 1)[end], np.eye(n)[min(end, n - 1)]
+    return deflections, turns
 
 
-def _five(s: float) -> Array:
-    """Weights of five joints -2..2 for w and w' at s, right for powers up to the fourth, of y + l^2 y''/12, (2, 5)."""
+def _five(s: Array) -> Array:
+    """Weights of five joints -2..2 for w and w' at s, right for powers up to 4, of y + l^2 y''/12, (p, 2, 5)."""
     value = [s**p + p * (p - 1) / 12.0 * s ** max(p - 2, 0) for p in range(5)]
     slope = [p * s ** max(p - 1, 0) + p * (p - 1) * (p - 2) / 12.0 * s ** max(p - 3, 0) for p in range(5)]
-    return np.asarray(np.array([value, slope]) @ _of_powers())
+    return np.asarray(np.moveaxis(np.array([value, slope]), 2, 0) @ _of_powers())
 
 
 @cache
@@ -116,40 +129,50 @@ def _of_powers() -> Array:
     return np.asarray(np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True)))
 
 
-def _without_self(weights: Array, share: Array, kernel: Array) -> Array:
-    """The weights with the smallest share that makes their quadratic form zero, or least where none does."""
-    a, b, c = share @ kernel @ share, weights @ kernel @ share, weights @ kernel @ weights
-    if abs(a) < 1e-12:
-        return weights
+def _without_self(weights: Array, shares: Array, kernel: Array) -> Array:
+    """Weights (p, w) with the smallest shares that make their quadratic forms zero, or least where none does."""
+    pairs = ((shares, shares), (weights, shares), (weights, weights))
+    a, b, c = ((one @ kernel * other).sum(axis=1) for one, other in pairs)
     root = b * b - a * c
-    amount = -b / a if root < 0.0 else -c / (b + np.copysign(np.sqrt(root), b))
-    return np.asarray(weights + amount * share)
+    there, real = abs(a) >= 1e-12, root >= 0.0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        amount = np.where(real, -c / (b + np.copysign(np.sqrt(np.where(real, root, 0.0)), b)), -b / a)
+    return np.asarray(weights + np.where(there, amount, 0.0)[:, None] * shares)
 
 
 def _without_selves(weights: Array, shares: Array, kernel: Array, other: Array) -> Array:
-    """The weights with shares that make their quadratic form zero, and the product with `other`: Newton from none.
+    """Weights (p, w) with shares (p, 2, w) that make their quadratic forms and products with `other` (p, w) zero.
 
-    Where the places leave no such shares, next to an end, the weights as they are.
+    Newton from none. Where a place leaves no such shares, next to an end, its weights as they are.
     """
-    found = weights
+    found, open_ = weights.copy(), np.arange(len(weights))
     for _ in range(_NEWTON):
-        errors = np.array([found @ kernel @ found, found @ other])
-        slopes = np.array([2.0 * shares @ kernel @ found, shares @ other])
+        own, against = found[open_], other[open_]
+        carried, of_own = own @ kernel, shares[open_]
+        errors = np.stack([(carried * own).sum(axis=1), (own * against).sum(axis=1)], axis=1)
+        slopes = np.stack(
+            [2.0 * (of_own @ carried[:, :, None])[..., 0], (of_own @ against[:, :, None])[..., 0]], axis=1
+        )
         step = _solved(slopes, errors)
-        found = found - step @ shares
-        if abs(step).max() < 1e-14:
-            return np.asarray(found)
-    return weights
+        found[open_] = own - (step[:, None] @ of_own)[:, 0]
+        open_ = open_[~(abs(step).max(axis=1) < 1e-14)]
+        if not len(open_):
+            return found
+    found[open_] = weights[open_]
+    return found
 
 
-def _solved(matrix: Array, right: Array) -> Array:
-    """A x = b of two unknowns, the shortest of the nearest where A is singular to 1e-9."""
-    (a, b), (c, d) = matrix.tolist()
+def _solved(matrices: Array, right: Array) -> Array:
+    """A x = b of two unknowns each, (p, 2), the shortest of the nearest where an A is singular to 1e-9."""
+    a, b, c, d = matrices.reshape(-1, 4).T
     determinant = a * d - b * c
-    if abs(determinant) <= 1e-8 * (a * a + b * b + c * c + d * d):
-        return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-9)[0])
-    first, second = right.tolist()
-    return np.asarray(np.array([d * first - b * second, a * second - c * first]) / determinant)
+    apart = abs(determinant) > 1e-8 * (a * a + b * b + c * c + d * d)
+    first, second = right.T
+    found = np.stack([d * first - b * second, a * second - c * first], axis=1)
+    found /= np.where(apart, determinant, 1.0)[:, None]
+    for p in np.flatnonzero(~apart):
+        found[p] = np.linalg.lstsq(matrices[p], right[p], rcond=1e-9)[0]
+    return np.asarray(found)
 
 
 def shear_give(weights: Array) -> float:
@@ -160,22 +183,19 @@ def shear_give(weights: Array) -> float:
     return max(float(lacking), 0.0)
 
 
-def _folded(chain: Chain, first: int, weights: Array, slope: bool) -> Array:
-    """Weights of joints `first`, `first` + 1, ... as those of joints 0..N, by the ends' reflections, (N + 1,).
+def _folded(supports: tuple[str, str], n: int, first: Indices, weights: Array, slope: bool) -> Array:
+    """Weights (p, w) of joints `first` (p,) and after as those of joints 0..N, by the ends' reflections, (p, N + 1).
 
     A slope's add up to nothing, for which joints that a support holds give what is missing.
     """
-    n, folded = chain.n_segments, np.zeros(chain.n_segments + 1)
-    signs = [-1.0 if support == "pinned" else 1.0 for support in chain.supports]
-    for joint, weight in zip(range(first, first + len(weights)), weights, strict=True):
-        if joint < 0:
-            folded[-joint] += signs[0] * weight
-        elif joint > n:
-            folded[2 * n - joint] += signs[1] * weight
-        else:
-            folded[joint] += weight
+    folded, places = np.zeros((len(first), n + 1)), np.arange(len(first))
+    signs = [-1.0 if support == "pinned" else 1.0 for support in supports]
+    for column in range(weights.shape[1]):
+        joint = first + column
+        sign = np.where(joint < 0, signs[0], np.where(joint > n, signs[1], 1.0))
+        folded[places, np.where(joint > n, 2 * n - joint, abs(joint))] += sign * weights[:, column]
     if slope:
-        folded[0 if 2 * first < n else n] -= folded.sum()
+        folded[places, np.where(2 * first < n, 0, n)] -= folded.sum(axis=1)
     return folded
 
 

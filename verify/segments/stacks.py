@@ -13,7 +13,7 @@ from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
 from verify.models.theory import has_figures
-from verify.segments.attached import rows_at
+from verify.segments.attached import felt_at, is_mended, mended, places_on
 from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
 
@@ -132,8 +132,7 @@ def _loaded(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) ->
     if not (beams[0].mass or beams[0].spring):
         return chains
     joints, bodies = _beyond(beams, chains.joints, _bodies(beams, unit), elastic)
-    rows = [_rows_of(beam, chains, j, attachment) for j, beam in enumerate(beams)]
-    felt, turned = (_last(list(each)) for each in zip(*rows, strict=True))
+    felt, turned = _where_felt(beams, chains, unit, attachment)
     return replace(chains, joints=joints, bodies=bodies, felt=felt, turned=turned)
 
 
@@ -166,25 +165,34 @@ def _beyond(beams: Sequence[Beam], joints: Array, bodies: Array, elastic: tuple[
     return joints, bodies
 
 
-def _rows_of(beam: Beam, chains: Chains, index: int, attachment: str) -> tuple[Array, Array]:
-    """Where the bodies of a beam are felt (`rows_at`)."""
-    n_segments = len(chains.lengths)
-    chain = Chain(
+def _where_felt(beams: Sequence[Beam], chains: Chains, unit: Array, attachment: str) -> tuple[Array, Array]:
+    """Where bodies are felt (`rows_at`), (bodies, N + 1, n_beams) and (bodies, N, n_beams)."""
+    n, n_beams = chains.lengths.shape
+    felt, turned = [], []
+    for row in np.array([_positions_of(beam) for beam in beams]).T:
+        links, on, even = places_on(chains.lengths, row / unit)
+        at_once = even & is_mended(attachment, n)
+        deflections, turns = np.zeros((n_beams, n + 1)), np.zeros((n_beams, n))
+        deflections[at_once], turns[at_once] = mended(beams[0].supports, n, links[at_once], on[at_once])
+        for j in map(int, np.flatnonzero(~at_once)):
+            deflections[j], turns[j] = felt_at(_chain_of(beams[j], chains, j), float(row[j]), attachment)
+        felt.append(deflections.T)
+        turned.append(turns.T)
+    return np.array(felt), np.array(turned)
+
+
+def _chain_of(beam: Beam, chains: Chains, index: int) -> Chain:
+    """The links of a beam, whose joints nobody asks for."""
+    return Chain(
         supports=beam.supports,
         rigid_motions=beam.rigid_motions,
-        unit=beam.length / n_segments,
+        unit=beam.length / len(chains.lengths),
         start=0.0,
         lengths=chains.lengths[:, index],
-        compliances=chains.joints[:, index],  # which nothing here asks for
+        compliances=np.zeros(len(chains.joints)),
         masses=chains.masses[:, index],
         inertias=chains.inertias[:, index],
     )
-    return rows_at(chain, _positions_of(beam), attachment)
-
-
-def _last(arrays: list[Array]) -> Array:
-    """Arrays of each beam as one with the beam's axis last."""
-    return np.ascontiguousarray(np.moveaxis(np.array(arrays), 0, -1))
 
 
 def _matrices(chains: Chains) -> tuple[Array, Array]:
