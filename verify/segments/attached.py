@@ -29,6 +29,8 @@ from verify.segments.loads import joint_weights
 
 _WIDE = 8
 """Joints that a pair of weights reaches over: shorter chains have the plain ones."""
+_FOUR = np.arange(-1, 3)
+"""Joints around a link, from its left one."""
 _SECOND_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 _NEWTON = 12
 _ABOUT = 0.05
@@ -89,44 +91,59 @@ def mended(supports: tuple[str, str], n: int, links: Indices, s: Array) -> tuple
     Places are told by their links and where on them, 0 to 1, (p,) both.
     """
     reflects = [support in ("pinned", "guided") for support in supports]
-    at = links[:, None] + np.arange(-1, 3)
-    at = np.clip(at, -9 if reflects[0] else 2, n + 9 if reflects[1] else n - 2)
-    first, centres = at[:, 0] - 2, at - at[:, :1]
-    lagrange, fourths = np.zeros((len(s), 2, _WIDE)), np.zeros((len(s), 4, _WIDE))
-    places, own = np.arange(len(s))[:, None], np.arange(5)
-    for row in range(4):
-        fourths[places, row, centres[:, [row]] + own] = _SECOND_DIFFERENCE
-    for row, share in ((1, 1.0 - s), (2, s)):
-        five = share[:, None, None] * _five(links + s - at[:, row])
-        for which in (0, 1):
-            lagrange[places, which, centres[:, [row]] + own] += five[:, which]
-    even = (1.0 - s)[:, None] * fourths[:, 1] + s[:, None] * fourths[:, 2]
-    odd = (1.0 - s)[:, None] * (fourths[:, 2] - fourths[:, 0]) + s[:, None] * (fourths[:, 3] - fourths[:, 1])
-    apart = abs(np.subtract.outer(np.arange(_WIDE), np.arange(_WIDE))).astype(float)
-    bending = (apart**3 - apart) / 12.0
+    at = np.minimum(np.maximum(links[:, None] + _FOUR, -9 if reflects[0] else 2), n + 9 if reflects[1] else n - 2)
+    first, places = at[:, :1] - 2, np.arange(len(s))[:, None]
+    shares = np.stack([1.0 - s, s], axis=1)
+    columns = at[:, :, None] - at[:, :1, None] + np.arange(5)
+    fourths, lagrange = np.zeros((len(s), 4, _WIDE)), np.zeros((len(s), 2, _WIDE))
+    fourths[places[:, :, None], np.arange(4)[:, None], columns] = _SECOND_DIFFERENCE
+    fives = shares[:, :, None, None] * _five((links + s)[:, None] - at[:, 1:3])
+    for row in (0, 1):
+        lagrange[places[:, :, None], np.arange(2)[:, None], columns[:, [1 + row]]] += fives[:, row]
+    before, after = shares[:, :1], shares[:, 1:]
+    even = before * fourths[:, 1] + after * fourths[:, 2]
+    odd = before * (fourths[:, 2] - fourths[:, 0]) + after * (fourths[:, 3] - fourths[:, 1])
+    bending = _bending()
     slopes = _without_self(lagrange[:, 1], odd, bending)
     values = _without_selves(lagrange[:, 0], np.stack([even, odd], axis=1), bending, slopes @ bending)
-    turns = -np.cumsum(_folded(supports, n, first, slopes, True), axis=1)[:, :-1]
-    link, begin = np.arange(n), np.maximum(first, 0)[:, None]
-    turns[(link < begin) | (link >= begin + at[:, -1:] - first[:, None] + 3)] = 0.0  # but for the rounding of the sum
-    deflections = _folded(supports, n, first, values, False)
-    for free, end in ((supports[0] == "free", 0), (supports[1] == "free", n)):
-        if free and (there := links + s == end).any():
+    deflections, turning = _folded(supports, n, first, np.stack([values, slopes]))
+    # a slope's weights add up to nothing, for which joints that a support holds give what is missing
+    turning[places[:, 0], np.where(2 * first[:, 0] < n, 0, n)] -= turning.sum(axis=1)
+    turns = -np.cumsum(turning, axis=1)[:, :-1]
+    link, begin = np.arange(n), np.maximum(first, 0)
+    turns[(link < begin) | (link >= begin + at[:, 3:] - first + 3)] = 0.0  # but for the rounding of the sum
+    for end, support in zip((0, n), supports, strict=True):
+        if support == "free" and (there := links + s == end).any():
             deflections[there], turns[there] = np.eye(n + 1)[end], np.eye(n)[min(end, n - 1)]
     return deflections, turns
 
 
+@cache
+def _bending() -> Array:
+    """How a chain under forces on its joints bends, (8, 8), in l^3/EI."""
+    apart = abs(np.subtract.outer(np.arange(_WIDE), np.arange(_WIDE))).astype(float)
+    return np.asarray((apart**3 - apart) / 12.0)
+
+
 def _five(s: Array) -> Array:
-    """Weights of five joints -2..2 for w and w' at s, right for powers up to 4, of y + l^2 y''/12, (p, 2, 5)."""
-    value = [s**p + p * (p - 1) / 12.0 * s ** max(p - 2, 0) for p in range(5)]
-    slope = [p * s ** max(p - 1, 0) + p * (p - 1) * (p - 2) / 12.0 * s ** max(p - 3, 0) for p in range(5)]
-    return np.asarray(np.moveaxis(np.array([value, slope]), 2, 0) @ _of_powers())
+    """Weights of five joints -2..2 for w and w' at s, right for powers up to 4, of y + l^2 y''/12, (..., 2, 5)."""
+    square = s * s
+    powers = np.stack([np.ones_like(s), s, square, square * s, square * square], axis=-1)
+    return np.asarray((powers @ _of_powers()).reshape(*s.shape, 2, 5))
 
 
 @cache
 def _of_powers() -> Array:
-    """What weights of joints -2..2 are of the sums of powers 0 to 4 that they give, (5, 5); kept, for reading alone."""
-    return np.asarray(np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True)))
+    """What those weights have of the powers 0 to 4 of s, (5, 10): of w, then of w'; kept, for reading alone."""
+    value, slope = np.eye(5), np.zeros((5, 5))
+    for p in range(1, 5):
+        slope[p - 1, p] = p
+        if p > 1:
+            value[p - 2, p] = p * (p - 1) / 12.0
+        if p > 2:
+            slope[p - 3, p] = p * (p - 1) * (p - 2) / 12.0
+    inverse = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True))
+    return np.asarray(np.hstack([value @ inverse, slope @ inverse]))
 
 
 def _without_self(weights: Array, shares: Array, kernel: Array) -> Array:
@@ -143,36 +160,36 @@ def _without_self(weights: Array, shares: Array, kernel: Array) -> Array:
 def _without_selves(weights: Array, shares: Array, kernel: Array, other: Array) -> Array:
     """Weights (p, w) with shares (p, 2, w) that make their quadratic forms and products with `other` (p, w) zero.
 
-    Newton from none. Where a place leaves no such shares, next to an end, its weights as they are.
+    Newton from none, on the amounts x: c + 2 b x + x A x and d + g x. Where a place leaves no such shares, next to an
+    end, its weights as they are.
     """
-    found, open_ = weights.copy(), np.arange(len(weights))
+    own = np.concatenate([shares, weights[:, None]], axis=1)
+    forms, (g0, g1, d) = own @ kernel @ np.swapaxes(own, 1, 2), (own @ other[:, :, None])[:, :, 0].T
+    a00, a01, a11, b0, b1, c = (forms[:, i, j] for i, j in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)))
+    x0, x1, moved = np.zeros_like(c), np.zeros_like(c), np.full_like(c, np.inf)
     for _ in range(_NEWTON):
-        own, against = found[open_], other[open_]
-        carried, of_own = own @ kernel, shares[open_]
-        errors = np.stack([(carried * own).sum(axis=1), (own * against).sum(axis=1)], axis=1)
-        slopes = np.stack(
-            [2.0 * (of_own @ carried[:, :, None])[..., 0], (of_own @ against[:, :, None])[..., 0]], axis=1
-        )
-        step = _solved(slopes, errors)
-        found[open_] = own - (step[:, None] @ of_own)[:, 0]
-        open_ = open_[~(abs(step).max(axis=1) < 1e-14)]
-        if not len(open_):
-            return found
-    found[open_] = weights[open_]
-    return found
+        h0, h1 = a00 * x0 + a01 * x1 + b0, a01 * x0 + a11 * x1 + b1
+        errors = (h0 + b0) * x0 + (h1 + b1) * x1 + c, g0 * x0 + g1 * x1 + d
+        step0, step1 = _solved((2.0 * h0, 2.0 * h1, g0, g1), errors)
+        going = moved >= 1e-14
+        x0, x1 = x0 - going * step0, x1 - going * step1
+        moved = np.where(going, np.maximum(abs(step0), abs(step1)), moved)
+        if (moved < 1e-14).all():
+            break
+    amounts = np.stack([x0, x1], axis=1) * (moved < 1e-14)[:, None]
+    return np.asarray(weights + (amounts[:, None] @ shares)[:, 0])
 
 
-def _solved(matrices: Array, right: Array) -> Array:
-    """A x = b of two unknowns each, (p, 2), the shortest of the nearest where an A is singular to 1e-9."""
-    a, b, c, d = matrices.reshape(-1, 4).T
+def _solved(matrices: tuple[Array, Array, Array, Array], right: tuple[Array, Array]) -> tuple[Array, Array]:
+    """A x = b of two unknowns each, (p,) all, the shortest of the nearest where an A is singular to 1e-9."""
+    (a, b, c, d), (e, f) = matrices, right
     determinant = a * d - b * c
     apart = abs(determinant) > 1e-8 * (a * a + b * b + c * c + d * d)
-    first, second = right.T
-    found = np.stack([d * first - b * second, a * second - c * first], axis=1)
-    found /= np.where(apart, determinant, 1.0)[:, None]
+    by = determinant if apart.all() else np.where(apart, determinant, 1.0)
+    x, y = (d * e - b * f) / by, (a * f - c * e) / by
     for p in np.flatnonzero(~apart):
-        found[p] = np.linalg.lstsq(matrices[p], right[p], rcond=1e-9)[0]
-    return np.asarray(found)
+        x[p], y[p] = np.linalg.lstsq(np.array([[a[p], b[p]], [c[p], d[p]]]), np.array([e[p], f[p]]), rcond=1e-9)[0]
+    return x, y
 
 
 def shear_give(weights: Array) -> float:
@@ -183,20 +200,15 @@ def shear_give(weights: Array) -> float:
     return max(float(lacking), 0.0)
 
 
-def _folded(supports: tuple[str, str], n: int, first: Indices, weights: Array, slope: bool) -> Array:
-    """Weights (p, w) of joints `first` (p,) and after as those of joints 0..N, by the ends' reflections, (p, N + 1).
-
-    A slope's add up to nothing, for which joints that a support holds give what is missing.
-    """
-    folded, places = np.zeros((len(first), n + 1)), np.arange(len(first))
+def _folded(supports: tuple[str, str], n: int, first: Indices, weights: Array) -> Array:
+    """Weights (k, p, w) of joints `first` (p, 1) and after as those of joints 0..N, by the ends' reflections."""
+    joints = first + np.arange(weights.shape[2])
     signs = [-1.0 if support == "pinned" else 1.0 for support in supports]
-    for column in range(weights.shape[1]):
-        joint = first + column
-        sign = np.where(joint < 0, signs[0], np.where(joint > n, signs[1], 1.0))
-        folded[places, np.where(joint > n, 2 * n - joint, abs(joint))] += sign * weights[:, column]
-    if slope:
-        folded[places, np.where(2 * first < n, 0, n)] -= folded.sum(axis=1)
-    return folded
+    weights = weights * np.where(joints < 0, signs[0], np.where(joints > n, signs[1], 1.0))
+    rows = np.arange(weights.shape[0] * weights.shape[1]).reshape(*weights.shape[:2], 1)
+    places = rows * (n + 1) + np.where(joints > n, 2 * n - joints, abs(joints))
+    found = np.bincount(places.ravel(), weights.ravel(), rows.size * (n + 1))
+    return np.asarray(found.reshape(*weights.shape[:2], n + 1), dtype=float)
 
 
 def rows_at(chain: Chain, positions: list[float], rule: str) -> tuple[Any, Any]:
