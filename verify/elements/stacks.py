@@ -20,7 +20,6 @@ from verify.models.arrays import Array, Indices
 from verify.models.band_stack import of_unknowns
 from verify.models.division import ManyParts, divide_each
 from verify.models.stacks import PencilStack
-from verify.models.theory import has_figures
 from verify.section import Piece
 
 _REACH = 4
@@ -46,7 +45,7 @@ def layout(beam: Beam, n_elements: int, grading: float, theory: str) -> Hashable
     """
     if theory == "timoshenko" or beam.tension < 0.0:
         return None
-    if theory != "euler-bernoulli" and (beam.tension or not has_figures(beam, theory)):
+    if theory != "euler-bernoulli" and (beam.tension or any(piece.rotary_inertia is None for piece in beam.pieces)):
         return None
     carried = (beam.tension > 0.0, beam.foundation > 0.0, beam.rigid_motions)
     if not (beam.mass or beam.spring):

@@ -27,8 +27,3 @@ def check_theory(beam: Beam, theory: str) -> None:
                     f"{where}.{figure} is missing: theory = {theory!r} takes it, give it beside a plain section, or "
                     "give a shape with its sizes, youngs_modulus and density"
                 )
-
-
-def has_figures(beam: Beam, theory: str) -> bool:
-    """Whether all sections of a beam have what a theory takes."""
-    return all(getattr(piece, figure) is not None for piece in beam.pieces for figure in _TAKES.get(theory, ()))

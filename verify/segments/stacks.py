@@ -12,7 +12,6 @@ from verify.models.arrays import Array, Indices
 from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
-from verify.models.theory import has_figures
 from verify.segments.attached import felt_at, is_mended, mended, places_on
 from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
@@ -55,7 +54,7 @@ def layout(beam: Beam, wall: str, joints: str, grading: float, theory: str, atta
         return None
     if joints == "tensioned" and (beam.tension or theory != "euler-bernoulli"):
         return None
-    if theory != "euler-bernoulli" and (beam.tension or not has_figures(beam, theory)):
+    if theory != "euler-bernoulli" and (beam.tension or any(piece.rotary_inertia is None for piece in beam.pieces)):
         return None
     if not (beam.mass or beam.spring or beam.tension or beam.foundation):
         return (beam.supports, len(beam.section))
