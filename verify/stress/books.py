@@ -151,16 +151,9 @@ def kicks_energy_error(kicks: float) -> float:
     return float(abs(total / total[0] - 1.0).max())
 
 
-def _stretching() -> Iterator[Call]:
-    """Links that stretch, and their energy."""
-    yield from warm.stretching()
-    yield from warm.stretching_energy()
-
-
 def _kicked() -> Iterator[Call]:
     """Rigid links in modes, and their energies."""
-    yield from warm.accelerated()
-    yield from warm.energies()
+    yield from warm.accelerations()
     yield from warm.modal()
 
 
@@ -182,7 +175,7 @@ ROWS: tuple[Row, ...] = (
         at=(8, 12, 20),
         promise=2e-11,
         error=chain_modes_error,
-        kernels=warm.accelerated,
+        kernels=warm.accelerations,
     ),
     Floor(
         id="linear-about-bent",
@@ -202,7 +195,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 12),
         promise=2.0,
         error=late_books_error,
-        kernels=warm.with_energies,
+        kernels=warm.rigid,
     ),
     Floor(
         id="stretching-energy",
@@ -212,7 +205,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 20),
         promise=1.0,
         error=stretching_books_error,
-        kernels=_stretching,
+        kernels=warm.stretching,
     ),
     Floor(
         id="stretching-work",
@@ -222,7 +215,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 20),
         promise=1e-7,
         error=stretching_work_error,
-        kernels=_stretching,
+        kernels=warm.stretching,
     ),
     Floor(
         id="shaken-at-two-points",
@@ -232,7 +225,7 @@ ROWS: tuple[Row, ...] = (
         at=(6, 9),
         promise=2.0,
         error=held_books_error,
-        kernels=warm.with_energies,
+        kernels=warm.rigid,
     ),
     Floor(
         id="kept-between-steps",
