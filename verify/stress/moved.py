@@ -258,12 +258,6 @@ def _in_time() -> Iterator[Call]:
     yield from warm.modal()
 
 
-def _energies() -> Iterator[Call]:
-    """Links on their constraints, and their energies."""
-    yield from warm.resting()
-    yield from warm.energies()
-
-
 def transient_error(number: float) -> float:
     """Of a pushed chain from rest by adaptive and fixed steps, and by kicks, where their joints stand and move."""
     from scipy.integrate import solve_ivp
@@ -319,7 +313,7 @@ ROWS: tuple[Row, ...] = (
         why="chain/recursion_kernels.py: the recursion to rounding.",
         promise=1e-10,
         error=acceleration_error,
-        kernels=warm.accelerated,
+        kernels=warm.accelerations,
     ),
     _row(
         id="energies-written-out",
@@ -327,7 +321,6 @@ ROWS: tuple[Row, ...] = (
         why="chain/kernels.py: to rounding.",
         promise=1e-13,
         error=energy_error,
-        kernels=_energies,
     ),
     _row(
         id="rest-written-out",
@@ -335,7 +328,6 @@ ROWS: tuple[Row, ...] = (
         why="chain/statics.py: Newton's method to 1e-12 of the loads.",
         promise=1e-9,
         error=rest_error,
-        kernels=warm.resting,
     ),
     _row(
         id="small-motion-written-out",
@@ -362,7 +354,6 @@ ROWS: tuple[Row, ...] = (
         at=(1, 3, 9),
         promise=1e-9,
         error=upright_error,
-        kernels=warm.resting,
     ),
     Floor(
         id="accelerations-counted",

@@ -7,7 +7,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.chain import departure, dynamics, problems, ride, statics, warm
+from verify.chain import departure, dynamics, problems, ride, statics
 from verify.chain.small_motion import choose_pivots, refuse_unstable_modes
 from verify.chain.system import ChainState, LinkLoad, build_system
 from verify.device import Device
@@ -310,6 +310,5 @@ ROWS: tuple[Row, ...] = (
             lambda: problems._check_height(0.11, build_system(STRIP, 4)),
             lambda: problems._check_height(0.07, build_system(STRIP, 4)),
         ),
-        kernels=warm.resting,
     ),
 )

@@ -262,7 +262,10 @@ def _stacked(model: str, several: list[Beam], count: int, attachment: Attachment
         from verify.elements.stacks import element_stack, layout
 
         shared = {layout(beam, count, 1.0, "euler-bernoulli") for beam in several}
-        found = element_stack(several, count), element_pencil(build_elements(several[0], count, 1.0, "euler-bernoulli"))
+        found = (
+            element_stack(several, count, 1.0, "euler-bernoulli"),
+            element_pencil(build_elements(several[0], count, 1.0, "euler-bernoulli")),
+        )
     else:
         from verify.segments import stacks
         from verify.segments.linear import settings_of
