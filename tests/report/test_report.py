@@ -273,6 +273,12 @@ def test_what_is_missing_in_a_wave_report_is_said(wave_result):
     assert "off the search, at its edge" in page(replace(wave_result, gates=(), found={"wave": study}), "verify run x")
 
 
+def test_models_are_told_where_their_envelopes_have_another_size():
+    """Envelopes of 49 parts, figures of 60 and 70: the answer is of the larger, and leaves out no model."""
+    assert ", 70 segments " in small_study("wave.counts=[60,70]", "wave.count=49").in_short()
+    assert ", 70 Hermite elements " in small_study("wave.counts=[60,70]", "wave.count=49").in_short()
+
+
 def test_where_the_search_ends_nothing_is_called_best_or_least(wave_result):
     """Driven at 4100 Hz the reflection of every model still falls at 1.015 of that."""
     from msgspec.structs import replace

@@ -170,9 +170,11 @@ class WaveFound(Found, frozen=True, eq=False, kw_only=True):
         return f"The {told}; 1 is a wave that travels, without reflection."
 
     def facts(self) -> tuple[str, ...]:
-        """How pure the wave is on every model at the size of the envelopes."""
+        """How pure the wave is on every model at the size of the envelopes, or at the largest that was asked for."""
         exact, *others = self.rows
-        shown = [exact, *(row for row in others if row.count == self.count)]
+        sizes = [row.count or 0 for row in others]
+        size = self.count if self.count in sizes else max(sizes, default=0)
+        shown = [exact, *(row for row in others if row.count == size)]
         ratios = [f"{_named(row)} {cell(row.drive.standing_wave_ratio, 'ratio')}" for row in shown]
         at = f"at {exact.drive.frequency_hz:g} Hz in the window [L/4, 3L/4]"
         return (f"standing-wave ratio {at}: {', '.join(ratios)}",)
