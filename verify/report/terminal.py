@@ -15,6 +15,8 @@ from rich.text import Text
 
 from verify.errors import InputError, printable
 from verify.run.gates import shown_expectation
+from verify.run.remarks import remarks_on
+from verify.run.scale import scale_in_words
 from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
@@ -58,6 +60,7 @@ def print_run(result: "RunResult", report: Path | None, kept: Path | None = None
     """Gates, what the studies found, the verdict, where the report lies and is kept."""
     console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
+    print_remarks(remarks_on(result.scene), console)
     if judged := tuple(gate for gate in result.gates if gate.applicable):
         console.print(_gate_table(judged))
     for reason, names in _by_reason((gate.reason, gate.id) for gate in result.failed).items():
@@ -66,12 +69,20 @@ def print_run(result: "RunResult", report: Path | None, kept: Path | None = None
         console.print(Text(f"not applicable: {in_a_row('gate', names)}, {reason}"))
     for found in result.found.values():
         _print_found(console, found, every_table=False)
+    if scale := scale_in_words(result.scene):
+        console.print(Text(scale))
     work = work_in_words(len(result.solves), result.n_fields, result.n_motions, result.others)
     console.print(f"{_verdict(result)} in {seconds_in_words(result.seconds)}: {work}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True, markup=False)
     if kept is not None:
         console.print(f"kept: {kept}", soft_wrap=True, markup=False)
+
+
+def print_remarks(remarks: Iterable[str], console: Console) -> None:
+    """What looks like another unit."""
+    for remark in remarks:
+        console.print(Text(f"remark: {remark}", style="yellow"))
 
 
 def _verdict(result: "RunResult") -> str:
