@@ -424,7 +424,7 @@ def axial_force_on_chords_alone(patch):
     patch.setattr(
         element_added,
         "axial_weights",
-        lambda lengths, assembled: true(lengths, assembled) * np.repeat([1.0, 0.0, 0.0], len(lengths)),
+        lambda lengths, *given: true(lengths, *given) * np.repeat([1.0, 0.0, 0.0], len(lengths)),
     )
 
 
@@ -434,14 +434,14 @@ def tension_of_the_joints_with_the_wrong_sign(patch):
 
 
 def foundation_not_on_the_links_turns(patch):
-    true = chain_loaded._placed_rows
+    true = chain_loaded._placed
 
     def across_alone(chain):
-        stiffness, *rows = true(chain)
-        n = chain.n_segments
-        return np.where(np.arange(len(stiffness)) // n == 2, 0.0, stiffness), *rows
+        placed = true(chain)
+        kept = np.arange(len(placed.stiffness)) // chain.n_segments != 2
+        return structs.replace(placed, stiffness=placed.stiffness * kept)
 
-    patch.setattr(chain_loaded, "_placed_rows", across_alone)
+    patch.setattr(chain_loaded, "_placed", across_alone)
 
 
 def joints_in_series_for_tensioned_ones(patch):

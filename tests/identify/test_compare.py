@@ -480,6 +480,22 @@ def test_a_list_of_forty_modes_and_a_known_size_of_two_thousand_are_begun():
     check_patience(24, 2000, 40)
 
 
+def test_a_list_is_refused_for_the_candidates_that_it_is_held_against_and_no_others(told):
+    """Of 45 candidates 17 are elements, or exact."""
+    hertz = fem_modes(CANTILEVER, 60, 130).frequencies_hz
+    with pytest.raises(InputError, match=r"^modes = 64 would take about .*--kind, what you built"):
+        told(hertz)
+    assert chosen(told(hertz, kind="elements"), "model", "mass", "count") == ("fem", "consistent", 130)
+
+
+def test_other_sizes_than_the_one_said_are_looked_for_where_that_is_no_work_and_else_it_is_told(told):
+    """A list of 60 modes that is no model of 700 parts: seven more sizes, and all up to 400, would take half a minute."""
+    found = told([9.0 * n**1.9 for n in range(1, 61)], count=700)
+    assert kinds(found)[-1] == "unsearched"
+    assert "count = 'other than 700' would take about" in found["told"][-1]["words"]
+    assert "unsearched" not in kinds(told([9.0 * n**1.9 for n in range(1, 9)], count=40))
+
+
 def test_shapes_may_be_in_any_unit_however_large(tmp_path):
     model = fem_modes(CANTILEVER, 4, 12)
     x = np.linspace(0.0, CANTILEVER.length, 13)

@@ -70,7 +70,7 @@ def test_a_slider_compiles_its_law_and_its_coupling_each_kernel_once(tmp_path, g
     assert len(names) == len(set(names))
     assert {name.split(".")[0] for name in names} == {"motion"}
     found = {name.rpartition(".")[2] for name in names}
-    assert {"slide", "look", "slip"} <= found
+    assert {"slide", "_put_on", "slip"} <= found
     for one, own in LAWS.items():
         assert found & own == (own if one == law else set())
     assert found & FELT == (FELT if felt else set())

@@ -4,8 +4,8 @@ from itertools import chain
 
 import faults.everything  # noqa: F401
 import pytest
+from faults import anything, contact, driven, modes, motion, motor, stress, waves
 from faults import chain as of_the_chain
-from faults import contact, driven, modes, motion, motor, stress, waves
 
 from verify.quantities.catalogue import QUANTITIES
 from verify.run.gates import judge
@@ -20,6 +20,7 @@ FAMILIES = (
     motion.FAULTS,
     driven.FAULTS,
     stress.FAULTS,
+    anything.FAULTS,
     contact.FAULTS,
     motor.FAULTS,
 )

@@ -1,6 +1,7 @@
 """Masses, springs, elastic ends, axial force and ground on a chain of rigid links, against beams by their states."""
 
 from math import pi, sin
+from time import process_time
 
 import numpy as np
 import pytest
@@ -12,11 +13,11 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.section import Section
-from verify.segments import carried
+from verify.segments import carried, loaded
 from verify.segments.attached import felt_at
 from verify.segments.buckling import buckling_load
 from verify.segments.linear import n_elastic, solve_modes, unknowns
-from verify.segments.links import build_chain
+from verify.segments.links import build_chain, chain_pencil
 
 L, EI, RHO_A = 0.73, 3.7, 0.31
 M = RHO_A * L
@@ -29,6 +30,18 @@ ENDS = {
     "GP": ("guided", "pinned"),
     "PF": ("pinned", "free"),
 }
+
+
+LADEN = replace(
+    STRIP,
+    supports=("clamped", "free"),
+    tension=3.0,
+    foundation=40.0,
+    rotary_inertia=3e-4,
+    shear_stiffness=900.0,
+    mass=(PointMass(position=0.31 * L, mass=0.2 * M), PointMass(position=L, mass=0.1 * M, rotary_inertia=2e-4)),
+    spring=(PointSpring(position=0.62 * L, stiffness=60.0, rotational=1.3),),
+)
 
 
 def mass(at, **given):
@@ -326,3 +339,26 @@ def test_what_turns_where_sections_meet_takes_a_chain_to_order_one(beyond, known
     exact = frequency_near(beam, "euler-bernoulli", found[-1])
     errors = [f / exact - 1 for f in found]
     assert np.log(errors[0] / errors[1]) / np.log(4) == pytest.approx(known, abs=0.15)
+
+
+@pytest.mark.parametrize("settings", [{}, {"theory": "timoshenko"}, {"joints": "tensioned", "theory": "rayleigh"}])
+def test_matrices_of_few_unknowns_are_those_that_are_made_sparse_of_many(settings, monkeypatch):
+    few = chain_pencil(build_chain(LADEN, 17, **settings))
+    strain, weights = few.strain_matrix().toarray(), few.mass_matrix()
+    monkeypatch.setattr(loaded, "DENSE_UNKNOWNS", 0)
+    many = chain_pencil(build_chain(LADEN, 17, **settings))
+    for one, sparse in ((strain, many.strain_matrix()), (weights, many.mass_matrix())):
+        other = sparse.toarray()
+        assert abs(one - other).max() <= 1e-13 * abs(other).max()
+    assert abs(strain - few.strain(np.eye(few.n))).max() == 0.0
+
+
+def test_what_a_small_chain_carries_takes_it_a_few_times_as_long():
+    """4 times; made of sparse matrices it was 18."""
+    times = []
+    for _ in range(9):
+        for beam in (STRIP, replace(STRIP, foundation=50.0)):
+            begun = process_time()
+            solve_modes(beam, 10, 20)
+            times.append(process_time() - begun)
+    assert min(times[1::2]) < 9.0 * min(times[::2])

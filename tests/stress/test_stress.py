@@ -31,7 +31,20 @@ KEYS = {"id", "promise", "measured", "held"}
 
 def light():
     families = ("sizes", "scales", "standing", "drive")
-    families += ("many", "laws", "books", "refused_modes", "refused_waves", "refused_motion", "refused_chain")
+    families += (
+        "many",
+        "laws",
+        "books",
+        "anything",
+        "written",
+        "moving",
+        "moved",
+        "tableaux",
+        "waves",
+        "choices",
+        "rules",
+    )
+    families += ("refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
     every = [one for name in families for one in import_module(f"verify.stress.{name}").ROWS]
     return [one.id for one in every if one.quick and one.id not in slow]

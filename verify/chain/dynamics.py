@@ -11,15 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from verify.chain import held_kernels, kernels, records
+from verify.chain import kernels, places, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
-from verify.chain.system import ChainState, ChainSystem, circular, held_points
+from verify.chain.system import ChainState, ChainSystem, circular
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
 
 PIVOT_LOSS = 0.1
 """A dependent angle is kept until its lever arm falls below this share of the longest."""
+NEWTON_STEPS = 20
+SETTLED = 1e-14
+"""Radians, for one link; a tenth of it for every other, whose rounding adds up."""
 
 
 def flatten(system: ChainSystem, *, ledger: bool = True) -> records.Flat:
@@ -78,29 +81,20 @@ def _arrays(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
 
 def positions(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
     """Joints 0..N, (N + 1, 2) metres, and their velocities, (N + 1, 2) m/s."""
-    work = workspace(system)
-    held_kernels.place(flatten(system), state.time, *_arrays(system, state), work)
-    return work[:, 13:15].copy(), work[:, 15:17].copy()
+    placed = places.place(system, state.time, *_arrays(system, state))
+    return placed.joints, placed.velocities
 
 
 def energies(system: ChainSystem, state: ChainState) -> tuple[float, float, float]:
     """Kinetic, elastic and gravitational energy, joule."""
-    found = kernels.energies(flatten(system), state.time, *_arrays(system, state), workspace(system))
+    angles, rates = _arrays(system, state)
+    found = places.energies(system, np.array([state.time]), angles[None], rates[None])[:, 0]
     return float(found[0]), float(found[1]), float(found[2])
 
 
 def held_rows(system: ChainSystem, state: ChainState) -> Array:
     """Derivatives of the held points' y by the relative angles, (n_held, N), metres."""
-    return _rows(system, positions(system, state)[0][:, 0])
-
-
-def _rows(system: ChainSystem, x: Array) -> Array:
-    """The same from the joints' x, (N + 1,)."""
-    rows = np.zeros((len(held := held_points(system)), system.n_links))
-    for row, (link, at) in zip(rows, held, strict=True):
-        share = at / system.lengths[link - 1]
-        row[:link] = x[link - 1] + share * (x[link] - x[link - 1]) - x[:link]
-    return rows
+    return places.held_rows(system, positions(system, state)[0][:, 0])
 
 
 def keep_pivots(rows: Array, pivots: Indices) -> Indices:
@@ -119,20 +113,37 @@ def project(system: ChainSystem, state: ChainState, dependent: Sequence[int] | N
     Raises InputError where Newton finds no position.
     """
     q, v = _arrays(system, state)
-    flat, work = flatten(system), workspace(system)
-    held_kernels.place(flat, state.time, q, v, work)
-    rows = _rows(system, work[:, 13])
+    rows = places.held_rows(system, places.place(system, state.time, q, v).joints[:, 0])
     pivots = choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64)
     if len(pivots) != len(rows) or any(not 0 <= p < system.n_links for p in pivots):
         raise InputError(f"dependent = {dependent!r}: give {len(rows)} joints between 1 and {system.n_links}")
-    moved = held_kernels.project(flat, state.time, q, v, pivots, 1e-14 * (1 + 0.1 * len(q)), work)
-    if not np.isfinite(moved) or not np.isfinite(q).all():
+    if not _settle(system, state.time, q, v, pivots) or not np.isfinite(q).all():
         raise InputError(
             f"state.angles cannot be brought onto the held points by turning joint {int(pivots[0]) + 1}: "
             "give angles that nearly meet them"
         )
     changed = max(abs(q - state.angles).max(), abs(v - state.rates).max())
     return ChainState(q, v, state.time), float(changed)
+
+
+def _settle(system: ChainSystem, time: float, q: Array, v: Array, pivots: Indices) -> bool:
+    """Turn dependent angles by Newton's method until a change is rounding, then set their rates; whether it ends."""
+    if not len(pivots):
+        return True
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(NEWTON_STEPS):
+            placed = places.place(system, time, q, v)
+            rows = places.held_rows(system, placed.joints[:, 0])[:, pivots]
+            off, leaving = places.strayed(system, time, placed)
+            try:
+                change, correction = np.linalg.solve(rows, np.stack([off, leaving], axis=1)).T
+            except np.linalg.LinAlgError:
+                return False
+            q[pivots] -= change
+            if abs(change).max() < SETTLED * (1.0 + 0.1 * len(q)):
+                v[pivots] -= correction
+                return True
+    return False
 
 
 def linearise(system: ChainSystem, state: ChainState) -> Linearisation:

@@ -5,7 +5,10 @@ import numpy as np
 from verify.chain.records import HALF, ROLLER, Flat
 from verify.chain.recursion_kernels import direction, hub_motion, solve
 from verify.models.arrays import Array, Indices
-from verify.models.kernels import lean, part
+from verify.models.kernels import part
+
+SETTLED = 1e-9
+"""Radians: the change of an angle after which another would be below rounding."""
 
 
 @part(fastmath={"contract"})
@@ -78,7 +81,7 @@ def hold(f: Flat, t: float, work: Array) -> float:
     return power
 
 
-@lean(fastmath={"contract"})
+@part(fastmath={"contract"})
 def place(f: Flat, t: float, q: Array, v: Array, work: Array) -> None:
     """Angles and rates into columns 2, 3; positions and velocities of joints 0..N into 13 to 16."""
     angle, rate, _ = hub_motion(f.numbers, t)
@@ -112,9 +115,9 @@ def constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) ->
             f.small[k, d] = x - work[pivots[d], 13] if pivots[d] <= i else 0.0
 
 
-@lean(fastmath={"contract"})
-def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, settled: float, work: Array) -> float:
-    """Bring dependent angles (Newton, until a change is below `settled`) and rates onto the held points.
+@part(fastmath={"contract"})
+def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array) -> float:
+    """Bring dependent angles (Newton, until a change is below SETTLED) and rates onto the held points.
 
     The largest change of an angle; infinite where 20 steps do not suffice.
     """
@@ -132,7 +135,7 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, settled: flo
             size = abs(f.small[d, count])
             change = size if size > change else change
         moved = change if change > moved else moved
-        if change < settled:
+        if change < SETTLED:
             constraints(f, t, pivots, work, not settling)
             solve_small(f.small, count)
             for d in range(count):

@@ -1,9 +1,9 @@
-"""Compiled accelerations and energies of the planar chain of rigid links, and the loop of Runge-Kutta steps."""
+"""Compiled accelerations of the planar chain of rigid links, and the loop of Runge-Kutta steps."""
 
 import numpy as np
 
-from verify.chain.held_kernels import hold, place, project, repivot
-from verify.chain.records import DIVERGED, DONE, INERTIA, MASS, ROLLER, RUNNING, SPRING, TOO_SMALL, Flat, March
+from verify.chain.held_kernels import hold, project, repivot
+from verify.chain.records import DIVERGED, DONE, ROLLER, RUNNING, TOO_SMALL, Flat, March
 from verify.chain.recursion_kernels import cosines, hub_motion, load_power, loads, moments, shortening, solve, weigh
 from verify.models.arrays import Array
 from verify.models.kernels import lean, part
@@ -27,23 +27,6 @@ def accelerate(f: Flat, t: float, q: Array, v: Array, work: Array, out: Array) -
     for i in range(1, q.size):
         out[i] = work[i, 12] - work[i - 1, 12]
     return lost, power
-
-
-@lean(fastmath={"contract"})
-def energies(f: Flat, t: float, q: Array, v: Array, work: Array) -> tuple[float, float, float]:
-    """Kinetic, elastic (joints and axial spring) and gravitational energy, joule."""
-    place(f, t, q, v, work)
-    kinetic, elastic, height = 0.0, 0.0, 0.0
-    for i in range(q.size):
-        vx, vy = 0.5 * (work[i, 15] + work[i + 1, 15]), 0.5 * (work[i, 16] + work[i + 1, 16])
-        along = vx * vx if f.axial else 0.0
-        kinetic += 0.5 * (f.links[i, MASS] * (along + vy * vy) + f.links[i, INERTIA] * work[i, 3] ** 2)
-        elastic += 0.5 * f.links[i, SPRING] * q[i] * q[i]
-        x, y = 0.5 * (work[i, 13] + work[i + 1, 13]), 0.5 * (work[i, 14] + work[i + 1, 14])
-        height -= f.links[i, MASS] * (f.numbers[5] * x + f.numbers[6] * y)
-    if f.tip_spring > 0.0:
-        elastic += 0.5 * f.tip_spring * shortening(f, work) ** 2
-    return kinetic, elastic, height
 
 
 @part(fastmath={"contract"})
@@ -154,7 +137,7 @@ def march(f: Flat, m: March, budget: int, work: Array) -> int:
         _stages(f, t, h, m.y, m.a, m.c, m.k, m.new, work)
         if torn(m.new[n : 2 * n], h) and m.weights.size == 0:
             return DIVERGED
-        project(f, t + h, m.new[:n], m.new[n : 2 * n], m.pivots, 1e-9, work)
+        project(f, t + h, m.new[:n], m.new[n : 2 * n], m.pivots, work)
         m.counts[4] += repivot(f, m.pivots, work, m.clock[2])
         derivative(f, t + h, m.new, work, m.k[last])
         m.counts[2] += m.a.shape[1]

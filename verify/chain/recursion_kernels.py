@@ -15,7 +15,7 @@ import numpy as np
 
 from verify.chain.records import DASHPOT, FREE, HALF, MASS, MOBILITY, ROLLER, SPRING, Flat
 from verify.models.arrays import Array
-from verify.models.kernels import lean, part
+from verify.models.kernels import part
 
 Side = tuple[float, float, float, float, float]
 """A part of the chain seen from its end: mobility (xx, xy, yy) and its acceleration without a force there."""
@@ -45,7 +45,7 @@ def _inverse(x11: float, x12: float, x22: float) -> tuple[float, float, float]:
     return x22 * d, -x12 * d, x11 * d
 
 
-@lean(fastmath={"contract"})
+@part(fastmath={"contract"})
 def hub_motion(hub: Array, t: float) -> tuple[float, float, float]:
     """Angle, rate and acceleration of the base's prescribed rotation, from `Flat.numbers`."""
     if hub[2] == 0.0:

@@ -6,9 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.chain import kernels
-from verify.chain.dynamics import flatten, workspace
-from verify.chain.recursion_kernels import hub_motion
+from verify.chain.places import energies, hub
 from verify.chain.system import ChainState, ChainSystem, link_at
 from verify.checks import check_number
 from verify.errors import InputError
@@ -63,11 +61,7 @@ class ChainMotion(MovedChain):
 
     def energies(self) -> tuple[Array, Array, Array]:
         """Kinetic, elastic and gravitational energy, (n,) each, joule."""
-        flat, work = flatten(self.system), workspace(self.system)
-        rows = [
-            kernels.energies(flat, t, q, v, work) for t, q, v in zip(self.times, self.angles, self.rates, strict=True)
-        ]
-        kinetic, elastic, height = np.array(rows, dtype=float).reshape(len(rows), 3).T
+        kinetic, elastic, height = energies(self.system, self.times, self.angles, self.rates)
         return kinetic, elastic, height
 
     def residual(self) -> Array:
@@ -98,6 +92,4 @@ class ChainMotion(MovedChain):
 
     def directions(self) -> Array:
         """Absolute angles of the links, (n, N), radians."""
-        hub = flatten(self.system).numbers
-        turned = np.array([hub_motion(hub, t)[0] for t in self.times]) if hub[:3].any() else np.zeros(1)
-        return np.asarray(np.cumsum(self.angles, axis=1) + turned[:, None])
+        return np.asarray(np.cumsum(self.angles, axis=1) + hub(self.system.rotation, self.times)[0][:, None])

@@ -39,9 +39,27 @@ class ElasticMotion(MovedChain):
     @cached_property
     def energies(self) -> Array:
         """(n,), kinetic, elastic and of gravity together, joule."""
-        flat, diagonal, coupling = _flattened(self.system, self.axial_stiffness, False)
-        states = zip(self.displacements, self.velocities, strict=True)
-        return np.array([kernels.energy(flat, diagonal, coupling, u, v) for u, v in states])
+        return self._kinetic() + self._elastic() - self._lowered()
+
+    def _kinetic(self) -> Array:
+        diagonal, coupling = joint_masses(self.system.masses, self.system.inertias, self.system.lengths)
+        v = self.velocities
+        return np.asarray(0.5 * (v**2).sum(axis=2) @ diagonal + (v[:, 1:] * v[:, :-1]).sum(axis=2) @ coupling)
+
+    def _elastic(self) -> Array:
+        """Of links and of joints, whose bends are differences of the links' directions."""
+        lengths, spans = self.system.lengths, np.diff(self.displacements, axis=1)
+        along, across = lengths + spans[..., 0], spans[..., 1]
+        squares = spans[..., 0] * (2.0 * lengths + spans[..., 0]) + across**2
+        stretches = squares / (np.hypot(along, across) + lengths)
+        bends = np.diff(np.arctan2(across, along), axis=1, prepend=0.0)
+        bends -= 2.0 * np.pi * np.round(bends / (2.0 * np.pi))
+        return np.asarray(0.5 * (stretches**2 @ (self.axial_stiffness / lengths) + bends**2 @ self.system.stiffness))
+
+    def _lowered(self) -> Array:
+        """What gravity has done since the straight chain."""
+        u = self.displacements @ np.array(self.system.gravity)
+        return np.asarray(0.5 * (u[:, 1:] + u[:, :-1]) @ self.system.masses)
 
     def deflection(self, x: Sequence[float]) -> Array:
         """Y of material points on their links, (n, len(x)), metres."""
@@ -97,7 +115,7 @@ def simulate_elastic(
     spacing = float(samples[1] - samples[0])
     work = fixed_steps(spacing, step) * (len(samples) - 1.0) * system.n_links * PER_STRETCHING_STEP
     refuse_work(work, most, float(samples[-1]))
-    flat, _, _ = _flattened(system, axial_stiffness, immovable)
+    flat = _flattened(system, axial_stiffness, immovable)
     u, v = np.zeros((system.n_links + 1, 2)), np.zeros((system.n_links + 1, 2))
     u[:, 1] = 0.0 if deflected is None else deflected
     steps, ready = int(np.ceil(spacing / step - 1e-9)), perf_counter()
@@ -160,24 +178,30 @@ def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) ->
     return samples
 
 
-def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -> tuple[kernels.Elastic, Array, Array]:
-    """The chain as the kernels see it, and its mass matrix: diagonal (N + 1,) and coupling (N,)."""
+def _flattened(system: ChainSystem, stiffness: float | Array, immovable: bool) -> kernels.Elastic:
+    """The chain as the kernels see it."""
     lengths = system.lengths
-    diagonal, coupling = joint_masses(system.masses, system.inertias, lengths)
     free = np.ones((system.n_links + 1, 2))
     free[0] = 0.0
     free[-1] = 0.0 if immovable else 1.0, 0.0 if system.tip == "roller" else 1.0
-    factors = np.zeros((system.n_links + 1, 2, 2))
-    kernels.factorise(diagonal, coupling, free, factors)
     loads = [
         (p.at / lengths[p.link - 1], *p.force, p.moment, circular(p.frequency_hz), np.deg2rad(p.phase_deg), p.link - 1)
         for p in system.loads
     ]
     links = np.stack([lengths, system.masses, stiffness / lengths, system.stiffness, system.dashpots], axis=1)
-    flat = kernels.Elastic(
+    return kernels.Elastic(
         links=links,
         loads=np.array(loads, dtype=float).reshape(len(loads), 7),
         gravity=np.array(system.gravity, dtype=float),
-        factors=factors,
+        factors=_factorised(*joint_masses(system.masses, system.inertias, lengths), free),
     )
-    return flat, diagonal, coupling
+
+
+def _factorised(diagonal: Array, coupling: Array, free: Array) -> Array:
+    """L D L^T of the mass matrix with held joints left out; `free` is (N + 1, 2), 1 or 0. See `Elastic.factors`."""
+    factors = np.zeros((len(diagonal), 2, 2))
+    factors[0, :, 1] = free[0] / diagonal[0]
+    for j in range(1, len(diagonal)):
+        ratio = coupling[j - 1] * factors[j - 1, :, 1] * free[j]
+        factors[j] = np.stack([ratio, free[j] / (diagonal[j] - ratio * coupling[j - 1])], axis=1)
+    return factors

@@ -26,17 +26,6 @@ class Elastic(NamedTuple):
     """(N + 1, 2, 2): of the mass matrix over joints, for x and y: coupling to the joint before, reciprocal pivot."""
 
 
-@lean(fastmath={"contract"})
-def factorise(diagonal: Array, coupling: Array, free: Array, factors: Array) -> None:
-    """L D L^T of the mass matrix with held joints left out; `free` is (N + 1, 2), 1 or 0."""
-    for axis in range(2):
-        for j in range(diagonal.size):
-            joined = j > 0 and free[j, axis] > 0.0 and free[j - 1, axis] > 0.0
-            ratio = coupling[j - 1] * factors[j - 1, axis, 1] if joined else 0.0
-            pivot = diagonal[j] - (ratio * coupling[j - 1] if joined else 0.0)
-            factors[j, axis, 0], factors[j, axis, 1] = ratio, free[j, axis] / pivot
-
-
 @part(fastmath={"contract"})
 def _solve(e: Elastic, force: Array) -> None:
     """Accelerations in the place of forces, (N + 1, 2); zero at held joints."""
@@ -104,25 +93,6 @@ def accelerate(e: Elastic, t: float, u: Array, v: Array, out: Array) -> None:
         before_length, before_c, before_s, before_rate = now, c, s, rate
     _load(e, t, u, out)
     _solve(e, out)
-
-
-@lean(fastmath={"contract"})
-def energy(e: Elastic, diagonal: Array, coupling: Array, u: Array, v: Array) -> float:
-    """Kinetic and elastic energy, and that of gravity, joule."""
-    total, before_c, before_s = 0.0, 1.0, 0.0
-    for axis in range(2):
-        for j in range(diagonal.size):
-            total += 0.5 * diagonal[j] * v[j, axis] ** 2
-            if j > 0:
-                total += coupling[j - 1] * v[j, axis] * v[j - 1, axis]
-    for i in range(e.links.shape[0]):
-        _, c, s, stretch = _strain(e, i, u)
-        bend = np.arctan2(before_c * s - before_s * c, before_c * c + before_s * s)
-        total += 0.5 * (e.links[i, 2] * stretch**2 + e.links[i, 3] * bend**2)
-        for axis in range(2):
-            total -= 0.5 * e.links[i, 1] * e.gravity[axis] * (u[i, axis] + u[i + 1, axis])
-        before_c, before_s = c, s
-    return total
 
 
 @lean(fastmath={"contract"})

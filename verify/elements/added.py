@@ -80,7 +80,8 @@ def _axial(elements: Elements) -> Strained:
         where = (np.concatenate([e, e]), np.concatenate([2 * e, 2 * e + 2]))
         return vstack([csc_array((entries, where), shape=(n, 2 * n + 2)), curvature_matrix(lengths)], format="csc")
 
-    return read, matrix, axial_weights(lengths, slope_matrix(elements.basis, force))
+    pulled = slope_matrix(elements.basis, force)
+    return read, matrix, axial_weights(lengths, pulled.diagonal(2), pulled.diagonal(3))
 
 
 def axial_force(elements: Elements) -> Array:

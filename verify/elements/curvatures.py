@@ -80,12 +80,11 @@ def shear_strain_matrix(lengths: Array) -> Any:
     return block_array([[curvature_matrix(lengths), inside[: 2 * n]], [None, inside[2 * n :]]], format="csc")
 
 
-def axial_weights(lengths: Array, assembled: Any) -> Array:
+def axial_weights(lengths: Array, beside: Array, beyond: Array) -> Array:
     """D of chords, mean curvatures and gradients, (3N,): from the integral of T u' v' as scikit-fem assembles it.
 
-    Between the two nodes of an element: 2 d_2 / l of left deflection and right slope, d_2 - d_1 of both slopes,
-    -(d_0 + 4 d_2) / l^2 of both deflections.
+    Its second and third diagonals are given, of many beams as in `weights_beside`. Between the two nodes of an element:
+    2 d_2 / l of left deflection and right slope, d_2 - d_1 of both slopes, -(d_0 + 4 d_2) / l^2 of both deflections.
     """
-    beside = assembled.diagonal(2)
-    gradients = 0.5 * lengths * assembled.diagonal(3)[::2]
+    gradients = 0.5 * lengths * beyond[::2]
     return np.concatenate([-(lengths**2) * beside[::2] - 4.0 * gradients, gradients - beside[1::2], gradients])

@@ -3,17 +3,19 @@
 scikit-fem assembles all of them at once, as elements between the nodes of lines that do not touch.
 """
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
+from functools import partial
 from itertools import accumulate
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from verify.beam import Beam
 from verify.elements.added import SAME_PLACE
-from verify.elements.curvatures import curvature_loads, element_curvatures, weights_beside
+from verify.elements.curvatures import axial_weights, curvature_loads, element_curvatures, weights_beside
 from verify.elements.cuts import stretches
-from verify.elements.mesh import basis_of_lines, free_unknowns, mass_matrix, stiffness_matrix
+from verify.elements.mesh import basis_of_lines, free_unknowns, mass_matrix, slope_matrix, stiffness_matrix
 from verify.models.arrays import Array, Indices
 from verify.models.band_stack import of_unknowns
 from verify.models.division import ManyParts, divide_each
@@ -24,20 +26,34 @@ _REACH = 4
 """Diagonals of elements, the main one among them."""
 
 
+class _Strained(msgspec.Struct, frozen=True, eq=False):
+    """Some strains of many beams at once."""
+
+    read: Callable[[Array], Array]
+    """All values (2N + 2, k, n_beams) -> strains (m, k, n_beams)."""
+    loads: Callable[[Array], Array]
+    """What forces in them are on all values."""
+    stiffness: Array
+    """(m, n_beams)."""
+
+
 def layout(beam: Beam, n_elements: int, grading: float, theory: str) -> Hashable:
     """What beams have in common that one stack takes, and whose refusals are the same; None for one to be taken alone.
 
-    Alone are graded and sheared elements, axial force and foundation, and what stands inside an element, too near to a
+    Alone are sheared elements, what is compressed and may buckle, and what stands inside an element, too near to a
     step for a node of its own.
     """
-    if theory != "euler-bernoulli" or grading != 1.0 or beam.tension or beam.foundation:
+    if theory == "timoshenko" or beam.tension < 0.0:
         return None
+    if theory != "euler-bernoulli" and (beam.tension or any(piece.rotary_inertia is None for piece in beam.pieces)):
+        return None
+    carried = (beam.tension > 0.0, beam.foundation > 0.0, beam.rigid_motions)
     if not (beam.mass or beam.spring):
-        return (beam.supports, len(beam.section))
+        return (beam.supports, len(beam.section), *carried)
     pieces = stretches(beam)
     if not _on_ends(beam, pieces, n_elements):
         return None
-    return (beam.supports, len(pieces), len(beam.mass), len(beam.spring), beam.rigid_motions)
+    return (beam.supports, len(pieces), len(beam.mass), len(beam.spring), *carried)
 
 
 def _on_ends(beam: Beam, pieces: Sequence[Piece], n_elements: int) -> bool:
@@ -48,44 +64,119 @@ def _on_ends(beam: Beam, pieces: Sequence[Piece], n_elements: int) -> bool:
     return all(min(abs(place - end) for end in ends) < near for place in places)
 
 
-def element_stack(beams: Sequence[Beam], n_elements: int) -> PencilStack:
+def element_stack(beams: Sequence[Beam], n_elements: int, grading: float, theory: str) -> PencilStack:
     """The pencils of beams of one `layout`."""
     first = beams[0]
     there = bool(first.mass or first.spring)
-    parts = divide_each(beams, n_elements, [stretches(beam) if there else beam.pieces for beam in beams])
-    nodes = parts.nodes
-    basis = basis_of_lines(nodes.T)
+    pieces = [stretches(beam) if there else beam.pieces for beam in beams]
+    parts = divide_each(beams, n_elements, pieces, grading)
+    basis, lengths = basis_of_lines(parts.nodes.T), np.diff(parts.nodes, axis=0)
     stiffness = _bands(stiffness_matrix(basis, parts.stiffnesses.T.ravel()), len(beams))
     mass = _bands(mass_matrix(basis, parts.masses_per_length.T.ravel()), len(beams))
-    lengths, beside = np.diff(nodes, axis=0), stiffness[:-2, 2]
-    springs, places = weights_beside(lengths, beside), np.zeros((0, len(beams)), dtype=np.intp)
+    if theory == "rayleigh":
+        rotary = np.array([[piece.rotary_inertia for piece in each] for each in pieces]).T
+        own = parts.of_pieces(rotary) / (np.array([beam.mass_per_length for beam in beams]) * parts.unit**2)
+        mass += _bands(slope_matrix(basis, own.T.ravel()), len(beams))
+    strained = [_curved(lengths, weights_beside(lengths, stiffness[:-2, 2]))]
+    scale = parts.unit**2 / np.array([beam.bending_stiffness for beam in beams])
+    if first.tension:
+        force = np.broadcast_to(np.array([beam.tension for beam in beams]) * scale, lengths.shape)
+        pulled = _bands(slope_matrix(basis, force.T.ravel()), len(beams))
+        stiffness += pulled
+        strained.append(_pulled(lengths, axial_weights(lengths, pulled[:-2, 2], pulled[:-3, 3])))
+    if first.foundation:
+        ground = np.broadcast_to(np.array([beam.foundation for beam in beams]) * parts.unit**2 * scale, lengths.shape)
+        stiffness += _bands(mass_matrix(basis, ground.T.ravel()), len(beams))
+        strained.append(_grounded(lengths, ground))
     if there:
         _add_masses(beams, parts, mass)
         places, held = _springs(beams, parts)
         _add(stiffness, places, held)
-        springs = np.concatenate([springs, held])
-    free = _free(first.supports, n_elements)
+        strained.append(_held(2 * n_elements + 2, places, held))
+    return _stack(strained, stiffness, mass, _free(first.supports, n_elements), first.rigid_motions)
+
+
+def _stack(strained: list[_Strained], stiffness: Array, mass: Array, free: Indices, rigid_modes: int) -> PencilStack:
+    """Strains and matrices over all degrees of freedom as a stack over those that are free."""
+    splits = np.cumsum([len(each.stiffness) for each in strained])[:-1]
 
     def strain(vectors: Array) -> Array:
-        values = np.zeros((2 * n_elements + 2, *vectors.shape[1:]))
+        values = np.zeros((len(stiffness), *vectors.shape[1:]))
         values[free] = vectors
-        felt = np.take_along_axis(values, places[:, None], axis=0)
-        return np.concatenate([element_curvatures(lengths, values), felt])
+        return np.concatenate([each.read(values) for each in strained])
 
     def loads(forces: Array) -> Array:
-        values = curvature_loads(lengths, forces[: 2 * n_elements])
-        for at, force in zip(places, forces[2 * n_elements :], strict=True):
-            values[at, :, np.arange(len(beams))] += force.T
-        return values[free]
+        shares = zip(strained, np.split(forces, splits), strict=True)
+        return np.asarray(sum(each.loads(share) for each, share in shares))[free]
 
     return PencilStack(
         stiffness=of_unknowns(stiffness, free),
         mass=of_unknowns(mass, free),
         strain=strain,
         loads=loads,
-        springs=springs,
-        rigid_modes=first.rigid_motions,
+        springs=np.concatenate([each.stiffness for each in strained]),
+        rigid_modes=rigid_modes,
     )
+
+
+def _curved(lengths: Array, weights: Array) -> _Strained:
+    """Of bending."""
+    return _Strained(partial(element_curvatures, lengths), partial(curvature_loads, lengths), weights)
+
+
+def _pulled(lengths: Array, weights: Array) -> _Strained:
+    """Of an axial force (`added`): chord, mean curvature and gradient of every element."""
+
+    def read(values: Array) -> Array:
+        return np.concatenate([np.diff(values[::2], axis=0) / lengths[:, None], element_curvatures(lengths, values)])
+
+    def loads(forces: Array) -> Array:
+        chord = forces[: len(lengths)] / lengths[:, None]
+        found = curvature_loads(lengths, forces[len(lengths) :])
+        found[2::2] += chord
+        found[:-2:2] -= chord
+        return found
+
+    return _Strained(read, loads, weights)
+
+
+def _grounded(lengths: Array, ground: Array) -> _Strained:
+    """Of a foundation (`added`): deflection at four Gauss points of every element."""
+    from verify.elements.element import cubics
+
+    points, shares = np.polynomial.legendre.leggauss(4)
+    lift, turn, lift_after, turn_after = (each[:, None, None, None] for each in cubics(0.5 + 0.5 * points))
+    spans = lengths[:, None]
+
+    def read(values: Array) -> Array:
+        found = lift * values[:-2:2] + turn * (spans * values[1:-2:2])
+        found += lift_after * values[2::2] + turn_after * (spans * values[3::2])
+        return np.asarray(found.reshape(-1, *values.shape[1:]))
+
+    def loads(forces: Array) -> Array:
+        each = forces.reshape(len(points), len(lengths), *forces.shape[1:])
+        found = np.zeros((2 * len(lengths) + 2, *forces.shape[1:]))
+        found[:-2:2] += (lift * each).sum(axis=0)
+        found[1:-2:2] += (turn * each).sum(axis=0) * spans
+        found[2::2] += (lift_after * each).sum(axis=0)
+        found[3::2] += (turn_after * each).sum(axis=0) * spans
+        return found
+
+    weights = 0.5 * shares[:, None, None] * (ground * lengths)
+    return _Strained(read, loads, weights.reshape(-1, lengths.shape[1]))
+
+
+def _held(n_values: int, places: Indices, stiffness: Array) -> _Strained:
+    """Of springs on degrees of freedom, (springs, n_beams) both."""
+    every = np.arange(stiffness.shape[1])
+
+    def loads(forces: Array) -> Array:
+        found = np.zeros((n_values, *forces.shape[1:]))
+        for at, force in zip(places, forces, strict=True):
+            found[at, :, every] += force.T
+        return found
+
+    return _Strained(lambda values: np.take_along_axis(values, places[:, None], axis=0), loads, stiffness)
 
 
 def _free(supports: tuple[str, str], n_elements: int) -> Indices:

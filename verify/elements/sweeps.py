@@ -86,7 +86,8 @@ def sweep_modes(
     """Frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
 
     Beams that differ by their scale alone share one solve; those that have as many sections, masses and springs as
-    others are solved together, the rest one by one. Raises InputError as `solve_modes` does, naming the beam by its
+    others are solved together, on ground, under tension, graded or thick (Rayleigh) as well; sheared
+    and compressed ones one by one. Raises InputError as `solve_modes` does, naming the beam by its
     index.
     """
     beams = several("beams", beams, Beam)
@@ -98,5 +99,5 @@ def sweep_modes(
         return element_pencil(elements), elements.parts.unit
 
     alike = partial(layout, n_elements=n_elements, grading=grading, theory=theory)
-    stack = partial(element_stack, n_elements=n_elements)
+    stack = partial(element_stack, n_elements=n_elements, grading=grading, theory=theory)
     return swept_modes(beams, n_modes, theory, Stacking(make=make, layout=alike, stack=stack))

@@ -9,7 +9,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.checks import check_number
 from verify.errors import InputError
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Indices
 from verify.section import Piece
 
 _FIGURES = attrgetter("length", "bending_stiffness", "mass_per_length")
@@ -54,6 +54,12 @@ class ManyParts(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     stiffnesses: Array
     """EI."""
     masses_per_length: Array
+    section: Indices
+    """Which piece of the beam each is a part of."""
+
+    def of_pieces(self, figures: Array) -> Array:
+        """Figures (n_pieces, n_beams) of the parts, (N, n_beams)."""
+        return np.take_along_axis(figures, self.section, axis=0)
 
     @property
     def nodes(self) -> Array:
@@ -91,19 +97,27 @@ def divide(beam: Beam, count: int, grading: float = 1.0, pieces: tuple[Piece, ..
     )
 
 
-def divide_each(beams: Sequence[Beam], count: int, pieces: Sequence[Sequence[Piece]]) -> ManyParts:
-    """What `divide` makes of each of many beams of equally many pieces, ungraded."""
+def divide_each(
+    beams: Sequence[Beam], count: int, pieces: Sequence[Sequence[Piece]], grading: float = 1.0
+) -> ManyParts:
+    """What `divide` makes of each of many beams of equally many pieces."""
     units = np.array([beam.length for beam in beams]) / count
     rows = np.array([_FIGURES(piece) for each in pieces for piece in each])
     lengths, stiffnesses, masses = rows.reshape(len(beams), -1, 3).transpose(2, 1, 0)
     own = np.array([_FIGURES(beam.own)[1:] for beam in beams]).T
     shares = _counts_of_each(lengths, count)
     part, section = np.arange(count)[:, None], np.zeros((count, len(beams)), dtype=np.intp)
-    for ends in np.cumsum(shares, axis=0)[:-1]:
-        section += part >= ends
+    ends = np.cumsum(shares, axis=0)
+    for end in ends[:-1]:
+        section += part >= end
     figures = (lengths / units / shares, stiffnesses / own[0], masses / own[1])
     found = [np.take_along_axis(figure, section, axis=0) for figure in figures]
-    return ManyParts(unit=units, lengths=found[0], stiffnesses=found[1], masses_per_length=found[2])
+    if grading != 1.0:
+        begins, all_of = (np.take_along_axis(figure, section, axis=0) for figure in (ends - shares, shares))
+        steps = grading ** ((part - begins) / np.maximum(all_of - 1.0, 1.0))
+        totals = np.array([np.where(section == i, steps, 0.0).sum(axis=0) for i in range(len(shares))])
+        found[0] = found[0] * all_of * steps / np.take_along_axis(totals, section, axis=0)
+    return ManyParts(unit=units, lengths=found[0], stiffnesses=found[1], masses_per_length=found[2], section=section)
 
 
 def _ratios(own: Piece, pieces: tuple[Piece, ...]) -> Array:

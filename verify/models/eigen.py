@@ -16,10 +16,10 @@ from verify.models.pencil import (
     DENSE_UNKNOWNS,
     LARGE,
     FactoredPencil,
+    bordered,
     factored_quotient,
     factorised,
     mixed_matrix,
-    on_diagonals,
     too_large,
 )
 from verify.models.polishing import homed, is_heavy, polished, sharpened
@@ -264,13 +264,12 @@ def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness
 
 def _by_sparse_factors(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
     """The same where the mixed matrix is no narrow band. Raises InputError where it is singular."""
-    from scipy.sparse import block_array, csc_array
+    from scipy.sparse import csc_array
 
-    strain = csc_array(pencil.strain_matrix())
-    blocks = [[on_diagonals({0: -1.0 / stiffness}), strain], [strain.T, -omega2 * csc_array(pencil.mass_matrix())]]
+    mixed = bordered(-1.0 / stiffness, pencil.strain_matrix(), -omega2 * csc_array(pencil.mass_matrix()))
     right = np.zeros((len(stiffness) + pencil.n, loads.shape[1]), dtype=complex)
     right[len(stiffness) :] = loads
-    return np.asarray(factorised(block_array(blocks, format="csc", dtype=complex)).solve(right)[len(stiffness) :])
+    return np.asarray(factorised(mixed.astype(complex)).solve(right)[len(stiffness) :])
 
 
 def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:

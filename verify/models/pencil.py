@@ -88,14 +88,35 @@ def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
     Where all eigenvalues lie above some value, K less M times that. Where motions are rigid, as many unknowns are
     grounded as make the matrix regular.
     """
-    from scipy.sparse import block_array, csc_array
+    grounds = _grounds(pencil.rigid)
+    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), grounds)
+    strain = pencil.strain_matrix()
+    return bordered(-1.0 / pencil.stiffness, strain[:, free] if grounds else strain, _lowered(pencil)), free
 
-    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), _grounds(pencil.rigid))
-    strain = pencil.strain_matrix()[:, free]
+
+def _lowered(pencil: FactoredPencil) -> Any:
     # None, not stored zeros: they would cost three times the solve
-    inertia = -pencil.below * csc_array(pencil.mass_matrix()) if pencil.below else None
-    springs = on_diagonals({0: -1.0 / pencil.stiffness})
-    return block_array([[springs, strain], [strain.T, inertia]], format="csc"), free
+    from scipy.sparse import csc_array
+
+    return -pencil.below * csc_array(pencil.mass_matrix()) if pencil.below else None
+
+
+def bordered(diagonal: Any, strain: Any, corner: Any = None) -> Any:
+    """[[diag(diagonal), B], [B^T, corner]] as one sparse array by columns; B (m, n) and the corner (n, n) are sparse.
+
+    As scipy's `block_array` makes it, in a third of the time of a small one.
+    """
+    from scipy.sparse import csc_array
+
+    m, beside = len(diagonal), strain.tocoo()
+    main, row, column = np.arange(m), beside.row, beside.col + m
+    rows, columns, values = [main, row, column], [main, column, row], [diagonal, beside.data, beside.data]
+    if corner is not None:
+        below = corner.tocoo()
+        rows, columns, values = [*rows, below.row + m], [*columns, below.col + m], [*values, below.data]
+    size = m + strain.shape[1]
+    places = (np.concatenate(rows), np.concatenate(columns))
+    return csc_array((np.concatenate(values), places), shape=(size, size))
 
 
 def on_diagonals(values: Mapping[int, Any], shape: tuple[int, int] | None = None) -> Any:

@@ -6,7 +6,7 @@ import numpy as np
 
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
-from verify.models.pencil import FactoredPencil, factored_quotient, factorised, on_diagonals
+from verify.models.pencil import FactoredPencil, bordered, factored_quotient, factorised
 
 _HEAVY = 1e6
 """Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
@@ -65,10 +65,9 @@ def homed(pencil: FactoredPencil, vectors: Array) -> Array:
 
     B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
     """
-    from scipy.sparse import block_array, csc_array
+    from scipy.sparse import csc_array
 
-    mass, strain = csc_array(pencil.mass_matrix()), csc_array(pencil.strain_matrix())
-    springs, n_strains = on_diagonals({0: -1.0 / pencil.stiffness}), len(pencil.stiffness)
+    mass, strain, n_strains = csc_array(pencil.mass_matrix()), pencil.strain_matrix(), len(pencil.stiffness)
     homed = vectors.copy()
     for k in range(vectors.shape[1]):
         vector = vectors[:, [k]]
@@ -76,7 +75,7 @@ def homed(pencil: FactoredPencil, vectors: Array) -> Array:
             value, vector = factored_quotient(pencil, vector)
             right = np.concatenate([np.zeros(n_strains), (mass @ vector)[:, 0]])
             try:
-                mixed = block_array([[springs, strain], [strain.T, -value[0] * mass]], format="csc")
+                mixed = bordered(-1.0 / pencil.stiffness, strain, -value[0] * mass)
                 vector = factorised(mixed).solve(right)[n_strains:, None]
             except InputError:  # singular to the last digit: it is the mode
                 break

@@ -19,7 +19,7 @@ from verify.models.eigen import distance_answered, forced_response, lowest, prob
 from verify.models.fields import RESONANCE, HarmonicField, check_forces
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.models.places import Forces, Numbers, in_a_row, places
-from verify.models.stacks import PencilStack, beside, lowest_of_each
+from verify.models.stacks import PencilStack, carried_along, lowest_of_each
 
 MOST_VALUES = 50_000_000
 """Complex numbers that a sweep holds at once: 0.8 GB."""
@@ -29,8 +29,6 @@ LEAST = 8
 """Beams of one layout from which on a stack takes less time than each by itself."""
 MOST_IN_STACK = 4_000_000
 """Numbers in the vectors of a stack."""
-INVERTED = (1, 3)
-"""Steps of inverse iteration: first one, then of those that have not settled in it three."""
 TOGETHER = 384
 """Beams in a stack at most: enough to fill numpy's loops, few enough to stay near the processor."""
 FIELD = "frequencies_hz"
@@ -235,15 +233,15 @@ def _stacks(
 ) -> dict[int, Array]:
     """The lowest values, (n_modes,) each, of the beams that settled in a stack, by index."""
     found: dict[int, Array] = {}
-    wanted = n_modes + beside(n_modes)
     for group in groups:
         pencil = made[group[0]][0]
-        small = pencil.n <= DENSE_UNKNOWNS and 3 * (pencil.rigid_modes + wanted) <= 2 * pencil.n
-        if len(group) < LEAST or not small:
+        tried = carried_along(n_modes, pencil.n - pencil.rigid_modes)
+        if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or not tried:
             continue
         _keep_memory()
-        start = np.hstack([pencil.rigid, lowest(pencil, wanted).vectors])
-        for n_inverted in INVERTED:
+        every = np.hstack([pencil.rigid, lowest(pencil, max(tried)[0]).vectors])
+        for n_carried, n_inverted in tried:
+            start = every[:, : pencil.rigid_modes + n_carried]
             for part in _parts([i for i in group if i not in found], start.size):
                 stack = model.stack([beams[i] for i in part])
                 values, settled = lowest_of_each(stack, n_modes, start, n_inverted)

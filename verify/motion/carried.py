@@ -151,13 +151,13 @@ def _told(
 ) -> Motion:
     """What came of a run that ended with the modes at (q, rates); `energy` is the beam's at its start."""
     request, n = laid.request, sliding.n_kept
-    columns = np.concatenate([sliding.first[None], sliding.kept.kept[:n]]).T
+    columns = np.concatenate([sliding.first, sliding.kept.kept[:n]]).T
     return Motion(
         model=request.model,
         count=request.count,
         times=times_of(request, laid.stages)[: n + 1],
         points=request.points,
-        deflection=np.concatenate([sliding.first_deflection[None], sliding.kept.deflections[:n]]),
+        deflection=np.concatenate([sliding.first_deflection, sliding.kept.deflections[:n]]),
         slider=laid.slider,
         start=sliding.start,
         travelled=columns[KEPT_X],

@@ -119,23 +119,36 @@ def _answer(
     return works
 
 
+@part()
+def _put_on(piece: int, edges: Array, motion: Array, law: Law, space: Space) -> None:
+    """Height and climb of a slider that was seen at the start of a step, and what presses it on."""
+    seen = space.seen
+    seen[2, SURFACE] = seen[0, SURFACE]
+    motion[HEIGHT], motion[NORMAL] = seen[0, LEVEL], law.load
+    motion[CLIMB] = climb(space.local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law.half)
+
+
 @part(forceinline=True)
 def _step(
     number: int,
     dt: float,
     piece: int,
     fresh: bool,
+    looking: bool,
     two_way: bool | None,
     surface: Surface,
     rider: Rider,
     books: Books,
     space: Space,
 ) -> None:
-    """One step of beam and slider. `two_way` is the rider's, by itself so that numba drops what a step has not."""
+    """One step of beam and slider, or its first row alone where one only looks.
+
+    `two_way` is the rider's, by itself so that numba drops what a step has not.
+    """
     motion, law, seen = rider.motion, rider.law, space.seen
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
     here, pressed, lifted, x1, v1, rate, along = Here(piece, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0
-    for row in range(3):
+    for row in range(1 if looking else 3):
         t = 0.5 * row * dt
         if row > 0:
             rotate_half(surface.modes)
@@ -148,6 +161,9 @@ def _step(
             _remember(space.local)
         if two_way is not None and row == 1:
             here = set_levers(surface, piece, space.local, x1, law.half)
+    if looking:
+        _put_on(piece, surface.edges, motion, law, space)
+        return
     give(dt, seen, space.slip)
     if two_way is not None:
         pressed, lifted = _answer((number + 1) * dt, dt, x1, v1, here, surface, rider, books, space)
@@ -166,20 +182,21 @@ def _step(
 def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books, kept: Kept, space: Space) -> int:
     """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
-    Time is the step's number times dt. Modes, motion, ledger and tally are advanced in place, together, so that they
-    agree whenever the caller is interrupted.
+    No steps: it sets the slider's height and climb, and keeps one sample as it stands, whose friction is that of a
+    slider that slips. Time is the step's number times dt. Modes, motion, ledger and tally are advanced in place,
+    together, so that they agree whenever the caller is interrupted.
     """
     motion, tally, took = rider.motion, kept.tally, space.slip
-    piece, fresh = NOUGHT, True
-    for _ in range(n_steps):
+    piece, fresh, looking = NOUGHT, True, n_steps == 0
+    for _ in range(1 if looking else n_steps):
         here = find_piece(surface.edges, motion[X], piece)
         if here < 0:
             return OFF_PIECES
         fresh = fresh or here != piece or rider.two_way is not None
         piece, number = here, tally[STEP]
-        _step(number, dt, piece, fresh, rider.two_way, surface, rider, books, space)
+        _step(number, dt, piece, fresh, looking, rider.two_way, surface, rider, books, space)
         fresh = False
-        tally[STEP] += 1
+        tally[STEP] += not looking
         if not np.isfinite(motion[V] + space.factors[STILL, 0]):
             return NOT_FINITE
         if took[N_EVENTS] > 0.0:
@@ -242,21 +259,3 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
         advance(dt, rate, motion, law, seen, space.slip)
     return n_steps
-
-
-@lean()
-def look(surface: Surface, rider: Rider, space: Space, piece: int) -> tuple[float, float]:
-    """(speed of the surface under the slider, friction per mass) at time 0; sets the slider's height and climb.
-
-    `piece` is the first to be tried, and stands for one off the pieces.
-    """
-    motion, law, seen, edges = rider.motion, rider.law, space.seen, surface.edges
-    found = find_piece(edges, motion[X], piece)
-    piece = found if found >= 0 else piece
-    set_factors(0.0, surface.modes, surface.drive, space.factors)
-    set_local(surface.table, piece, space.factors, space.local)
-    touch(space.local, edges, piece, motion[X], motion[V], law, seen, AT_START)
-    speed = seen[0, SURFACE]
-    motion[HEIGHT], motion[NORMAL] = seen[0, LEVEL], law.load
-    motion[CLIMB] = climb(space.local, edges, piece, motion[X], motion[V] + seen[0, DRIFT], law.half)
-    return speed, 0.0 if motion[STUCK] > 0.0 else friction(motion[V] - speed, law.static, law)

@@ -34,7 +34,9 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     accounts: bool
     ledger: Array
     first: Array
+    """(1, 5), the sample before any step, `records.KEPT_X` and so on."""
     first_deflection: Array
+    """(1, points)."""
     on_its_way: tuple[float, float] | None = None
     """Height and climb of a slider that was held on the surface before; one that is put on takes the surface's."""
     steps_before: int = 0
@@ -61,8 +63,8 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
             ),
             accounts=accounts,
             ledger=np.zeros(6),
-            first=np.zeros(5),
-            first_deflection=np.zeros(len(points)),
+            first=np.zeros((1, 5)),
+            first_deflection=np.zeros((1, len(points))),
         )
 
     @property
@@ -204,15 +206,13 @@ def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     """The first sample: the slider as it is put on, before any step; a slider on its way keeps its height and climb."""
     from verify.motion import kernels
 
-    motion, surface = sliding.motion, Surface(fed.modes, fed.drive, *around)
-    speed, friction = kernels.look(surface, sliding.rider, fed.space, 0)
-    sliding.first[records.KEPT_X], sliding.first[records.KEPT_V] = motion[records.X], motion[records.V]
-    sliding.first[records.KEPT_FRICTION], sliding.first[records.KEPT_SURFACE] = friction, speed
-    sliding.first[records.KEPT_NORMAL] = motion[records.NORMAL]
+    kept = fed.kept._replace(
+        every=1, kept=sliding.first, deflections=sliding.first_deflection, tally=np.zeros_like(fed.kept.tally)
+    )
+    surface = Surface(fed.modes, fed.drive, *around)
+    kernels.slide(0, fed.stage.dt, surface, sliding.rider, fed.books, kept, fed.space)
     if sliding.on_its_way is not None:
-        motion[records.HEIGHT], motion[records.CLIMB] = sliding.on_its_way
-    if len(sliding.points):
-        sliding.first_deflection[:] = fed.stage.deflection(fed.z, np.zeros(1), sliding.points)[0]
+        sliding.motion[records.HEIGHT], sliding.motion[records.CLIMB] = sliding.on_its_way
 
 
 def run_stages(

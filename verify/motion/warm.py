@@ -46,7 +46,6 @@ def on_beam(law: str, coupling: str) -> Iterator[Call]:
     for name, two_way in COUPLINGS.items():
         if coupling in (name, "auto"):
             rider = Rider(fresh_motion(), _law(LAWS[law]), two_way)
-            yield kernels.look, (surface, rider, contact_space(1), 0)
             yield kernels.slide, (1, 0.0, surface, rider, _books(), _kept(), contact_space(1))
 
 

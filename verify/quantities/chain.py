@@ -162,7 +162,6 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         TipUnderLoad,
         "equilibrium",
         _cantilever_tip,
-        kernels=compiled.placed,
     ),
     Quantity(
         "chain.rollup_gap",
@@ -171,7 +170,6 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         RolledUp,
         "equilibrium",
         _rollup_gap,
-        kernels=compiled.placed,
     ),
     Quantity(
         "chain.hanging_frequency",
@@ -180,7 +178,6 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         Hanging,
         "equilibrium",
         _hanging_frequency,
-        kernels=compiled.resting,
     ),
     Quantity(
         "chain.turning_frequency",
@@ -189,7 +186,6 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         Turning,
         "equilibrium",
         _turning_frequency,
-        kernels=compiled.resting,
     ),
     Quantity(
         "chain.large_amplitude_frequency",
@@ -209,7 +205,7 @@ CHAIN_QUANTITIES: tuple[Quantity[Any], ...] = (
         "in time",
         _energy_drift,
         needs=beforehand.buildable,
-        kernels=compiled.booked,
+        kernels=compiled.stepped,
     ),
     Quantity(
         "chain.transient_deflection",

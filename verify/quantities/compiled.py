@@ -70,33 +70,11 @@ def over_wave(a: Any, scene: "Scene") -> Iterator[Call]:
     return warm.on_springs("coulomb", "one-way")
 
 
-def placed(a: Any, scene: "Scene") -> Iterator[Call]:
-    """A chain held where its constraints allow."""
-    from verify.chain import warm
-
-    return warm.placed()
-
-
-def resting(a: Any, scene: "Scene") -> Iterator[Call]:
-    """A chain about its equilibrium."""
-    from verify.chain import warm
-
-    return warm.resting()
-
-
 def stepped(a: Any, scene: "Scene") -> Iterator[Call]:
     """A chain of rigid links in steps."""
     from verify.chain import warm
 
     return warm.rigid()
-
-
-def booked(a: Any, scene: "Scene") -> Iterator[Call]:
-    """The same with its energies."""
-    from verify.chain import warm
-
-    yield from warm.rigid()
-    yield from warm.energies()
 
 
 def transient(a: "FromRest", scene: "Scene") -> Iterator[Call]:

@@ -181,6 +181,6 @@ ENERGY_QUANTITIES: tuple[Quantity[Any], ...] = (
         Shaken,
         "in time",
         _shaken_imbalance,
-        kernels=compiled.booked,
+        kernels=compiled.stepped,
     ),
 )

@@ -18,16 +18,19 @@ has the mean of the shear on either side: too little, by `shear_give`. No weight
 stands on as much of a slip of its own does: order 2, as everything there.
 """
 
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from verify.models.arrays import Array
+from verify.models.arrays import Array, BoolArray, Indices
 from verify.segments.links import Chain
 from verify.segments.loads import joint_weights
 
 _WIDE = 8
 """Joints that a pair of weights reaches over: shorter chains have the plain ones."""
+_FOUR = np.arange(-1, 3)
+"""Joints around a link, from its left one."""
 _SECOND_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 _NEWTON = 12
 _ABOUT = 0.05
@@ -40,13 +43,18 @@ def felt_at(chain: Chain, position: float, rule: str) -> tuple[Array, Array]:
     At an end that nothing holds the end joint and the end link themselves; the turn of such an end, where it has a
     joint of its own, is not read here (`loaded`).
     """
-    n, place, link, s = _place(chain, position)
-    deflection, turn = np.zeros(n + 1), np.zeros(n)
-    if rule == "reciprocal" and n >= _WIDE and _even(chain, link):
-        return _mended(chain, link, s)
+    n, place = chain.n_segments, position / chain.unit - chain.start
+    links, on, even = places_on(chain.lengths[:, None], np.array([place]))
+    if is_mended(rule, n) and even[0]:
+        deflections, turns = mended(chain.supports, n, links, on)
+        return deflections[0], turns[0]
+    deflection, turn, link, s = np.zeros(n + 1), np.zeros(n), int(links[0]), float(on[0])
     if rule == "reciprocal" and n >= 3:
         middles = np.cumsum(chain.lengths) - 0.5 * chain.lengths
-        return joint_weights(chain, position, rule), np.array([np.interp(place, middles, row) for row in np.eye(n)])
+        after = int(np.clip(np.searchsorted(middles, place), 1, n - 1))
+        share = (place - middles[after - 1]) / (middles[after] - middles[after - 1])
+        turn[after - 1 : after + 1] = np.clip([1.0 - share, share], 0.0, 1.0)
+        return joint_weights(chain, position, rule), turn
     deflection[link], deflection[link + 1] = 1.0 - s, s
     turn[link] = 1.0
     if link > 0 and s == 0.0:
@@ -54,86 +62,134 @@ def felt_at(chain: Chain, position: float, rule: str) -> tuple[Array, Array]:
     return deflection, turn
 
 
-def _place(chain: Chain, position: float) -> tuple[int, float, int, float]:
-    """N, the place in units, its link and where on it, 0 to 1; a place that is a joint to rounding is that joint."""
-    n, nodes = chain.n_segments, chain.nodes / chain.unit
-    place = float(np.clip(position / chain.unit, nodes[0], nodes[-1]))
-    nearest = int(abs(nodes - place).argmin())
-    if abs(nodes[nearest] - place) < 1e-9:
-        link = min(nearest, n - 1)
-        return n, float(nodes[nearest]), link, float(nearest - link)
-    link = int(np.clip(np.searchsorted(nodes, place, side="right") - 1, 0, n - 1))
-    return n, place, link, float((place - nodes[link]) / chain.lengths[link])
+def is_mended(rule: str, n: int) -> bool:
+    """Whether a chain of n links has mended weights where they are about equally long."""
+    return rule == "reciprocal" and n >= _WIDE
 
 
-def _even(chain: Chain, link: int) -> bool:
-    """Whether the links around are about equally long."""
-    near = chain.lengths[max(link - 4, 0) : link + 5]
-    return bool(np.ptp(near) < _ABOUT * near[0])
+def places_on(lengths: Array, places: Array) -> tuple[Indices, Array, BoolArray]:
+    """(links, where on them, 0 to 1, whether links around are about equally long) of places, (p,) all.
+
+    `lengths` (N, p) are those of each place's own chain, from whose left end it is told in the same unit. A place that
+    is a joint to rounding is that joint.
+    """
+    n, every = len(lengths), np.arange(len(places))
+    nodes = np.concatenate([np.zeros_like(lengths[:1]), np.cumsum(lengths, axis=0)])
+    places = np.clip(places, 0.0, nodes[-1])
+    nearest = abs(nodes - places).argmin(axis=0)
+    links = np.clip((nodes <= places).sum(axis=0) - 1, 0, n - 1)
+    joint = abs(nodes[nearest, every] - places) < 1e-9
+    links = np.where(joint, np.minimum(nearest, n - 1), links)
+    on = np.where(joint, nearest - links, (places - nodes[links, every]) / lengths[links, every])
+    near = lengths[np.clip(links + np.arange(-4, 5)[:, None], 0, n - 1), every]
+    return links, on, np.asarray(np.ptp(near, axis=0) < _ABOUT * near[0])
 
 
-def _mended(chain: Chain, link: int, s: float) -> tuple[Array, Array]:
-    """The reciprocal weights of a place, mended; symmetric about it and continuous in s."""
-    n = chain.n_segments
-    if chain.supports[0] == "free" and link + s == 0.0:
-        return np.eye(n + 1)[0], np.eye(n)[0]
-    if chain.supports[1] == "free" and link + s == n:
-        return np.eye(n + 1)[n], np.eye(n)[n - 1]
-    ends = [support in ("pinned", "guided") for support in chain.supports]
-    lowest, highest = -9 if ends[0] else 2, n + 9 if ends[1] else n - 2
-    at = np.clip(np.arange(link - 1, link + 3), lowest, highest)
-    first = int(at[0]) - 2
-    width = int(at[-1]) - first + 3
-    lagrange = np.zeros((2, width))
-    for centre, share in ((at[1], 1.0 - s), (at[2], s)):
-        window = slice(centre - 2 - first, centre + 3 - first)
-        lagrange[:, window] += share * _five(link + s - centre)
-    fourths = np.zeros((4, width))
-    for row, centre in zip(fourths, at, strict=True):
-        row[centre - 2 - first : centre + 3 - first] = _SECOND_DIFFERENCE
-    even = (1.0 - s) * fourths[1] + s * fourths[2]
-    odd = (1.0 - s) * (fourths[2] - fourths[0]) + s * (fourths[3] - fourths[1])
-    apart = abs(np.subtract.outer(np.arange(width), np.arange(width))).astype(float)
-    bending = (apart**3 - apart) / 12.0
-    slope = _without_self(lagrange[1], odd, bending)
-    value = _without_selves(lagrange[0], np.array([even, odd]), bending, bending @ slope)
-    turn = -np.cumsum(_folded(chain, first, slope, True))[:-1]
-    turn[: max(first, 0)] = turn[max(first, 0) + width :] = 0.0  # but for the rounding of the sum
-    return _folded(chain, first, value, False), turn
+def mended(supports: tuple[str, str], n: int, links: Indices, s: Array) -> tuple[Array, Array]:
+    """The reciprocal weights of places, (p, N + 1) and (p, N), mended; symmetric about each and continuous in s.
+
+    Places are told by their links and where on them, 0 to 1, (p,) both.
+    """
+    reflects = [support in ("pinned", "guided") for support in supports]
+    at = np.minimum(np.maximum(links[:, None] + _FOUR, -9 if reflects[0] else 2), n + 9 if reflects[1] else n - 2)
+    first, places = at[:, :1] - 2, np.arange(len(s))[:, None]
+    shares = np.stack([1.0 - s, s], axis=1)
+    columns = at[:, :, None] - at[:, :1, None] + np.arange(5)
+    fourths, lagrange = np.zeros((len(s), 4, _WIDE)), np.zeros((len(s), 2, _WIDE))
+    fourths[places[:, :, None], np.arange(4)[:, None], columns] = _SECOND_DIFFERENCE
+    fives = shares[:, :, None, None] * _five((links + s)[:, None] - at[:, 1:3])
+    for row in (0, 1):
+        lagrange[places[:, :, None], np.arange(2)[:, None], columns[:, [1 + row]]] += fives[:, row]
+    before, after = shares[:, :1], shares[:, 1:]
+    even = before * fourths[:, 1] + after * fourths[:, 2]
+    odd = before * (fourths[:, 2] - fourths[:, 0]) + after * (fourths[:, 3] - fourths[:, 1])
+    bending = _bending()
+    slopes = _without_self(lagrange[:, 1], odd, bending)
+    values = _without_selves(lagrange[:, 0], np.stack([even, odd], axis=1), bending, slopes @ bending)
+    deflections, turning = _folded(supports, n, first, np.stack([values, slopes]))
+    # a slope's weights add up to nothing, for which joints that a support holds give what is missing
+    turning[places[:, 0], np.where(2 * first[:, 0] < n, 0, n)] -= turning.sum(axis=1)
+    turns = -np.cumsum(turning, axis=1)[:, :-1]
+    link, begin = np.arange(n), np.maximum(first, 0)
+    turns[(link < begin) | (link >= begin + at[:, 3:] - first + 3)] = 0.0  # but for the rounding of the sum
+    for end, support in zip((0, n), supports, strict=True):
+        if support == "free" and (there := links + s == end).any():
+            deflections[there], turns[there] = np.eye(n + 1)[end], np.eye(n)[min(end, n - 1)]
+    return deflections, turns
 
 
-def _five(s: float) -> Array:
-    """Weights of five joints -2..2 for w and w' at s, right for powers up to the fourth, of y + l^2 y''/12, (2, 5)."""
-    powers = np.vander(np.arange(-2.0, 3.0), increasing=True).T
-    value = [s**p + p * (p - 1) / 12.0 * s ** max(p - 2, 0) for p in range(5)]
-    slope = [p * s ** max(p - 1, 0) + p * (p - 1) * (p - 2) / 12.0 * s ** max(p - 3, 0) for p in range(5)]
-    return np.asarray(np.linalg.solve(powers, np.array([value, slope]).T).T)
+@cache
+def _bending() -> Array:
+    """How a chain under forces on its joints bends, (8, 8), in l^3/EI."""
+    apart = abs(np.subtract.outer(np.arange(_WIDE), np.arange(_WIDE))).astype(float)
+    return np.asarray((apart**3 - apart) / 12.0)
 
 
-def _without_self(weights: Array, share: Array, kernel: Array) -> Array:
-    """The weights with the smallest share that makes their quadratic form zero, or least where none does."""
-    a, b, c = share @ kernel @ share, weights @ kernel @ share, weights @ kernel @ weights
-    if abs(a) < 1e-12:
-        return weights
+def _five(s: Array) -> Array:
+    """Weights of five joints -2..2 for w and w' at s, right for powers up to 4, of y + l^2 y''/12, (..., 2, 5)."""
+    square = s * s
+    powers = np.stack([np.ones_like(s), s, square, square * s, square * square], axis=-1)
+    return np.asarray((powers @ _of_powers()).reshape(*s.shape, 2, 5))
+
+
+@cache
+def _of_powers() -> Array:
+    """What those weights have of the powers 0 to 4 of s, (5, 10): of w, then of w'; kept, for reading alone."""
+    value, slope = np.eye(5), np.zeros((5, 5))
+    for p in range(1, 5):
+        slope[p - 1, p] = p
+        if p > 1:
+            value[p - 2, p] = p * (p - 1) / 12.0
+        if p > 2:
+            slope[p - 3, p] = p * (p - 1) * (p - 2) / 12.0
+    inverse = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), increasing=True))
+    return np.asarray(np.hstack([value @ inverse, slope @ inverse]))
+
+
+def _without_self(weights: Array, shares: Array, kernel: Array) -> Array:
+    """Weights (p, w) with the smallest shares that make their quadratic forms zero, or least where none does."""
+    pairs = ((shares, shares), (weights, shares), (weights, weights))
+    a, b, c = ((one @ kernel * other).sum(axis=1) for one, other in pairs)
     root = b * b - a * c
-    amount = -b / a if root < 0.0 else -c / (b + np.copysign(np.sqrt(root), b))
-    return np.asarray(weights + amount * share)
+    there, real = abs(a) >= 1e-12, root >= 0.0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        amount = np.where(real, -c / (b + np.copysign(np.sqrt(np.where(real, root, 0.0)), b)), -b / a)
+    return np.asarray(weights + np.where(there, amount, 0.0)[:, None] * shares)
 
 
 def _without_selves(weights: Array, shares: Array, kernel: Array, other: Array) -> Array:
-    """The weights with shares that make their quadratic form zero, and the product with `other`: Newton from none.
+    """Weights (p, w) with shares (p, 2, w) that make their quadratic forms and products with `other` (p, w) zero.
 
-    Where the places leave no such shares, next to an end, the weights as they are.
+    Newton from none, on the amounts x: c + 2 b x + x A x and d + g x. Where a place leaves no such shares, next to an
+    end, its weights as they are.
     """
-    found = weights
+    own = np.concatenate([shares, weights[:, None]], axis=1)
+    forms, (g0, g1, d) = own @ kernel @ np.swapaxes(own, 1, 2), (own @ other[:, :, None])[:, :, 0].T
+    a00, a01, a11, b0, b1, c = (forms[:, i, j] for i, j in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)))
+    x0, x1, moved = np.zeros_like(c), np.zeros_like(c), np.full_like(c, np.inf)
     for _ in range(_NEWTON):
-        errors = np.array([found @ kernel @ found, found @ other])
-        slopes = np.array([2.0 * shares @ kernel @ found, shares @ other])
-        step = np.linalg.lstsq(slopes, errors, rcond=1e-9)[0]
-        found = found - step @ shares
-        if abs(step).max() < 1e-14:
-            return np.asarray(found)
-    return weights
+        h0, h1 = a00 * x0 + a01 * x1 + b0, a01 * x0 + a11 * x1 + b1
+        errors = (h0 + b0) * x0 + (h1 + b1) * x1 + c, g0 * x0 + g1 * x1 + d
+        step0, step1 = _solved((2.0 * h0, 2.0 * h1, g0, g1), errors)
+        going = moved >= 1e-14
+        x0, x1 = x0 - going * step0, x1 - going * step1
+        moved = np.where(going, np.maximum(abs(step0), abs(step1)), moved)
+        if (moved < 1e-14).all():
+            break
+    amounts = np.stack([x0, x1], axis=1) * (moved < 1e-14)[:, None]
+    return np.asarray(weights + (amounts[:, None] @ shares)[:, 0])
+
+
+def _solved(matrices: tuple[Array, Array, Array, Array], right: tuple[Array, Array]) -> tuple[Array, Array]:
+    """A x = b of two unknowns each, (p,) all, the shortest of the nearest where an A is singular to 1e-9."""
+    (a, b, c, d), (e, f) = matrices, right
+    determinant = a * d - b * c
+    apart = abs(determinant) > 1e-8 * (a * a + b * b + c * c + d * d)
+    by = determinant if apart.all() else np.where(apart, determinant, 1.0)
+    x, y = (d * e - b * f) / by, (a * f - c * e) / by
+    for p in np.flatnonzero(~apart):
+        x[p], y[p] = np.linalg.lstsq(np.array([[a[p], b[p]], [c[p], d[p]]]), np.array([e[p], f[p]]), rcond=1e-9)[0]
+    return x, y
 
 
 def shear_give(weights: Array) -> float:
@@ -144,23 +200,15 @@ def shear_give(weights: Array) -> float:
     return max(float(lacking), 0.0)
 
 
-def _folded(chain: Chain, first: int, weights: Array, slope: bool) -> Array:
-    """Weights of joints `first`, `first` + 1, ... as those of joints 0..N, by the ends' reflections, (N + 1,).
-
-    A slope's add up to nothing, for which joints that a support holds give what is missing.
-    """
-    n, folded = chain.n_segments, np.zeros(chain.n_segments + 1)
-    signs = [-1.0 if support == "pinned" else 1.0 for support in chain.supports]
-    for joint, weight in zip(range(first, first + len(weights)), weights, strict=True):
-        if joint < 0:
-            folded[-joint] += signs[0] * weight
-        elif joint > n:
-            folded[2 * n - joint] += signs[1] * weight
-        else:
-            folded[joint] += weight
-    if slope:
-        folded[0 if 2 * first < n else n] -= folded.sum()
-    return folded
+def _folded(supports: tuple[str, str], n: int, first: Indices, weights: Array) -> Array:
+    """Weights (k, p, w) of joints `first` (p, 1) and after as those of joints 0..N, by the ends' reflections."""
+    joints = first + np.arange(weights.shape[2])
+    signs = [-1.0 if support == "pinned" else 1.0 for support in supports]
+    weights = weights * np.where(joints < 0, signs[0], np.where(joints > n, signs[1], 1.0))
+    rows = np.arange(weights.shape[0] * weights.shape[1]).reshape(*weights.shape[:2], 1)
+    places = rows * (n + 1) + np.where(joints > n, 2 * n - joints, abs(joints))
+    found = np.bincount(places.ravel(), weights.ravel(), rows.size * (n + 1))
+    return np.asarray(found.reshape(*weights.shape[:2], n + 1), dtype=float)
 
 
 def rows_at(chain: Chain, positions: list[float], rule: str) -> tuple[Any, Any]:

@@ -26,28 +26,50 @@ one in k^2 omega^2 that thickness inertia does not have at all frequencies. With
 (rho A omega^2/(kappa G A))^2 (EI k^2 - rho I omega^2) l^2/12, which rho A l/12 off where they slip takes away: order 4.
 """
 
+from functools import cache
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from verify.models.arrays import Array, ComplexArray
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
 from verify.segments.attached import rows_at
-from verify.segments.links import Body, Chain
+from verify.segments.links import Chain
+
+
+class _Placed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What ground and axial force, springs and bodies make of a chain, beside its joints."""
+
+    stiffness: Array
+    """Of middles on the ground, of turns, of springs, of rotational springs, in this order."""
+    n_grounded: int
+    """How often all middles are held, 0 or 1."""
+    n_tilted: int
+    """How often all turns are held, 0 to 2."""
+    springs: list[int]
+    """Which of the bodies are springs."""
+    rotational: list[int]
+    felt: Any
+    """Sparse (bodies, N + 1), weights of the joints' positions."""
+    turned: Any
+    """Sparse (bodies, N), of the links' turns."""
+    own: Any
+    """Sparse (bodies, n), slips of bodies that slip, over the unknowns."""
 
 
 def loaded_pencil(chain: Chain) -> FactoredPencil:
     """K = B^T diag(d) B over joint angles, slips and what resists positions and turns, and M."""
-    placed = _placed_rows(chain)
+    placed = _placed(chain)
     strains = (chain.compliances[_jointed(chain)], np.ones(_n_slips(chain)))
     return FactoredPencil(
         n=n_unknowns(chain),
         rigid=_rigid(chain),
         strain=lambda free: _strain(chain, placed, free),
-        stiffness=np.concatenate([1.0 / strains[0], strains[1], placed[0], _held_turns(chain)[1]]),
+        stiffness=np.concatenate([1.0 / strains[0], strains[1], placed.stiffness, _held_turns(chain)[1]]),
         strain_matrix=lambda: _strain_matrix(chain, placed),
-        mass_matrix=_mass(chain),
-        masses=_weigher(chain),
+        mass_matrix=cache(lambda: _mass(chain, placed)),
+        masses=lambda free: _weighed(chain, placed, free),
         uneven=True,
     )
 
@@ -148,11 +170,6 @@ def turns(chain: Chain, free: Any) -> Any:
     return found / chain.lengths[:, None]
 
 
-def link_turns(chain: Chain) -> Any:
-    """`turns` as a sparse array over the unknowns, (N, n)."""
-    return _maps(chain)[2]
-
-
 def middles(chain: Chain, free: Any) -> Any:
     """Positions of the links' middles, (N, k)."""
     joints = positions(chain, free)
@@ -211,58 +228,66 @@ def corrections(chain: Chain, free: Array) -> Array:
     return np.asarray((squares[:, None] / 24.0 * (bent - _shear_change(chain, free))).T)
 
 
-def _own_slips(chain: Chain, bodies: list[Body]) -> Any:
-    """Slips of bodies that slip as a sparse array over the unknowns, (b, n)."""
+def _own_slips(chain: Chain) -> Any:
+    """Slips of bodies that slip as a sparse array over the unknowns, (bodies, n)."""
     from scipy.sparse import csr_array
 
-    giving = [body for body in chain.bodies if body.give > 0.0]
-    first = n_unknowns(chain) - len(giving)
-    found = [(row, first + giving.index(b), np.sqrt(b.give)) for row, b in enumerate(bodies) if b.give > 0.0]
-    rows, columns, values = zip(*found, strict=True) if found else ((), (), ())
-    return csr_array((values, (rows, columns)), (len(bodies), n_unknowns(chain)), dtype=float)
+    giving = [row for row, body in enumerate(chain.bodies) if body.give > 0.0]
+    total = n_unknowns(chain)
+    roots = np.sqrt([chain.bodies[row].give for row in giving])
+    return csr_array((roots, (giving, range(total - len(giving), total))), (len(chain.bodies), total))
 
 
-def _placed_rows(chain: Chain) -> tuple[Array, Any, Any, Any, Any]:
-    """What resists middles, turns and places: stiffnesses, and sparse rows over joints, middles, turns, unknowns."""
-    from scipy.sparse import csr_array, vstack
+def _placed(chain: Chain) -> _Placed:
+    """What resists middles, turns and places, and where bodies are felt."""
+    from scipy.sparse import csr_array
 
-    n = chain.n_segments
     ground = chain.foundation * chain.lengths
+    of_middles = [ground] * bool(chain.foundation)
     of_turns = [chain.tension * chain.lengths, ground * chain.lengths**2 / 12.0]
     of_turns = [row for row in of_turns if row.any()]
-    grounded = ground[: n * bool(chain.foundation)]
-    springs = [body for body in chain.bodies if body.stiffness]
-    rotational = [body for body in chain.bodies if body.rotational]
-    felt = rows_at(chain, [b.position for b in springs], chain.attachment)[0]
-    turned = rows_at(chain, [b.position for b in rotational], chain.attachment)[1]
-    sizes = (len(grounded), n * len(of_turns), len(springs), len(rotational))
-    links = on_diagonals({0: np.ones(n)}).tocsr()
-    over_middles = [links[: sizes[0]], *(csr_array((size, n)) for size in sizes[1:])]
-    over_turns = [csr_array((sizes[0], n)), *([links] * len(of_turns)), csr_array((sizes[2], n)), csr_array(turned)]
-    apart = sizes[0] + sizes[1]
-    over_joints = [csr_array((apart, n + 1)), csr_array(felt), csr_array((sizes[3], n + 1))]
-    stiffness = [grounded, *of_turns, [b.stiffness for b in springs], [b.rotational for b in rotational]]
-    total = n_unknowns(chain)
-    slipping = [csr_array((apart, total)), _own_slips(chain, springs), csr_array((sizes[3], total))]
-    rows = [vstack(parts).tocsr() for parts in (over_joints, over_middles, over_turns, slipping)]
-    return np.concatenate([np.asarray(part, dtype=float) for part in stiffness]), rows[0], rows[1], rows[2], rows[3]
+    springs = [row for row, body in enumerate(chain.bodies) if body.stiffness]
+    rotational = [row for row, body in enumerate(chain.bodies) if body.rotational]
+    each = [chain.bodies[row].stiffness for row in springs] + [chain.bodies[row].rotational for row in rotational]
+    felt, turned = rows_at(chain, [body.position for body in chain.bodies], chain.attachment)
+    return _Placed(
+        stiffness=np.concatenate([*of_middles, *of_turns, each]),
+        n_grounded=len(of_middles),
+        n_tilted=len(of_turns),
+        springs=springs,
+        rotational=rotational,
+        felt=csr_array(felt),
+        turned=csr_array(turned),
+        own=_own_slips(chain),
+    )
 
 
-def _strain(chain: Chain, placed: tuple[Array, Any, Any, Any, Any], free: Array) -> Array:
+def _resisted(placed: _Placed, joints: Any, centres: Any, tilts: Any, slipped: Any) -> list[Any]:
+    """Rows of what `stiffness` resists, of joints' positions, middles, turns, bodies' slips, sparse or not."""
+    rows = [centres] * placed.n_grounded + [tilts] * placed.n_tilted
+    if placed.springs:
+        rows.append(placed.felt[placed.springs] @ joints + slipped[placed.springs])
+    if placed.rotational:
+        rows.append(placed.turned[placed.rotational] @ tilts)
+    return rows
+
+
+def _strain(chain: Chain, placed: _Placed, free: Array) -> Array:
     """Everything that costs energy, (m, k)."""
-    _, over_joints, over_middles, over_turns, over_slips = placed
-    resisted = over_joints @ positions(chain, free) + over_middles @ middles(chain, free)
-    resisted = resisted + over_turns @ turns(chain, free) + over_slips @ free
     slipped = free[_n_free(chain) + len(_turning(chain)) :]
     held = end_turns(chain, free)[_held_turns(chain)[0]]
-    return np.concatenate([angles(chain, free)[_jointed(chain)], slipped, resisted, held])
+    motions = positions(chain, free), middles(chain, free), turns(chain, free), placed.own @ free
+    return np.concatenate([angles(chain, free)[_jointed(chain)], slipped, *_resisted(placed, *motions), held])
 
 
 def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
-    """`positions`, `middles`, `turns` and `end_turns` as sparse arrays over the unknowns."""
+    """`positions`, `middles`, `turns` and `end_turns` over the unknowns, sparse arrays where those are many."""
     from scipy.sparse import csr_array
 
     n, total, free = chain.n_segments, n_unknowns(chain), _n_free(chain)
+    if total <= DENSE_UNKNOWNS:  # sparse ones take ten times as long to make
+        each = np.eye(total)
+        return positions(chain, each), middles(chain, each), turns(chain, each), end_turns(chain, each)
     joints = on_diagonals({-int(chain.held[0]): np.ones(free)}, (n + 1, free)).tocsr()
     joints.resize((n + 1, total))
     ends = csr_array(
@@ -277,6 +302,16 @@ def _maps(chain: Chain) -> tuple[Any, Any, Any, Any]:
     return joints, centres, tilts.tocsr(), ends
 
 
+def _bends(tilts: Any, ends: Any) -> Any:
+    """`angles` of such maps, (N + 1, n)."""
+    from scipy.sparse import vstack
+
+    if isinstance(tilts, np.ndarray):
+        return np.diff(np.concatenate([ends[:1], tilts, ends[1:]]), axis=0)
+    around = vstack([ends[[0]], tilts, ends[[1]]]).tocsr()
+    return around[1:] - around[:-1]
+
+
 def _over_slips(chain: Chain, masses: Array) -> Array:
     """Masses of the joints' slips over the unknowns, (n,)."""
     found, there = np.zeros(n_unknowns(chain)), _slipping(chain)
@@ -286,67 +321,60 @@ def _over_slips(chain: Chain, masses: Array) -> Array:
     return found
 
 
-def _strain_matrix(chain: Chain, placed: tuple[Array, Any, Any, Any, Any]) -> Any:
+def _strain_matrix(chain: Chain, placed: _Placed) -> Any:
     """B of `_strain` as a sparse array (m, n)."""
-    from scipy.sparse import vstack
+    from scipy.sparse import csc_array, vstack
 
-    joints, centres, tilts, ends = _maps(chain)
-    _, over_joints, over_middles, over_turns, over_slips = placed
-    around = vstack([ends[[0]], tilts, ends[[1]]]).tocsr()
-    bent = (around[1:] - around[:-1])[np.flatnonzero(_jointed(chain))]
     total, slipping = n_unknowns(chain), _n_slips(chain)
+    if total <= DENSE_UNKNOWNS:
+        return csc_array(_strain(chain, placed, np.eye(total)))
+    joints, centres, tilts, ends = _maps(chain)
+    bent = _bends(tilts, ends)[np.flatnonzero(_jointed(chain))]
     slipped = on_diagonals({total - slipping: np.ones(slipping)}, (slipping, total))
-    resisted = over_joints @ joints + over_middles @ centres + over_turns @ tilts + over_slips
-    return vstack([bent, slipped, resisted, ends[_held_turns(chain)[0]]]).tocsc()
+    resisted = _resisted(placed, joints, centres, tilts, placed.own)
+    return vstack([bent, slipped, *resisted, ends[_held_turns(chain)[0]]]).tocsc()
 
 
-def _mass(chain: Chain) -> Any:
-    """() -> M, made when it is first asked for."""
-    from functools import cache
-
-    @cache
-    def made() -> Any:
-        from scipy.sparse import csr_array, vstack
-
-        joints, centres, tilts, ends = _maps(chain)
-        inertias = on_diagonals({0: chain.inertias})
-        mass = centres.T @ on_diagonals({0: chain.masses}) @ centres + tilts.T @ inertias @ tilts
-        mass = mass + ends.T @ on_diagonals({0: np.array(chain.end_inertias)}) @ ends
-        if chain.joint_inertias is not None:
-            around = vstack([ends[[0]], tilts, ends[[1]]]).tocsr()
-            bent = around[1:] - around[:-1]
-            mass = mass - bent.T @ on_diagonals({0: chain.joint_inertias}) @ bent
-        if chain.slip_masses is not None:
-            mass = mass - on_diagonals({0: _over_slips(chain, chain.slip_masses)})
-        for body in chain.bodies:
-            if body.mass or body.rotary_inertia:
-                felt, turned = (csr_array(row) for row in rows_at(chain, [body.position], chain.attachment))
-                felt, turned = felt @ joints + _own_slips(chain, [body]), turned @ tilts
-                mass = mass + body.mass * (felt.T @ felt) + body.rotary_inertia * (turned.T @ turned)
-        return mass.toarray() if n_unknowns(chain) <= DENSE_UNKNOWNS else mass.tocsc()
-
-    return made
+def _mass(chain: Chain, placed: _Placed) -> Any:
+    """M, dense where unknowns are few."""
+    joints, centres, tilts, ends = _maps(chain)
+    mass = _squares(centres, chain.masses) + _squares(tilts, chain.inertias)
+    if any(chain.end_inertias):
+        mass = mass + _squares(ends, np.array(chain.end_inertias))
+    if chain.joint_inertias is not None:
+        mass = mass - _squares(_bends(tilts, ends), chain.joint_inertias)
+    if chain.slip_masses is not None:
+        mass = mass - on_diagonals({0: _over_slips(chain, chain.slip_masses)})
+    masses, rotary = _of_bodies(chain)
+    if masses.any():
+        mass = mass + _squares(placed.felt @ joints + placed.own, masses)
+    if rotary.any():
+        mass = mass + _squares(placed.turned @ tilts, rotary)
+    return np.asarray(mass) if n_unknowns(chain) <= DENSE_UNKNOWNS else mass.tocsc()
 
 
-def _weigher(chain: Chain) -> Any:
+def _squares(rows: Any, weights: Array) -> Any:
+    """The matrix of weights (r,) times the squares of rows (r, n), sparse or not."""
+    return rows.T @ (rows * weights[:, None])
+
+
+def _of_bodies(chain: Chain) -> tuple[Array, Array]:
+    """Masses and rotary inertias of the bodies, (bodies,) both."""
+    masses, rotary = ([getattr(body, figure) for body in chain.bodies] for figure in ("mass", "rotary_inertia"))
+    return np.array(masses), np.array(rotary)
+
+
+def _weighed(chain: Chain, placed: _Placed, free: Array) -> Array:
     """V (n, k) -> v^T M v by the turns themselves: M over positions drowns a large rotary inertia's (`_mass`)."""
-    felt, turned = rows_at(chain, [body.position for body in chain.bodies], chain.attachment)
-    masses = np.array([body.mass for body in chain.bodies])
-    rotary = np.array([body.rotary_inertia for body in chain.bodies])
-    own = _own_slips(chain, list(chain.bodies))
-
-    def weigh(free: Array) -> Array:
-        tilts = turns(chain, free)
-        total = chain.masses @ middles(chain, free) ** 2 + chain.inertias @ tilts**2
-        total = total + np.array(chain.end_inertias) @ end_turns(chain, free) ** 2
-        if chain.joint_inertias is not None:
-            total = total - chain.joint_inertias @ angles(chain, free) ** 2
-        if chain.slip_masses is not None:
-            total = total - chain.slip_masses @ slips(chain, free) ** 2
-        total = total + masses @ (felt @ positions(chain, free) + own @ free) ** 2 + rotary @ (turned @ tilts) ** 2
-        return np.asarray(total)
-
-    return weigh
+    tilts, (masses, rotary) = turns(chain, free), _of_bodies(chain)
+    total = chain.masses @ middles(chain, free) ** 2 + chain.inertias @ tilts**2
+    total = total + np.array(chain.end_inertias) @ end_turns(chain, free) ** 2
+    if chain.joint_inertias is not None:
+        total = total - chain.joint_inertias @ angles(chain, free) ** 2
+    if chain.slip_masses is not None:
+        total = total - chain.slip_masses @ slips(chain, free) ** 2
+    felt = placed.felt @ positions(chain, free) + placed.own @ free
+    return np.asarray(total + masses @ felt**2 + rotary @ (placed.turned @ tilts) ** 2)
 
 
 def _rigid(chain: Chain) -> Array:

@@ -5,17 +5,18 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.models.arrays import Array, Indices
 from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
-from verify.segments.attached import rows_at
-from verify.segments.links import Body, build_chain, joint_compliance, link_inertia
+from verify.segments.attached import felt_at, is_mended, mended, places_on
+from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
 
-_FIGURES = ("mass", "rotary_inertia", "stiffness", "rotational")
+_OWN = ("mass_per_length", "bending_stiffness")
 
 
 class Chains(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -46,26 +47,28 @@ class Chains(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def layout(beam: Beam, wall: str, joints: str, grading: float, theory: str, attachment: str) -> Hashable:
     """What beams have in common that one stack takes, and whose refusals are the same; None for one to be taken alone.
 
-    Alone are chains that slip or are graded, printed and welded ones, what is compressed and may buckle, and rotary
+    Alone are chains that slip, printed, tensioned thick and welded ones, what is compressed and may buckle, and rotary
     inertias at an end, which turn beyond its joint.
     """
-    if theory != "euler-bernoulli" or wall == "welded" or joints == "printed" or grading != 1.0:
+    if theory == "timoshenko" or wall == "welded" or joints == "printed" or beam.tension < 0.0:
+        return None
+    if joints == "tensioned" and (beam.tension or theory != "euler-bernoulli"):
+        return None
+    if theory != "euler-bernoulli" and (beam.tension or any(piece.rotary_inertia is None for piece in beam.pieces)):
         return None
     if not (beam.mass or beam.spring or beam.tension or beam.foundation):
         return (beam.supports, len(beam.section))
-    if beam.tension and (beam.tension < 0.0 or joints == "tensioned"):
-        return None
     if any(mass.rotary_inertia and mass.position in (0.0, beam.length) for mass in beam.mass):
         return None
     loads = (len(beam.mass) + len(beam.spring), beam.tension > 0.0, beam.foundation > 0.0)
-    return (beam.supports, len(beam.section), *loads, beam.rigid_motions)
+    return (beam.supports, len(beam.section), *loads, beam.rigid_motions, elastic_ends(beam, attachment))
 
 
 def chain_stack(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) -> PencilStack:
     """The pencils of beams of one `layout`."""
     first = beams[0]
     loaded = first.mass or first.spring or first.tension or first.foundation
-    chains = _loaded(beams, n_segments, settings) if loaded else _plain(beams, n_segments, settings["wall"])
+    chains = (_loaded if loaded else _plain)(beams, n_segments, settings)
     springs = [chains.joints, *_present(chains.ground, chains.twist)]
     if chains.bodies is not None:
         springs += [*chains.bodies[2:]]
@@ -90,57 +93,105 @@ def _free(supports: tuple[str, str], n_segments: int) -> Indices:
     return np.arange(int(left), n_segments + 1 - right)
 
 
-def _plain(beams: Sequence[Beam], n_segments: int, wall: Any) -> Chains:
-    """Links, joints and walls alone, without a chain for each beam."""
+def _plain(
+    beams: Sequence[Beam], n_segments: int, settings: dict[str, Any], elastic: tuple[bool, bool] = (False, False)
+) -> Chains:
+    """Links, joints and walls alone, without a chain for each beam; `elastic` ends have joints of their own."""
     supports = beams[0].supports
-    parts = divide_each(beams, n_segments, [beam.pieces for beam in beams])
+    parts = divide_each(beams, n_segments, [beam.pieces for beam in beams], settings["grading"])
     lengths, stiffness = parts.lengths, parts.stiffnesses
     inner = joint_compliance(lengths[:-1], stiffness[:-1], lengths[1:], stiffness[1:])
     ends = lengths / stiffness
-    factors = wall_factors(supports, n_segments, wall)[:, None]
+    factors = wall_factors(supports, n_segments, settings["wall"], elastic)[:, None]
     masses = lengths * parts.masses_per_length
+    inertias = link_inertia(masses, lengths)
+    if settings["theory"] == "rayleigh":
+        rotary = np.array([[piece.rotary_inertia for piece in beam.pieces] for beam in beams]).T
+        own = np.array([beam.mass_per_length for beam in beams])
+        inertias = inertias + lengths * parts.of_pieces(rotary) / (own * parts.unit**2)
     return Chains(
         free=_free(supports, n_segments),
         lengths=lengths,
         joints=1.0 / (np.concatenate([ends[:1], inner, ends[-1:]]) * factors),
         masses=masses,
-        inertias=link_inertia(masses, lengths),
+        inertias=inertias,
     )
 
 
 def _loaded(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) -> Chains:
-    """The same of chains that carry something, each built by itself."""
-    each = [build_chain(beam, n_segments, **settings) for beam in beams]
+    """The same of chains that carry something, as `carried` has it of each."""
+    attachment = settings["attachment"]
+    elastic = elastic_ends(beams[0], attachment)
+    chains = _plain(beams, n_segments, settings, elastic)
+    lengths, unit = chains.lengths, np.array([beam.length for beam in beams]) / n_segments
+    scale = unit**2 / np.array([beam.bending_stiffness for beam in beams])
+    ground = np.array([beam.foundation for beam in beams]) * unit**2 * scale * lengths
+    twist = np.array([beam.tension for beam in beams]) * scale * lengths + ground * lengths**2 / 12.0
+    chains = replace(chains, ground=ground if ground.any() else None, twist=twist if twist.any() else None)
+    if not (beams[0].mass or beams[0].spring):
+        return chains
+    joints, bodies = _beyond(beams, chains.joints, _bodies(beams, unit), elastic)
+    felt, turned = _where_felt(beams, chains, unit, attachment)
+    return replace(chains, joints=joints, bodies=bodies, felt=felt, turned=turned)
 
-    def gathered(field: str) -> Array:
-        return np.array([getattr(chain, field) for chain in each]).T
 
-    lengths, tension, foundation = gathered("lengths"), gathered("tension"), gathered("foundation")
-    ground, twist = foundation * lengths, (tension + foundation * lengths**2 / 12.0) * lengths
-    bodies = [[_figures(body) for body in chain.bodies] for chain in each]
-    rows = [rows_at(chain, [body.position for body in chain.bodies], chain.attachment) for chain in each]
-    there = bool(each[0].bodies)
-    return Chains(
-        free=_free(beams[0].supports, n_segments),
-        lengths=lengths,
-        joints=1.0 / gathered("compliances"),
-        masses=gathered("masses"),
-        inertias=gathered("inertias"),
-        ground=ground if foundation.any() else None,
-        twist=twist if twist.any() else None,
-        felt=_last([felt for felt, _ in rows]) if there else None,
-        turned=_last([turned for _, turned in rows]) if there else None,
-        bodies=np.array(bodies).transpose(2, 1, 0) if there else None,
+def _positions_of(beam: Beam) -> list[float]:
+    """Where masses and then springs stand, metres."""
+    return [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
+
+
+def _bodies(beams: Sequence[Beam], unit: Array) -> Array:
+    """Mass, rotary inertia, stiffness and rotational stiffness of all bodies in units, (4, bodies, n_beams)."""
+    rows = [
+        [(mass.mass, mass.rotary_inertia, 0.0, 0.0) for mass in beam.mass]
+        + [(0.0, 0.0, spring.stiffness, spring.rotational) for spring in beam.spring]
+        for beam in beams
+    ]
+    mass, stiffness = (np.array([getattr(beam, own) for beam in beams]) for own in _OWN)
+    scales = np.array([1.0 / (mass * unit), 1.0 / (mass * unit**3), unit**3 / stiffness, unit / stiffness])
+    return np.asarray(np.array(rows).transpose(2, 1, 0) * scales[:, None])
+
+
+def _beyond(beams: Sequence[Beam], joints: Array, bodies: Array, elastic: tuple[bool, bool]) -> tuple[Array, Array]:
+    """(k of the joints, bodies) with the rotational springs at elastic ends put beyond their joints."""
+    places = np.array([_positions_of(beam) for beam in beams]).T
+    joints, bodies = joints.copy(), bodies.copy()
+    for end, there, at in zip((0, -1), elastic, (0.0, np.array([beam.length for beam in beams])), strict=True):
+        if there:
+            of_end = np.where(places == at, bodies[3], 0.0)
+            joints[end] = 1.0 / (1.0 / joints[end] + 1.0 / of_end.sum(axis=0))
+            bodies[3] -= of_end
+    return joints, bodies
+
+
+def _where_felt(beams: Sequence[Beam], chains: Chains, unit: Array, attachment: str) -> tuple[Array, Array]:
+    """Where bodies are felt (`rows_at`), (bodies, N + 1, n_beams) and (bodies, N, n_beams)."""
+    n, n_beams = chains.lengths.shape
+    felt, turned = [], []
+    for row in np.array([_positions_of(beam) for beam in beams]).T:
+        links, on, even = places_on(chains.lengths, row / unit)
+        at_once = even & is_mended(attachment, n)
+        deflections, turns = np.zeros((n_beams, n + 1)), np.zeros((n_beams, n))
+        deflections[at_once], turns[at_once] = mended(beams[0].supports, n, links[at_once], on[at_once])
+        for j in map(int, np.flatnonzero(~at_once)):
+            deflections[j], turns[j] = felt_at(_chain_of(beams[j], chains, j), float(row[j]), attachment)
+        felt.append(deflections.T)
+        turned.append(turns.T)
+    return np.array(felt), np.array(turned)
+
+
+def _chain_of(beam: Beam, chains: Chains, index: int) -> Chain:
+    """The links of a beam, whose joints nobody asks for."""
+    return Chain(
+        supports=beam.supports,
+        rigid_motions=beam.rigid_motions,
+        unit=beam.length / len(chains.lengths),
+        start=0.0,
+        lengths=chains.lengths[:, index],
+        compliances=np.zeros(len(chains.joints)),
+        masses=chains.masses[:, index],
+        inertias=chains.inertias[:, index],
     )
-
-
-def _figures(body: Body) -> list[float]:
-    return [getattr(body, figure) for figure in _FIGURES]
-
-
-def _last(arrays: list[Array]) -> Array:
-    """Arrays of each beam as one with the beam's axis last."""
-    return np.ascontiguousarray(np.moveaxis(np.array(arrays), 0, -1))
 
 
 def _matrices(chains: Chains) -> tuple[Array, Array]:

@@ -161,7 +161,7 @@ ROWS: tuple[Row, ...] = (
         rounds=5,
         cost=chain_seconds,
         seconds=4.0,
-        kernels=warm.accelerated,
+        kernels=warm.accelerations,
     ),
     *(
         Growth(

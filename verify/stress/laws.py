@@ -106,8 +106,12 @@ def curvature_error(parts: float) -> float:
     from verify.models.catalogue import MODELS
 
     worst, n = 0.0, int(parts)
-    for model in ("segment", "fem"):
-        modes = MODELS[model].solve_modes(STRIP, 2, n)
+    for model, beam, settings in (
+        ("segment", STRIP, {}),
+        ("segment", TAUT, {"joints": "tensioned"}),
+        ("fem", STRIP, {}),
+    ):
+        modes = MODELS[model].solve_modes(beam, 2, n, **settings)
         for mode, found in enumerate(modes.curvatures(), start=1):
             k = mode * pi / STRIP.length
             size = sqrt(2.0 / (STRIP.mass_per_length * STRIP.length))

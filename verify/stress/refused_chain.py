@@ -170,7 +170,6 @@ ROWS: tuple[Row, ...] = (
         Case("beam.supports = ['pinned', 'pinned']", ridden(on=STRIP)),
         Case("beam.supports = ['clamped', 'free'], beam.length = 0.74", ridden(on=replace(CANTILEVER, length=0.74))),
         Case("chain.rotation", ridden(chain(rotation=Rotation(rate=1.0)))),
-        kernels=warm.resting,
     ),
     refusals(
         "refused-chain-motions",
@@ -244,6 +243,6 @@ ROWS: tuple[Row, ...] = (
         ),
         Case("time = 1.0 s would keep", lambda: check_kept(1e9, LINKS, "time = 1.0 s")),
         Case("time = 2 s takes", lambda: refuse_work(1001.0, 1000.0, 2.0), lambda: refuse_work(1000.0, 1000.0, 2.0)),
-        kernels=warm.accelerated,
+        kernels=warm.accelerations,
     ),
 )

@@ -182,7 +182,6 @@ ROWS: tuple[Row, ...] = (
         beside=straight_gap,
         textbook="linear theory",
         seconds=8.0,
-        kernels=warm.placed,
     ),
     Floor(
         id="dead-load",
@@ -196,7 +195,6 @@ ROWS: tuple[Row, ...] = (
         beside=linear_tip_error,
         textbook="linear theory",
         seconds=3.0,
-        kernels=warm.placed,
     ),
     Floor(
         id="spun",
@@ -218,7 +216,7 @@ ROWS: tuple[Row, ...] = (
         promise=2.0,
         error=whirled_error,
         seconds=8.0,
-        kernels=warm.with_energies,
+        kernels=warm.rigid,
     ),
     Floor(
         id="steps-below-the-limit",
@@ -232,7 +230,7 @@ ROWS: tuple[Row, ...] = (
         beside_at=(0.99, 1.01, 1.05, 2.0),
         textbook="the same loop without the refusal",
         seconds=3.0,
-        kernels=warm.with_energies,
+        kernels=warm.rigid,
     ),
     Refusal(
         id="steps-beyond-the-limit",
@@ -243,7 +241,7 @@ ROWS: tuple[Row, ...] = (
         names=("step", "stability limit", "smaller step"),
         ask=grown,
         taken=(0.5, 0.99),
-        kernels=warm.with_energies,
+        kernels=warm.rigid,
     ),
     Floor(
         id="step-limit",
@@ -254,7 +252,7 @@ ROWS: tuple[Row, ...] = (
         promise=1e-3,
         error=limit_error,
         seconds=4.0,
-        kernels=warm.accelerated,
+        kernels=warm.accelerations,
     ),
     Refusal(
         id="amplitude-beyond-the-links",
@@ -265,6 +263,6 @@ ROWS: tuple[Row, ...] = (
         names=("amplitude", "L / 10"),
         ask=_too_steep,
         taken=(0.01,),
-        kernels=warm.with_energies,
+        kernels=warm.rigid,
     ),
 )
