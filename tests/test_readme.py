@@ -31,7 +31,7 @@ FACTORS = {"": 1.0, "%": 100.0, "Hz": 1.0, "mm": 1e3, "cm/s": 100.0, "nm": 1e9, 
 NUMBER = re.compile(r"([+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?)\s*(%|Hz|mm|nm|cm/s|µm|ms)?")
 
 UNTESTED = {
-    "run time of elements over segments at one error of the displacement": "wall time, by the command",
+    "run time of elements over segments at one error of the displacement": "run time, by the command",
     "MuJoCo 4.0.0 over this suite": "run time beside another engine, by its bench",
     "rounding in modes 1 and 50 of 10 000 segments or elements": "asserted by the test that the row names",
     "stock scikit-fem, its own Hermite element": "asserted by the test that the row names",

@@ -16,6 +16,19 @@ def seconds_in_words(seconds: float | None) -> str:
     return f"{seconds:.3g} s"
 
 
+def as_written(numbers: Iterable[float]) -> str:
+    """Numbers as a person writes them: [0.03425, 0.10275], where a product left 0.10275000000000001."""
+    return str([float(f"{number:.12g}") for number in numbers])
+
+
+def metres_in_words(metres: float) -> str:
+    """A length to three digits, in m, mm, µm or nm."""
+    for unit, factor in (("m", 1.0), ("mm", 1e3), ("µm", 1e6)):
+        if abs(metres) * factor >= 1.0:
+            return f"{metres * factor:.3g} {unit}"
+    return f"{metres * 1e9:.3g} nm"
+
+
 def percent(value: float | None, *, sign: bool = True) -> str:
     """A relative figure in per cent; small ones in powers of ten."""
     if value is None:

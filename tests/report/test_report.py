@@ -270,7 +270,29 @@ def test_what_is_missing_in_a_wave_report_is_said(wave_result):
     text = page(replace(wave_result, gates=(), found={"wave": study}), "verify run x")
     assert "the wave stands at every frequency" in text
     study = small_study("wave.counts=[30]", "wave.count=30")
-    assert "at the edge of the search" in page(replace(wave_result, gates=(), found={"wave": study}), "verify run x")
+    assert "off the search, at its edge" in page(replace(wave_result, gates=(), found={"wave": study}), "verify run x")
+
+
+def test_models_are_told_where_their_envelopes_have_another_size():
+    """Envelopes of 49 parts, figures of 60 and 70: the answer is of the larger, and leaves out no model."""
+    assert ", 70 segments " in small_study("wave.counts=[60,70]", "wave.count=49").in_short()
+    assert ", 70 Hermite elements " in small_study("wave.counts=[60,70]", "wave.count=49").in_short()
+
+
+def test_where_the_search_ends_nothing_is_called_best_or_least(wave_result):
+    """Driven at 4100 Hz the reflection of every model still falls at 1.015 of that."""
+    from msgspec.structs import replace
+
+    study = small_study("drive.frequency_hz=4100")
+    text = page(replace(wave_result, gates=(), found={"wave": study}), "verify run x")
+    charts = data_of(text)
+    named = [line["name"] for chart in charts.values() for line in chart["lines"]]
+    assert not [name for name in named if "best" in name or "least" in name]
+    assert any(
+        name.startswith("reflection at the scene's phase, falls off the search, at its edge: 4161.5") for name in named
+    )
+    assert "no best frequency is known" in text
+    assert all(record["best_frequency_hz"] is None for record in study.records())
 
 
 @pytest.fixture(scope="module")

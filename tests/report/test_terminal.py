@@ -3,9 +3,12 @@
 import pytest
 from rich.console import Console
 
+from verify.cli import status_of
+from verify.errors import InputError
 from verify.report.terminal import Hyphenated
 from verify.run.gates import Band, shown_expectation
-from verify.scenes.scene import Complex
+from verify.scenes.scene import Complex, load_scene
+from verify.waves.window import check_window
 from verify.words import rounded, told_once
 
 
@@ -86,3 +89,36 @@ def test_what_cannot_run_for_one_reason_is_told_in_one_line(capsys):
     assert status_of(asked) == 1
     whys = [told.partition(": ")[2] for told in " ".join(capsys.readouterr().out.split()).split("cannot run: ")[1:]]
     assert len(whys) == len(set(whys)) == 2
+
+
+@pytest.mark.parametrize("width", [44, 60, 71, 80, 100])
+def test_a_table_keeps_every_number_and_word_whole_at_any_width_and_says_what_it_leaves_out(width, capsys, monkeypatch):
+    """Frequencies of 24 and 49 segments are 3609.616 and 4450.808 Hz, each on one line."""
+    monkeypatch.setenv("COLUMNS", str(width))
+    status_of(["table", "paper", "--counts", "24,49", "--modes", "22"])
+    out = capsys.readouterr().out
+    lines = out.splitlines()
+    assert max(map(len, lines)) <= width
+    for size, hertz in (("24", "3609.616"), ("49", "4450.808")):
+        (row,) = (line for line in lines if line.split()[:1] == [size])
+        assert row.split()[1] == hertz
+    assert "segments" in out
+    told = " ".join(out.split())
+    assert ("no room for" in told) == (width < 88)
+    assert ("no room for bracket" in told or ", bracket," in told) == (width < 71)
+
+
+@pytest.mark.parametrize("width", [60, 80])
+def test_a_plan_keeps_the_settings_that_tell_solves_apart(width, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", str(width))
+    status_of(["plan", "instrument-arm"])
+    out = capsys.readouterr().out
+    assert "…" not in out
+    assert "attachment=lever" in out
+    assert "wall=third-order" in out
+    assert ("no room for unknowns, vectors by" in out) == (width < 80)
+
+
+def test_a_window_is_told_as_a_person_writes_it():
+    with pytest.raises(InputError, match=r"window = \[0\.03425, 0\.10275\] "):
+        check_window(load_scene("paper").beam, [0.05], 4276.0, (0.137 / 4, 3 * 0.137 / 4))

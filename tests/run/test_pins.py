@@ -19,7 +19,18 @@ from verify.run.plan import plan_scene
 from verify.scenes.scene import load_scene, packaged_scenes
 
 PINS = Path(__file__).parent / "pins"
-TIMED = ("seconds", "run_time_s", "run_ms_per_ms", "set_up_ms", "answer", "report", "statistics", "ledger")
+TIMED = (
+    "seconds",
+    "run_time_s",
+    "run_ms_per_ms",
+    "set_up_ms",
+    "run_spread",
+    "whole_spread",
+    "answer",
+    "report",
+    "statistics",
+    "ledger",
+)
 """How keys end whose values are of the clock, follow from it, or are counts and rounding of adaptive steps."""
 ROUNDED = ("stress.rows", "stress.fits", "stress.machine", "stress.date", "stress.left_out", "gates")
 """Of the scene stress all but its plan: roundings, exponents and times of the machine that it runs on."""

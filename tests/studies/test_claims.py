@@ -282,8 +282,71 @@ def test_two_models_are_compared_at_one_error_loop_and_set_up_apart():
     assert found.ratio == pytest.approx(2.0)
     assert found.whole_ratio == pytest.approx(66 / 13)
     words = answer_in_words(found)
-    assert "2.00 times as long as segments in the loop" in words
-    assert "after a set-up of 50 and 5 ms: 5.08 times for the whole run of 2 ms" in words
+    assert "take 2 times (spread 0 %) as long as segments in the loop" in words
+    assert "5.1 times (spread 0 %) as long for the whole run of 2 ms, with a set-up of 50 and 5 ms" in words
+
+
+def shaken(work, **spreads):
+    return replace(work, rows=tuple(replace(row, **spreads) for row in work.rows))
+
+
+def test_a_ratio_says_how_far_repetitions_lie_apart():
+    """A tenth on either side: a fifth; what differs by less than that has no figure."""
+    words = answer_in_words(at_equal_error(shaken(rows(GOOD, GOOD), run_spread=0.1, whole_spread=0.05)))
+    assert "take 2 times (spread 20 %) as long" in words
+    assert "5.1 times (spread 10 %) as long for the whole run" in words
+    close = rows(GOOD, GOOD)
+    alike = replace(
+        close, rows=tuple(replace(row, run_ms_per_ms=1.0 + 0.1 * (row.model == "fem")) for row in close.rows)
+    )
+    words = answer_in_words(at_equal_error(shaken(alike, run_spread=0.08)))
+    assert "take within the spread of 16 % as long as segments in the loop" in words
+
+
+def test_repetitions_that_do_not_agree_give_no_ratio():
+    found = at_equal_error(shaken(rows(GOOD, GOOD), run_spread=0.31))
+    assert isinstance(found, NotCompared)
+    assert "repetitions of one run lie 62 % apart" in answer_in_words(found)
+    assert "times" not in answer_in_words(found).removeprefix("run times")
+
+
+def test_a_time_that_no_clock_sees_is_not_compared():
+    work = rows(GOOD, GOOD)
+    unseen = replace(work, rows=tuple(replace(row, run_ms_per_ms=0.0) for row in work.rows))
+    assert "below the resolution of the clock" in at_equal_error(unseen).why
+
+
+def test_the_time_of_a_run_is_the_processors_and_nothing_is_kept_from_the_one_before(monkeypatch):
+    """A run that waits for others took none of that; and each run solves its modes again."""
+    from time import sleep
+
+    from verify.motion import kernels
+    from verify.studies import work_precision
+
+    slide, forget, told = kernels.slide, work_precision.forget, []
+
+    def waits(*args):
+        sleep(WAIT_S)
+        return slide(*args)
+
+    def forgets():
+        told.append("forget")
+        forget()
+
+    def runs(*args, once=work_precision.run_once, **how):
+        told.append("run")
+        return once(*args, **how)
+
+    monkeypatch.setattr(kernels, "slide", waits)
+    monkeypatch.setattr(work_precision, "forget", forgets)
+    monkeypatch.setattr(work_precision, "run_once", runs)
+    scene = load_scene("paper-slider")
+    work = work_of(scene, (10, 20, 30))
+    assert all(row.run_ms_per_ms * scene.motion.duration < 0.8 * WAIT_S for row in work.rows)
+    assert told == ["run"] * 2 + ["forget", "run"] * (work.n_runs - 2)
+
+
+WAIT_S = 0.05
 
 
 def test_times_are_interpolated_in_logarithms_where_one_model_reaches_less():

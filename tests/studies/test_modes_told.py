@@ -1,11 +1,14 @@
 """What the studies of modes say in words: against which theory a figure is, and why a column is empty."""
 
+from itertools import pairwise
+
 import pytest
 
+from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench
 from verify.scenes.scene import load_scene
 from verify.studies.convergence import Convergence
-from verify.studies.convergence_figures import convergence
+from verify.studies.convergence_figures import Cell, ConvergenceFound, Row, _local_order, convergence
 from verify.studies.spectrum import Spectrum
 from verify.studies.spectrum_figures import spectrum
 
@@ -45,3 +48,71 @@ def test_a_rule_that_is_refused_at_every_size_says_why_and_one_that_cannot_exist
     rules = convergence(Workbench(taut), Convergence(modes=(1,), counts=(15, 22))).tables()[-1]
     assert any(note.startswith("joints tensioned: ") and "leaves no stiffness" in note for note in rules.notes)
     assert "wall welded" not in [column.head for column in rules.columns]
+
+
+STRIP = load_scene("free-free-bar").beam
+
+
+def test_a_mode_that_neither_model_has_is_said_of_both():
+    """A free chain of 9 links has 8 elastic modes, 9 elements have 18: of 20 modes neither has the last."""
+    told = spectrum(Workbench(STRIP), Spectrum(modes=20, count=9))
+    assert told.in_short() == "At mode 20 and N = 9, segments have none and Hermite elements have none."
+    theories, chain, elements = told.facts()
+    assert "theory" in theories
+    assert chain.startswith("segments: mode = 20: the segment model at count = 9 has 8 elastic modes, raise count")
+    assert chain.endswith("(8 of 20 modes have an error)")
+    assert elements.startswith("Hermite elements: mode = 20: the fem model at count = 9 has 18 elastic modes")
+
+
+def test_a_mode_that_one_model_has_not_is_said_beside_the_other():
+    told = spectrum(Workbench(STRIP), Spectrum(modes=11, count=9))
+    assert "segments have none" in told.in_short()
+    assert "9 Hermite elements are +" in told.in_short()
+    assert any(fact.startswith("segments: mode = 11") for fact in told.facts())
+    found = convergence(Workbench(STRIP), Convergence(modes=(11,), counts=(7, 9)))
+    assert "segments have no such mode and Hermite elements are +" in found.in_short()
+
+
+def errors_of(*errors, due=4):
+    """What is said of one model's errors over sizes that double."""
+    counts = [12 * 2**i for i in range(len(errors))]
+    pairs = list(zip(counts, errors, strict=True))
+    orders = [None, *(_local_order(*a, *b) for a, b in pairwise(pairs))]
+    cells = [Cell(frequency_hz=1.0, error=e, order=order) for e, order in zip(errors, orders, strict=True)]
+    rows = tuple(
+        Row(mode=5, count=n, exact_hz=1.0, cells={"segment": one}, bracket_width=None, mean_error=None)
+        for n, one in zip(counts, cells, strict=True)
+    )
+    return ConvergenceFound(rows=rows, variants=(Variant("segment"),), slopes=(("segment", due),) if due else ())
+
+
+@pytest.mark.parametrize(
+    ("errors", "due", "said"),
+    [
+        ((0.1, 0.1 / 16, 0.1 / 256), 4, "falling at order 4.00."),
+        ((0.1, 0.1 / 16, 0.1 / 16 / 362), 4, "falling at no settled order (4.00, 8.50, where 4 is due:"),
+        ((0.1, 0.1 / 16 / 16, 0.1 / 16 / 256), 4, "falling at no settled order (8.00, 4.00, where 4 is due:"),
+        ((0.1, 0.1 / 4, 0.1 / 16), 4, "falling at no settled order (2.00, 2.00, where 4 is due:"),
+        ((0.1, 0.1 / 4, 0.1 / 16), 2, "falling at order 2.00."),
+        ((0.1, 0.1 / 8, 0.1 / 64), None, "falling at order 3.00."),
+        ((0.1, 0.1 / 2, 0.1 / 64), None, "falling at no settled order (1.00, 5.00:"),
+        ((0.1, 0.1 / 16), 4, "falling at order 4.00 over two sizes alone."),
+        ((0.1, 0.1 / 16, -0.1 / 256), 4, "with no order to the size before (rounding, or a change of sign)."),
+        ((0.1, 0.01, 0.02), 4, "not falling yet with the size before."),
+        ((0.1,), 4, "segments are +10.0000 % off."),
+    ],
+)
+def test_an_order_is_told_where_it_is_settled_at_what_is_due(errors, due, said):
+    assert said in errors_of(*errors, due=due).in_short()
+
+
+def test_a_table_says_of_which_rule_the_orders_are_not_settled():
+    """The guided bar's chain passes through zero between its sizes: 6.7 and 2.5 where 4 is due."""
+    notes = load_and_tell("guided-bar").tables()[1].notes
+    assert "segments: orders are not settled, 4 is due" in notes
+    assert not any("orders are not settled" in note for note in load_and_tell("free-free-bar").tables()[1].notes)
+
+
+def load_and_tell(name):
+    scene = load_scene(name)
+    return convergence(Workbench(scene.beam), scene.convergence)

@@ -108,7 +108,8 @@ def test_the_fastest_point_says_whether_it_is_one_or_where_the_search_ends(titan
         assert found.note == ""
     else:
         assert found.frequency_hz == pytest.approx(edge * middle, rel=1e-6)
-        assert f"at the edge of the search, {found.frequency_hz:.6g} Hz" in found.note
+        assert f"grows off the search, at its edge, {found.frequency_hz:.6g} Hz" in found.note
+        assert found.what == "crest speed with a reflection up to 0.1, grows off the search, at its edge"
 
 
 @pytest.mark.parametrize("model", ["analytic", "fem", "segment"])

@@ -358,17 +358,19 @@ def test_two_drives_in_phase_have_no_best_frequency():
     assert row.best is None
     assert "the wave stands" in row.note
     points, problems = points_of(standing, "segment", 49)
-    assert [p.what[:7] for p in points] == ["largest"]
+    assert ["crest speed with" in p.what for p in points] == [True]
     assert "the wave stands" in str(problems[0])
 
 
 def test_a_motor_or_an_operating_point_at_the_edge_says_so():
     far = load_scene("paper", ("drive.frequency_hz=4200",))
     row = motor_row(far, Workbench(BEAM), "analytic", None)
-    assert row.best.frequency_hz == pytest.approx(4263.0, abs=0.1)
-    assert "at the edge of the search" in row.note
+    assert row.known_best is None
+    assert row.best.edge_hz == pytest.approx(4263.0, abs=0.1)
+    assert "falls off the search, at its edge, 4263 Hz" in row.note
     quiet, _ = points_of(far, "analytic", None)[0]
-    assert "at the edge of the search" in quiet.note
+    assert quiet.what == "reflection at the scene's phase, falls off the search, at its edge"
+    assert "falls off the search, at its edge, 4263 Hz" in quiet.note
     inside = points_of(PAPER, "analytic", None)[0][0]
     assert inside.note == ""
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
-from verify.bench.measuring import forget
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS, discrete
 from verify.models.kind import Model
+from verify.timing import forget
 
 if TYPE_CHECKING:
     from verify.beam import PointForce

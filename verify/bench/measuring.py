@@ -4,10 +4,8 @@ Times are of the processor, spent by this process in one thread, so that what el
 machine that does nothing else they are what a clock on the wall shows.
 """
 
-import sys
 from collections.abc import Callable, Iterable, Sequence
-from functools import lru_cache
-from statistics import median, quantiles
+from statistics import median
 from time import process_time
 from typing import TypeAlias
 
@@ -17,12 +15,11 @@ from verify.bench.kind import Case, Entry, Judged, Run, Told
 from verify.bench.rows import Row
 from verify.errors import InputError
 from verify.judge.crossing import Point, observed
+from verify.timing import forget, spread
 
 Clock: TypeAlias = Callable[[], float]
 """Seconds from anywhere; those of the processor unless a test gives another."""
 
-KEEPERS = ("verify.elements.", "verify.segments.", "verify.exact.")
-"""Modules of models, which keep some of what they solved."""
 LEAST_ROUNDS = 3
 TURN_S = 2e-3
 """Shortest turn of a round: shorter runs are repeated within it, so that a clock and its neighbours matter less."""
@@ -121,20 +118,6 @@ def _timed(entry: Entry, run: Run, clock: Clock) -> tuple[Told, float]:
     return told, clock() - begun
 
 
-def forget() -> None:
-    """Let the models forget what they solved for whoever asks again."""
-    for clear in _clears(len(sys.modules)):
-        clear()
-
-
-@lru_cache(maxsize=1)
-def _clears(n_modules: int) -> tuple[Callable[[], None], ...]:
-    """What makes each of them forget, as long as no module is added."""
-    kept = (vars(module).values() for name, module in list(sys.modules.items()) if name.startswith(KEEPERS))
-    found = (getattr(value, "cache_clear", None) for values in kept for value in values)
-    return tuple(clear for clear in found if callable(clear))
-
-
 def _rounds(
     ready: Sequence[_Ready], rounds: int, budget_s: float, clock: Clock
 ) -> dict[int, list[tuple[float, float | None]]]:
@@ -199,12 +182,6 @@ def _row(
         first_s=ready.first_s,
         rounds=len(turns),
     )
-
-
-def spread(times: Sequence[float]) -> float:
-    """Between the quartiles."""
-    low, _, high = quantiles(times, n=4, method="inclusive")
-    return high - low
 
 
 def _with_orders(case: Case, found: Sequence[Outcome]) -> list[Outcome]:

@@ -25,14 +25,17 @@ def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
     """
     from verify.run.plan import plan_scene
 
-    planned = plan_scene(load(scene, overrides), overrides)
+    asked = load(scene, overrides)
+    planned = plan_scene(asked, overrides)
     if as_json:
         import msgspec
 
         print_json(msgspec.to_builtins(planned))
     else:
-        from verify.report.terminal import print_plan
+        from verify.report.terminal import Terminal, print_plan, print_remarks
+        from verify.run.remarks import remarks_on
 
+        print_remarks(remarks_on(asked), Terminal())
         print_plan(planned)
     if planned.problems:
         raise SystemExit(GATE_FAILED)

@@ -136,6 +136,7 @@ def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motio
         step_s=stages[-1].dt,
         set_up_s=ready - laid.began + sliding.set_up_s,
         wall_s=perf_counter() - ready - sliding.set_up_s,
+        loop_s=sliding.loop_s,
         stopped=stopped,
     )
     lost = (f"events: the first {len(sliding.events)} of {len(sliding.events) + sliding.n_lost}",)

@@ -23,6 +23,8 @@ class Statistics(Value, frozen=True, kw_only=True):
     """Wall time of modes and tables."""
     wall_s: float
     """Wall time of the run itself."""
+    loop_s: float = 0.0
+    """Processor time of a slider's compiled loop, of the one thread that runs it; 0 without one."""
     stopped: str
     """end, interrupted, left the beam, or diverged; a chain's adds when."""
 

@@ -1,7 +1,7 @@
 """The compiled loop, fed piece by piece: windows of polynomials around the slider, stages of the drive, stops."""
 
 from collections.abc import Callable, Sequence
-from time import perf_counter
+from time import perf_counter, thread_time
 
 import msgspec
 import numpy as np
@@ -43,6 +43,8 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     """Of the stages that are over."""
     set_up_s: float = 0.0
     """Wall time spent on tables, not on steps."""
+    loop_s: float = 0.0
+    """Processor time of the compiled loop alone."""
 
     @classmethod
     def fresh(cls, start: float, samples: int, points: Array, rider: Rider, accounts: bool) -> "Sliding":
@@ -252,7 +254,9 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
     while around and done[records.STEP] < stage.n_steps:
         steps = min(CHUNK, stage.n_steps - int(done[records.STEP]))
         surface = Surface(fed.modes, fed.drive, *around)
+        began = thread_time()
         why = kernels.slide(steps, stage.dt, surface, s.rider, fed.books, fed.kept, space)
+        s.loop_s += thread_time() - began
         tell(s.steps)
         if why == records.NOT_FINITE:
             return "diverged"

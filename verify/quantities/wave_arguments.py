@@ -25,6 +25,7 @@ from verify.quantities.kind import (
     Wall,
     check_count,
 )
+from verify.words import as_written
 
 Window = Annotated[tuple[float, float], Meta(description="metres, start and end; default L/4 to 3L/4")]
 
@@ -104,7 +105,9 @@ class AxisRatio(InWindow, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.x is not None and self.window is not None:
-            raise InputError(f"x = {self.x!r} and window = {list(self.window)!r}: a place needs no window, give one")
+            raise InputError(
+                f"x = {self.x!r} and window = {as_written(self.window)}: a place needs no window, give one"
+            )
 
 
 class WaveOrder(InWindow, frozen=True, kw_only=True):

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from verify.report.answer import answers_of
 from verify.report.problem import Problem, problem_of
 from verify.run.gates import GateResult
 from verify.studies.catalogue import STUDIES
 from verify.studies.chart import Chart
-from verify.words import cell, percent, told_once, work_in_words
+from verify.words import cell, told_once, work_in_words
 
 if TYPE_CHECKING:
     from verify.run.runner import RunResult
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
 SENTENCE = 32
 """Characters from which on words in a cell may be broken into lines."""
-ANSWERS = 2
-"""Sentences of the answer."""
 _PACKAGES = ("fem-segment-verify", "numpy", "scipy", "scikit-fem", "matplotlib")
 
 
@@ -110,19 +109,6 @@ def document_of(result: "RunResult", command: str, work: str = "") -> Document:
         gates=result.gates,
         skipped=tuple(Skipped(one.what, one.why) for one in skipped_by(scene)),
     )
-
-
-def answers_of(result: "RunResult") -> tuple[str, ...]:
-    """The sentences that a reader takes home: those of the studies, then how far the gates are from failing."""
-    said = [sentence for found in result.found.values() if (sentence := found.in_short())]
-    judged = [gate for gate in result.gates if gate.share is not None and gate.passed]
-    if judged and result.passed:
-        worst = max(judged, key=lambda gate: gate.share or 0.0)
-        share = percent(worst.share, sign=False).split(".")[0]
-        said.append(
-            f"Every gate that applies is held; the nearest to its edge is {worst.id}, at {share} % of its band."
-        )
-    return tuple(said[:ANSWERS])
 
 
 def _source_first(result: "RunResult") -> Iterator[Section]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
+from verify.run.remarks import remarks_on
 from verify.scenes.toml import literal
 from verify.studies.catalogue import STUDIES
 
@@ -22,6 +23,7 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
     """A run for `verify run --json`."""
     return {
         "scene": result.scene.name,
+        **_remarked(result),
         "passed": result.passed,
         "gates": msgspec.to_builtins(result.gates),
         **dict(_studies_as_plain(result)),
@@ -29,6 +31,12 @@ def run_as_plain(result: "RunResult", report: Path | None) -> dict[str, Any]:
         "seconds": result.seconds,
         "report": str(report) if report else None,
     }
+
+
+def _remarked(result: "RunResult") -> dict[str, list[str]]:
+    """What looks like another unit; nothing where nothing does."""
+    remarks = remarks_on(result.scene)
+    return {"remarks": list(remarks)} if remarks else {}
 
 
 def _studies_as_plain(result: "RunResult") -> Iterator[tuple[str, Any]]:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.files import write_whole
-from verify.report.document import answers_of, environment
+from verify.report.answer import answers_of, told_remarks
+from verify.report.document import environment
 from verify.words import seconds_in_words
 
 if TYPE_CHECKING:
@@ -162,7 +163,7 @@ def card_of(result: "RunResult", name: str, written: "Written | None", folder: P
         judged=len(judged),
         aside=len(result.set_aside),
         failed=tuple(Failed(gate.id, gate.reason) for gate in result.failed),
-        answer=next(iter(answers_of(result)), ""),
+        answer=" ".join((*answers_of(result)[:1], *told_remarks(result.scene))),
         seconds=result.seconds,
         nearest=tuple(sorted(near, key=lambda one: -one.share)[:NEAREST]),
         picture=picture,

@@ -1,7 +1,7 @@
 """What a person sees in the terminal: tables and progress, drawn with rich."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,8 @@ from rich.text import Text
 
 from verify.errors import InputError, printable
 from verify.run.gates import shown_expectation
+from verify.run.remarks import remarks_on
+from verify.run.scale import scale_in_words
 from verify.words import cell, figure, in_a_row, percent, seconds_in_words, told_once, work_in_words
 
 if TYPE_CHECKING:
@@ -58,6 +60,7 @@ def print_run(result: "RunResult", report: Path | None, kept: Path | None = None
     """Gates, what the studies found, the verdict, where the report lies and is kept."""
     console = Terminal()
     console.print(Text(result.scene.title or result.scene.name, style="bold"))
+    print_remarks(remarks_on(result.scene), console)
     if judged := tuple(gate for gate in result.gates if gate.applicable):
         console.print(_gate_table(judged))
     for reason, names in _by_reason((gate.reason, gate.id) for gate in result.failed).items():
@@ -66,12 +69,20 @@ def print_run(result: "RunResult", report: Path | None, kept: Path | None = None
         console.print(Text(f"not applicable: {in_a_row('gate', names)}, {reason}"))
     for found in result.found.values():
         _print_found(console, found, every_table=False)
+    if scale := scale_in_words(result.scene):
+        console.print(Text(scale))
     work = work_in_words(len(result.solves), result.n_fields, result.n_motions, result.others)
     console.print(f"{_verdict(result)} in {seconds_in_words(result.seconds)}: {work}")
     if report is not None:
         console.print(f"report: {report}", soft_wrap=True, markup=False)
     if kept is not None:
         console.print(f"kept: {kept}", soft_wrap=True, markup=False)
+
+
+def print_remarks(remarks: Iterable[str], console: Console) -> None:
+    """What looks like another unit."""
+    for remark in remarks:
+        console.print(Text(f"remark: {remark}", style="yellow"))
 
 
 def _verdict(result: "RunResult") -> str:
@@ -139,11 +150,14 @@ def _print_table(console: Console, table: "StudyTable") -> list[str]:
         console.print(Text(table.title, style="bold"))
     if table.before:
         console.print(Text(table.before))
-    shown = [i for i, column in enumerate(table.columns) if console.width >= NARROW or not column.wide]
+    wanted = [i for i, column in enumerate(table.columns) if console.width >= NARROW or not column.wide]
+    rows = [[_written(value, column) for value, column in zip(row, table.columns, strict=True)] for row in table.rows]
+    shown = _with_room(console.width, table.columns, rows, wanted)
     heads = [table.columns[i] for i in shown]
-    drawn = _empty_table(heads) if any(column.head for column in heads) else _grid(heads)
-    for row in table.rows:
-        drawn.add_row(*(Text(_written(row[i], table.columns[i])) for i in shown))
+    least = [_least(table.columns[i], [row[i] for row in rows]) for i in shown]
+    drawn = _empty_table(heads, least) if any(column.head for column in heads) else _grid(heads)
+    for row in rows:
+        drawn.add_row(*(Text(row[i]) for i in shown))
     console.print(drawn)
     return [column.head for i, column in enumerate(table.columns) if i not in shown]
 
@@ -152,11 +166,39 @@ def _written(value: Any, column: "Column") -> str:
     return cell(value, column.form, column.factor, column.unit)
 
 
-def _empty_table(columns: "list[Column]") -> Table:
+def _with_room(
+    width: int, columns: "Sequence[Column]", rows: Sequence[Sequence[str]], wanted: Sequence[int]
+) -> list[int]:
+    """Columns that stand side by side with every number whole: the last ones of numbers go first."""
+    shown = list(wanted)
+    least = {i: _least(columns[i], [row[i] for row in rows]) for i in shown}
+    while sum(least[i] + 1 for i in shown) + 1 > width:
+        numbers = [i for i in shown if not columns[i].left]
+        if len(numbers) < 2:
+            break
+        shown.remove(numbers[-1])
+    return shown
+
+
+def _least(column: "Column", cells: Sequence[str]) -> int:
+    """Characters that a column takes at least: its longest number, or word, and the longest word above it."""
+    told = [column.head, *cells] if column.left else [column.head]
+    words = max((len(word) for text in told for word in text.split()), default=1)
+    return min(words, _WORD) if column.left else max(words, *map(len, cells), 1)
+
+
+_WORD = 16
+"""Characters of a word that may be broken."""
+
+
+def _empty_table(columns: "list[Column]", least: Sequence[int]) -> Table:
     """Numbers stand right and are never broken where there is room; words stand left and are folded."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=0)
-    for column in columns:
-        table.add_column(column.head, justify="left" if column.left else "right", overflow="fold")
+    for column, width in zip(columns, least, strict=True):
+        if column.left:
+            table.add_column(column.head, overflow="fold")
+        else:
+            table.add_column(column.head, justify="right", overflow="fold", min_width=width)
     return table
 
 
@@ -251,25 +293,38 @@ def _lower_told(one: "Choice") -> str:
     return f"at N = {one.count} {which} not within it: --mode 1-{one.mode} asks for all"
 
 
+_TIGHT = 80
+"""Below this many characters a plan leaves out how its solves are done."""
 _ASKED = 13
 """Characters left to who asks for a solve, where the settings of a model are long."""
+
+
+def _print_solves(console: Console, plan: "Plan") -> None:
+    """A row for each solve; settings stay whole, how it is done is left out where there is no room."""
+    tight = console.width < _TIGHT
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("model", overflow="fold")
+    for name in ("N", "modes", *(() if tight else ("unknowns",))):
+        table.add_column(name, justify="right", no_wrap=True)
+    if not tight:
+        table.add_column("vectors by", no_wrap=True)
+    table.add_column("asked by", overflow="fold", min_width=_ASKED)
+    for solve in plan.solves:
+        sizes = [str(solve.count), str(solve.n_modes)] + ([] if tight else [str(solve.unknowns), solve.method])
+        model = " ".join([solve.model, *(f"{name}={value}" for name, value in solve.settings)])
+        table.add_row(model, *sizes, Hyphenated(_who(solve.asked_by)))
+    console.print(table)
+    if tight:
+        note = f"– no room for unknowns, vectors by: a terminal of {_TIGHT} characters shows them, --json too"
+        console.print(Text(note, style="dim"))
 
 
 def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
     console = Terminal()
     console.print(f"[bold]{plan.scene}[/] will run")
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-    for name in ("model", "N", "modes", "unknowns"):
-        table.add_column(name, justify="left" if name == "model" else "right", no_wrap=name != "model")
-    table.add_column("vectors by", no_wrap=True)
-    table.add_column("asked by", overflow="fold", min_width=_ASKED)
-    for solve in plan.solves:
-        sizes = (str(n) for n in (solve.count, solve.n_modes, solve.unknowns))
-        model = " ".join([solve.model, *(f"{name}={value}" for name, value in solve.settings)])
-        table.add_row(model, *sizes, solve.method, Hyphenated(_who(solve.asked_by)))
     if plan.solves:
-        console.print(table)
+        _print_solves(console, plan)
     if plan.closed_forms:
         console.print(f"closed forms, for {_who(plan.closed_forms)}", markup=False)
     if plan.assembled:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
+from verify.judge.crossing import ASTRAY
 from verify.judge.variants import Variant, every_rule
 from verify.judge.workbench import Settings, Workbench, comparable, theory_of
 from verify.models.catalogue import MODELS
@@ -20,6 +21,8 @@ from verify.timing import interleaved_medians
 from verify.words import percent, theory_name
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from verify.beam import Beam
     from verify.studies.convergence import Convergence
 
@@ -77,23 +80,22 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
         """What is left of the highest mode's error at the largest size, and how it fell on the way."""
         mode = max((row.mode for row in self.rows), default=0)
         own = [row for row in self.rows if row.mode == mode]
-        if len(own) < ABREAST:
+        if not own:
             return ""
-        last = own[-1]
-        found = [(one.title, last.cells[one.label]) for one in self.variants]
-        told = [
-            f"{title} are {percent(cell.error)} off, {_falling(cell.order)}"
-            for title, cell in found
-            if cell.error is not None and cell.order is not None
-        ]
-        return f"At mode {mode} and N = {last.count}, {' and '.join(told)}." if told else ""
+        told = [_told(one.title, [row.cells[one.label] for row in own], self._due(one)) for one in self.variants]
+        return f"At mode {mode} and N = {own[-1].count}, {' and '.join(told)}." if told else ""
+
+    def _due(self, one: Variant) -> int | None:
+        """The order at which a variant converges on this beam; None where nobody says."""
+        return dict(self.slopes).get(one.label)
 
     def tables(self) -> tuple[Table, ...]:
         """One for each mode, of some variants at a time where there are many."""
         groups = [tuple(group) for _, group in groupby(self.rows, key=lambda row: row.mode)]
         parts = [self.variants[i : i + ABREAST] for i in range(0, len(self.variants), ABREAST)]
         tables = [(group, part) for group in groups for part in parts]
-        return (*(_mode_table(group, part) for group, part in tables), *self._rules_table())
+        slopes = dict(self.slopes)
+        return (*(_mode_table(group, part, slopes) for group, part in tables), *self._rules_table())
 
     def _rules_table(self) -> tuple[Table, ...]:
         if not self.rules:
@@ -127,8 +129,37 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
         return self.records()
 
 
-def _falling(order: float) -> str:
-    return f"falling at order {order:.2f}" if order > 0.0 else "not falling yet with the size before"
+def _told(title: str, cells: "Sequence[Cell]", due: int | None) -> str:
+    """What is left of an error at the largest size, and how it fell; that there is none where there is none."""
+    error = cells[-1].error
+    if error is None:
+        return f"{title} have no such mode"
+    falling = f", {_falling([cell.order for cell in cells], due)}" if len(cells) > 1 else ""
+    return f"{title} are {percent(error)} off{falling}"
+
+
+def _falling(orders: "Sequence[float | None]", due: int | None) -> str:
+    """At which order, where the last two that are seen lie near the one that is due, or near each other."""
+    last, before = orders[-1], orders[-2] if len(orders) > 2 else None
+    if last is None:
+        return "with no order to the size before (rounding, or a change of sign)"
+    if last <= 0.0:
+        return "not falling yet with the size before"
+    if not strays(orders, due):
+        return f"falling at order {last:.2f}" + ("" if before is not None else " over two sizes alone")
+    seen = ", ".join(f"{order:.2f}" for order in (before, last) if order is not None)
+    theory = f", where {due} is due" if due else ""
+    return f"falling at no settled order ({seen}{theory}: sizes near a change of sign or too coarse)"
+
+
+def strays(orders: "Sequence[float | None]", due: int | None) -> bool:
+    """Whether the last two orders lie apart from the one that is due, or, where nobody knows that, from each other.
+
+    `orders` over sizes, the first of which has none before it.
+    """
+    seen = [order for order in orders[1:][-2:] if order is not None]
+    known = due if due is not None else seen[-1] if seen else 0.0
+    return any(abs(order - known) > ASTRAY for order in seen)
 
 
 def flat_row(row: Row) -> dict[str, Any]:
@@ -173,13 +204,21 @@ def _exact(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> str:
     return ", ".join(f"{hertz:.4f} Hz ({theory_name(theory)})" for theory, hertz in found.items())
 
 
-def _mode_table(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> Table:
+def _strayed(rows: tuple[Row, ...], one: Variant, due: int | None) -> tuple[str, ...]:
+    """That the orders of a variant are none, where its last two are not."""
+    if not strays([row.cells[one.label].order for row in rows], due):
+        return ()
+    return (f"{one.title}: orders are not settled{f', {due} is due' if due else ''}",)
+
+
+def _mode_table(rows: tuple[Row, ...], variants: tuple[Variant, ...], slopes: dict[str, int]) -> Table:
     columns = [Column("N")]
     for one in variants:
         error, order, time = Column("error %", "bare percent"), Column("order", ".2f"), Column("ms", ".3g", 1e3)
         columns += [Column(_head(one), ".7g"), error, order, time]
     columns += [Column("bracket", "bare size"), Column("mean %", "bare percent", wide=True)]
     notes = tuple(dict.fromkeys(note for row in rows for note in row.notes))
+    notes += tuple(note for one in variants for note in _strayed(rows, one, slopes.get(one.label)))
     return Table(
         title=f"mode {rows[0].mode}, exact {_exact(rows, variants)}",
         columns=tuple(columns),

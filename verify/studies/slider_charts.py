@@ -168,6 +168,6 @@ def _work(study: "SliderFound") -> Chart:
         title="Run time against the error of the slider's displacement",
         caption=f"The same contact code on all; sizes beside the points. Lower left is better; {_set_up(study)}.",
         x=Axis("error of the displacement against the exact beam", log=True),
-        y=Axis("wall ms per simulated ms", log=True),
+        y=Axis("processor ms per simulated ms", log=True),
         lines=tuple(lines),
     )

@@ -64,8 +64,8 @@ def work_table(work: "Work") -> Table:
         title="Run time against error",
         notes=(
             "Errors against the exact beam at the same step, half of which changes it by "
-            f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond and set-up, medians of "
-            "interleaved rounds.",
+            f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond, its spread, and set-up "
+            "(modes, tables, margins): processor time in one thread, medians of interleaved rounds.",
         ),
     )
 
@@ -78,5 +78,6 @@ WORK: tuple[Read, ...] = (
     (Column("error %", "bare percent"), lambda r: r.error),
     (Column("order", ".2f"), lambda r: r.order),
     (Column("ms per ms", ".3g"), lambda r: r.run_ms_per_ms),
+    (Column("spread %", ".0f", 100.0, wide=True), lambda r: r.run_spread),
     (Column("set-up ms", ".3g"), lambda r: r.set_up_ms),
 )

@@ -3,6 +3,8 @@
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from verify.errors import InputError
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench, comparable, is_bracketed
@@ -32,6 +34,8 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     """Of the errors."""
     left_out: tuple[str, ...] = ()
     """Which models of other packages are not here, and why."""
+    missing: dict[str, str] = msgspec.field(default_factory=dict)
+    """By the label of each variant without the last mode: why."""
     bench: Workbench | None = None
     """Where the modes are, for their shapes."""
 
@@ -45,13 +49,15 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
         """Errors of the last mode beside what the thickest theory says that this one leaves out."""
         pairs = [(one.title, self.errors[one.label][-1]) for one in self.variants]
         found = [f"{self.count} {title} are {percent(value)} off" for title, value in pairs if value is not None]
+        none = [f"{title} have none" for title, value in pairs if value is None]
         if not found:
-            return ""
+            return f"At mode {self.modes[-1]} and N = {self.count}, {' and '.join(none)}." if none else ""
         left = {name: values[-1] for name, values in self.theories.items() if self.theory == theory_name(THEORIES[0])}
         beyond = [
             f"; the theory itself leaves out {percent(value)} ({theory_name(name)})" for name, value in left.items()
         ]
-        return f"At mode {self.modes[-1]}, against exact {self.theory}, {' and '.join(found)}{''.join(beyond[-1:])}."
+        told = f"{' and '.join(found + none)}{''.join(beyond[-1:])}"
+        return f"At mode {self.modes[-1]}, against exact {self.theory}, {told}."
 
     def facts(self) -> tuple[str, ...]:
         """The last mode's errors, those of theories against Euler-Bernoulli."""
@@ -66,7 +72,8 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
             theories[0] = f"and against {euler} {theories[0]}"
         where = f"mode {self.modes[-1]} at N = {self.count} against {self.theory if found else euler}"
         said = [*found, *theories]
-        return (*((f"{where}: {', '.join(said)}",) if said else ()), *self.left_out)
+        lacking = (f"{one.title}: {self.missing[one.label]}" for one in self.variants if one.label in self.missing)
+        return (*((f"{where}: {', '.join(said)}",) if said else ()), *lacking, *self.left_out)
 
     def plain(self) -> object:
         """Errors by the variant's label."""
@@ -96,8 +103,21 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
         theories=_theory_errors(bench, modes),
         bracketed=is_bracketed(bench.beam) and len(variants) == len(models) and not asked.chosen,
         left_out=tuple(left_out.values()),
+        missing={one.label: _why(bench, one, asked, errors[one.label]) for one in variants if not _has(errors, one)},
         bench=bench,
     )
+
+
+def _has(errors: dict[str, tuple[float | None, ...]], one: Variant) -> bool:
+    """Whether a variant has the last mode."""
+    return errors[one.label][-1] is not None
+
+
+def _why(bench: Workbench, one: Variant, asked: "Spectrum", errors: tuple[float | None, ...]) -> str:
+    """Why a variant has no figure of the last mode, and of how many it has one."""
+    known = sum(error is not None for error in errors)
+    why = bench.error_or_why(one.model, asked.count, asked.modes, one.settings)[1]
+    return f"{why} ({known} of {asked.modes} modes have an error)"
 
 
 def _errors(bench: Workbench, one: Variant, asked: "Spectrum") -> tuple[float | None, ...]:

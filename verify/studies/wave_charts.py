@@ -8,6 +8,7 @@ from msgspec.structs import replace
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Chart, Line, Map, Marker
 from verify.studies.charting import BROAD, model_line, numbers, plain_line, sizes_axis
+from verify.waves.operating_point import OFF
 
 if TYPE_CHECKING:
     from verify.studies.wave_figures import Ellipse, WaveFound
@@ -152,20 +153,34 @@ def _sizes(study: "WaveFound") -> Chart:
     for model in models:
         rows = [row for row in study.rows if row.model == model]
         drives = [(row.count, _apart(row.drive, exact.drive)) for row in rows]
-        bests = [(row.count, _apart(row.best, exact.best)) for row in rows]
+        bests = [(row.count, _apart(row.known_best, exact.known_best)) for row in rows]
         for name, dash, points in (("at the drive", "solid", drives), ("at its own best frequency", "dot", bests)):
             known = [(count, y) for count, y in points if y is not None]
+            if not known:
+                continue
             own = model_line(model, [count for count, _ in known], [y for _, y in known], dash=dash)
             lines.append(replace(own, name=f"{own.name}, {name}"))
     return Chart(
         id="wave-sizes",
         title="Error of the standing-wave ratio over N",
-        caption="A small error of frequency spoils the wave at a fixed drive; driven at its own best frequency a "
-        "coarse model carries nearly as pure a wave as the exact beam.",
+        caption=_best_told(study),
         x=sizes_axis("number of parts N", (row.count for row in study.rows if row.count)),
         y=Axis("difference to exact", log=True),
         lines=tuple(lines),
     )
+
+
+def _best_told(study: "WaveFound") -> str:
+    """What an error of frequency does; of a best frequency only where there is one."""
+    from verify.studies.wave_figures import OffSearch
+
+    fixed = "A small error of frequency spoils the wave at a fixed drive"
+    off = sum(isinstance(row.best, OffSearch) for row in study.rows)
+    if not off:
+        return (
+            f"{fixed}; driven at its own best frequency a coarse model carries nearly as pure a wave as the exact beam."
+        )
+    return f"{fixed}. Of {off} of {len(study.rows)} models no best frequency is known: the reflection falls {OFF}."
 
 
 def _apart(one: "Operation | None", other: "Operation | None") -> float | None:

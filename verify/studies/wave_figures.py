@@ -39,16 +39,27 @@ if TYPE_CHECKING:
     from verify.studies.wave import Wave
 
 
+class OffSearch(msgspec.Struct, frozen=True):
+    """No best frequency: the reflection still falls where the search ends."""
+
+    edge_hz: float
+
+
 class MotorRow(msgspec.Struct, frozen=True, kw_only=True):
     """One model at one size: at the frequency of the drive, and at its own best."""
 
     model: str
     count: int | None
     drive: Operation
-    best: Operation | None
+    best: Operation | OffSearch | None
     """None where the wave stands at every frequency."""
     note: str = ""
-    """What is wrong with `best`: it is missing, or lies at the edge of the search."""
+    """Why there is no best."""
+
+    @property
+    def known_best(self) -> Operation | None:
+        """At the best frequency, where there is one."""
+        return self.best if isinstance(self.best, Operation) else None
 
 
 SMOOTH = 160
@@ -95,9 +106,9 @@ def _named(row: MotorRow) -> str:
     return MODELS[row.model].title if row.count is None else f"{row.count} {MODELS[row.model].title}"
 
 
-def _cells(one: Operation | None) -> tuple[float | None, ...]:
-    if one is None:
-        return (None,) * 4
+def _cells(one: Operation | OffSearch | None) -> tuple[float | str | None, ...]:
+    if not isinstance(one, Operation):
+        return "falls off" if one else None, None, None, None
     return one.frequency_hz, one.standing_wave_ratio, one.axis_ratio, one.crest_speed
 
 
@@ -121,7 +132,7 @@ class MotorFound(Found, frozen=True, eq=False, kw_only=True):
 
 def _flat(row: MotorRow) -> dict[str, Any]:
     line: dict[str, Any] = {"model": row.model, "count": row.count}
-    for name, one in (("drive", row.drive), ("best", row.best)):
+    for name, one in (("drive", row.drive), ("best", row.known_best)):
         found = msgspec.to_builtins(one) or dict.fromkeys(Operation.__struct_fields__)
         line |= {f"{name}_{key}": value for key, value in found.items()}
     return line | {"notes": [row.note] if row.note else []}
@@ -159,9 +170,11 @@ class WaveFound(Found, frozen=True, eq=False, kw_only=True):
         return f"The {told}; 1 is a wave that travels, without reflection."
 
     def facts(self) -> tuple[str, ...]:
-        """How pure the wave is on every model at the size of the envelopes."""
+        """How pure the wave is on every model at the size of the envelopes, or at the largest that was asked for."""
         exact, *others = self.rows
-        shown = [exact, *(row for row in others if row.count == self.count)]
+        sizes = [row.count or 0 for row in others]
+        size = self.count if self.count in sizes else max(sizes, default=0)
+        shown = [exact, *(row for row in others if row.count == size)]
         ratios = [f"{_named(row)} {cell(row.drive.standing_wave_ratio, 'ratio')}" for row in shown]
         at = f"at {exact.drive.frequency_hz:g} Hz in the window [L/4, 3L/4]"
         return (f"standing-wave ratio {at}: {', '.join(ratios)}",)
@@ -234,9 +247,11 @@ def motor_row(scene: "Scene", bench: "Workbench", model: str, count: int | None)
         found = quietest_drive(case, SEARCH_SPAN, None, bench)
     except InputError as error:
         return MotorRow(model=model, count=count, drive=drive, best=None, note=str(error))
-    note = edge_note("the reflection still falls", found.x) if found.at_edge else ""
+    if found.at_edge:
+        off, note = OffSearch(found.x), edge_note("the reflection falls off", found.x)
+        return MotorRow(model=model, count=count, drive=drive, best=off, note=note)
     best = operation(driven(replace(case, frequency_hz=found.x), bench))
-    return MotorRow(model=model, count=count, drive=drive, best=best, note=note)
+    return MotorRow(model=model, count=count, drive=drive, best=best)
 
 
 def models_of_waves(beam: Beam) -> list[str]:

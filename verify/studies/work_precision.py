@@ -2,6 +2,7 @@
 
 from math import log, pi
 from statistics import median
+from time import process_time
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -18,6 +19,7 @@ from verify.quantities.simulated import MODES, motion_case, slider_of
 from verify.studies.kind import Progress
 from verify.studies.slider import EXACT, ROUNDS
 from verify.studies.told import Found, Table
+from verify.timing import forget, spread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +31,8 @@ WINDOW_S = 3e-5
 """Of one mode of a beam that is not uniform, in one window around the slider."""
 ORDER = 4.0
 """Of both models' errors in the size."""
+AGREED = 0.6
+"""Spread of a ratio of times from which on repetitions do not agree on it."""
 
 
 class WorkRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -44,8 +48,13 @@ class WorkRow(msgspec.Struct, frozen=True, kw_only=True):
     order: float | None
     """Observed from the size before; None at the first, and where an error is none or changes its sign."""
     run_ms_per_ms: float
-    """Wall milliseconds of the loop for a simulated millisecond, median of interleaved rounds."""
+    """Processor milliseconds of the compiled loop for a simulated millisecond, median of interleaved rounds."""
     set_up_ms: float
+    """Of all else from scene to result: modes, tables, margins; nothing of it is kept from the round before."""
+    run_spread: float = 0.0
+    """Of the loop's time between the quartiles of the rounds, relative."""
+    whole_spread: float = 0.0
+    """The same of loop and set-up together."""
 
 
 class Work(msgspec.Struct, frozen=True, kw_only=True):
@@ -88,11 +97,27 @@ class WorkFound(Found, frozen=True, eq=False, kw_only=True):
         return {"work": self.records(), "step_floor": self.work.step_floor, "answer": plain}
 
 
+class Timed(msgspec.Struct, frozen=True, kw_only=True):
+    """One run, and what it took of the processor."""
+
+    found: "Motion"
+    whole_s: float
+    """From scene to result."""
+
+    @property
+    def loop_s(self) -> float:
+        """Of the compiled loop, in its one thread."""
+        return self.found.statistics.loop_s
+
+
 class Cost(msgspec.Struct, frozen=True, kw_only=True):
     """What one model costs at an error."""
 
     run_ms_per_ms: float
     set_up_ms: float
+    run_spread: float
+    """The larger of the two sizes that it lies between, relative."""
+    whole_spread: float
 
 
 class Comparison(msgspec.Struct, frozen=True, kw_only=True):
@@ -114,6 +139,16 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
         """The same for the whole run, set-up included."""
         return self._whole(self.fem) / self._whole(self.segment)
 
+    @property
+    def spread(self) -> float:
+        """Of `ratio`, relative."""
+        return self.fem.run_spread + self.segment.run_spread
+
+    @property
+    def whole_spread(self) -> float:
+        """Of `whole_ratio`, relative."""
+        return self.fem.whole_spread + self.segment.whole_spread
+
     def _whole(self, cost: Cost) -> float:
         return cost.set_up_ms + 1e3 * self.duration * cost.run_ms_per_ms
 
@@ -131,11 +166,11 @@ def work_of(scene: "Scene", counts: tuple[int, ...], progress: Progress = lambda
     exact, floor = exact_way(scene)
     check_reference(exact)
     cases = [(model.name, n) for model in discrete("time_basis", scene.beam) for n in sorted(set(counts))]
-    runs: dict[tuple[str, int], list[Motion]] = {case: [] for case in cases}
+    runs: dict[tuple[str, int], list[Timed]] = {case: [] for case in cases}
     for number in range(ROUNDS):
         progress(f"slider, work against error, round {number + 1}")
         for model, n in cases:
-            runs[model, n].append(run_once(scene, model, n, coupling="one-way"))
+            runs[model, n].append(_timed(scene, model, n))
     assert scene.motion is not None
     rows: list[WorkRow] = []
     for (model, n), found in runs.items():
@@ -206,18 +241,29 @@ def run_once(
     return found
 
 
-def _row(model: str, count: int, found: "list[Motion]", exact: float, before: WorkRow | None) -> WorkRow:
-    length = found[0].duration
-    error = relative_error(found[0].displacement, exact)
+def _timed(scene: "Scene", model: str, count: int) -> Timed:
+    """A run of which nothing was solved before."""
+    forget()
+    began = process_time()
+    found = run_once(scene, model, count, coupling="one-way")
+    return Timed(found=found, whole_s=process_time() - began)
+
+
+def _row(model: str, count: int, times: list[Timed], exact: float, before: WorkRow | None) -> WorkRow:
+    found, loops = times[0].found, [one.loop_s for one in times]
+    error = relative_error(found.displacement, exact)
+    loop, whole = median(loops), median(one.whole_s for one in times)
     return WorkRow(
         model=model,
         count=count,
-        rows=len(found[0].end.q),
-        displacement=found[0].displacement,
+        rows=len(found.end.q),
+        displacement=found.displacement,
         error=error,
         order=log(before.error / error) / log(count / before.count) if before and before.error * error > 0 else None,
-        run_ms_per_ms=median(m.statistics.wall_s for m in found) / length,
-        set_up_ms=1e3 * median(m.statistics.set_up_s for m in found),
+        run_ms_per_ms=loop / found.duration,
+        set_up_ms=1e3 * max(whole - loop, 0.0),
+        run_spread=spread(loops) / loop if loop else 0.0,
+        whole_spread=spread([one.whole_s for one in times]) / whole if whole else 0.0,
     )
 
 
@@ -238,13 +284,21 @@ def at_equal_error(work: Work) -> Comparison | NotCompared:
         )
         return NotCompared(why=f"the models share no error ({words})", remedy="give counts that overlap in error")
     segment, fem = (_cost_at(line, error) for line in lines.values())
-    return Comparison(error=error, segment=segment, fem=fem, duration=work.duration)
+    found = Comparison(error=error, segment=segment, fem=fem, duration=work.duration)
+    apart = max(found.spread, found.whole_spread)
+    if apart > AGREED:
+        return NotCompared(
+            why=f"repetitions of one run lie {100 * apart:.0f} % apart", remedy="run it again while the machine is idle"
+        )
+    return found
 
 
 def _unfit(name: str, line: list[WorkRow], work: Work) -> NotCompared | None:
     """Why the errors of one model do not fall at their order; None where they do."""
     if len(line) < 3:
         return NotCompared(why=f"{len(line)} sizes show no order", remedy="give three counts or more")
+    if not all(row.run_ms_per_ms and row.set_up_ms for row in line):
+        return NotCompared(why=f"a time of {name} is below the resolution of the clock", remedy="give larger counts")
     low, high = min(row.error for row in line), max(row.error for row in line)
     span = f"between {100 * low:+.3g} % and {100 * high:+.3g} %"
     calmer = "give a longer soft start, a smaller slope K or a finer step (steps_per_period)"
@@ -274,7 +328,14 @@ def _cost_at(line: list[WorkRow], error: float) -> Cost:
     def between(name: str) -> float:
         return at_error(errors, [getattr(row, name) for row in line], error)
 
-    return Cost(run_ms_per_ms=between("run_ms_per_ms"), set_up_ms=between("set_up_ms"))
+    fine = next((i for i, own in enumerate(errors) if own <= error), len(line) - 1)
+    pair = line[max(fine - 1, 0) : fine + 1]
+    return Cost(
+        run_ms_per_ms=between("run_ms_per_ms"),
+        set_up_ms=between("set_up_ms"),
+        run_spread=max(row.run_spread for row in pair),
+        whole_spread=max(row.whole_spread for row in pair),
+    )
 
 
 def answer_in_words(answer: "Comparison | NotCompared") -> str:
@@ -283,8 +344,16 @@ def answer_in_words(answer: "Comparison | NotCompared") -> str:
         return f"run times at equal error are not compared: {answer.why}; {answer.remedy}"
     fem, segment = answer.fem, answer.segment
     return (
-        f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take {answer.ratio:.2f} times "
-        f"as long as segments in the loop ({fem.run_ms_per_ms:.3g} and {segment.run_ms_per_ms:.3g} ms for a simulated "
-        f"ms), after a set-up of {fem.set_up_ms:.3g} and {segment.set_up_ms:.3g} ms: {answer.whole_ratio:.2f} times "
-        f"for the whole run of {1e3 * answer.duration:g} ms"
+        f"at an error of {100 * answer.error:.3g} % of the displacement Hermite elements take "
+        f"{_times(answer.ratio, answer.spread)} as segments in the loop ({fem.run_ms_per_ms:.2g} and "
+        f"{segment.run_ms_per_ms:.2g} ms for a simulated ms), {_times(answer.whole_ratio, answer.whole_spread)} for "
+        f"the whole run of {1e3 * answer.duration:g} ms, with a set-up of {fem.set_up_ms:.2g} and "
+        f"{segment.set_up_ms:.2g} ms (processor time in one thread)"
     )
+
+
+def _times(ratio: float, spread: float) -> str:
+    """'1.8 times (spread 12 %) as long'; no figure where they do not differ beyond the spread."""
+    if abs(log(ratio)) <= spread:
+        return f"within the spread of {100 * spread:.0f} % as long"
+    return f"{ratio:.2g} times (spread {100 * spread:.0f} %) as long"

@@ -16,6 +16,8 @@ PHASES_DEG = (5.0, 175.0)
 """Between two drives, in size: what is searched."""
 ROUNDING = 1e-13
 """Of a reflection at its limit."""
+OFF = "off the search, at its edge"
+"""Said of what is no optimum but where the search ends."""
 _ZOOM, _SHARP = 17, 1e-12
 """Frequencies that are looked at around the best, until they lie together to this part."""
 
@@ -120,15 +122,19 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
     def quiet_point(self, frequencies: Array, phase_deg: float) -> OperatingPoint:
         """Least reflection at one phase. Raises InputError where the wave stands at every frequency."""
         least = quietest(lambda f: self.over(f, np.array([phase_deg]))[0][:, 0], frequencies)
-        note = edge_note("the reflection still falls", least.x) if least.at_edge else ""
-        return self.point(least.x, phase_deg, "least reflection at the scene's phase", note)
+        if not least.at_edge:
+            return self.point(least.x, phase_deg, "least reflection at the scene's phase")
+        note = edge_note("the reflection falls off", least.x)
+        return self.point(least.x, phase_deg, f"reflection at the scene's phase, falls {OFF}", note)
 
     def fast_point(self, frequencies: Array, phase_deg: float, limit: float) -> OperatingPoint:
         """Largest crest speed with a reflection up to `limit`. Raises InputError where no point keeps it."""
         frequency, phase = fastest(self, frequencies, phase_deg, limit)
         inside = min(frequency - frequencies[0], frequencies[-1] - frequency) > 0.01 * np.diff(frequencies)[0]
-        note = "" if inside else edge_note("the crests still grow faster", frequency)
-        return self.point(frequency, phase, f"largest crest speed with a reflection up to {limit:g}", note)
+        within = f"crest speed with a reflection up to {limit:g}"
+        if inside:
+            return self.point(frequency, phase, f"largest {within}")
+        return self.point(frequency, phase, f"{within}, grows {OFF}", edge_note("the crest speed grows off", frequency))
 
 
 def driven_point(case: DrivenCase) -> OperatingPoint:
@@ -162,8 +168,8 @@ def landscape(case: DrivenCase) -> Landscape:
 
 
 def edge_note(what: str, frequency: float) -> str:
-    """A sentence about an optimum at the edge of its search, Hz."""
-    return f"{what} at the edge of the search, {frequency:.6g} Hz: not an optimum but where the search ends"
+    """A sentence about what is at the edge of its search, Hz, instead of an optimum."""
+    return f"{what} the search, at its edge, {frequency:.6g} Hz: no optimum but where the search ends"
 
 
 def operating_points(case: DrivenCase, limit: float = 0.1) -> tuple[tuple[OperatingPoint, ...], tuple[InputError, ...]]:

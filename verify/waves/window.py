@@ -5,6 +5,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError, WindowError, shown
 from verify.models.fields import wavenumber
+from verify.words import as_written
 
 MOST_HALVES = 10_000
 """Half wavelengths of the longest window: its points are held at once."""
@@ -31,25 +32,25 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
         start, end = (float(end) for end in window)
     except (TypeError, ValueError):
         raise InputError(f"window = {shown(window)}: give start and end in metres, such as [0.1, 0.3]") from None
-    window = start, end
+    window, told = (start, end), as_written((start, end))
     if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= beam.length):
-        raise InputError(f"window = {list(window)}: give start and end, ascending, between 0 and {beam.length!r} m")
+        raise InputError(f"window = {told}: give start and end, ascending, between 0 and {beam.length!r} m")
     attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
     if standing := [p for p in attached if start < p < end]:
         raise WindowError(
-            f"window = {list(window)} holds a mass or a spring at {standing} m: two waves alone live beside it, "
+            f"window = {told} holds a mass or a spring at {as_written(standing)} m: two waves alone live beside it, "
             "choose a window without one"
         )
     if not _own_section(beam, start, end):
         raise WindowError(
-            f"window = {list(window)} holds a beam.section other than the beam's own: waves of one length run along "
+            f"window = {told} holds a beam.section other than the beam's own: waves of one length run along "
             "one section, choose a window on the beam's own"
         )
     places = sorted(places)
     inside = [p for p in places if start < p < end]
     if inside or (len(places) > 1 and not places[0] <= start < end <= places[-1]):
         raise WindowError(
-            f"window = {list(window)} leaves the span between two forces (they act at {places} m): "
+            f"window = {told} leaves the span between two forces (they act at {as_written(places)} m): "
             "two waves alone live there, choose a window inside it"
         )
     check_halves(beam, frequency_hz, window)
@@ -57,7 +58,7 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
 
 def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -> None:
     """Raise WindowError for a window of a beam that holds too few or too many half wavelengths of a frequency."""
-    start, end = window
+    (start, end), told = window, as_written(window)
     k = wavenumber(beam, frequency_hz)
     if beam.foundation and beam.mass_per_length * (2.0 * np.pi * frequency_hz) ** 2 <= beam.foundation:
         least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
@@ -67,9 +68,9 @@ def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -
         )
     half = float(np.pi / k.real)
     if end - start < half:
-        raise WindowError(f"window = {list(window)} is shorter than half a wavelength ({half:.4g} m): widen it")
+        raise WindowError(f"window = {told} is shorter than half a wavelength ({half:.4g} m): widen it")
     if end - start > MOST_HALVES * half:
         raise WindowError(
-            f"window = {list(window)} spans {(end - start) / half:.2g} half wavelengths of {half:.4g} m, more than "
+            f"window = {told} spans {(end - start) / half:.2g} half wavelengths of {half:.4g} m, more than "
             f"{MOST_HALVES}: narrow it or lower frequency_hz"
         )
