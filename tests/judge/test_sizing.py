@@ -198,3 +198,21 @@ def test_sizes_are_solved_once(titanium_strip, monkeypatch):
     )
     found = sizing.enough_from(Workbench(beam), "segment", 2, 1e-5)
     assert len(solved) == len(set(solved)) <= 2 * found.count
+
+
+def test_sizes_that_would_take_longer_than_is_waited_for_are_not_begun():
+    """As soon as one fails it is known how many more there are at least; what was done before counts."""
+    bench = Workbench(load_scene("stepped-beam").beam)
+    with pytest.raises(InputError, match=r"^count = 'beyond \d+' would take about .* s, more than the 20 s"):
+        sizing.enough_from(bench, "segment", 90, 1e-9)
+    found = sizing.enough_from(bench, "segment", 3, 1e-3)
+    assert 0.0 < found.work_s < 20.0
+    with pytest.raises(InputError, match="would take about"):
+        sizing.enough_from(bench, "segment", 3, 1e-3, before_s=19.99)
+
+
+def test_a_rule_that_takes_too_many_parts_to_be_gone_through_is_left_out_of_a_choice_with_the_reason():
+    choices, left_out = sizing.choose_of_all(Workbench(load_scene("instrument-arm").beam), 12, 1e-3)
+    assert [one.variant.title for one in choices] == ["segments", "Hermite elements", "segments, wall half"]
+    assert left_out.keys() == {"segments, attachment lever"}
+    assert "would take about" in left_out["segments, attachment lever"]

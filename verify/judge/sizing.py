@@ -11,6 +11,7 @@ from verify.exact.error_laws import LAWS, expected_error, law_of, parts_from_her
 from verify.judge.variants import Rules, Variant, beside, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
+from verify.patience import check_work
 from verify.timing import interleaved_medians
 
 if TYPE_CHECKING:
@@ -27,6 +28,9 @@ _LOWER_BRANCH = 0.05
 _WALK = (40, 100_000, 100)
 """Sizes one by one after the last that fails: the second number over it, no fewer than the first, no more than the
 third, and never beyond its double."""
+_PER_PART, _PER_MODE = 1e-4, 1e-5
+"""Seconds of a solve for each part, and for each part and mode: beams with bodies of 400 parts and more, on a slow
+core, take 40 to 100 us for a part with 3 to 12 modes and 300 to 1200 with 40 to 90."""
 _LOWER = 100
 """Modes up to which those below are looked at."""
 
@@ -46,6 +50,8 @@ class Enough(msgspec.Struct, frozen=True, kw_only=True):
     """The smallest size below it that happens to do, though one between does not; None where none was found."""
     known_by: str
     """Which larger sizes do, and how it is known."""
+    work_s: float = 0.0
+    """Seconds that sizes gone through take on a slow core, as told beforehand."""
 
 
 class Choice(msgspec.Struct, frozen=True, kw_only=True):
@@ -97,7 +103,9 @@ def check_reachable(beam: "Beam", model: str, settings: Settings) -> None:
     MODELS.named(model).check(beam, 1, _CLOSELY, **dict(settings))
 
 
-def enough_from(bench: Workbench, model: str, mode: Modes, error: float, settings: Settings = ()) -> Enough:
+def enough_from(
+    bench: Workbench, model: str, mode: Modes, error: float, settings: Settings = (), before_s: float = 0.0
+) -> Enough:
     """From which size on the solved frequency error is within `error`; one part less is outside it.
 
     `mode` may be a range: all its modes are within. Where the discrete dispersion is known, it proves it. Elsewhere an
@@ -106,7 +114,8 @@ def enough_from(bench: Workbench, model: str, mode: Modes, error: float, setting
     with N, and those after the last that fails are solved one by one (`_walked`). What holds beyond is the error law's
     word, where there is one. Where the law asks for more than 2000 parts, and for modes beyond the hundredth, its
     answer alone is looked around. Raises InputError where no size up to 200 000 reaches the error, or, where it goes
-    up and down, where one beyond 2000 fails.
+    up and down, where one beyond 2000 fails, and as soon as sizes to be gone through would take longer, with
+    `before_s` seconds of work done before, than is waited for.
     """
     check_reachable(bench.beam, model, settings)
     modes = _several(mode)
@@ -125,9 +134,11 @@ def enough_from(bench: Workbench, model: str, mode: Modes, error: float, setting
         return Enough(count=beside[worst], mode=worst, smaller=smaller, known_by=known_by)
     reached = _reached(bench, model, modes, error, settings)
     uneven = falls_within(bench.beam)
-    count, smaller, does = _scanned(reached, smallest, guess, model, error, uneven)
+    each_s = _PER_PART + _PER_MODE * modes[-1]
+    count, smaller, does = _scanned(reached, smallest, guess, model, error, uneven, each_s, before_s)
     worst = _worst(bench, model, modes, count - 1, settings)
-    return Enough(count=count, mode=worst, smaller=smaller, known_by=solved(count, does, law))
+    known_by, work_s = solved(count, does, law), each_s * sum(does)
+    return Enough(count=count, mode=worst, smaller=smaller, known_by=known_by, work_s=work_s)
 
 
 def _several(mode: Modes) -> range:
@@ -192,11 +203,19 @@ def _dip(model: str, beam: "Beam", mode: Modes, error: float, count: int) -> int
 
 
 def _scanned(
-    reached: Reached, smallest: int, guess: int, model: str, error: float, uneven: bool = False
+    reached: Reached,
+    smallest: int,
+    guess: int,
+    model: str,
+    error: float,
+    uneven: bool = False,
+    each_s: float = 0.0,
+    before_s: float = 0.0,
 ) -> tuple[int, int | None, dict[int, bool]]:
     """(the size from which on all that were tried reach, the smallest below it that does, what was tried).
 
-    `uneven`: the error goes up and down with the size, so that those after the last that fails are gone through.
+    `uneven`: the error goes up and down with the size, so that those after the last that fails are gone through;
+    `each_s`: seconds of a solve for each part.
     """
     does: dict[int, bool] = {}
     count, failed = smallest, smallest - 1
@@ -205,7 +224,10 @@ def _scanned(
         if count > largest:
             raise _unreached(model, error, count)
         does[count] = reached(count)
-        failed = failed if does[count] else count
+        if not does[count]:
+            failed = count
+            seconds = before_s + each_s * (sum(does) + _ahead(failed, uneven))
+            check_work("count", f"beyond {failed}", seconds, "ask for a larger error")
         closely = uneven or count < _CLOSELY
         count = count + 1 if count < _EVERY else ceil(1.05 * count) if closely else 2 * count
     if uneven:
@@ -221,6 +243,20 @@ def _scanned(
     return enough, next((n for n in does if n < failed and does[n]), None), does
 
 
+def _ahead(failed: int, uneven: bool) -> float:
+    """Parts of all sizes that are looked at at least after one that fails."""
+    if failed < _EVERY:
+        return 1.5 * failed**2
+    closely = failed / 0.05 if uneven or failed < _CLOSELY else 2.0 * failed
+    return closely + uneven * _walk(failed) * failed
+
+
+def _walk(failed: int) -> int:
+    """How many sizes are gone through after one that fails."""
+    fewest, parts, most = _WALK
+    return min(failed, most, max(fewest, parts // max(failed, 1)))
+
+
 def walked(reached: Reached, failed: int, does: dict[int, bool]) -> tuple[int, dict[int, bool]]:
     """(the last size that fails, what was tried, ascending), sizes after the last that fails solved one by one.
 
@@ -228,7 +264,7 @@ def walked(reached: Reached, failed: int, does: dict[int, bool]) -> tuple[int, d
     of sizes it has been nearly everywhere, and they begin anew after each that fails.
     """
     does, at = dict(does), failed
-    while at < failed + min(failed, _WALK[2], max(_WALK[0], _WALK[1] // max(failed, 1))):
+    while at < failed + _walk(failed):
         at += 1
         if at not in does:
             does[at] = reached(at)
@@ -296,14 +332,21 @@ def choose_of_all(
             left_out[model.name] = str(problem)
     asked = (rules or Rules()).variants(names)
     left_out |= without_effect(bench.beam, rules or Rules())
-    found = {one: enough_from(bench, one.model, mode, error, one.settings) for one in asked}
+    found: dict[Variant, Enough] = {}
+    for one in asked:
+        found[one] = enough_from(bench, one.model, mode, error, one.settings, _work_s(found))
     for one in beside(bench.beam, (rules or Rules()).settled):
         try:
             if one not in found:
-                found[one] = enough_from(bench, one.model, mode, error, one.settings)
+                found[one] = enough_from(bench, one.model, mode, error, one.settings, _work_s(found))
         except InputError as problem:
             left_out[one.title] = str(problem)
     return _choices(bench, found, mode, error), left_out
+
+
+def _work_s(found: dict[Variant, Enough]) -> float:
+    """Seconds of what was gone through."""
+    return sum(one.work_s for one in found.values())
 
 
 def choose(bench: Workbench, mode: Modes, error: float, variants: tuple[Variant, ...] = ()) -> list[Choice]:
