@@ -28,9 +28,9 @@ _LOWER_BRANCH = 0.05
 _WALK = (40, 100_000, 100)
 """Sizes one by one after the last that fails: the second number over it, no fewer than the first, no more than the
 third, and never beyond its double."""
-_PER_PART, _PER_MODE = 1e-4, 1e-5
-"""Seconds of a solve for each part, and for each part and mode: beams with bodies of 400 parts and more, on a slow
-core, take 40 to 100 us for a part with 3 to 12 modes and 300 to 1200 with 40 to 90."""
+_PER_PART, _PER_MODE, _LADEN = 1e-4, 1.5e-6, 7.0
+"""Seconds of a solve for each part, and for each part and mode, the latter so many times for what steps alone do not
+have: on a slow core 10 to 200 us for a part with 3 to 90 modes of a stepped beam, 40 to 1200 with bodies."""
 _LOWER = 100
 """Modes up to which those below are looked at."""
 
@@ -134,11 +134,16 @@ def enough_from(
         return Enough(count=beside[worst], mode=worst, smaller=smaller, known_by=known_by)
     reached = _reached(bench, model, modes, error, settings)
     uneven = falls_within(bench.beam)
-    each_s = _PER_PART + _PER_MODE * modes[-1]
+    each_s = _part_s(bench.beam, modes[-1])
     count, smaller, does = _scanned(reached, smallest, guess, model, error, uneven, each_s, before_s)
     worst = _worst(bench, model, modes, count - 1, settings)
     known_by, work_s = solved(count, does, law), each_s * sum(does)
     return Enough(count=count, mode=worst, smaller=smaller, known_by=known_by, work_s=work_s)
+
+
+def _part_s(beam: "Beam", n_modes: int) -> float:
+    """Seconds of a solve, for each part."""
+    return _PER_PART + _PER_MODE * n_modes * (1.0 if set(beam.added) <= {"section"} else _LADEN)
 
 
 def _several(mode: Modes) -> range:
@@ -214,8 +219,7 @@ def _scanned(
 ) -> tuple[int, int | None, dict[int, bool]]:
     """(the size from which on all that were tried reach, the smallest below it that does, what was tried).
 
-    `uneven`: the error goes up and down with the size, so that those after the last that fails are gone through;
-    `each_s`: seconds of a solve for each part.
+    `uneven`: as of `falls_within`, so that sizes after the last that fails are gone through; `each_s`: of each part.
     """
     does: dict[int, bool] = {}
     count, failed = smallest, smallest - 1
