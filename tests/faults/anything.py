@@ -154,8 +154,8 @@ def quiet_a_little_high(patch):
 
 
 def one_part_more(patch):
-    true = sizing._between
-    patch.setattr(sizing, "_between", lambda *given: true(*given) + 1)
+    true = sizing.between
+    patch.setattr(sizing, "between", lambda *given: true(*given) + 1)
 
 
 def guesses_three_parts_high(patch):
