@@ -103,10 +103,10 @@ def _at(system: ChainSystem, values: Array, link: int, at: float) -> float:
 
 def _wanted(system: ChainSystem, time: float) -> tuple[Array, Array]:
     """Height and speed asked of every held point, the roller's first."""
-    roller = [(0.0, 0.0)] if system.tip == "roller" else []
+    asked = [(0.0, 0.0)] if system.tip == "roller" else []
     for one in system.actuators:
         omega = circular(one.frequency_hz)
         phase = omega * time + np.deg2rad(one.phase_deg)
-        roller.append((one.amplitude * np.cos(phase), -one.amplitude * omega * np.sin(phase)))
-    heights, speeds = np.array(roller, dtype=float).reshape(len(roller), 2).T
+        asked.append((one.amplitude * np.cos(phase), -one.amplitude * omega * np.sin(phase)))
+    heights, speeds = np.array(asked, dtype=float).reshape(len(asked), 2).T
     return heights, speeds

@@ -182,9 +182,9 @@ def _step(
 def slide(n_steps: int, dt: float, surface: Surface, rider: Rider, books: Books, kept: Kept, space: Space) -> int:
     """Advance beam and slider by up to n_steps from step number tally[STEP]; why it came back.
 
-    No steps: it sets the slider's height and climb, and keeps one sample as it stands, whose friction is that of a
-    slider that slips. Time is the step's number times dt. Modes, motion, ledger and tally are advanced in place,
-    together, so that they agree whenever the caller is interrupted.
+    No steps: it sets the slider's height and climb, and keeps one sample as it stands, without friction if it sticks.
+    Time is the step's number times dt. Modes, motion, ledger and tally are advanced in place, together, so that they
+    agree whenever the caller is interrupted.
     """
     motion, tally, took = rider.motion, kept.tally, space.slip
     piece, fresh, looking = NOUGHT, True, n_steps == 0
