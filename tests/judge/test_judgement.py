@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
+from verify.attached import PointMass
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.judge import compare
 from verify.judge.workbench import Need, Workbench, merged
@@ -114,6 +116,19 @@ def test_a_shape_that_rests_at_every_node_has_no_error():
     """Mode 2 of a pinned beam in one part: 0/0, said in a sentence."""
     with pytest.raises(NoFigureError, match="at rest at every node"):
         compare.shape_error(np.zeros(2), np.array([1e-9, 2e-9]), np.array([0.3, 0.3]))
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 5, 8])
+def test_a_mode_seen_at_its_own_nodes_alone_has_no_error(titanium_strip, parts):
+    """sin(pi) is 1e-16 in floating point: an error relative to that was told, 6.4 of mode 3 in three elements."""
+    with pytest.raises(NoFigureError, match="at rest at every node"):
+        Workbench(titanium_strip).shape_error("fem", parts, parts)
+    assert 1e-4 < Workbench(titanium_strip).shape_error("fem", parts + 1, parts) < 0.3
+
+
+def test_a_shape_that_a_heavy_body_keeps_small_is_not_taken_for_rest(titanium_strip):
+    heavy = replace(titanium_strip, mass=(PointMass(position=0.3 * titanium_strip.length, mass=1e12),))
+    assert Workbench(heavy).shape_error("fem", 10, 1) < 1e-3
 
 
 def test_all_nodes_of_a_high_mode_are_found_each_where_it_is():

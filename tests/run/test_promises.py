@@ -27,6 +27,7 @@ ONLY_SOLVED = (
     "has no order there",
     "nodes between the ends",
     "is rounding (floor",
+    "at rest at every node",
 )
 """Reasons that no plan can know: they are in the figures."""
 

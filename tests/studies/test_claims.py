@@ -398,12 +398,13 @@ def test_two_sizes_show_no_order():
 def test_a_step_load_seen_too_coarsely_is_not_compared_and_a_soft_start_is():
     """Four milliseconds after a step load errors jump; two periods of soft start and both models keep order four."""
     hard = load_scene("paper-slider", ("motion.duration=0.004", "motion.soft_start_periods=0"))
-    found = at_equal_error(work_of(hard, hard.motion.counts))
+    found = at_equal_error(shaken(work_of(hard, hard.motion.counts), run_spread=0.04, whole_spread=0.03))
     assert isinstance(found, NotCompared)
     assert "errors of segments jump between -2" in found.why
     assert "longer soft start" in found.remedy
     soft = load_scene("paper-slider")
-    assert isinstance(at_equal_error(work_of(soft, soft.motion.counts)), Comparison)
+    work = shaken(work_of(soft, soft.motion.counts), run_spread=0.04, whole_spread=0.03)  # however busy the machine
+    assert isinstance(at_equal_error(work), Comparison)
 
 
 def test_a_claim_with_arguments_of_its_own_is_found_with_them(tmp_path, capsys):

@@ -281,7 +281,8 @@ class Workbench:
         read = modes.readings[reading or next(iter(modes.readings))]
         exact = analytic_modes.mode_shape(self.beam, mode, modes.nodes, theory=theory_of(settings))
         shape = read()[self.paired_index(model, count, mode, settings)]
-        return compare.shape_error(exact, shape, compare.node_weights(modes.nodes))
+        mass = sum(piece.mass_per_length * piece.length for piece in self.beam.pieces)
+        return compare.shape_error(exact, shape, compare.node_weights(modes.nodes), mass**-0.5)
 
     def curvature_error(self, model: str, count: int, mode: int, settings: Settings = ()) -> float:
         """Relative L2 error of the curvature where the model knows it best. Raises InputError."""
