@@ -3,6 +3,7 @@
 import os
 import sys
 
+import packaged
 import pytest
 
 from verify.beam import Beam
@@ -15,10 +16,19 @@ for library in (
     "OMP",
 ):  # as the command line has it: matrices are small, and workers share the cores
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # a thousand command lines would each read all sources anew
 
 
 KEEPERS = ("verify.elements.linear", "verify.segments.linear", "verify.exact.")
 """Modules that keep what they solved for the next who asks: a fault planted below would not be seen."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def runs_are_shared(tmp_path_factory):
+    """Among the workers of a session."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        packaged.SHARED = tmp_path_factory.getbasetemp().parent / "packaged"
+        packaged.SHARED.mkdir(exist_ok=True)
 
 
 @pytest.fixture(autouse=True)

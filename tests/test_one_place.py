@@ -1,6 +1,7 @@
 """What many rooms speak of has one name in one place."""
 
 import ast
+from functools import cache
 from pathlib import Path
 from typing import get_args
 
@@ -13,6 +14,7 @@ PACKAGE = Path(verify.__file__).parent
 LISTS = {name: get_args(kind) for name, kind in vars(options).items() if len(get_args(kind)) > 1}
 
 
+@cache
 def trees():
     return [(path.relative_to(PACKAGE), ast.parse(path.read_text("utf-8"))) for path in sorted(PACKAGE.rglob("*.py"))]
 

@@ -95,11 +95,22 @@ def test_after_a_warm_up_no_packaged_scene_compiles(tmp_path):
     assert made == {"motion", "motor", "chain"}
     assert len(told["folders"]) == 3
     assert all(folder.startswith(str(tmp_path)) for folder in told["folders"])
-    named = ("moving-load", "paper-slider", "chain", "steel-cantilever")  # of the rest only stress, long, loads numba
-    scenes = f"from verify.run.runner import run_scene\nfor one in {named}: run_scene(one)"
-    assert compiled_by(scenes, tmp_path) == []
+    assert compiled_by(OF_ALL_SCENES, tmp_path) == []
     again = child("from verify.cli import status_of; raise SystemExit(status_of(['warm-up']))", tmp_path)
     assert again.stdout.startswith("all kernels were there already")
+
+
+OF_ALL_SCENES = """
+from verify.run.kernels_asked import kernels_asked
+from verify.run.runner import run_scene
+from verify.scenes.scene import load_scene, packaged_scenes
+planned = [call for scene in packaged_scenes() for call in kernels_asked(load_scene(scene))]
+assert len(planned) > 20
+for kernel, given in planned:
+    kernel.compile(tuple(map(kernel.typeof_pyval, given)))
+run_scene("moving-load")
+"""
+"""All kernels that are planned, which are those that run (tests/run/test_kernels_asked.py), and one run."""
 
 
 UNWRITABLE = """

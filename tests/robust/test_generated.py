@@ -3,12 +3,22 @@
 300 of them by default. `pytest -m hostile` takes 10 000 others, for an hour or two.
 """
 
+from functools import cache
+
 import pytest
 from drawn_lines import drawn_line
 from watched import timeless, wrong_with
 
+from verify.bench import running
+
 IN_A_ROW = 30
 MANY = 100
+
+
+@pytest.fixture(autouse=True)
+def imports_are_timed_once(monkeypatch):
+    """In 15 processes of their own: the same for every bench."""
+    monkeypatch.setattr(running, "import_costs", cache(running.import_costs))
 
 
 def complaints(seeds):
