@@ -167,7 +167,7 @@ def test_a_chain_bends_under_a_force_and_a_couple_where_they_act_as_its_beam_doe
     """Statics of a pinned beam: F a^2 b^2 / 3EIL, M (L^2 - 3ab) / 3EIL, the turn under F by F a b (b - a) / 3EIL."""
     chain = build_chain(STRIP, count)
     at = (round(0.31 * count) + s) / count
-    force, turn = felt_at(chain, at * L, "reciprocal")
+    (force,), (turn,) = felt_at(chain, [at * L], "reciprocal")
     couple = np.append(0.0, turn) - np.append(turn, 0.0)
     x = np.arange(1, count) / count
     moment = np.minimum.outer(x, x) * (1 - np.maximum.outer(x, x))  # of a unit force on each joint
@@ -178,6 +178,18 @@ def test_a_chain_bends_under_a_force_and_a_couple_where_they_act_as_its_beam_doe
     ):
         found = (moment @ one[1:-1]) @ (moment @ other[1:-1]) / count
         assert found == pytest.approx(exact, rel=1e-9)
+
+
+@pytest.mark.parametrize("rule", ["reciprocal", "lever"])
+@pytest.mark.parametrize("steps", [(), (Section(length=0.29), Section(length=L - 0.29, bending_stiffness=2.1 * EI))])
+def test_bodies_are_felt_together_where_each_is_alone(rule, steps):
+    """On joints, at middles, at ends, beside a step, between: what one feels no other moves."""
+    chain = build_chain(replace(STRIP, section=steps), 23)
+    places = [0.0, 0.11, 0.2901, 9 * L / 23, 10.5 * L / 23, 0.6, L - 1e-4, L]
+    together = felt_at(chain, places, rule)
+    for p, place in enumerate(places):
+        for found, alone in zip(together, felt_at(chain, [place], rule), strict=True):
+            assert found[p] == pytest.approx(alone[0], rel=1e-13, abs=1e-15)
 
 
 def test_a_mirrored_beam_with_everything_on_it_has_the_same_frequencies():

@@ -18,8 +18,8 @@ has the mean of the shear on either side: too little, by `shear_give`. No weight
 stands on as much of a slip of its own does: order 2, as everything there.
 """
 
+from collections.abc import Sequence
 from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -37,24 +37,33 @@ _ABOUT = 0.05
 """Relative: so unequal neighbours leave order 2, which unequal links have anyway."""
 
 
-def felt_at(chain: Chain, position: float, rule: str) -> tuple[Array, Array]:
-    """Weights of the joints' positions, (N + 1,), and of the links' turns, (N,), for a body at `position` (metres).
+def felt_at(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Array, Array]:
+    """Weights of the joints' positions, (p, N + 1), and of the links' turns, (p, N), for bodies at `positions`, metres.
 
     At an end that nothing holds the end joint and the end link themselves; the turn of such an end, where it has a
     joint of its own, is not read here (`loaded`).
     """
-    n, place = chain.n_segments, position / chain.unit - chain.start
-    links, on, even = places_on(chain.lengths[:, None], np.array([place]))
-    if is_mended(rule, n) and even[0]:
-        deflections, turns = mended(chain.supports, n, links, on)
-        return deflections[0], turns[0]
-    deflection, turn, link, s = np.zeros(n + 1), np.zeros(n), int(links[0]), float(on[0])
+    n, places = chain.n_segments, np.array(positions, dtype=float) / chain.unit - chain.start
+    links, on, even = places_on(np.broadcast_to(chain.lengths[:, None], (n, len(places))), places)
+    deflections, turns = np.zeros((len(places), n + 1)), np.zeros((len(places), n))
+    alike = np.flatnonzero(even) if is_mended(rule, n) else np.arange(0)
+    if len(alike):
+        deflections[alike], turns[alike] = mended(chain.supports, n, links[alike], on[alike])
+    for p in set(range(len(places))).difference(alike.tolist()):
+        deflections[p], turns[p] = _plainly(chain, positions[p], rule, int(links[p]), float(on[p]))
+    return deflections, turns
+
+
+def _plainly(chain: Chain, position: float, rule: str, link: int, s: float) -> tuple[Array, Array]:
+    """Weights of one place, `s` on `link`: of the rigid link as it is, or those that mending begins from."""
+    n, turn = chain.n_segments, np.zeros(chain.n_segments)
     if rule == "reciprocal" and n >= 3:
-        middles = np.cumsum(chain.lengths) - 0.5 * chain.lengths
+        place, middles = position / chain.unit - chain.start, np.cumsum(chain.lengths) - 0.5 * chain.lengths
         after = int(np.clip(np.searchsorted(middles, place), 1, n - 1))
         share = (place - middles[after - 1]) / (middles[after] - middles[after - 1])
         turn[after - 1 : after + 1] = np.clip([1.0 - share, share], 0.0, 1.0)
         return joint_weights(chain, position, rule), turn
+    deflection = np.zeros(n + 1)
     deflection[link], deflection[link + 1] = 1.0 - s, s
     turn[link] = 1.0
     if link > 0 and s == 0.0:
@@ -181,14 +190,16 @@ def _without_selves(weights: Array, shares: Array, kernel: Array, other: Array) 
 
 
 def _solved(matrices: tuple[Array, Array, Array, Array], right: tuple[Array, Array]) -> tuple[Array, Array]:
-    """A x = b of two unknowns each, (p,) all, the shortest of the nearest where an A is singular to 1e-9."""
+    """A x = b of two unknowns each, (p,) all; where A is singular to 1e-9 the shortest of the nearest, A^T b/|A|^2."""
     (a, b, c, d), (e, f) = matrices, right
-    determinant = a * d - b * c
-    apart = abs(determinant) > 1e-8 * (a * a + b * b + c * c + d * d)
-    by = determinant if apart.all() else np.where(apart, determinant, 1.0)
-    x, y = (d * e - b * f) / by, (a * f - c * e) / by
-    for p in np.flatnonzero(~apart):
-        x[p], y[p] = np.linalg.lstsq(np.array([[a[p], b[p]], [c[p], d[p]]]), np.array([e[p], f[p]]), rcond=1e-9)[0]
+    determinant, size = a * d - b * c, a * a + b * b + c * c + d * d
+    apart = abs(determinant) > 1e-9 * size
+    if apart.all():
+        return (d * e - b * f) / determinant, (a * f - c * e) / determinant
+    by, size = np.where(apart, determinant, 1.0), np.where(size > 0.0, size, 1.0)
+    x, y = np.where(
+        apart, [(d * e - b * f) / by, (a * f - c * e) / by], [(a * e + c * f) / size, (b * e + d * f) / size]
+    )
     return x, y
 
 
@@ -209,10 +220,3 @@ def _folded(supports: tuple[str, str], n: int, first: Indices, weights: Array) -
     places = rows * (n + 1) + np.where(joints > n, 2 * n - joints, abs(joints))
     found = np.bincount(places.ravel(), weights.ravel(), rows.size * (n + 1))
     return np.asarray(found.reshape(*weights.shape[:2], n + 1), dtype=float)
-
-
-def rows_at(chain: Chain, positions: list[float], rule: str) -> tuple[Any, Any]:
-    """`felt_at` of several places, (p, N + 1) and (p, N)."""
-    pairs = [felt_at(chain, position, rule) for position in positions]
-    n = chain.n_segments
-    return np.array([f for f, _ in pairs]).reshape(-1, n + 1), np.array([h for _, h in pairs]).reshape(-1, n)

@@ -137,7 +137,7 @@ def _slip_masses(chain: Chain, slips: Array) -> Array | None:
 
 def _give(chain: Chain, softness: Array, place: float) -> float:
     """Compliance of the slip of what stands at a place inside, or at a guided end, which stands for both its sides."""
-    felt = felt_at(chain, place, chain.attachment)[0]
+    felt = felt_at(chain, [place], chain.attachment)[0][0]
     nearest = int(abs(chain.nodes - place).argmin())
     if nearest in (0, chain.n_segments) and abs(chain.nodes[nearest] - place) < 1e-9 * chain.unit:
         inward = felt if nearest == 0 else felt[::-1]

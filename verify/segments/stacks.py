@@ -165,7 +165,7 @@ def _beyond(beams: Sequence[Beam], joints: Array, bodies: Array, elastic: tuple[
 
 
 def _where_felt(beams: Sequence[Beam], chains: Chains, unit: Array, attachment: str) -> tuple[Array, Array]:
-    """Where bodies are felt (`rows_at`), (bodies, N + 1, n_beams) and (bodies, N, n_beams)."""
+    """Where bodies are felt (`felt_at`), (bodies, N + 1, n_beams) and (bodies, N, n_beams)."""
     n, n_beams = chains.lengths.shape
     felt, turned = [], []
     for row in np.array([_positions_of(beam) for beam in beams]).T:
@@ -174,7 +174,7 @@ def _where_felt(beams: Sequence[Beam], chains: Chains, unit: Array, attachment: 
         deflections, turns = np.zeros((n_beams, n + 1)), np.zeros((n_beams, n))
         deflections[at_once], turns[at_once] = mended(beams[0].supports, n, links[at_once], on[at_once])
         for j in map(int, np.flatnonzero(~at_once)):
-            deflections[j], turns[j] = felt_at(_chain_of(beams[j], chains, j), float(row[j]), attachment)
+            (deflections[j],), (turns[j],) = felt_at(_chain_of(beams[j], chains, j), [float(row[j])], attachment)
         felt.append(deflections.T)
         turned.append(turns.T)
     return np.array(felt), np.array(turned)
