@@ -1,12 +1,14 @@
 """Independent work on several cores gives what one core gives, and leaves nobody behind."""
 
 import os
+import signal
+import subprocess
 import sys
 import time
 
 import pytest
 
-from verify.cores import for_each
+from verify.cores import for_each, start
 from verify.errors import InputError
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="work is shared where the system forks safely")
@@ -84,3 +86,51 @@ def test_a_number_of_jobs_that_is_none_is_refused(monkeypatch, given):
     monkeypatch.setenv("VERIFY_JOBS", given)
     with pytest.raises(InputError, match=r"VERIFY_JOBS = .* give a whole number of processes"):
         for_each(abs, [1, 2, 3], lambda number: None)
+
+
+FORKED = """
+import os, signal, sys
+from verify.cores import start
+signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(143))
+os.register_at_fork(after_in_parent=lambda: [os.kill(os.getpid(), signal.NUMBER) for _ in range(1)])
+kept = []
+try:
+    BEGIN
+    status = 7
+except BaseException as asked:
+    status = 130 if isinstance(asked, KeyboardInterrupt) else asked.code
+for child in kept:
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+raise SystemExit(status)
+"""
+PLAIN = "kept.append(child) if (child := os.fork()) else os._exit(3)"
+OURS = "start(lambda: os._exit(3), kept.append)"
+
+
+@pytest.mark.parametrize(
+    ("begin", "number", "status"),
+    [(OURS, "SIGTERM", 143), (OURS, "SIGINT", 130), (PLAIN, "SIGTERM", 7), (PLAIN, "SIGINT", 7)],
+)
+def test_a_request_to_end_while_a_process_begins_is_heard_and_the_process_known(begin, number, status):
+    """What is raised where other libraries are told of a fork is lost, as the plain way shows."""
+    code = FORKED.replace("NUMBER", number).replace("BEGIN", begin)
+    env = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (status, "3\n")
+    assert ("Exception ignored" in done.stderr) == (begin is PLAIN)
+
+
+def test_a_process_that_begins_answers_as_the_one_that_began_it():
+    """A child told to end ends: nothing is noted for later there."""
+    kept = []
+
+    def sleeps():
+        time.sleep(30.0)
+        os._exit(0)
+
+    start(sleeps, kept.append)
+    before = signal.getsignal(signal.SIGTERM)
+    assert before is signal.SIG_DFL
+    time.sleep(0.1)
+    os.kill(kept[0], signal.SIGTERM)
+    assert os.waitstatus_to_exitcode(os.waitpid(kept[0], 0)[1]) == -signal.SIGTERM

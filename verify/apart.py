@@ -11,7 +11,7 @@ from typing import NoReturn, TypeVar
 
 import msgspec
 
-from verify.cores import jobs
+from verify.cores import jobs, start
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -47,29 +47,30 @@ def each_apart(
     try:
         while waiting or running:
             while waiting and len(running) < n:
-                running |= dict([_begun(work, *waiting.pop(), list(running))])
+                _begin(work, *waiting.pop(), running)
             _hear(running, found, hear)
     finally:
         _end(running)
     return [found[index] for index in range(len(items))]
 
 
-def _begun(
-    work: Callable[[Item, Say], Result], index: int, item: Item, others: list[Connection]
-) -> tuple[Connection, _Running]:
-    """A process that does one item, and the pipe on which it speaks."""
+def _begin(work: Callable[[Item, Say], Result], index: int, item: Item, running: dict[Connection, _Running]) -> None:
+    """A process that does one item, among those that run by the pipe on which it speaks."""
     from multiprocessing import Pipe
 
     reading, writing = Pipe(duplex=False)
+    others = [reading, *running]
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError, AttributeError):
             stream.flush()  # or the child would write it again
-    if (child := os.fork()) == 0:
-        for pipe in (reading, *others):
+
+    def done() -> NoReturn:
+        for pipe in others:
             pipe.close()
         _work(work, item, writing)
+
+    start(done, lambda child: running.update({reading: _Running(index, child)}))
     writing.close()
-    return reading, _Running(index, child)
 
 
 def _work(work: Callable[[Item, Say], Result], item: Item, writing: Connection) -> NoReturn:

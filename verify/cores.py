@@ -5,8 +5,8 @@ import pickle
 import select
 import signal
 import sys
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import BinaryIO, NoReturn, TypeVar
 
 from verify.errors import InputError
@@ -40,7 +40,7 @@ def for_each(work: Callable[[Item], Result], items: Sequence[Item], tell: Callab
     try:
         for part in range(n):
             share = range(1 + part, len(items), n)
-            children |= dict([_child(work, items, share, [pipe for _, pipe in children.values()])])
+            _begin(work, items, share, children)
         _gather(children, found, tell)
     finally:
         _end(children)
@@ -57,21 +57,60 @@ def _told(tell: Callable[[int], None], number: int, result: Result) -> Result:
     return result
 
 
-def _child(
-    work: Callable[[Item], Result], items: Sequence[Item], share: Sequence[int], others: list[BinaryIO]
-) -> tuple[int, tuple[int, BinaryIO]]:
-    """A process that does its share and writes every result, or its first refusal: (file number, (id, pipe))."""
+def start(work: Callable[[], NoReturn], keep: Callable[[int], None]) -> None:
+    """`work` in a process of its own, whose number `keep` hears.
+
+    A request to end waits until then. While a process begins, libraries that asked to be told of it (logging, for one)
+    have functions of theirs called, and what a handler of signals raises in these is printed and lost; and a process
+    of which nobody has heard would stay behind.
+    """
+    told: list[int] = []
+    with _heard_later(told):
+        if child := os.fork():
+            keep(child)
+    if not child:
+        work()
+    for number in told:
+        signal.raise_signal(number)
+
+
+@contextmanager
+def _heard_later(told: list[int]) -> Iterator[None]:
+    """Requests to end are noted, and what answers them is put back in the end."""
+    from threading import current_thread, main_thread
+
+    asked = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
+    before = {number: signal.getsignal(number) for number in asked if current_thread() is main_thread()}
+    before = {number: answer for number, answer in before.items() if answer is not None}
+    for number in before:
+        signal.signal(number, lambda number, _: told.append(number))
+    try:
+        yield
+    finally:
+        for number, answer in before.items():
+            signal.signal(number, answer)
+
+
+def _begin(
+    work: Callable[[Item], Result],
+    items: Sequence[Item],
+    share: Sequence[int],
+    children: dict[int, tuple[int, BinaryIO]],
+) -> None:
+    """A process that does its share and writes every result, or its first refusal, among `children` by its pipe."""
     reading, writing = os.pipe()
+    others = [reading, *(pipe.fileno() for _, pipe in children.values())]
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError, AttributeError):
             stream.flush()  # or the child would write it again
-    if (child := os.fork()) == 0:
-        os.close(reading)
+
+    def done() -> NoReturn:
         for pipe in others:
-            os.close(pipe.fileno())
+            os.close(pipe)
         _work(work, items, share, writing)
+
+    start(done, lambda child: children.update({reading: (child, os.fdopen(reading, "rb"))}))
     os.close(writing)
-    return reading, (child, os.fdopen(reading, "rb"))
 
 
 def _work(work: Callable[[Item], Result], items: Sequence[Item], share: Sequence[int], writing: int) -> NoReturn:

@@ -18,7 +18,7 @@ from functools import cache
 from math import log
 from typing import Any, NoReturn, Protocol
 
-from verify.cores import jobs
+from verify.cores import jobs, start
 from verify.models import compiling
 from verify.models.compiling import Call
 
@@ -207,11 +207,12 @@ class _Crew:
             with suppress(OSError, ValueError, AttributeError):
                 stream.flush()
         for _ in range(min(self.n, len(self.calls) - 1)):
-            reading, writing = os.pipe()
-            if (child := os.fork()) == 0:
-                self._help(writing)
-            os.close(writing)
-            self.helpers.append((child, reading))
+            self._start_one()
+
+    def _start_one(self) -> None:
+        reading, writing = os.pipe()
+        start(lambda: self._help(writing), lambda child: self.helpers.append((child, reading)))
+        os.close(writing)
 
     def _help(self, writing: int) -> NoReturn:
         """In a helper: compile what nobody has begun, and tell at each what it took."""
