@@ -76,28 +76,33 @@ def ridden(normal, felt=True):
     loads = [(turn, shape(place, 0)) for place, turn in places]
     held, limit, n = normal == "held", MU * MASS * GRAVITY, len(own)
 
+    def lifted(q, x):
+        """How w(X) at X = x + (h/2) w'(x) changes with q: the reaction is square to the surface, and does no more."""
+        at = x + half * (q @ shape(x, 1))
+        return shape(at, 0) + (q @ shape(at, 1)) * half * shape(x, 1)
+
     def contact(y):
         q, qd, x, v = y[:n], y[n : 2 * n], PLACE + y[2 * n], y[2 * n + 1]
         at = x + half * (q @ shape(x, 1))
         along = ((q @ shape(at, 1)) * shape(at, 0) - half * shape(at, 1)) / np.hypot(1.0, q @ shape(at, 1))
-        return q, qd, x, v, at, along
+        return q, qd, x, v, at, along, lifted(q, x)
 
     def across(y):
-        q, qd, x, v, at, _ = contact(y)
+        q, qd, x, v, at, *_ = contact(y)
         carried = v * (1 + half * (q @ shape(x, 2))) + half * (qd @ shape(x, 1))
         return qd @ shape(at, 0) + (q @ shape(at, 1)) * carried
 
     def rates(t, y, reaction):
-        q, qd, _, v, at, along = contact(y)
+        q, qd, _, v, _, along, lift = contact(y)
         friction = -limit * np.tanh(SLOPE * (v - qd @ along))
         push = FORCE * grown(t, hertz) * sum(np.cos(omega * t + turn) * load for turn, load in loads)
-        forces = push - 2 * ZETA * own * qd - own**2 * q - felt * friction * along - reaction * shape(at, 0)
+        forces = push - 2 * ZETA * own * qd - own**2 * q - felt * friction * along - reaction * lift
         lost = 2 * ZETA * own @ qd**2
         powers = [
             push @ qd,
             lost,
             -friction * (along @ qd),
-            -reaction * (shape(at, 0) @ qd),
+            -reaction * (lift @ qd),
             friction * (along @ qd - v),
         ]
         return np.concatenate([qd, forces, [v, friction / MASS], powers])
@@ -114,10 +119,8 @@ def ridden(normal, felt=True):
     y0 = np.zeros(2 * n + 2 + len(LINES))
     y0[2 * n + 1] = SPEED
     if held:  # it lies on the beam that its weight bends; the point under it as the surface has it
-        at = PLACE
         for _ in range(60):
-            y0[:n] = -MASS * GRAVITY * shape(at, 0) / own**2
-            at = PLACE + half * (y0[:n] @ shape(PLACE, 1))
+            y0[:n] = -MASS * GRAVITY * lifted(y0[:n], PLACE) / own**2
     end = solve_ivp(moved, (0, TIME), y0, method="DOP853", rtol=1e-10, atol=1e-17).y[:, -1]
     kept = dict(zip(LINES, (float(one) for one in end[2 * n + 2 :]), strict=True))
     return {"displacement": float(end[2 * n]), "slider": 0.5 * MASS * float(end[2 * n + 1] ** 2 - SPEED**2), **kept}

@@ -36,7 +36,8 @@ from verify.motion.surface_kernels import carried, climbed, material
 def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float) -> Here:
     """How unit forces on the surface at x load every mode: a tangential one -(h/2) on its slope, w' on its rise.
 
-    A normal one acts on its rise.
+    A normal one lifts what stands at x: the surface rises there, and slides under it by (h/2) of the turn over x, on a
+    rise of w'. It is square to the surface so: what acts straight up would make energy of that sliding.
     """
     table, edges, modes = surface.table, surface.edges, surface.modes
     length = edges[piece + 1] - edges[piece]
@@ -46,27 +47,38 @@ def set_levers(surface: Surface, piece: int, local: Array, x: float, half: float
         slope = slope * at + deflection
         deflection = deflection * at + local[STILL, d]
     slope /= length
-    stretch = np.sqrt(1.0 + slope * slope)
+    stretch, above = np.sqrt(1.0 + slope * slope), (x - edges[piece]) / length
+    lean = slope * half / length
     for j in range(modes.shape[1]):
-        value, first = 0.0, 0.0
+        value, first, here, turn = 0.0, 0.0, 0.0, 0.0
         for d in range(table.shape[1] - 1, -1, -1):
             first = first * at + value
             value = value * at + table[piece, d, j]
+            turn = turn * above + here
+            here = here * above + table[piece, d, j]
         modes[LEVER, j] = (slope * value - half * first / length) / stretch
-        modes[LIFT, j] = value
-    return Here(piece, at, slope)
+        modes[LIFT, j] = value + lean * turn
+    return Here(piece, at, above, slope)
 
 
 @part(fastmath=FAST)
 def set_reads(surface: Surface, piece: int, local: Array, x: float, half: float) -> None:
-    """The deflection of every mode under the slider at x."""
+    """How far every mode lifts the slider at x, with what slides under it."""
     table, edges, modes = surface.table, surface.edges, surface.modes
+    length = edges[piece + 1] - edges[piece]
     at = material(local, edges, piece, x, half)
+    slope, deflection = 0.0, 0.0
+    for d in range(table.shape[1] - 1, -1, -1):
+        slope = slope * at + deflection
+        deflection = deflection * at + local[STILL, d]
+    above, lean = (x - edges[piece]) / length, slope * half / (length * length)
     for j in range(modes.shape[1]):
-        value = 0.0
+        value, here, turn = 0.0, 0.0, 0.0
         for d in range(table.shape[1] - 1, -1, -1):
             value = value * at + table[piece, d, j]
-        modes[READ, j] = value
+            turn = turn * above + here
+            here = here * above + table[piece, d, j]
+        modes[READ, j] = value + lean * turn
 
 
 @part(fastmath=FAST)
@@ -188,7 +200,7 @@ def push_back(
     along, up = _given_ways(modes)
     way, climb = carried(space.local, surface.edges, here, law.half) - along, 0.0
     if law.held:
-        climb = climbed(space.local, here.at) - up
+        climb = climbed(space.local, surface.edges, here, law.half) - up
         normal -= per_push * force
         _bear(normal, dt, rider)
     _press(-force, -normal, modes)

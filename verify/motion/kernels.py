@@ -147,7 +147,7 @@ def _step(
     """
     motion, law, seen = rider.motion, rider.law, space.seen
     x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
-    here, pressed, lifted, x1, v1, rate, along = Here(piece, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0
+    here, pressed, lifted, x1, v1, rate, along = Here(piece, 0.0, 0.0, 0.0), 0.0, 0.0, x, v, 0.0, 0.0
     for row in range(1 if looking else 3):
         t = 0.5 * row * dt
         if row > 0:

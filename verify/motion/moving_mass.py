@@ -29,12 +29,16 @@ def receptance(basis: TimeBasis, x: float, omega: float, damping: float) -> comp
 
 
 def weighed_down(basis: TimeBasis, x: float, load: float) -> Array:
-    """Modes of a beam at rest under a weight on its surface at x, (n,): it acts at the material x + (h/2) w' there."""
-    at, half = x, basis.beam.surface_distance
+    """Modes of a beam at rest under a weight on its surface at x, (n,): it acts at the material x + (h/2) w' there.
+
+    Square to the surface, so that it also turns what is under it, by (h/2) w'.
+    """
+    half, here = basis.beam.surface_distance, basis.shapes(np.array([x]), 1)[:, 0]
     still = np.zeros(len(basis.omegas))
     for _ in range(PASSES):
-        still = -load * basis.shapes(np.array([at]), 0)[:, 0] / basis.omegas**2
-        at = min(max(x + half * float(still @ basis.shapes(np.array([x]), 1)[:, 0]), 0.0), basis.beam.length)
+        at = np.array([min(max(x + half * float(still @ here), 0.0), basis.beam.length)])
+        lean = half * float(still @ basis.shapes(at, 1)[:, 0])
+        still = -load * (basis.shapes(at, 0)[:, 0] + lean * here) / basis.omegas**2
     return np.asarray(still)
 
 

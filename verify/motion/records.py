@@ -150,6 +150,8 @@ class Here(NamedTuple):
     piece: int
     at: float
     """On the piece, 0 to 1."""
+    above: float
+    """Where the slider itself is, on the piece: the material is (h/2) w' beyond."""
     slope: float
     """w'."""
 

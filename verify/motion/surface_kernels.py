@@ -139,9 +139,12 @@ def carried(local: Array, edges: Array, here: Here, half: float) -> float:
 
 
 @part()
-def climbed(local: Array, at: float) -> float:
-    """How far the whole motion lifts the surface in a step, at `at`, metres."""
-    value = 0.0
+def climbed(local: Array, edges: Array, here: Here, half: float) -> float:
+    """How far the whole motion lifts in a step what stands on the surface here, metres."""
+    value, over, turn = 0.0, 0.0, 0.0
     for d in range(local.shape[1] - 1, -1, -1):
-        value = value * at + local[STILL, d] - local[BEFORE, d]
-    return float(value)
+        change = local[STILL, d] - local[BEFORE, d]
+        value = value * here.at + change
+        turn = turn * here.above + over
+        over = over * here.above + change
+    return float(value + here.slope * half * turn / (edges[here.piece + 1] - edges[here.piece]))
