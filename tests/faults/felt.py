@@ -1,0 +1,148 @@
+"""Faults that rows of bodies on links, stacks, coils and of refusals by every verb have to find."""
+
+from faults.stress import unchecked
+from msgspec.structs import replace
+
+from verify.chain import modes as chain_modes
+from verify.chain import problems, ride, small_motion, stepping
+from verify.chain.result import ChainMotion
+from verify.chain.stretching import ElasticMotion
+from verify.chain.system import Rotation
+from verify.contact import landing
+from verify.elements import stacks as element_stacks
+from verify.exact import modes as exact_modes
+from verify.models import driven_pencil, fields
+from verify.motion import surface
+from verify.segments import attached, carried, loaded
+from verify.segments import linear as segment_linear
+from verify.segments import stacks as segment_stacks
+
+
+def a_lever_for_every_body(patch):
+    patch.setattr(attached, "is_mended", lambda rule, n: False)
+
+
+def links_taken_for_alike(patch):
+    true = attached.places_on
+
+    def alike(*given):
+        links, on, even = true(*given)
+        return links, on, even | True
+
+    patch.setattr(attached, "places_on", alike)
+
+
+def slips_that_weigh_twice(patch):
+    true = loaded._over_slips
+    patch.setattr(loaded, "_over_slips", lambda chain, masses: 2.0 * true(chain, masses))
+
+
+def turning_links_weigh_more(patch):
+    true = loaded._weighed
+    patch.setattr(loaded, "_weighed", lambda *given: 1.0001 * true(*given))
+
+
+def walls_without_excess(patch):
+    patch.setattr(carried, "tension_excess", lambda wall: 0.0)
+
+
+def walls_without_factors(patch):
+    true = loaded.curvatures
+    patch.setattr(loaded, "curvatures", lambda chain, free: 1.01 * true(chain, free))
+
+
+def loads_in_phase(patch):
+    true = ride._on_joints
+    patch.setattr(ride, "_on_joints", lambda system, load: abs(true(system, load)))
+
+
+def flutter_unseen(patch):
+    patch.setattr(small_motion, "STRAYED", 1.0)
+
+
+def resonances_of_the_mode_before(patch):
+    true = driven_pencil.refuse_resonance
+    patch.setattr(
+        driven_pencil, "refuse_resonance", lambda model, hertz, mode, *more: true(model, hertz, mode - 1, *more)
+    )
+
+
+def waves_a_little_short(patch):
+    true = fields.wavenumber
+    patch.setattr(fields, "wavenumber", lambda *given: (1.0 + 1e-9) * true(*given))
+
+
+def forces_felt_a_little_more(patch):
+    true = surface._stage
+
+    def felt(*given):
+        stage = true(*given)
+        return replace(stage, load_rows=lambda position: 1.001 * stage.load_rows(position))
+
+    patch.setattr(surface, "_stage", felt)
+
+
+def stacks_a_little_heavy(patch):
+    for room, name in ((element_stacks, "element_stack"), (segment_stacks, "chain_stack")):
+        true = getattr(room, name)
+
+        def heavy(*given, _true=true, **more):
+            stack = _true(*given, **more)
+            return replace(stack, mass=1.0001 * stack.mass)
+
+        patch.setattr(room, name, heavy)
+
+
+def duals_a_little_long(patch):
+    true = chain_modes._duals
+    patch.setattr(chain_modes, "_duals", lambda *given: 1.0001 * true(*given))
+
+
+def bends_of_whole_turns(patch):
+    true = ElasticMotion._elastic
+    patch.setattr(ElasticMotion, "_elastic", lambda motion: 1.0001 * true(motion))
+
+
+def coils_read_across(patch):
+    patch.setattr(ChainMotion, "points", lambda motion, x: motion.deflection(x)[:, :, None].repeat(2, axis=2))
+
+
+def hubs_by_their_offset(patch):
+    patch.setattr(Rotation, "constant", property(lambda turn: turn.offset))
+
+
+def half_the_step(patch):
+    true = stepping.step_limit
+    patch.setattr(stepping, "step_limit", lambda *given: 0.5 * true(*given))
+
+
+def landings_a_little_late(patch):
+    true = landing.contact_time
+    patch.setattr(landing, "contact_time", lambda ratio: 1.0001 * true(ratio))
+
+
+FAULTS = {
+    "stress": {
+        a_lever_for_every_body: {"bodies-on-joints"},
+        links_taken_for_alike: {"bodies-on-unlike-links"},
+        slips_that_weigh_twice: {"matrices-of-loaded-chains"},
+        turning_links_weigh_more: {"matrices-of-loaded-chains"},
+        walls_without_excess: {"mended-chains"},
+        walls_without_factors: {"readings-of-mended-chains"},
+        loads_in_phase: {"riders-felt"},
+        flutter_unseen: {"flutter-where-it-is"},
+        resonances_of_the_mode_before: {"resonances-by-name"},
+        waves_a_little_short: {"wavenumbers-by-states"},
+        forces_felt_a_little_more: {"felt-as-read"},
+        stacks_a_little_heavy: {"carrying-beams-at-once-elements", "carrying-beams-at-once-segments"},
+        duals_a_little_long: {"modes-of-long-chains"},
+        bends_of_whole_turns: {"coils-that-stretch"},
+        coils_read_across: {"coils"},
+        hubs_by_their_offset: {"hubs-that-stand"},
+        half_the_step: {"limits-of-rk4"},
+        landings_a_little_late: {"landings"},
+        unchecked(segment_linear, "check"): {"refused-by-every-verb"},
+        unchecked(exact_modes, "check_mode"): {"refused-numbers"},
+        unchecked(problems, "check_links"): {"refused-chain-numbers"},
+    }
+}
