@@ -11,8 +11,9 @@ from verify.chain.system import Rotation
 from verify.contact import landing
 from verify.elements import stacks as element_stacks
 from verify.exact import modes as exact_modes
-from verify.models import driven_pencil, fields
-from verify.motion import surface
+from verify.models import driven_pencil, eigen, fields
+from verify.models.modes import Modes
+from verify.motion import simulate, surface, validity
 from verify.segments import attached, carried, loaded
 from verify.segments import linear as segment_linear
 from verify.segments import stacks as segment_stacks
@@ -121,8 +122,42 @@ def landings_a_little_late(patch):
     patch.setattr(landing, "contact_time", lambda ratio: 1.0001 * true(ratio))
 
 
+def a_loss_factor_of_half(patch):
+    true = simulate._damping_notes
+    patch.setattr(simulate, "_damping_notes", lambda *given: [one.replace("0.0", "0.1") for one in true(*given)])
+
+
+def margins_of_the_mode_above(patch):
+    true = validity.nearest_mode
+    patch.setattr(validity, "nearest_mode", lambda *given: true(*given) + 1)
+
+
+def fields_estimated_by_half(patch):
+    true = eigen.field_seconds
+    patch.setattr(eigen, "field_seconds", lambda n: 0.5 * true(n))
+
+
+def links_read_after_their_joints(patch):
+    true = segment_linear._link_reading
+    patch.setattr(
+        segment_linear,
+        "_link_reading",
+        lambda chain, free, x, derivative: true(chain, free, x + 0.01 * chain.unit, derivative),
+    )
+
+
+def slopes_a_little_steep(patch):
+    true = Modes.slope
+    patch.setattr(Modes, "slope", lambda modes, x: 1.001 * true(modes, x))
+
+
 FAULTS = {
     "stress": {
+        a_loss_factor_of_half: {"damping-as-told"},
+        margins_of_the_mode_above: {"margins-of-runs"},
+        fields_estimated_by_half: {"estimates-as-measured"},
+        links_read_after_their_joints: {"links-as-they-stand"},
+        slopes_a_little_steep: {"read-by-name"},
         a_lever_for_every_body: {"bodies-on-joints"},
         links_taken_for_alike: {"bodies-on-unlike-links"},
         slips_that_weigh_twice: {"matrices-of-loaded-chains"},

@@ -46,6 +46,7 @@ def light():
         "felt",
         "stacked",
         "coiled",
+        "said",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

@@ -268,13 +268,17 @@ def wavenumber_error(hertz: float) -> float:
     worst, bare = 0.0, replace(PLAIN, supports=("pinned", "pinned"))
     cases = [(bare, theory) for theory in ("euler-bernoulli", "rayleigh", "timoshenko")]
     cases += [(replace(bare, tension=70.0, foundation=0.2), "euler-bernoulli")]
-    cases += [(replace(bare, foundation=0.2), "timoshenko")]
+    cases += [(replace(bare, foundation=0.2), "timoshenko"), (replace(bare, foundation=1e9), "euler-bernoulli")]
     for beam, theory in cases:
         for loss in (0.0, 0.037):
             lossy = replace(beam, loss_factor=loss)
             k = wavenumber(lossy, hertz, theory)
             rates = np.linalg.eigvals(States(lossy, theory, (2.0 * pi * hertz) ** 2).rates[0]) / lossy.length
-            worst = max(worst, float(abs(rates + 1j * k).min() / abs(k)), float(k.imag > 0.0 or k.real <= 0.0))
+            worst = max(
+                worst,
+                float(abs(rates + 1j * k).min() / abs(k)),
+                float(k.imag > 0.0 or k.real < 0.0 or not (k.real or beam.foundation > 1.0)),
+            )
     reach = min(sqrt(bare.wave_constant / (2.0 * pi * hertz)), bare.length)
     return max(worst, abs(unit_response(bare, hertz) / (reach**3 / bare.bending_stiffness) - 1.0))
 
