@@ -4,19 +4,21 @@ from faults.stress import unchecked
 from msgspec.structs import replace
 
 from verify.chain import modes as chain_modes
-from verify.chain import problems, ride, small_motion, stepping
+from verify.chain import problems, ride, small_motion, statics, stepping
 from verify.chain.result import ChainMotion
 from verify.chain.stretching import ElasticMotion
 from verify.chain.system import Rotation
 from verify.contact import landing
 from verify.elements import stacks as element_stacks
 from verify.exact import modes as exact_modes
+from verify.judge import bracket, sizing, variants
 from verify.models import driven_pencil, eigen, fields
 from verify.models.modes import Modes
-from verify.motion import simulate, surface, validity
+from verify.motion import simulate, step_size, surface, validity
 from verify.segments import attached, carried, loaded
 from verify.segments import linear as segment_linear
 from verify.segments import stacks as segment_stacks
+from verify.waves import absorber, operating_point
 
 
 def a_lever_for_every_body(patch):
@@ -151,8 +153,56 @@ def slopes_a_little_steep(patch):
     patch.setattr(Modes, "slope", lambda modes, x: 1.001 * true(modes, x))
 
 
+def steps_of_a_tenth_missed(patch):
+    patch.setattr(step_size, "UNSEEN", 0.1)
+
+
+def turning_the_other_way(patch):
+    true = statics.gyroscopic
+    patch.setattr(statics, "gyroscopic", lambda *given: -true(*given))
+
+
+def a_wall_at_every_end(patch):
+    patch.setattr(variants, "has_wall", lambda beam: True)
+
+
+def orders_of_four(patch):
+    patch.setattr(variants.Variant, "order", lambda variant, beam: 4)
+
+
+def brackets_a_little_wide(patch):
+    patch.setattr(bracket.Bracket, "relative_width", property(lambda found: 1.001 * found.upper / found.lower - 1.001))
+
+
+def sizes_of_one_part_more(patch):
+    true = sizing.enough_from
+
+    def more(*given):
+        found = true(*given)
+        return replace(found, count=found.count + 1)
+
+    patch.setattr(sizing, "enough_from", more)
+
+
+def ends_unsaid(patch):
+    patch.setattr(operating_point, "edge_note", lambda *given: "")
+
+
+def a_dashpot_too_stiff(patch):
+    true = absorber.best_dashpot
+    patch.setattr(absorber, "best_dashpot", lambda own: (1.1 * true(own)[0], true(own)[1]))
+
+
 FAULTS = {
     "stress": {
+        steps_of_a_tenth_missed: {"steps-as-chosen"},
+        turning_the_other_way: {"turning-forces"},
+        a_wall_at_every_end: {"rules-of-a-beam"},
+        orders_of_four: {"names-of-rules"},
+        brackets_a_little_wide: {"brackets-by-dispersion"},
+        sizes_of_one_part_more: {"sizes-side-by-side"},
+        ends_unsaid: {"searches-that-end"},
+        a_dashpot_too_stiff: {"absorbers"},
         a_loss_factor_of_half: {"damping-as-told"},
         margins_of_the_mode_above: {"margins-of-runs"},
         fields_estimated_by_half: {"estimates-as-measured"},

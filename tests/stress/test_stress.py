@@ -47,6 +47,7 @@ def light():
         "stacked",
         "coiled",
         "said",
+        "verdicts",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

@@ -15,6 +15,8 @@ from verify.stress.kind import Floor, Row
 FORCES = (PointForce(position=0.2, amplitude=0.7),)
 HERTZ, COUNT = 131.0, 9
 LOSS = 0.03
+UNSEEN, STICKY = 1e-4, 0.1
+"""What steps may miss of the surface's speed, and of friction's own rate in one."""
 DAMPINGS: tuple[tuple[str, float, float | None, str, str], ...] = (
     ("rest", 0.0, None, "", ""),
     ("rest", 0.0, 0.02, "a ratio 0.02 of every mode", "a ratio 0.02 of every mode"),
@@ -134,6 +136,51 @@ def estimates_error(parts: float) -> float:
     return float(wrong)
 
 
+def steps_error(step: float) -> float:
+    """Of the speeds by which a run's steps are chosen, and of the steps, of halves of one: by modes one by one.
+
+    Too long ones that are given are told with the figure, of friction that is too steep for them too.
+    """
+    from verify.models.catalogue import MODELS
+    from verify.motion.carried import _in_steps
+    from verify.motion.contact import Coupling
+    from verify.motion.request import Driven, Modelled, Started, Watched, requested
+    from verify.motion.step_size import gripped_step, longest_step, missed, speeds
+    from verify.motion.surface import stages_from_rest
+    from verify.slider import Slider
+
+    slider, omega = Slider(mass=0.004, mu=0.4, position=0.3, slope=300.0), 2.0 * pi * HERTZ
+    given = [Watched((), 3, one, 100, False) for one in (None, step)]
+    how = (Driven(STRIP, FORCES, HERTZ, 0.01), Modelled("fem", 13, 26, 0.0), Started("rest", 0.0, (), None))
+    free, kept = (requested(*how, watched, slider) for watched in given)
+    basis = MODELS["fem"].time_basis(STRIP, 13, 26, "spline")
+    stages = stages_from_rest(basis, FORCES, omega, 0.0, kept.pieces, 0.0)
+    n, none = np.arange(1.0, len(basis.omegas) + 1.0), np.zeros(len(basis.omegas))
+    z, dt = stages[0].start(none, none), stages[0].dt
+    q = 0.7 * basis.loads(0.2) / (basis.omegas**2 - omega**2)
+    turning, driven = n * pi / STRIP.length, omega * sqrt(float(((q * n * pi / STRIP.length) ** 2).sum()))
+    own: tuple[Array, Array, float] = (basis.omegas, basis.omegas * abs(q) * turning, driven)
+    found = zip(speeds(stages, z, STRIP.length), own, strict=True)
+    worst = max(float(np.max(abs(np.asarray(a) / np.asarray(b) - 1.0))) for a, b in found)
+    halves = dt * 0.5 ** np.arange(40)
+    enough = next(one for one in halves if missed(*own, one) <= UNSEEN)
+    fastest, rate = float(basis.omegas[-1]), 300.0 * 0.4 * 9.81
+    grip = next(one for one in halves if fastest * one <= pi or rate * one <= STICKY)
+    wrong = longest_step(stages, z, STRIP.length, dt) != enough
+    wrong += gripped_step(stages, rate, dt) != grip
+    coupling = Coupling(two_way=True, friction_size=1.0, normal_size=1.0, normal="massless", forced=True)
+    same, said = _in_steps(kept, stages, z, coupling)
+    part = 100.0 * missed(*own, dt)
+    told = (f"{dt / enough:.3g} times too long", f"misses {part:.2g} % of", f"give at most {enough:.2g} s")
+    wrong += same[0].dt != dt or (enough < dt) != any(all(word in note for word in told) for note in said)
+    wrong += (grip < dt) != any("half a turn" in note and f"at most {grip:.2g} s" in note for note in said)
+    laid = stages_from_rest(basis, FORCES, omega, 0.0, free.pieces, 0.0)
+    chosen, quiet = _in_steps(free, laid, z, coupling)
+    wrong += bool(quiet) or chosen[0].dt > min(longest_step(laid, z, STRIP.length, laid[0].dt), laid[0].dt)
+    wrong += abs(chosen[0].duration - 0.01) > 1e-12 or (fastest * chosen[0].dt > pi and rate * chosen[0].dt > STICKY)
+    return max(worst, float(wrong))
+
+
 THICK = replace(PLAIN, shear_stiffness=900.0, loss_factor=0.02, supports=("clamped", "free"))
 
 
@@ -211,6 +258,15 @@ ROWS: tuple[Row, ...] = (
         at=(50, 900),
         promise=0.5,
         error=estimates_error,
+    ),
+    Floor(
+        id="steps-as-chosen",
+        title="Speeds by which steps are chosen, the longest that will do of one's halves, and what is said of others",
+        why="motion/step_size.py: modes one by one; halves.",
+        along="s",
+        at=(1e-6, 3e-4, 1.7e-3),
+        promise=1e-9,
+        error=steps_error,
     ),
     Floor(
         id="links-as-they-stand",
