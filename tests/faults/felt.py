@@ -1,5 +1,6 @@
 """Faults that rows of bodies on links, stacks, coils and of refusals by every verb have to find."""
 
+import numpy as np
 from faults.stress import unchecked
 from msgspec.structs import replace
 
@@ -9,6 +10,7 @@ from verify.chain.result import ChainMotion
 from verify.chain.stretching import ElasticMotion
 from verify.chain.system import Rotation
 from verify.contact import landing
+from verify.elements import shear
 from verify.elements import stacks as element_stacks
 from verify.exact import modes as exact_modes
 from verify.judge import bracket, sizing, variants
@@ -18,7 +20,8 @@ from verify.motion import simulate, step_size, surface, validity
 from verify.segments import attached, carried, loaded
 from verify.segments import linear as segment_linear
 from verify.segments import stacks as segment_stacks
-from verify.waves import absorber, operating_point
+from verify.waves import absorber, devices, imposed, operating_point
+from verify.waves import measures as wave_measures
 
 
 def a_lever_for_every_body(patch):
@@ -193,8 +196,37 @@ def a_dashpot_too_stiff(patch):
     patch.setattr(absorber, "best_dashpot", lambda own: (1.1 * true(own)[0], true(own)[1]))
 
 
+def bends_of_no_shear(patch):
+    true = shear.sheared
+    patch.setattr(shear, "sheared", lambda xi, derivative: true(xi, min(derivative, 1)))
+
+
+def drift_by_its_height(patch):
+    true = loaded._rigid
+    patch.setattr(loaded, "_rigid", lambda chain: true(chain) + np.linspace(0.0, 0.1, len(true(chain)))[:, None])
+
+
+def areas_of_the_other_sign(patch):
+    true = wave_measures.ellipse
+
+    def other(*given):
+        ratio, tilt, area = true(*given)
+        return ratio, tilt, -area
+
+    patch.setattr(wave_measures, "ellipse", other)
+
+
+def devices_that_resonate(patch):
+    patch.setattr(devices, "DevicesResonanceError", ValueError)
+
+
 FAULTS = {
     "stress": {
+        bends_of_no_shear: {"derivatives-by-differences"},
+        drift_by_its_height: {"beams-that-drift"},
+        areas_of_the_other_sign: {"ellipses-seen-in-time"},
+        unchecked(imposed, "check_held"): {"gaps-of-maps"},
+        devices_that_resonate: {"resonances-with-devices"},
         steps_of_a_tenth_missed: {"steps-as-chosen"},
         turning_the_other_way: {"turning-forces"},
         a_wall_at_every_end: {"rules-of-a-beam"},

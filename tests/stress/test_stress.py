@@ -48,6 +48,7 @@ def light():
         "coiled",
         "said",
         "verdicts",
+        "readings",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
