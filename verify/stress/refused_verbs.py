@@ -34,7 +34,7 @@ FORCES, OFF = (PointForce(position=0.2),), (PointForce(position=0.7301),)
 FREE = held("free", "free")
 BUCKLED = replace(STRIP, tension=-1e6)
 ONE, PLACES = np.array([37.0]), np.array([0.3])
-MANY = np.broadcast_to(37.0, 20_000_001)
+MANY = np.broadcast_to(37.0, 3_300_000)
 SIZES: tuple[tuple[str, int | None], ...] = (("segment", 9), ("fem", 9), ("analytic", None))
 PARTS = SIZES[:2]
 SLIDER = Slider(mass=0.01, mu=0.3)
@@ -93,7 +93,7 @@ def of_models() -> Iterator[Case]:
     """Forces off the beam, more figures than are kept, dense modes of too many unknowns, sizes, settings."""
     for model, count in SIZES:
         yield Case("force.position = 0.7301", swept(model, count, forces=OFF), swept(model, count))
-        yield Case("frequencies_hz: 20000001", swept(model, count, MANY))
+        yield Case("frequencies_hz: 3300000", swept(model, count, MANY))
     for model, count in PARTS:
         unknowns = {"segment": 1199, "fem": 2400}[model]
         for ask in (swept, driven):
