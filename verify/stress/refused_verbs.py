@@ -165,7 +165,7 @@ def of_contacts() -> Iterator[Case]:
     yield Case("contact_half_angle = nan", lambda: layer.no_load_speed(nan))
     yield Case("contact_half_angle = nan", lambda: layer.efficiency(nan, 0.1))
     stuck = partial(rigid_surface.stick_slip_times, 0.01, 100.0)
-    yield Case("kinetic = 2.0 is not below", partial(stuck, 1.0, 2.0, 0.1), partial(stuck, 2.0, 1.0, 0.1))
+    yield Case("kinetic = 2.0 is not below", partial(stuck, 1.0, 2.0, 0.1))
     settled = partial(pure_wave.terminal_speed, STRIP)
     yield Case("amplitude = 0.0", partial(settled, SLIDER, 0.0, 9100.0))
     yield Case("slider.contact", partial(settled, replace(SLIDER, contact=_hard()), 1e-6, 9100.0))
