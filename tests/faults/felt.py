@@ -5,7 +5,7 @@ from faults.stress import unchecked
 from msgspec.structs import replace
 
 from verify.chain import modes as chain_modes
-from verify.chain import problems, ride, small_motion, statics, stepping
+from verify.chain import problems, ride, small_motion, splitting, statics, stepping
 from verify.chain.result import ChainMotion
 from verify.chain.stretching import ElasticMotion
 from verify.chain.system import Rotation
@@ -220,8 +220,28 @@ def devices_that_resonate(patch):
     patch.setattr(devices, "DevicesResonanceError", ValueError)
 
 
+def springs_that_lose(patch):
+    true = loaded.lossy_stiffness
+    patch.setattr(
+        loaded, "lossy_stiffness", lambda chain, *given: true(replace(chain, end_compliances=(0.0, 0.0)), *given)
+    )
+
+
+def spins_that_stop(patch):
+    true = splitting._turns
+
+    def stopped(*given):
+        turns = true(*given)
+        turns[:, np.asarray(given[0]) == 0.0, 1] = 0.0
+        return turns
+
+    patch.setattr(splitting, "_turns", stopped)
+
+
 FAULTS = {
     "stress": {
+        springs_that_lose: {"losses-of-the-beam-alone"},
+        spins_that_stop: {"chains-that-drift"},
         bends_of_no_shear: {"derivatives-by-differences"},
         drift_by_its_height: {"beams-that-drift"},
         areas_of_the_other_sign: {"ellipses-seen-in-time"},

@@ -39,6 +39,17 @@ def all_modes_error(links: float) -> float:
     return worst
 
 
+def drift_error(seconds: float) -> float:
+    """Of a hinged chain that spins about its hinge, by the linear chain's flow: joints in line, as far as it spins."""
+    from verify.chain.splitting import modal_basis, simulate_linear
+
+    spin, system = 0.7, build_system(held("pinned", "free"), LINKS)
+    start = ChainState(np.zeros(LINKS), np.append(spin, np.zeros(LINKS - 1)))
+    found = simulate_linear(modal_basis(system), start, [0.4 * seconds, seconds])
+    turned = np.outer([0.4 * seconds, seconds], np.append(spin, np.zeros(LINKS - 1)))
+    return float(abs(found.angles - turned).max() / abs(turned).max())
+
+
 # --- Coils ------------------------------------------------------------------------------------------------------------
 
 
@@ -227,6 +238,16 @@ ROWS: tuple[Row, ...] = (
         at=(7, 12),
         promise=1e-9,
         error=all_modes_error,
+        kernels=warm.accelerations,
+    ),
+    Floor(
+        id="chains-that-drift",
+        title="A hinged chain that spins about its hinge by the linear flow, as far as it spins",
+        why="chain/splitting.py: what no spring holds goes on; a root of rounding may swing instead.",
+        along="s",
+        at=(0.01, 0.1),
+        promise=1e-6,
+        error=drift_error,
         kernels=warm.accelerations,
     ),
     Floor(

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.attached import PointMass
+from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.stress.beams import STRIP, held
 from verify.stress.kind import Floor, Row
@@ -89,6 +89,27 @@ def gaps_error(share: float) -> float:
     return float(np.isfinite(found[0]).any()) + float(not np.isfinite(found[1:]).all())
 
 
+LOSSY: tuple[tuple[Beam, dict[str, Any]], ...] = (
+    (replace(STRIP, spring=(PointSpring(position=0.73, rotational=9.0),), tension=30.0), {}),
+    (replace(STRIP, spring=(PointSpring(position=0.0, rotational=4.0),)), {"joints": "tensioned"}),
+    (replace(held("clamped", "free"), tension=60.0, foundation=300.0), {"joints": "tensioned"}),
+)
+
+
+def lossy_error(parts: float) -> float:
+    """Of fields of links whose beam loses much, and whose springs, ground and tension lose nothing, by exact ones."""
+    from verify.exact.harmonic import solve_harmonic
+    from verify.models.catalogue import MODELS
+
+    worst, forces = 0.0, (PointForce(position=0.23, phase_deg=40.0),)
+    for beam, given in LOSSY:
+        lossy = replace(beam, loss_factor=0.3)
+        exact = solve_harmonic(lossy, forces, 31.0).deflection(PLACES)
+        found = MODELS["segment"].solve_harmonic(lossy, forces, 31.0, int(parts), **given).deflection(PLACES)
+        worst = max(worst, float(abs(found - exact).max() / abs(exact).max()) * parts**2)
+    return worst
+
+
 def devices_error(stiffness: float) -> float:
     """How often a beam is driven where it resonates with its device, and not where it does alone; field there."""
     from scipy.optimize import brentq
@@ -161,6 +182,15 @@ ROWS: tuple[Row, ...] = (
         at=(1e-6, 1e-3),
         promise=0.5,
         error=gaps_error,
+    ),
+    Floor(
+        id="losses-of-the-beam-alone",
+        title="Fields of links whose beam loses 0.3 and whose end springs, ground and tension lose nothing, times N^2",
+        why="segments/loaded.py: what is part of a joint and no beam has no loss; tension leaves order 2.",
+        along="parts",
+        at=(20, 40),
+        promise=0.4,
+        error=lossy_error,
     ),
     Floor(
         id="resonances-with-devices",
