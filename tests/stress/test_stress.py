@@ -43,8 +43,14 @@ def light():
         "waves",
         "choices",
         "rules",
+        "felt",
+        "stacked",
+        "coiled",
+        "said",
+        "verdicts",
+        "readings",
     )
-    families += ("refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
+    families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
     every = [one for name in families for one in import_module(f"verify.stress.{name}").ROWS]
     return [one.id for one in every if one.quick and one.id not in slow]

@@ -234,12 +234,9 @@ def _steady_at(basis: ModalBasis, times: Array) -> Array:
 
 def linear_states(basis: ModalBasis, free: Array, since: Array, times: Array, which: Any) -> Array:
     """Modal states of some modes by the exact linear flow of `free`, (n, len(which), 2)."""
-    omega = basis.omega[which]
-    turns = np.outer(since, omega)
-    c, s = np.cos(turns), np.sin(turns)
-    sinc = np.where(omega > 0.0, s / np.where(omega > 0.0, omega, 1.0), since[:, None])
+    cosine, sine, falling = np.moveaxis(_turns(basis.omega[which], since), 2, 0)
     x, y = free[which].T
-    flow = np.stack([c * x + sinc * y, c * y - omega * s * x], axis=2)
+    flow = np.stack([cosine * x + sine * y, cosine * y + falling * x], axis=2)
     return np.asarray(_steady_at(basis, times)[:, which] + flow)
 
 

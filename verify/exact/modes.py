@@ -81,6 +81,7 @@ def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0, theory: s
     rotary inertia too. By Timoshenko's theory the deflection, and the slope of its line, not the section's turn.
     Raises InputError.
     """
+    check_mode(mode)
     return np.asarray(_shapes(beam, (mode,), x, derivative, theory)[0])
 
 
@@ -108,8 +109,6 @@ def _general(beam: Beam, modes: Sequence[int], x: Array, derivative: int, theory
     """Shapes without closed form."""
     from verify.exact.shapes import general_shapes
 
-    for mode in modes:
-        check_mode(mode)
     check_theory(beam, theory)
     check_stable(beam)
     return general_shapes(beam, modes, x, derivative, theory)
