@@ -253,7 +253,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "wave.energy_flux",
         "W",
-        "Power carried towards +x through the middle of the window.",
+        "Power carried towards +x through the middle of the window by the two waves that fit it.",
         InWindow,
         "harmonic",
         _figure("energy_flux"),

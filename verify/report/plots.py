@@ -123,8 +123,8 @@ def _map_words(found: Map, chart: Chart) -> str:
     if not cells:
         return f"No point has a {found.name}."
     return " ".join(
-        f"The {word} {found.name} is {number(value, 4)}, at {chart.x.title} {number(x, 5)} and {chart.y.title} "
-        f"{number(y, 4)}."
+        f"The {word} {found.name} is {number(value, 4)}{' or more' if value == found.most else ''}, at {chart.x.title} "
+        f"{number(x, 5)} and {chart.y.title} {number(y, 4)}."
         for word, (value, x, y) in (("least", min(cells)), ("largest", max(cells)))
     )
 

@@ -71,12 +71,12 @@ def unlike_error(share: float) -> float:
     nodes, worst = chain.nodes, 0.0
     for link in (1, 5, LINKS - 2):
         at = float(nodes[link] + share * (nodes[link + 1] - nodes[link]))
-        turned = felt_at(chain, at, "reciprocal")[1]
+        turned = felt_at(chain, [at], "reciprocal")[1][0]
         tilts = np.diff((nodes - 0.1) ** 2) / np.diff(nodes)
         worst = max(worst, abs(float(turned @ tilts) / (2.0 * (at - 0.1)) - 1.0))
-        weights, turned = felt_at(chain, at, "lever")
+        (weights,), (turned,) = felt_at(chain, [at], "lever")
         worst = max(worst, abs(float(weights @ nodes) / at - 1.0), abs(float(turned[link]) - 1.0))
-        weights, turned = felt_at(chain, float(nodes[link]), "lever")
+        (weights,), (turned,) = felt_at(chain, [float(nodes[link])], "lever")
         off = max(abs(turned[link - 1 : link + 1] - 0.5))
         worst = max(worst, float(off), abs(float(weights[link]) - 1.0), abs(float(turned.sum()) - 1.0))
     return worst

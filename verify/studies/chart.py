@@ -74,6 +74,8 @@ class Map(msgspec.Struct, frozen=True, kw_only=True):
     y: tuple[float, ...]
     values: tuple[Numbers, ...]
     """A row for each y."""
+    most: float | None = None
+    """What stands for all larger values too, where they are cut off."""
 
 
 class Mark(msgspec.Struct, frozen=True):

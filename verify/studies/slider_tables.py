@@ -65,7 +65,8 @@ def work_table(work: "Work") -> Table:
         notes=(
             "Errors against the exact beam at the same step, half of which changes it by "
             f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond, its spread, and set-up "
-            "(modes, tables, margins): processor time in one thread, medians of interleaved rounds.",
+            "(modes, tables, margins): processor time in one thread, medians of interleaved rounds. All of it one-way: "
+            "the beam does not feel the slider.",
         ),
     )
 

@@ -109,7 +109,8 @@ def _marked(point: "OperatingPoint", symbol: Marker) -> Line:
 def _map(study: "WaveFound") -> Chart:
     found = study.map
     name = found.quantity.removeprefix("wave.").replace("_", " ").capitalize()
-    values = np.clip(found.values.T, None, CLIPPED) if found.quantity == "wave.standing_wave_ratio" else found.values.T
+    most = CLIPPED if found.quantity == "wave.standing_wave_ratio" else None
+    values = found.values.T if most is None else np.clip(found.values.T, None, most)
     marks: tuple[Marker, ...] = ("circle", "star")
     return Chart(
         id="wave-map",
@@ -122,6 +123,7 @@ def _map(study: "WaveFound") -> Chart:
             x=tuple(map(float, found.axes[0].values)),
             y=tuple(float(phase - study.first_phase_deg) for phase in found.axes[1].values),
             values=tuple(numbers(row) for row in values),
+            most=most,
         ),
         lines=tuple(_marked(point, symbol) for point, symbol in zip(study.points, marks, strict=False)),
     )

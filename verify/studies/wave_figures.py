@@ -282,7 +282,9 @@ def wave_study(scene: "Scene", bench: "Workbench", asked: "Wave", progress: Prog
     chosen: dict[str, Any] = {"model": model, "loss_factor": eta} | ({"count": count} if count else {})
     assert scene.drive is not None
     span = asked.frequency_hz or around(scene.drive.frequency_hz, MAP_STEPS)
-    axes = (Axis("frequency_hz", _steps(span)), Axis("phase_deg", _steps(asked.phase_deg)))
+    # an axis of phases is the second force's own, what is asked for lies between both
+    phases = tuple(scene.forces[0].phase_deg + between for between in _steps(asked.phase_deg))
+    axes = (Axis("frequency_hz", _steps(span)), Axis("phase_deg", phases))
     sizes = {"analytic": None} | dict.fromkeys(models_of_waves(scene.beam), asked.count)
     fields = {name: driven(case_on(scene, name, n), bench) for name, n in sizes.items()}
     case = driven_case(Driven(model=model, count=count, loss_factor=eta), scene)

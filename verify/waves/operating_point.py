@@ -139,9 +139,7 @@ class Landscape(msgspec.Struct, frozen=True, kw_only=True):
 
 def driven_point(case: DrivenCase) -> OperatingPoint:
     """The point at which a case drives. Raises InputError without two forces."""
-    land = landscape(case)
-    first, second = case.forces
-    return land.point(case.frequency_hz, second.phase_deg - first.phase_deg, "as driven")
+    return landscape(case).point(case.frequency_hz, _between(case), "as driven")
 
 
 def check_two(case: DrivenCase) -> None:
@@ -198,7 +196,13 @@ def fastest_point(case: DrivenCase, limit: float) -> OperatingPoint:
 
 def _around(case: DrivenCase) -> tuple[float, Array]:
     """(phase between both forces in degrees, frequencies that are searched) of a case of two forces."""
-    return case.forces[1].phase_deg - case.forces[0].phase_deg, np.linspace(0.985, 1.015, 121) * case.frequency_hz
+    return _between(case), np.linspace(0.985, 1.015, 121) * case.frequency_hz
+
+
+def _between(case: DrivenCase) -> float:
+    """By how much the second force leads the first, degrees, above -180 to 180: 270 and -90 are one drive."""
+    lead = case.forces[1].phase_deg - case.forces[0].phase_deg
+    return lead if -180.0 < lead <= 180.0 else 180.0 - (180.0 - lead) % 360.0
 
 
 def fastest(land: Landscape, frequencies: Array, phase_deg: float, limit: float) -> tuple[float, float]:
