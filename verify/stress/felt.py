@@ -42,7 +42,7 @@ def bodies_error(share: float) -> float:
         chain = build_chain(held(*pair), LINKS)
         for link in (0, 1, 2, 6, LINKS - 2, LINKS - 1):
             at = link + share
-            f, h = felt_at(chain, at * chain.unit, "reciprocal")
+            f, h = (one[0] for one in felt_at(chain, [at * chain.unit], "reciprocal"))
             left = at < 0.5 * LINKS
             near = at if left else LINKS - at
             if not near:
