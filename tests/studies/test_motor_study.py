@@ -19,7 +19,7 @@ from verify.studies import motor_figures
 from verify.studies.motor import case_of
 from verify.studies.motor_figures import motor_study
 from verify.studies.motor_rest import FromRest, RestField, RestHeld, what_stands
-from verify.studies.motor_words import doubts
+from verify.studies.motor_words import doubts, in_short_of
 
 SMALL = (
     'motor.models=["segment"]',
@@ -362,3 +362,11 @@ def test_a_drawing_shows_feet_on_their_faces_and_the_second_beam():
     assert several.count('fill="#e8760c"') == 3
     assert several.count('stroke="#e8760c"') == 44
     assert several.count("stroke-dasharray") == 1
+
+
+def test_a_free_run_that_is_still_on_its_way_is_told_beside_the_speed_that_is_held(study):
+    """Within a hundredth of it one speed is enough."""
+    (field,) = study.fields
+    for share, told in ((0.995, "runs at"), (0.95, "at the end of its free run, without force at")):
+        free = replace(field.free, speed=share * field.no_load.speed)
+        assert told in in_short_of(replace(study, fields=(replace(field, free=free),)))
