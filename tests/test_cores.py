@@ -134,3 +134,16 @@ def test_a_process_that_begins_answers_as_the_one_that_began_it():
     time.sleep(0.1)
     os.kill(kept[0], signal.SIGTERM)
     assert os.waitstatus_to_exitcode(os.waitpid(kept[0], 0)[1]) == -signal.SIGTERM
+
+
+def test_what_was_written_before_a_process_began_is_written_once():
+    """What a stream still holds would be a copy in the child, which writes it again where it ends with a flush."""
+    code = (
+        "import os, sys; from verify.cores import start; kept = []\n"
+        "sys.stdout.write('once'), sys.stderr.write('told')\n"
+        "start(lambda: (sys.stdout.flush(), sys.stderr.flush(), os._exit(0)), kept.append)\n"
+        "os.waitpid(kept[0], 0)"
+    )
+    env = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONUNBUFFERED": ""}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("once", "told")

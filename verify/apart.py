@@ -60,9 +60,6 @@ def _begin(work: Callable[[Item, Say], Result], index: int, item: Item, running:
 
     reading, writing = Pipe(duplex=False)
     others = [reading, *running]
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError, ValueError, AttributeError):
-            stream.flush()  # or the child would write it again
 
     def done() -> NoReturn:
         for pipe in others:

@@ -62,8 +62,12 @@ def start(work: Callable[[], NoReturn], keep: Callable[[int], None]) -> None:
 
     A request to end waits until then. While a process begins, libraries that asked to be told of it (logging, for one)
     have functions of theirs called, and what a handler of signals raises in these is printed and lost; and a process
-    of which nobody has heard would stay behind.
+    of which nobody has heard would stay behind. What was written and not yet sent off is sent off first, or the new
+    process would write it again.
     """
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError, AttributeError):
+            stream.flush()
     told: list[int] = []
     with _heard_later(told):
         if child := os.fork():
@@ -100,9 +104,6 @@ def _begin(
     """A process that does its share and writes every result, or its first refusal, among `children` by its pipe."""
     reading, writing = os.pipe()
     others = [reading, *(pipe.fileno() for _, pipe in children.values())]
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError, ValueError, AttributeError):
-            stream.flush()  # or the child would write it again
 
     def done() -> NoReturn:
         for pipe in others:

@@ -203,9 +203,6 @@ class _Crew:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     def _start(self) -> None:
-        for stream in (sys.stdout, sys.stderr):
-            with suppress(OSError, ValueError, AttributeError):
-                stream.flush()
         for _ in range(min(self.n, len(self.calls) - 1)):
             self._start_one()
 
