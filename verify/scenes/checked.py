@@ -13,6 +13,7 @@ T = TypeVar("T")
 
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>.*)`")
 _MISSING = re.compile(r"Object missing required field `(?P<key>.*)`")
+_ONE_NUMBER = re.compile(r"Expected `(float|int)( \| null)?`.*, got `array`")
 _STEP = re.compile(r"\.([A-Za-z_][\w-]*)|\[(\d+|\.\.\.)\]")
 _PLAIN = {
     "int": "a whole number",
@@ -51,6 +52,9 @@ def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
     if what.startswith("Invalid enum value"):
         words = tuple(str(word) for word in get_args(bare(_type_at(kind, steps))))
         return f"{field} = {shown(value)} is not known: {near_name(str(value), words)}"
+    if one := _ONE_NUMBER.match(what):
+        remedy = "one number, with a point before its decimals" if one[1] == "float" else "one whole number"
+        return f"{field} = {_as_given(value)}: give {remedy}"
     return f"{field} = {_as_given(value)}: {_humane(what)}"
 
 

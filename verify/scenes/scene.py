@@ -246,14 +246,14 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         if self.motion is not None and not forces:
             raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
         if self.motion is not None:
-            self.refuse_devices("motion: a beam in time")
+            self.refuse_devices("motion: a beam in time", "motion")
 
     def _section_checks(self) -> Iterator[Callable[[], None]]:
         """What each study's section asks of the rest of the scene."""
         for name in self.__struct_fields__[len(Scene.__struct_fields__) :]:
             if (asked := getattr(self, name)) is not None:
                 if not getattr(SECTIONS[name], "devices", False):
-                    yield partial(self.refuse_devices, f"{name}: this study")
+                    yield partial(self.refuse_devices, f"{name}: this study", name)
                 yield partial(SECTIONS[name].check_on, asked, self)
 
     def _check_claims(self) -> None:
@@ -281,12 +281,17 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """The drive's devices in the beam's own coordinate."""
         return tuple(device.on(self.beam) for device in self.drive.device) if self.drive else ()
 
-    def refuse_devices(self, what: str) -> None:
-        """Raise InputError, for something that knows no device on the beam, where the drive has one."""
+    def refuse_devices(self, what: str, section: str = "") -> None:
+        """Raise InputError, for something that knows no device on the beam, where the drive has one.
+
+        `section` is the scene's own that asks for it.
+        """
         for device in self.devices:
+            either = f"drive.device or [{section}]" if section else "drive.device"
             raise InputError(
-                f"{what} knows no drive.device, and one stands at {device.position:g} m: leave it out, or ask for "
-                "figures of the steady wave"
+                f"{what} knows no drive.device, and one stands at {device.position:g} m: leave out {either}; a gate of "
+                "the steady wave, as wave.reflection, and [methods] know it, and everything knows [[beam.spring]] and "
+                "[[beam.mass]]"
             )
 
 

@@ -1,5 +1,6 @@
 """TOML read and overridden: plain tables, before anything is made of them."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,8 @@ from verify.errors import InputError, near_name, shown
 from verify.files import exists
 
 _LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
+_DECIMAL = re.compile(r"(?<![\w.])([+-]?)(?:(\d+)\.|\.(\d+))((?:[eE][+-]?\d+)?)(?![\w.])")
+"""A number with nothing on one side of its point."""
 
 
 def read_text(path: Path) -> str:
@@ -49,19 +52,32 @@ def _whole(data: Any, where: str) -> Any:
 def literal(text: str, field: str = "value") -> Any:
     """A TOML literal; a bare word is a string; comma-separated values are a list. Raises InputError.
 
-    `field` is what messages call it.
+    Numbers may begin or end with their point, as .5 and 3. do: TOML wants the nought, who types does not. `field` is
+    what messages call it.
     """
+    _check_text(text, field)
+    for spelt in dict.fromkeys((text, _with_noughts(text))):
+        try:
+            value = _value(spelt)
+        except (ValueError, KeyError, RecursionError):  # tomllib's own, and Python's for more than 4300 digits
+            continue
+        return _whole(value, field)
+    if "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
+        return [literal(part.strip(), field) for part in text.split(",") if part.strip()]
+    return text
+
+
+def _value(text: str) -> Any:
     import tomllib
 
-    _check_text(text, field)
-    try:
-        return _whole(tomllib.loads(f"value = {text}")["value"], field)
-    except InputError:
-        raise
-    except (ValueError, KeyError, RecursionError):  # tomllib's own, and Python's for more than 4300 digits
-        if "," in text and not text.lstrip().startswith(("[", "{", '"', "'")):
-            return [literal(part.strip(), field) for part in text.split(",") if part.strip()]
+    return tomllib.loads(f"value = {text}")["value"]
+
+
+def _with_noughts(text: str) -> str:
+    """.5 as 0.5 and 3. as 3.0, where nothing is quoted."""
+    if "." not in text or '"' in text or "'" in text:
         return text
+    return _DECIMAL.sub(lambda n: f"{n[1]}{n[2] or 0}.{n[3] or 0}{n[4]}", text)
 
 
 def _check_text(text: str, field: str) -> None:
