@@ -281,6 +281,8 @@ def test_a_long_run_of_a_slider_is_refused_with_its_time(verify):
 def test_patience_is_the_users_to_give(monkeypatch):
     with pytest.raises(InputError, match=r"n = 7 would take about 50 s, more than the 20 s .* VERIFY_PATIENCE"):
         patience.check_work("n", 7, 50.0, "lower n")
+    with pytest.raises(InputError, match=r"^duration = 30 would take about"):
+        patience.check_work("duration", 30.000000000000004, 50.0, "shorten it")
     monkeypatch.setenv(patience.VARIABLE, "60")
     patience.check_work("n", 7, 50.0, "lower n")
     with pytest.raises(InputError, match="would take about 28 hours, more than the 60 s"):

@@ -12,6 +12,7 @@ from verify.errors import InputError, near_name
 from verify.field_docs import Value
 from verify.options import SUPPORTS, Support
 from verify.section import Piece, Section, Sizes, check_decades, check_used, merged, piece_of, shear_coefficient
+from verify.words import written
 
 SHORTEST_SECTION = 1e-6
 """Of the beam's length."""
@@ -78,7 +79,8 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         total = sum(section.length for section in self.section)
         if self.section and abs(total - self.length) > 1e-9 * self.length:
             raise InputError(
-                f"beam.section lengths add up to {total!r} m and beam.length = {self.length!r} m: make them equal"
+                f"beam.section lengths add up to {written(total)} m and beam.length = {written(self.length)} m: make "
+                "them equal"
             )
         for i, section in enumerate(self.section):
             if section.length < SHORTEST_SECTION * self.length:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from verify.errors import InputError
+from verify.words import written
 
 PATIENCE_S = 20.0
 """Seconds of work that are begun without asking."""
@@ -19,8 +20,9 @@ def check_work(field: str, value: object, seconds: float, remedy: str) -> None:
     """
     if seconds <= (limit := _limit()):
         return
+    told = written(value) if isinstance(value, float) else repr(value)
     raise InputError(
-        f"{field} = {value!r} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
+        f"{field} = {told} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
         f"{remedy}, or set {VARIABLE} to more seconds"
     )
 

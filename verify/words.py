@@ -16,9 +16,14 @@ def seconds_in_words(seconds: float | None) -> str:
     return f"{seconds:.3g} s"
 
 
+def written(number: float) -> str:
+    """A number as a person writes it: 30, where a sum left 30.000000000000004."""
+    return f"{number:.12g}"
+
+
 def as_written(numbers: Iterable[float]) -> str:
     """Numbers as a person writes them: [0.03425, 0.10275], where a product left 0.10275000000000001."""
-    return str([float(f"{number:.12g}") for number in numbers])
+    return str([float(written(number)) for number in numbers])
 
 
 def metres_in_words(metres: float) -> str:

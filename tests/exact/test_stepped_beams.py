@@ -239,6 +239,8 @@ def test_what_has_no_closed_form_is_refused_with_the_models_that_can():
         fem_beam.solve_modes(STEPPED, 1, 1)
     with pytest.raises(InputError, match="add up to"):
         replace(STEPPED, length=0.61)
+    with pytest.raises(InputError, match=r"add up to 0\.3 m and beam\.length = 0\.4 m"):
+        replace(STEPPED, length=0.4, section=(Section(length=0.1), Section(length=0.2)))
     with pytest.raises(InputError, match=r"beam\.section\.length = -0\.25"):
         Section(length=-0.25)
 

@@ -24,6 +24,7 @@ from verify.chain.work import MOST, check_kept, check_modes_of
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.options import Inertia
+from verify.words import written
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -78,7 +79,7 @@ def driven_chain(scene: "Scene", who: str, count: int, duration: float, x: float
     assert scene.drive is not None
     frequency = scene.drive.frequency_hz
     n = max(SAMPLES, ceil(SAMPLES_PER_PERIOD * frequency * duration) + 1)
-    check_kept(n, count, f"time = {duration!r} s at drive.frequency_hz = {frequency!r}")
+    check_kept(n, count, f"time = {written(duration)} s at drive.frequency_hz = {frequency!r}")
     check_modes_of(count, 2 if scene.beam.supports[1] == "pinned" else 1)
     place = 0.5 * scene.beam.length if x is None else x
     if place > scene.beam.length:

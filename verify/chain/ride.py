@@ -39,6 +39,7 @@ from verify.segments.links import chain_pencil, free_joints, with_ends
 from verify.segments.loads import joint_weights
 from verify.segments.reading import contact_line, contact_piece
 from verify.slider import Slider
+from verify.words import written
 
 
 class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):
@@ -209,7 +210,7 @@ def ride_from_rest(
     if links not in LINKS:
         raise InputError(f"links = {links!r} is not known: {near_name(links, LINKS)}")
     system, times = _driven(beam, forces, frequency_hz, n_segments), half_steps(duration, step)
-    check_kept(len(times), n_segments, f"time = {duration!r} s in steps of {step:.3g} s")
+    check_kept(len(times), n_segments, f"time = {written(duration)} s in steps of {step:.3g} s")
     check_rideable(system, beam, slider)
     coupling_on_chain(system, beam, slider)
     moved: ChainMotion | ElasticMotion = (
@@ -221,8 +222,8 @@ def ride_from_rest(
     found = ride(moved, beam, slider)
     if not found.statistics.finished:
         raise InputError(
-            f"the slider {found.statistics.stopped} after {found.times[-1]:.6g} s of {duration!r} s: shorten time or "
-            "start it elsewhere"
+            f"the slider {found.statistics.stopped} after {found.times[-1]:.6g} s of {written(duration)} s: shorten "
+            "time or start it elsewhere"
         )
     return found
 

@@ -40,6 +40,7 @@ from verify.motion.stepping import Sliding, fresh_motion, run_stages, slider_sec
 from verify.motion.surface import Stage
 from verify.patience import check_work
 from verify.slider import Slider
+from verify.words import written
 
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
@@ -193,7 +194,7 @@ def _in_steps(
         enough = gripped_step(stages, rate, enough)
         if duration / enough > MOST_STEPS:
             raise InputError(
-                f"duration = {duration!r} s: what the start excites takes steps of {enough:.2g} s, more than "
+                f"duration = {written(duration)} s: what the start excites takes steps of {enough:.2g} s, more than "
                 f"{MOST_STEPS:g} of them: shorten the duration, lengthen soft_start_periods, or give a step"
             )
         return stepped(stages, enough), ()

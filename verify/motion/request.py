@@ -17,6 +17,7 @@ from verify.motion.forcing import CONSTANT, SMOOTH_STEP
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
 from verify.slider import Slider
+from verify.words import written
 
 if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration
@@ -194,12 +195,14 @@ def _longest(
     return longest
 
 
-def _check_growth(duration: float, growing: float) -> None:
+def _check_growth(duration: float, grown: Sequence[tuple[float, Array]]) -> None:
     """Raise InputError where forces grow for longer, seconds, than they act."""
+    growing = sum(seconds for seconds, _ in grown)
+    soft = any(coefficients is SMOOTH_STEP for _, coefficients in grown)
     if duration - growing < -1e-12 * duration:
         raise InputError(
-            f"the forces grow over {growing!r} s of duration = {duration!r} s: shorten soft_start_periods or "
-            "envelope, or lengthen the duration"
+            f"the forces grow over {written(growing)} s of duration = {written(duration)} s: "
+            f"{'lower soft_start_periods' if soft else 'shorten envelope'}, or lengthen the duration"
         )
 
 
@@ -210,7 +213,7 @@ def laid_out(duration: float, grown: Sequence[tuple[float, Array]], longest: flo
         raise InputError(
             "envelope: give pieces (seconds, coefficients), each longer than 0 s and of finite coefficients"
         )
-    _check_growth(duration, sum(lengths))
+    _check_growth(duration, grown)
     rest = duration - sum(lengths)
     pieces = list(grown) + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
     shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]

@@ -24,6 +24,7 @@ from verify.quantities.motion_arguments import (
     Steady,
 )
 from verify.slider import Slider
+from verify.words import written
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -147,7 +148,7 @@ def _check_ended(found: Motion, duration: float) -> None:
         raise KeyboardInterrupt
     if not found.statistics.finished:
         raise InputError(
-            f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {duration!r} s: "
+            f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {written(duration)} s: "
             "shorten time or start it elsewhere"
         )
 

@@ -13,6 +13,7 @@ from verify.models.naming import Among, model_meta
 from verify.options import Kinematics, NormalChoice
 from verify.scenes.claims import asks_for_turned
 from verify.studies.kind import Progress, Study
+from verify.words import written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -116,8 +117,8 @@ class ReadingsAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
         for i, periods in enumerate(self.soft_start_periods):
             if periods / drive.frequency_hz > (seconds := self.duration or motion.duration):
                 raise InputError(
-                    f"readings.soft_start_periods[{i}] = {periods!r} take longer than the {seconds!r} s of a run: "
-                    "shorten them or lengthen readings.duration"
+                    f"readings.soft_start_periods[{i}] = {periods!r} take longer than the {written(seconds)} s of a "
+                    "run: shorten them or lengthen readings.duration"
                 )
         if self.chain:
             self._check_chain(scene)
