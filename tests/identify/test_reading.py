@@ -1,5 +1,8 @@
 """Lists in the layouts that others write them in, and what is wrong with some, in one sentence each."""
 
+from io import BytesIO, TextIOWrapper
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -41,6 +44,20 @@ def read(tmp_path):
 )
 def test_every_layout_reads_the_same(read, text):
     assert read(text).frequencies_hz == pytest.approx(HERTZ, rel=1e-12)
+
+
+def test_a_dash_is_what_is_piped_in(monkeypatch):
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"f_kHz\n1.5\n2.5\n")))
+    listed = read_frequencies(Path("-"))
+    assert (listed.frequencies_hz.tolist(), listed.unit) == ([1500.0, 2500.0], "kHz")
+    assert listed.source == "frequencies on standard input"
+    for nothing in (TextIOWrapper(BytesIO(b"")), None):
+        monkeypatch.setattr("sys.stdin", nothing)
+        with pytest.raises(InputError, match=r"^frequencies on standard input is empty: give a number on each line"):
+            read_frequencies(Path("-"))
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"3\xff")))
+    with pytest.raises(InputError, match=r"^frequencies on standard input is not text in UTF-8"):
+        read_frequencies(Path("-"))
 
 
 @pytest.mark.parametrize(

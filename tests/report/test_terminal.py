@@ -5,9 +5,11 @@ from rich.console import Console
 
 from verify.cli import status_of
 from verify.errors import InputError
-from verify.report.terminal import Hyphenated
+from verify.report.document import _on_page
+from verify.report.terminal import Hyphenated, print_found
 from verify.run.gates import Band, shown_expectation
 from verify.scenes.scene import Complex, load_scene
+from verify.studies.told import Column, Found, Table
 from verify.waves.window import check_window
 from verify.words import rounded, told_once
 
@@ -106,6 +108,44 @@ def test_a_table_keeps_every_number_and_word_whole_at_any_width_and_says_what_it
     told = " ".join(out.split())
     assert ("no room for" in told) == (width < 88)
     assert ("no room for bracket" in told or ", bracket," in told) == (width < 71)
+
+
+WIDE = Table(
+    columns=(
+        Column("model", left=True),
+        *(Column(f"column{n}", ".9f", said=f"This tells {n}.") for n in range(6)),
+        Column("none", said="This tells of nothing."),
+    ),
+    rows=(("segments", *(100.0 + n for n in range(6)), None),),
+    notes=("Of all.",),
+)
+
+
+class WideFound(Found, frozen=True, eq=False, kw_only=True):
+    """Something that tells this table."""
+
+    def tables(self):
+        return (WIDE,)
+
+
+@pytest.mark.parametrize("width", [60, 80, 97])
+def test_what_is_said_of_a_column_stands_only_below_a_table_that_shows_it(width, capsys, monkeypatch):
+    """And a terminal as wide as is said shows all of them."""
+    monkeypatch.setenv("COLUMNS", str(width))
+    print_found(WideFound())
+    out = " ".join(capsys.readouterr().out.split())
+    heads = out.partition("–")[0]
+    assert [n for n in range(6) if f"This tells {n}." in out] == [n for n in range(6) if f"column{n}" in heads]
+    assert ("This tells of nothing." in out) == ("no room" not in out)
+    if "no room" in out:
+        monkeypatch.setenv("COLUMNS", out.split("a terminal of ")[1].split()[0])
+        print_found(WideFound())
+        assert "no room" not in capsys.readouterr().out
+
+
+def test_a_page_says_nothing_of_a_column_that_it_leaves_out():
+    (note, other) = _on_page(WIDE, ()).notes
+    assert ("This tells 5." in note, "nothing" in note, other) == (True, False, "Of all.")
 
 
 @pytest.mark.parametrize("width", [60, 80])

@@ -46,8 +46,9 @@ def compare(
 ) -> None:
     """Say what somebody's model of SCENE's beam is, from its natural FREQUENCIES, and judge it.
 
-    FREQUENCIES is a text file: comma, semicolon, tab or spaces, with a head or without, a column of mode numbers or
-    none. Exit 1 where the list has to be mended, nothing known fits it, or an error lies beyond --within.
+    FREQUENCIES is a text file, or - for standard input: comma, semicolon, tab or spaces, with a head or without, a
+    column of mode numbers or none. Exit 1 where the list has to be mended, nothing known fits it, or an error
+    lies beyond --within.
     """
     from verify.identify.compare import Asked
     from verify.identify.compare import compare as compared

@@ -47,7 +47,7 @@ def _told(table: Table) -> Iterator[str]:
     yield f"{title}{before}\\par\\nobreak\\smallskip\n"
     for first in range(0, len(table.rows), ROWS):
         yield _tabular(table, first)
-    for note in table.notes:
+    for note in table.below(range(len(table.columns))):
         yield f"\\par\\noindent\\footnotesize {escaped(note)}\\normalsize\n"
 
 

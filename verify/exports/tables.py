@@ -55,7 +55,7 @@ def as_plain(tables: tuple[Table, ...]) -> list[dict[str, Any]]:
     return [
         {
             "title": table.title,
-            "notes": list(table.notes),
+            "notes": list(table.below(range(len(table.columns)))),
             "rows": [
                 dict(zip(numbered([c.head for c in table.columns]), map(in_its_unit, row, table.columns), strict=True))
                 for row in table.rows

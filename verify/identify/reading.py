@@ -1,6 +1,7 @@
 """Lists that others have written: natural frequencies and mode shapes, in any of the layouts that tables come in."""
 
 import re
+import sys
 from itertools import pairwise
 from math import isfinite, pi
 from pathlib import Path
@@ -15,6 +16,8 @@ from verify.files import exists
 if TYPE_CHECKING:
     from verify.models.arrays import Array
 
+STANDARD_INPUT = Path("-")
+"""A name for what is piped in, as other tools have it."""
 MOST = 2000
 """Modes that a list may have."""
 _PER_HERTZ = {"hz": 1.0, "khz": 1e3, "rad/s": 0.5 / pi}
@@ -70,9 +73,9 @@ class _Rows(msgspec.Struct, frozen=True):
 def read_frequencies(path: Path, unit: str | None = None, *, sorted_list: bool = True) -> Listed:
     """The frequencies in a text file: comma, semicolon, tab or spaces, with a head or without, decimal comma or point.
 
-    One column, or one named or known as frequencies, beside a column of mode numbers. `unit` is Hz, kHz or rad/s; where
-    it is None the head says it, else hertz. Raises InputError, with the line, for text, gaps, numbers that are not
-    finite, negative ones and, where `sorted_list`, those that do not rise.
+    The file `-` is standard input. One column, or one named or known as frequencies, beside a column of mode numbers.
+    `unit` is Hz, kHz or rad/s; where it is None the head says it, else hertz. Raises InputError, with the line, for
+    text, gaps, numbers that are not finite, negative ones and, where `sorted_list`, those that do not rise.
     """
     rows = _rows(path, "frequencies")
     numbered, column = _columns(rows)
@@ -138,7 +141,7 @@ def check_shapes(shapes: Shapes, length: float, where: str) -> None:
 
 def _rows(path: Path, field: str) -> _Rows:
     """The table in a file. Raises InputError where there is none."""
-    where = f"{field} file {str(path)!r}"
+    where = f"{field} on standard input" if path == STANDARD_INPUT else f"{field} file {str(path)!r}"
     lines = [(i, line.strip()) for i, line in enumerate(_text(path, field, where).splitlines(), start=1)]
     kept = [(i, line) for i, line in lines if line]
     comments = [line.lstrip("#%! ") for _, line in kept if line[0] in "#%!"]
@@ -167,10 +170,15 @@ def _rows(path: Path, field: str) -> _Rows:
     return _Rows(head, tuple(cells), tuple(i for i, _ in kept), where)
 
 
+def _piped() -> bytes:
+    """What standard input holds; nothing where it is closed."""
+    return sys.stdin.buffer.read() if sys.stdin else b""
+
+
 def _text(path: Path, field: str, where: str) -> str:
     exists(path, field)
     try:
-        return path.read_bytes().decode("utf-8-sig")
+        return (_piped() if path == STANDARD_INPUT else path.read_bytes()).decode("utf-8-sig")
     except OSError as error:
         raise InputError(f"{where} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:

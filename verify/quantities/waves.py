@@ -331,7 +331,8 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "wave.fastest_crests",
         "m/s",
-        "Surface speed at the crests where it is largest, near the drive's frequency, with a reflection up to `limit`.",
+        "Largest surface speed at the crests within 1.5 % of the drive's frequency and between phases of 5 and 175 "
+        "degrees, with a reflection up to `limit`; that at the edge of these where it grows beyond.",
         Fastest,
         "harmonic",
         _fastest,

@@ -168,7 +168,7 @@ def _on_page(table: "Table", shared: tuple[str, ...]) -> PageTable:
         before=table.before,
         heads=tuple(Cell(side, column.head) for side, column in zip(sides, columns, strict=True)),
         rows=rows,
-        notes=tuple(told_once(note for note in table.notes if note not in shared)),
+        notes=tuple(told_once(note for note in table.below(kept) if note not in shared)),
         folded=table.folded,
     )
 

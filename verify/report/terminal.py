@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console, ConsoleOptions, RenderableType
@@ -111,9 +111,8 @@ def print_compared(result: "Compared | ShapesJudged", report: Path | None) -> No
     for fact in facts:
         console.print(Text(fact))
     for table in result.tables():
-        _print_table(console, table)
-        for note in table.notes:
-            console.print(Text(f"– {note}", style="dim"))
+        shown = _print_table(console, table)
+        _print_notes(console, [*shown.notes, *_without_room([shown])])
     console.print(_gate_table(result.gates))
     for gate in result.gates:
         if not gate.passed:
@@ -132,20 +131,37 @@ def print_found(found: "Found", *, every_table: bool = True) -> None:
 def _print_found(console: Console, found: "Found", *, every_table: bool) -> None:
     for fact in found.facts():
         console.print(Text(fact))
-    seen: list[str] = []
-    left_out: dict[str, None] = {}
-    for table in found.tables():
-        if every_table or table.shown != "page":
-            left_out |= dict.fromkeys(_print_table(console, table))
-            seen += table.notes
-    if left_out:
-        seen.append(f"no room for {', '.join(left_out)}: a terminal of {NARROW} characters shows it, --csv too")
-    for note in told_once(seen):
+    shown = [_print_table(console, table) for table in found.tables() if every_table or table.shown != "page"]
+    notes = [note for one in shown for note in one.notes]
+    _print_notes(console, [*told_once(notes), *_without_room(shown, ", --csv too")])
+
+
+def _print_notes(console: Console, notes: Iterable[str]) -> None:
+    for note in notes:
         console.print(Text(f"– {note}", style="dim"))
 
 
-def _print_table(console: Console, table: "StudyTable") -> list[str]:
-    """Title, what it says before, and the rows. Returns the heads of wide columns for which there is no room."""
+class _Shown(NamedTuple):
+    """What is still to be said of a table that is printed."""
+
+    notes: tuple[str, ...]
+    left_out: tuple[str, ...]
+    """Heads of columns for which there is no room."""
+    whole: int
+    """Characters that all of its columns take."""
+
+
+def _without_room(shown: Sequence[_Shown], other: str = "") -> tuple[str, ...]:
+    """The sentence about columns for which there is no room, where there are any; `other` ways to see them."""
+    heads = dict.fromkeys(head for one in shown for head in one.left_out)
+    if not heads:
+        return ()
+    width = max(one.whole for one in shown if one.left_out)
+    return (f"no room for {', '.join(heads)}: a terminal of {width} characters shows it{other}",)
+
+
+def _print_table(console: Console, table: "StudyTable") -> _Shown:
+    """Title, what it says before, and the rows."""
     if table.title:
         console.print(Text(table.title, style="bold"))
     if table.before:
@@ -159,7 +175,10 @@ def _print_table(console: Console, table: "StudyTable") -> list[str]:
     for row in rows:
         drawn.add_row(*(Text(row[i]) for i in shown))
     console.print(drawn)
-    return [column.head for i, column in enumerate(table.columns) if i not in shown]
+    columns = range(len(table.columns))
+    whole = 1 + sum(1 + _least(table.columns[i], [row[i] for row in rows]) for i in columns)
+    left_out = tuple(table.columns[i].head for i in columns if i not in shown)
+    return _Shown(table.below(shown), left_out, max(whole, NARROW))
 
 
 def _written(value: Any, column: "Column") -> str:

@@ -12,6 +12,19 @@ if TYPE_CHECKING:
     from verify.studies.work_precision import Work
 
 
+NEAREST = ", at the mode nearest the drive."
+LIFT_OFF = (
+    "Lift-off is the largest acceleration of the surface over what presses the slider on: above 1 a real slider leaves "
+    "the surface, which this law forbids it."
+)
+NONLINEARITY = "Nonlinearity is (kL)² ⟨θ²⟩, the axial inertia of a roller-ended chain."
+LEFT_OVER = "Energy left over is what the books miss, of the work of the forces."
+COUPLING = (
+    "The coupling is one-way where the larger of the two sizes that act, of friction and of the inertia of a slider "
+    f"held on the surface, is below {FELT:g}, unless the scene says which."
+)
+
+
 def margins_table(study: "SliderFound") -> Table:
     """Every run with its coupling, its margins and its books."""
     return Table(
@@ -21,22 +34,14 @@ def margins_table(study: "SliderFound") -> Table:
             Column("model", left=True),
             Column("displacement, nm", "+.4g", 1e9),
             Column("steps"),
-            Column("coupling", left=True),
-            Column("lift-off", ".3g"),
-            Column("nonlinearity", ".1e"),
-            Column("theory", "percent"),
-            Column("division", "percent"),
-            Column("energy left over", ".1e"),
+            Column("coupling", left=True, said=COUPLING),
+            Column("lift-off", ".3g", said=LIFT_OFF),
+            Column("nonlinearity", ".1e", said=NONLINEARITY),
+            Column("theory", "percent", said=f"Theory is Timoshenko against Euler-Bernoulli{NEAREST}"),
+            Column("division", "percent", said=f"Division is the discrete frequency error{NEAREST}"),
+            Column("energy left over", ".1e", said=LEFT_OVER),
         ),
         rows=tuple((MODELS[model].title, *_margins(run)) for model, run in study.runs.items()),
-        notes=(
-            "Lift-off is the largest acceleration of the surface over what presses the slider on: above 1 a real "
-            "slider leaves the surface, which this law forbids it. Nonlinearity is (kL)² ⟨θ²⟩, the axial inertia of a "
-            "roller-ended chain. Theory is Timoshenko against Euler-Bernoulli, division the discrete frequency error, "
-            "both at the mode nearest the drive. The coupling is one-way where the larger of the two sizes that act, "
-            f"of friction and of the inertia of a slider held on the surface, is below {FELT:g}, unless the scene says "
-            "which.",
-        ),
     )
 
 
@@ -64,7 +69,7 @@ def work_table(work: "Work") -> Table:
         title="Run time against error",
         notes=(
             "Errors against the exact beam at the same step, half of which changes it by "
-            f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond, its spread, and set-up "
+            f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond, and set-up "
             "(modes, tables, margins): processor time in one thread, medians of interleaved rounds. All of it one-way: "
             "the beam does not feel the slider.",
         ),
@@ -79,6 +84,9 @@ WORK: tuple[Read, ...] = (
     (Column("error %", "bare percent"), lambda r: r.error),
     (Column("order", ".2f"), lambda r: r.order),
     (Column("ms per ms", ".3g"), lambda r: r.run_ms_per_ms),
-    (Column("spread %", ".0f", 100.0, wide=True), lambda r: r.run_spread),
+    (
+        Column("spread %", ".0f", 100.0, wide=True, said="Spread: of the loop's run time."),
+        lambda r: r.run_spread,
+    ),
     (Column("set-up ms", ".3g"), lambda r: r.set_up_ms),
 )

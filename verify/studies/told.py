@@ -27,6 +27,8 @@ class Column(msgspec.Struct, frozen=True):
     """Words stand left, numbers right."""
     wide: bool = False
     """Left out where there is no room."""
+    said: str = ""
+    """Of what it is, a sentence for below a table that shows it."""
 
 
 Read: TypeAlias = tuple[Column, Callable[[Any], Any]]
@@ -53,6 +55,11 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
         """A row for each thing, read off column by column; `told` is all else."""
         rows = tuple(tuple(read(one) for _, read in columns) for one in things)
         return cls(columns=tuple(column for column, _ in columns), rows=rows, **told)
+
+    def below(self, shown: Iterable[int]) -> tuple[str, ...]:
+        """Sentences below it where these columns are shown: what they are, then its notes."""
+        said = " ".join(self.columns[i].said for i in shown if self.columns[i].said)
+        return (said, *self.notes) if said else self.notes
 
     def __post_init__(self) -> None:
         for row in self.rows:
