@@ -15,7 +15,7 @@ from verify import patience
 from verify.beam import Beam, PointForce, check_frequency
 from verify.cli import status_of
 from verify.elements import linear as fem_beam
-from verify.errors import SENTENCE, InputError, NoFigureError, one_line, shown
+from verify.errors import SENTENCE, InputError, NoFigureError, near_name, one_line, shown
 from verify.exact import modes as analytic_modes
 from verify.judge.compare import observed_order, relative_error
 from verify.judge.workbench import Workbench
@@ -61,6 +61,13 @@ def refused(verify, *words):
 
 
 # ------------------------------------------------------------------------------------------- one test for each kind
+
+
+def test_of_many_names_the_first_are_told_and_how_many_there_are():
+    names = [f"name-{n}" for n in range(100, 126)]
+    assert near_name("other", names) == f"known are {', '.join(names[:24])} and 2 more"
+    assert near_name("other", names[:25]) == f"known are {', '.join(names[:25])}"
+    assert near_name("Name-120", names) == "did you mean 'name-120'?"
 
 
 @pytest.mark.parametrize("step", ["²", "٣", "①", "9" * 5000, "-1"])

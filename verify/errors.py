@@ -4,6 +4,8 @@ from reprlib import Repr
 
 SENTENCE = 1600
 """Characters of the longest message: what was given in it may be of any length."""
+NAMES = 24
+"""Of what is known, that a sentence lists."""
 VALUE = 120
 """Characters of the longest value shown in one."""
 
@@ -79,12 +81,15 @@ class WindowError(NoFigureError):
 
 
 def near_name(word: str, known: "tuple[str, ...] | list[str]") -> str:
-    """The end of a sentence about an unknown word: the nearest known one, or all of them."""
+    """The end of a sentence about an unknown word: the nearest known one, or all of them, of many the first."""
     from difflib import get_close_matches
 
     plain = {name.casefold(): name for name in known}
     close = get_close_matches(word.casefold(), plain, n=1, cutoff=0.6)
-    return f"did you mean {plain[close[0]]!r}?" if close else f"known are {', '.join(known)}"
+    if close:
+        return f"did you mean {plain[close[0]]!r}?"
+    more = f" and {len(known) - NAMES} more" if len(known) > NAMES + 1 else ""
+    return f"known are {', '.join(known[:NAMES] if more else known)}{more}"
 
 
 def one_line(text: str) -> str:

@@ -239,7 +239,11 @@ def test_parts_needed_of_a_body_on_its_link_hold_for_larger_numbers_too(told):
 
 @pytest.mark.parametrize(
     ("factor", "said"),
-    [(2 * np.pi, "2 pi: they are in rad/s"), (1e-3, "1/1000: they are in kHz"), (60.0, "60: they are per minute")],
+    [
+        (2 * np.pi, "too large by 2 pi: they are in rad/s"),
+        (1e-3, "too small by 1000: they are in kHz"),
+        (60.0, "too large by 60: they are per minute"),
+    ],
 )
 def test_a_wrong_unit_is_named_and_the_model_found_beneath_it(told, factor, said):
     found = told(factor * lumped_rod(PAPER, 49)[:22], "paper", count=49)
@@ -640,3 +644,12 @@ def test_a_factor_that_does_not_explain_a_list_is_not_stated_as_one(told):
     found = told(stiffer, count=30)
     assert not found["best"]["identified"]
     assert "have the common factor" not in found["answer"]
+
+
+def test_a_unit_is_taken_in_any_letters(verify):
+    """A list in hertz, taken for one in rad/s."""
+    asked = (LIST, "--scene", "steel-cantilever", "--count", 30, "--kind", "segments")
+    (status, out, _), (_, known, _) = (verify(*asked, "--unit", unit, "--json") for unit in ("RAD/s", "rad/s"))
+    assert status in (0, 1)
+    assert json.loads(out)["modes"] == json.loads(known)["modes"]
+    assert json.loads(out)["modes"] != json.loads(verify(*asked, "--json")[1])["modes"]

@@ -130,6 +130,7 @@ def test_a_scene_of_ones_own_has_a_sheet_too(verify, tmp_path):
 def test_the_command_writes_a_file_for_each_and_an_index(verify, tmp_path):
     status, out, _ = verify("catalogue", "paper", "moving-load", "--to", "sheets")
     assert (status, out) == (0, "wrote 2 sheets and index.md into sheets\n")
+    assert verify("catalogue", "paper", "--to", "one")[1] == "wrote 1 sheet and index.md into one\n"
     assert sorted(path.name for path in (tmp_path / "sheets").iterdir()) == ["index.md", "moving-load.md", "paper.md"]
     assert (tmp_path / "sheets" / "paper.md").read_text("utf-8") == markdown(sheet("paper"))
 

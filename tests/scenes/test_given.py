@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from verify.errors import InputError
 from verify.quantities.catalogue import arguments_of, quantity
+from verify.report.plain import mode_numbers
 from verify.scenes.given import fraction, type_at_key, whole_numbers
 from verify.scenes.scene import load_scene, packaged_scenes, scene_path, scene_type
 from verify.scenes.toml import literal, read_text, read_toml
@@ -118,3 +119,17 @@ def test_a_copied_scene_keeps_its_comments_under_another_name():
 def test_a_name_inside_a_table_is_not_the_scenes():
     with pytest.raises(InputError, match="no name on a line of its own"):
         renamed("[beam]\nname = 'x'\n", "mine")
+
+
+def test_a_model_that_is_missing_is_told_with_those_there_are():
+    with pytest.raises(InputError, match=r"^model is missing: give one of analytic, fem, segment"):
+        arguments_of(quantity("mode.frequency"), {"mode": 3})
+    with pytest.raises(InputError, match=r"^modell is not a known key: did you mean 'model'"):
+        arguments_of(quantity("mode.frequency"), {"mode": 3, "modell": "fem"})
+    assert arguments_of(quantity("wave.reflection"), {}).model == "analytic"
+
+
+def test_several_modes_are_a_range():
+    assert mode_numbers("2-4") == range(2, 5)
+    with pytest.raises(InputError, match=r"^mode = '1,3': give one mode, or all from one to another, as 1-12"):
+        mode_numbers("1,3")

@@ -1,6 +1,7 @@
 """Scene files: what is read, overridden, refused, and in which words."""
 
 import math
+import re
 import string
 
 import pytest
@@ -77,6 +78,12 @@ def test_an_override_reaches_its_value(tmp_path, assignment, read):
         ("beam.lenght=0.4", r"beam\.lenght is not a known key: did you mean 'length'"),
         ("baem.length=0.4", r"baem is not a known key: did you mean 'beam'"),
         ("beam.length=long", r"beam\.length = 'long': give a number"),
+        ("beam.length=80cm", r"beam\.length = '80cm': give a number alone, in SI units"),
+        ("beam.loss_factor=2 percent", r"beam\.loss_factor = '2 percent': give a number alone, in SI units"),
+        ("beam.length=2%", r"beam\.length = '2%': give a number$"),
+        ("beam.supports=cantilever", r"= 'cantilever': give a list, 2 of pinned, clamped, free, guided with commas"),
+        ("gate.g.arguments=a", r"gate\.g\.arguments = 'a': give a table$"),
+        ("convergence.counts=few", r"convergence\.counts = 'few': give a list$"),
         ("beam.length=0,4", r"beam\.length = \[0, 4\]: give one number, with a point before its decimals"),
         ("spectrum.count=2,4", r"spectrum\.count = \[2, 4\]: give one whole number"),
         ("beam.length=-1", r"beam\.length = -1\.0: give a finite number above 0"),
@@ -99,6 +106,20 @@ def test_a_wrong_override_is_one_sentence_with_field_value_and_remedy(tmp_path, 
     with pytest.raises(InputError, match=message) as caught:
         scene_of(tmp_path, 'name = "s"' + BEAM + GATE, assignment)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("scene", "assignment", "message"),
+    [
+        ("paper", "drive.force.position=0.1", "those of drive.force are numbered, write drive.force.0 to 1"),
+        ("instrument-arm", "beam.mass.mass=0.1", "those of beam.mass are numbered, write beam.mass.0"),
+        ("paper", "gate.fem-odrer.within=1", "did you mean 'fem-order'?"),
+        ("paper", "convergence.counts.x=1", "those of convergence.counts are numbered, write convergence.counts.0 to"),
+    ],
+)
+def test_an_override_that_names_no_entry_of_a_list_is_told_how_they_are_named(scene, assignment, message):
+    with pytest.raises(InputError, match=f"names no entry: {re.escape(message)}"):
+        load_scene(scene, (assignment,))
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def catalogue(scenes: tuple[str, ...], folder: str | None, judged: bool, as_json
 
         print_json(msgspec.to_builtins(sheets))
     elif target is not None:
-        click.echo(printable(f"wrote {len(texts)} sheets and index.md into {target}"))
+        click.echo(printable(f"wrote {len(texts)} sheet{'s' * (len(texts) != 1)} and index.md into {target}"))
     else:
         click.echo("\n".join(_harmless(text) for text in texts.values()), nl=False)
     if any(one.passed is False for sheet in sheets for one in sheet.figures):

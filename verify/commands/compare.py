@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 @click.option("--count", metavar="N", help="Segments or elements of the model. Default: whichever fits.")
 @click.option("--modes", metavar="FILE", help="Mode shapes: x in the first column, then one column for each mode.")
 @click.option("--model", metavar="MODULE:CLASS", help="A model in Python in place of a list.")
-@click.option("--unit", type=click.Choice(["Hz", "kHz", "rad/s"]), help="Of the list. Default: its head's, else Hz.")
+@click.option(
+    "--unit",
+    type=click.Choice(["Hz", "kHz", "rad/s"], case_sensitive=False),
+    metavar="[Hz|kHz|rad/s]",
+    help="Of the list. Default: its head's, else Hz.",
+)
 @click.option("--kind", type=click.Choice(["segments", "elements"]), help="What you built, if it is to be no guess.")
 @click.option("--error", default="0.1%", show_default=True, metavar="E", help="For which the parts are counted.")
 @click.option("--mode", metavar="N", help="At which. Default: the last of the list.")

@@ -212,7 +212,7 @@ def _of_list(found: Identified, data: Data) -> tuple[Found, ...]:
     if found.reading.factor is None:
         told.append(Found(kind="scale", words=_scale_words(best.factor, found.explained)))
     elif found.reading.factor in UNITS:
-        told.append(Found(kind="unit", words=f"the frequencies are too large by {UNITS[found.reading.factor]}"))
+        told.append(Found(kind="unit", words=f"the frequencies are {UNITS[found.reading.factor]}"))
     return (*told, *(missing(best.pairs, len(data.listed)) if data.paired is None else ()))
 
 

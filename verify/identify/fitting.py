@@ -26,14 +26,14 @@ TOLERANCE = 1e-3
 CREDIBLE = 0.02
 """A list that is farther than this from every candidate is not said to be in another unit, or to lack a mode."""
 UNITS = {
-    2.0 * pi: "2 pi: they are in rad/s, not Hz",
-    0.5 / pi: "1/(2 pi): they were divided by 2 pi once too often",
-    1e3: "1000: they are in mHz, or lengths or stiffnesses in another unit",
-    1e-3: "1/1000: they are in kHz",
-    60.0: "60: they are per minute, not per second",
-    1.0 / 60.0: "1/60: they were divided by 60",
-    2e3 * pi: "2000 pi: they are in rad/s, and off by 1000",
-    0.5e-3 / pi: "1/(2000 pi): they are in rad/ms, or divided by 2 pi and 1000",
+    2.0 * pi: "too large by 2 pi: they are in rad/s, not Hz",
+    0.5 / pi: "too small by 2 pi: they were divided by 2 pi once too often",
+    1e3: "too large by 1000: they are in mHz, or lengths or stiffnesses in another unit",
+    1e-3: "too small by 1000: they are in kHz",
+    60.0: "too large by 60: they are per minute, not per second",
+    1.0 / 60.0: "too small by 60: they were divided by 60",
+    2e3 * pi: "too large by 2000 pi: they are in rad/s, and off by 1000",
+    0.5e-3 / pi: "too small by 2000 pi: they are in rad/ms, or divided by 2 pi and 1000",
 }
 """Factors that a wrong unit brings, and which."""
 _UNKNOWN_NOISE = 1e-4

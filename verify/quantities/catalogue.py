@@ -63,7 +63,13 @@ def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
     for field, among in registries.items():
         if isinstance(name := data.get(field), str):
             among.check(name, field)
+        elif field not in data and set(data) <= set(kinds) and _is_required(found.arguments, field):
+            raise InputError(f"{field} is missing: give one of {', '.join(among.names())}")
     return checked(data, found.arguments)
+
+
+def _is_required(kind: type[Arguments], name: str) -> bool:
+    return any(field.required for field in msgspec.structs.fields(kind) if field.name == name)
 
 
 @cache

@@ -98,6 +98,8 @@ def mode_number(text: str) -> int:
 def mode_numbers(text: str) -> int | range:
     """A mode number, or all of several, as typed: '12', '1-12'. Raises InputError."""
     first, dash, last = text.strip().partition("-")
+    if "," in text:
+        raise InputError(f"mode = {text!r}: give one mode, or all from one to another, as 1-12")
     if not (first and dash):
         return mode_number(text)
     low, high = mode_number(first), mode_number(last)

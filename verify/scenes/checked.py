@@ -3,7 +3,7 @@
 import re
 from math import isfinite, isnan
 from types import UnionType
-from typing import Any, TypeVar, Union, get_args, get_origin
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
@@ -14,6 +14,8 @@ T = TypeVar("T")
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>.*)`")
 _MISSING = re.compile(r"Object missing required field `(?P<key>.*)`")
 _ONE_NUMBER = re.compile(r"Expected `(float|int)( \| null)?`.*, got `array`")
+_NUMBER_MEANT = re.compile(r"Expected `float( \| null)?`")
+_WITH_UNIT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\W\d_%°/*^]")
 _STEP = re.compile(r"\.([A-Za-z_][\w-]*)|\[(\d+|\.\.\.)\]")
 _PLAIN = {
     "int": "a whole number",
@@ -52,10 +54,28 @@ def _sentence(message: str, data: Any, kind: Any, where: str) -> str:
     if what.startswith("Invalid enum value"):
         words = tuple(str(word) for word in get_args(bare(_type_at(kind, steps))))
         return f"{field} = {shown(value)} is not known: {near_name(str(value), words)}"
+    return f"{field} = {_as_given(value)}: {_wanted(what, value, kind, steps)}"
+
+
+def _wanted(what: str, value: Any, kind: Any, steps: list[Any]) -> str:
+    """The remedy, by what msgspec found and what is often meant by it."""
     if one := _ONE_NUMBER.match(what):
-        remedy = "one number, with a point before its decimals" if one[1] == "float" else "one whole number"
-        return f"{field} = {_as_given(value)}: give {remedy}"
-    return f"{field} = {_as_given(value)}: {_humane(what)}"
+        return "give one number, with a point before its decimals" if one[1] == "float" else "give one whole number"
+    if isinstance(value, str) and _NUMBER_MEANT.match(what) and _WITH_UNIT.match(value):
+        return "give a number alone, in SI units, which are not written: 0.08 for 80 mm"
+    if isinstance(value, str) and what.startswith("Expected `array`"):
+        return _listed(_type_at(kind, steps))
+    return _humane(what)
+
+
+def _listed(kind: Any) -> str:
+    """What to give for a word where a list stands."""
+    parts = next((get_args(arm) for arm in arms_of(kind) if get_origin(arm) is tuple), ())
+    words = get_args(bare(parts[0])) if parts and get_origin(bare(parts[0])) is Literal else ()
+    if not words:
+        return "give a list"
+    several = "one or more" if parts[-1] is Ellipsis else str(len(parts))
+    return f"give a list, {several} of {', '.join(words)} with commas between"
 
 
 def _as_given(value: Any) -> str:

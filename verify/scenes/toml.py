@@ -138,4 +138,10 @@ def _position(entries: list[Any], step: str, field: str) -> int:
     for known in (names, numbers):
         if step in known:
             return known.index(step)
-    raise InputError(f"--set {field} names no entry: {near_name(step, names) if names else 'the list is empty'}")
+    what = field.removesuffix(f".{step}")
+    if not names:
+        raise InputError(f"--set {field} names no entry: the list is empty")
+    if names == numbers:
+        last = f" to {names[-1]}" if len(names) > 1 else ""
+        raise InputError(f"--set {field} names no entry: those of {what} are numbered, write {what}.0{last}")
+    raise InputError(f"--set {field} names no entry: {near_name(step, names)}")
