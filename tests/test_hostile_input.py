@@ -642,6 +642,7 @@ def test_a_short_chain_over_a_long_time_is_refused_for_its_work(verify):
         (("paper-wave", "--sweep", "phase_deg=0:90:2", "--counts", "3"), "leave it out beside --sweep"),
         (("paper-wave", "--quantity", "wave.reflection"), "--quantity belongs to --sweep"),
         (("paper-slider", "--wave", "--slider"), "--slider and --wave ask for two tables"),
+        (("paper", "--json", "--csv"), "--json and --csv are two ways to print one table: give one of them"),
         (("paper-wave", "--of", "wave", "--sweep", "phase_deg=0:90:2"), "--of and --sweep ask for two tables"),
         (("paper", "--of", "convergense"), "--of = 'convergense' is not known: did you mean 'convergence'?"),
         (("paper", "--of", "wave"), "--of wave: the scene has no [wave]"),

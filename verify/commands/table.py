@@ -59,6 +59,8 @@ def table(
     from verify.run import tables
 
     asked = load(scene, overrides)
+    if as_json and layout:
+        raise InputError(f"--json and --{layout} are two ways to print one table: give one of them")
     if arguments and not sweeps:
         raise InputError(f"{arguments[0]!r}: KEY=VALUE arguments belong to a --sweep")
     tables.check_options(
