@@ -693,7 +693,7 @@ DEAD = [
     ),
     Dead(
         "mode.plate_error",
-        "beam.thickness beam.youngs_modulus beam.density beam.*shear_coefficient",
+        "beam.thickness beam.youngs_modulus beam.density beam.*shear_*",
         "the width in waves and Poisson's ratio alone",
     ),
     Dead("*", "beam.rotary_inertia beam.section.*.rotary_inertia", "of thick beams alone", euler),
