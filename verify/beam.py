@@ -39,7 +39,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     supports: tuple[Support, Support] = ("pinned", "pinned")
     """Left (x = 0) and right (x = L) end: pinned, clamped, free or guided."""
     poissons_ratio: float = 0.33
-    """nu; used by Timoshenko's theory alone."""
+    """nu; used by Timoshenko's theory and a plate's alone."""
     loss_factor: Relative = 0.0
     """eta of the harmonic field: E (1 + i eta) everywhere. At a resonance it equals a modal damping ratio eta/2."""
     section: tuple[Section, ...] = ()

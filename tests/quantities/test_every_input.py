@@ -286,6 +286,7 @@ CASES: dict[str, list[Case]] = {
         Case({**SEGMENT, "mode": 3, **SETTINGS}, stepped("clamped", "free")),
         Case({**SEGMENT, "mode": 3}, on("clamped", "pinned")),
     ],
+    "mode.plate_error": [Case({"mode": 5}), Case({"mode": 3}, on("guided", "pinned"))],
     "mode.dispersion_error": [Case({"model": "segment", "count": 12, "modes": 4})],
     "mode.law_ratio": [Case({**SEGMENT, "mode": 2}, on("clamped", "pinned")), Case({**FEM, "mode": 2})],
     "mode.shape_error": [
@@ -687,8 +688,13 @@ DEAD = [
     Dead(
         "*",
         "beam.poissons_ratio beam.*shear_coefficient beam.*shear_stiffness",
-        "of Timoshenko's theory alone",
-        lambda a: a.arguments.get("theory") != "timoshenko",
+        "of Timoshenko's theory and a plate's alone",
+        lambda a: a.arguments.get("theory") != "timoshenko" and a.quantity != "mode.plate_error",
+    ),
+    Dead(
+        "mode.plate_error",
+        "beam.thickness beam.youngs_modulus beam.density beam.*shear_*",
+        "the width in waves and Poisson's ratio alone",
     ),
     Dead("*", "beam.rotary_inertia beam.section.*.rotary_inertia", "of thick beams alone", euler),
     Dead("mode.* drive.*", "beam.*extreme_fibre", "of a surface's motion alone"),

@@ -220,6 +220,13 @@ class ToError(Divided, frozen=True, kw_only=True):
         self.check_settings(self.model)
 
 
+class PlateMode(Arguments, frozen=True, kw_only=True):
+    """One mode of a strip."""
+
+    reads: ClassVar[tuple[str, ...]] = ("beam",)
+    mode: Mode
+
+
 class NeighbourModes(Arguments, frozen=True, kw_only=True):
     """A mode and the one below it."""
 

@@ -18,6 +18,7 @@ from verify.quantities.kind import (
     NeighbourModes,
     NodeAt,
     OverSizes,
+    PlateMode,
     Quantity,
     ShapeAt,
     ShapeOf,
@@ -83,6 +84,19 @@ def _frequency_error(a: AtSize, scene: "Scene", bench: Workbench) -> float:
         exact = bench.exact_hz(a.mode)
         return (bench.exact_hz(a.mode, a.theory) - exact) / exact
     return bench.frequency_error(a.model, a.count, a.mode, a.settings)
+
+
+def _plate_error(a: PlateMode, scene: "Scene", bench: Workbench) -> float:
+    from verify.exact.plate_strip import plate_error
+
+    return plate_error(scene.beam, a.mode)
+
+
+def _on_a_strip(a: PlateMode, scene: "Scene") -> tuple[Need, ...]:
+    from verify.exact.plate_strip import check_strip
+
+    check_strip(scene.beam)
+    return ()
 
 
 def _dispersion_error(a: FirstModes, scene: "Scene", bench: Workbench) -> float:
@@ -206,6 +220,15 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
         "modes",
         _frequency_error,
         needs=_at_size,
+    ),
+    Quantity(
+        "mode.plate_error",
+        "1",
+        "Frequency as a thin plate with free long edges relative to Euler-Bernoulli's, less one: bending across.",
+        PlateMode,
+        "closed form",
+        _plate_error,
+        needs=_on_a_strip,
     ),
     Quantity(
         "mode.dispersion_error",

@@ -16,6 +16,7 @@ from verify.studies.charting import (
     GREY,
     MEAN_COLOUR,
     PALETTE,
+    PLATE,
     RAYLEIGH,
     SYMBOLS,
     TIMOSHENKO,
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 
 GUIDES: "dict[int, Dash]" = {2: "dashdot", 4: "solid", 6: "dot"}
 """Of a slope, by its order."""
-_THEORIES = {"rayleigh": RAYLEIGH, "timoshenko": TIMOSHENKO}
+_THEORIES = {"rayleigh": RAYLEIGH, "timoshenko": TIMOSHENKO, "plate": PLATE}
 
 
 def spectrum_charts(study: "SpectrumFound") -> tuple[Chart, ...]:
@@ -110,12 +111,13 @@ def _model_form(study: "SpectrumFound") -> Chart:
         sizes = percent(values, size=True)
         lines.append(line(theory_name(theory), _THEORIES[theory], study.modes, sizes, dash="dash"))
     plain = study.theory == theory_name(THEORIES[0])
+    across = "; and bending across the width (Plate)" if "plate" in study.theories else ""
     moral = " A mesh finer than that answers a question nobody asked." if plain else ""
     return Chart(
         id="model-form",
         title=f"Discretisation beside model form, N = {study.count}",
         caption="Solid: what dividing the beam costs. Dashed: what Euler-Bernoulli theory leaves out, rotary inertia "
-        "(Rayleigh) and shear as well (Timoshenko)." + moral,
+        f"(Rayleigh) and shear as well (Timoshenko){across}." + moral,
         x=Axis("mode number"),
         y=Axis("size of the frequency error, %", log=True),
         lines=tuple(lines),

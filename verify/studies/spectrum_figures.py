@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.errors import InputError
+from verify.exact.plate_strip import plate_error
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench, comparable, is_bracketed
 from verify.options import THEORIES
@@ -25,7 +26,7 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
     errors: dict[str, tuple[float | None, ...]]
     """By the label of each variant; None for a mode that it does not have or that no mode of its looks like."""
     theories: dict[str, tuple[float, ...]]
-    """Errors of other beam theories against Euler-Bernoulli; without those that the beam has no figures for."""
+    """Errors of other theories against Euler-Bernoulli, by name; without those that the beam has no figures for."""
     theory: str
     """Against which the errors are."""
     bracketed: bool
@@ -52,12 +53,16 @@ class SpectrumFound(Found, frozen=True, eq=False, kw_only=True):
         none = [f"{title} have none" for title, value in pairs if value is None]
         if not found:
             return f"At mode {self.modes[-1]} and N = {self.count}, {' and '.join(none)}." if none else ""
-        left = {name: values[-1] for name, values in self.theories.items() if self.theory == theory_name(THEORIES[0])}
-        beyond = [
-            f"; the theory itself leaves out {percent(value)} ({theory_name(name)})" for name, value in left.items()
-        ]
-        told = f"{' and '.join(found + none)}{''.join(beyond[-1:])}"
-        return f"At mode {self.modes[-1]}, against exact {self.theory}, {told}."
+        return f"At mode {self.modes[-1]}, against exact {self.theory}, {' and '.join(found + none)}{self._beyond()}."
+
+    def _beyond(self) -> str:
+        """What Euler-Bernoulli's theory leaves out of the last mode: through the thickness, and across the width."""
+        if self.theory != theory_name(THEORIES[0]):
+            return ""
+        left = {name: f"{percent(values[-1])} ({theory_name(name)})" for name, values in self.theories.items()}
+        across = left.pop(PLATE, None)
+        told = [*list(left.values())[-1:], *([across] if across else ())]
+        return f"; the theory itself leaves out {' and '.join(told)}" if told else ""
 
     def facts(self) -> tuple[str, ...]:
         """The last mode's errors, those of theories against Euler-Bernoulli."""
@@ -126,12 +131,14 @@ def _errors(bench: Workbench, one: Variant, asked: "Spectrum") -> tuple[float | 
     return tuple(bench.error_or_why(one.model, asked.count, n, one.settings)[0] for n in modes)[::-1]
 
 
+PLATE = "plate"
+"""Beside the beam theories: bending across the width, which none of them has."""
 MOST_GENERAL = 200
 """Modes whose thick-beam frequencies are found one by one where they have no closed form."""
 
 
 def _theory_errors(bench: Workbench, modes: tuple[int, ...]) -> dict[str, tuple[float, ...]]:
-    """What each thicker theory changes, relative; none that the beam has not the figures or the patience for."""
+    """What each other theory changes, relative; none that the beam has not the figures or the patience for."""
     closed = bench.beam.supports == ("pinned", "pinned") and bench.beam.uniform
     if not closed and len(modes) > MOST_GENERAL:
         return {}
@@ -139,4 +146,6 @@ def _theory_errors(bench: Workbench, modes: tuple[int, ...]) -> dict[str, tuple[
     for theory in THEORIES[1:]:
         with suppress(InputError):
             found[theory] = tuple(bench.exact_hz(n, theory) / bench.exact_hz(n) - 1.0 for n in modes)
+    with suppress(InputError):
+        found[PLATE] = tuple(plate_error(bench.beam, n) for n in modes)
     return found
