@@ -161,13 +161,21 @@ class Modes:
         self.forces = [(f, phase, shape(place, 0)) for f, phase, place in forces]
         self.beam = 2 * len(own)
 
+    def height(self, q, x):
+        """Of what the body at x stands on: w(X), X = x + (h/2) w'(x)."""
+        return q @ self.shape(x + self.half * (q @ self.shape(x, 1)), 0)
+
+    def lifted(self, q, x):
+        """How that changes with every mode: what a force across does of work, all that its contact's depth reads."""
+        here = x + self.half * (q @ self.shape(x, 1))
+        return self.shape(here, 0) + (q @ self.shape(here, 1)) * self.half * self.shape(x, 1)
+
     def lying(self, x, load):
         """(q, deflection of the material below x) at rest under a load there."""
         q = np.zeros(len(self.own))
         for _ in range(60):
-            here = x + self.half * (q @ self.shape(x, 1))
-            q = -load * self.shape(here, 0) / self.own**2
-        return q, q @ self.shape(here, 0)
+            q = -load * self.lifted(q, x) / self.own**2
+        return q, self.height(q, x)
 
     def split(self, s):
         """(q, q_t, the body's)."""
@@ -193,7 +201,7 @@ class Modes:
         p = min(t / self.grow, 1.0) if self.grow else 1.0
         push = p * p * (3.0 - 2.0 * p) * sum(f * cos(self.omega * t + turn) * load for f, turn, load in self.forces)
         push = push - 2.0 * self.damping * self.own * qd - self.own**2 * q
-        return np.concatenate([qd, push - normal * flat - along * dragged])
+        return np.concatenate([qd, push - normal * self.lifted(q, body[X]) - along * dragged])
 
 
 class Ridden(NamedTuple):

@@ -116,15 +116,12 @@ def constraints(f: Flat, t: float, pivots: Indices, work: Array, rates: bool) ->
 
 
 @part(fastmath={"contract"})
-def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array) -> float:
-    """Bring dependent angles (Newton, until a change is below SETTLED) and rates onto the held points.
-
-    The largest change of an angle; infinite where 20 steps do not suffice.
-    """
-    count, moved = f.held.shape[0], 0.0
+def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array) -> None:
+    """Bring dependent angles (Newton, at most 20 times, until a change is below SETTLED) and rates onto held points."""
+    count = f.held.shape[0]
     settling = count == 0  # False from here on; written out, numba would compile one copy for it and one for True
     if settling:
-        return 0.0
+        return
     for _ in range(20):
         place(f, t, q, v, work)
         constraints(f, t, pivots, work, settling)
@@ -134,14 +131,12 @@ def project(f: Flat, t: float, q: Array, v: Array, pivots: Indices, work: Array)
             q[pivots[d]] -= f.small[d, count]
             size = abs(f.small[d, count])
             change = size if size > change else change
-        moved = change if change > moved else moved
         if change < SETTLED:
             constraints(f, t, pivots, work, not settling)
             solve_small(f.small, count)
             for d in range(count):
                 v[pivots[d]] -= f.small[d, count]
-            return moved
-    return np.inf
+            return
 
 
 @part()

@@ -35,6 +35,7 @@ from verify.motion.records import (
 )
 from verify.motion.request import MOST_STEPS, Request
 from verify.motion.result import EndState, Ledger, Motion, Statistics
+from verify.motion.sound_books import check_books
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
 from verify.motion.stepping import Sliding, fresh_motion, run_stages, slider_seconds
 from verify.motion.surface import Stage
@@ -119,7 +120,10 @@ class Laid(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 
 def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motion:
-    """Step the slider through all stages. Raises InputError where that takes too many steps, or too long."""
+    """Step the slider through all stages. Raises InputError where that takes too many steps, or too long.
+
+    Also where it was booked, and the contact gave the beam far more than was put in.
+    """
     request, basis = laid.request, laid.basis
     stages, step_note = _in_steps(request, laid.stages, begin(request, laid.stages[0], basis, None), laid.coupling)
     z = begin(request, stages[0], basis, laid.coupling)
@@ -144,7 +148,18 @@ def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motio
     said = replace(
         laid, stages=stages, notes=(*laid.notes, laid.coupling.note, *step_note, *lost * bool(sliding.n_lost))
     )
-    return _told(said, sliding, statistics, energy, *state)
+    found = _told(said, sliding, statistics, energy, *state)
+    if laid.coupling.two_way and found.ledger and basis and not statistics.interrupted:
+        had = _own_energy(sliding) + (sum(energy) if request.before else 0.0)
+        check_books(found.ledger, had, float(abs(found.travelled).max()), request, basis, stages)
+    return found
+
+
+def _own_energy(sliding: Sliding) -> float:
+    """What the slider had of motion at the start, and what its weight gave as it fell, joules."""
+    (height, climb), law = sliding.set_down, sliding.rider.law
+    fell = max(height - sliding.held[0], 0.0)
+    return 0.5 * law.mass * (float(sliding.first[0, KEPT_V]) ** 2 + climb**2) + law.load * fell
 
 
 def _told(

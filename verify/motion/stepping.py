@@ -39,6 +39,8 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
     """(1, points)."""
     on_its_way: tuple[float, float] | None = None
     """Height and climb of a slider that was held on the surface before; one that is put on takes the surface's."""
+    set_down: tuple[float, float] = (0.0, 0.0)
+    """Height and climb before the first step."""
     steps_before: int = 0
     """Of the stages that are over."""
     set_up_s: float = 0.0
@@ -213,6 +215,7 @@ def look(fed: Feed, around: Window, sliding: Sliding) -> None:
     kernels.slide(0, fed.stage.dt, surface, sliding.rider, fed.books, kept, fed.space)
     if sliding.on_its_way is not None:
         sliding.motion[records.HEIGHT], sliding.motion[records.CLIMB] = sliding.on_its_way
+    sliding.set_down = sliding.held
 
 
 def run_stages(

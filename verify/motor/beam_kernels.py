@@ -1,8 +1,10 @@
 """The compiled beam that feels the feet: how it answers their forces within a step, and what they leave in its modes.
 
 Forces of points act on the polynomials of the pieces they stand on: a coefficient's share of a force is what the
-coefficient adds to the way that the force goes along. So much for the modes as the step begins; within it the surface
-has, on the average, half of what the forces give it.
+coefficient adds to the way that the force goes along. A normal force goes along with how deep its point is pressed
+in: the surface rises there, and slides under the point by (h/2) of the turn over its place, on a rise of w'. It is
+square to the surface so: what acts straight up would make energy of that sliding. So much for the modes as the step
+begins; within it the surface has, on the average, half of what the forces give it.
 """
 
 import numpy as np
@@ -11,6 +13,7 @@ from verify.models.arrays import Array
 from verify.models.kernels import FAST, part
 from verify.motion.records import OMEGA, Z_IM
 from verify.motor.records import (
+    ABOVE,
     AFTER,
     AT,
     FACE,
@@ -46,6 +49,15 @@ def _lever(d: int, at: float, slope: float, lever: float, length: float) -> floa
 
 
 @part()
+def _lift(i: int, d: int, lever: float, length: float, touch: Array) -> float:
+    """What coefficient d adds to the height of the surface under point i, as its depth reads it."""
+    value = touch[i, AT] ** d
+    if d > 0:
+        value += touch[i, SLOPE] * lever * d * touch[i, ABOVE] ** (d - 1) / length
+    return float(value)
+
+
+@part()
 def _add(
     i: int, along: float, across: float, dt: float, length: float, half: float, feet: Feet, beam: BeamAnswer
 ) -> None:
@@ -57,7 +69,8 @@ def _add(
     lever, degree = half * feet.points[i, FACE] * feet.points[i, IMAGE], beam.load.shape[1]
     at, slope = touch[i, AT], touch[i, SLOPE]
     for d in range(degree):
-        impulse = feet.points[i, WEIGHT] * dt * (along * _lever(d, at, slope, lever, length) + across * at**d)
+        way = along * _lever(d, at, slope, lever, length) + across * _lift(i, d, lever, length, touch)
+        impulse = feet.points[i, WEIGHT] * dt * way
         beam.load[piece, d] += impulse
         _spread(0.5 * impulse, piece * degree + d, beam)
 
@@ -197,7 +210,7 @@ def leave(table: Array, modes: Array, beam: BeamAnswer) -> None:
 @part()
 def moved(i: int, length: float, half: float, feet: Feet, beam: BeamAnswer) -> tuple[float, float]:
     """What all forces of a step add to the mean rates under point i: (along, across), m/s."""
-    piece, across = feet.piece[i], 0.0
+    lever, piece, across = half * feet.points[i, FACE] * feet.points[i, IMAGE], feet.piece[i], 0.0
     for d in range(beam.load.shape[1]):
-        across += feet.touch[i, AT] ** d * beam.added[piece, d]
+        across += _lift(i, d, lever, length, feet.touch) * beam.added[piece, d]
     return _given(i, length, half, feet, beam), across

@@ -44,14 +44,14 @@ def begin(plan: Plan, riding: Riding, before: Sequence[MotorState]) -> None:
         feet.body[b, records.X], feet.state[own_feet], feet.touch[own] = state.travelled, state.feet, state.touch
         if plan.placed[b].held_speed is None:
             feet.body[b, records.V] = state.speed
+    if plan.coupling.two_way and plan.basis is not None:
+        press_apart(plan.placed, plan.basis, feet)
     if before:
         riding.before[:] = feet.touch[:, [records.DEPTH, records.STUCK]]
         return
     if riding.hard is not None:
         riding.before[0, 0] = RIDES_FROM_HERE
         return
-    if plan.coupling.two_way and plan.basis is not None:
-        press_apart(plan.placed, plan.basis, feet)
     levels = levels_of(stage, plan.z, plan.request.beam, plan.placed, feet)
     put_down(feet, levels)
     riding.set_touch(levels)

@@ -3,6 +3,7 @@
 from verify.models.arrays import Array
 from verify.models.kernels import part
 from verify.motor.records import (
+    ABOVE,
     ACROSS,
     ANSWER,
     ARM,
@@ -61,10 +62,11 @@ def see(i: int, x: float, edge: float, length: float, v: float, half: float, lin
     touch, state, foot = feet.touch, feet.state, feet.foot[i]
     image, face, arm, inset = feet.points[i, IMAGE], feet.points[i, FACE], feet.points[i, ARM], feet.points[i, INSET]
     lever = half * face * image
-    at, level, slope, bend, rise, turn, along = material(feet.piece[i], (x - edge) / length, length, lever, line)
+    above = (x - edge) / length
+    at, level, slope, bend, rise, turn, along = material(feet.piece[i], above, length, lever, line)
     lift = image * (rise + slope * (v + lever * (turn + bend * v)))
     touch[i, SURFACE_BEFORE], touch[i, SURFACE] = touch[i, SURFACE], along
-    touch[i, AT], touch[i, SLOPE], touch[i, ANSWER], touch[i, LIFT] = at, slope, 0.0, lift
+    touch[i, AT], touch[i, ABOVE], touch[i, SLOPE], touch[i, ANSWER], touch[i, LIFT] = at, above, slope, 0.0, lift
     touch[i, DEPTH] = inset + face * (image * level - state[foot, HEIGHT] - arm * state[foot, PITCH])
     touch[i, CLOSING] = face * (lift - state[foot, CLIMB] - arm * state[foot, TURN])
 

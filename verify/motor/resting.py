@@ -20,20 +20,35 @@ SAGGING = 20
 
 
 def weighed(basis: TimeBasis, placed: Sequence[Placed]) -> Array:
-    """Modes at rest under what presses the feet on, shared by their points, (n,): on the material under them."""
-    feet, length, still = feet_of(placed), basis.beam.length, np.zeros(len(basis.omegas))
+    """Modes at rest under what presses the feet on, shared by their points, (n,): on the material under them.
+
+    Square to the surface, so that it also turns what is under a point, by (h/2) w'.
+    """
+    feet, still = feet_of(placed), np.zeros(len(basis.omegas))
     p = feet.points
     share = (feet.foot[:, None] == np.arange(len(feet.state))) * p[:, [records.WEIGHT]]
     share = share / share.sum(axis=0)  # of two beams one is kept
     apart = np.where(p[:, records.IMAGE] > 0.0, p[:, records.INSET] * p[:, records.STIFF], 0.0)
-    x, lever = placed[0].start + p[:, records.OFFSET], basis.beam.surface_distance * p[:, records.FACE]
-    at = x
+    x, lever = _places(basis, placed, feet)
+    here = basis.shapes(x, 1)
     for _ in range(PASSES):
-        shapes = basis.shapes(at, 0)
+        at = _under(basis, still, x, lever)
+        shapes = basis.shapes(at, 0) + lever * (still @ basis.shapes(at, 1)) * here
         eased = shapes @ share / basis.omegas[:, None]
         still = shapes @ (share @ _pressing(feet, eased.T @ eased) - apart) / basis.omegas**2
-        at = np.clip(x + lever * p[:, records.IMAGE] * (still @ basis.shapes(at, 1)), 0.0, length)
     return np.asarray(still)
+
+
+def _places(basis: TimeBasis, placed: Sequence[Placed], feet: Feet) -> tuple[Array, Array]:
+    """(places of all points on the beam, how far above its mid-line), (points,) each, metres."""
+    p = feet.points
+    lever = basis.beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE]
+    return placed[0].start + p[:, records.OFFSET], lever
+
+
+def _under(basis: TimeBasis, still: Array, x: Array, lever: Array) -> Array:
+    """The material under points at x, (points,), metres, where the beam is bent so."""
+    return np.asarray(np.clip(x + lever * (still @ basis.shapes(x, 1)), 0.0, basis.beam.length))
 
 
 def _pressing(feet: Feet, compliance: Array) -> Array:
@@ -52,7 +67,7 @@ def _pressing(feet: Feet, compliance: Array) -> Array:
 def press_apart(placed: Sequence[Placed], basis: TimeBasis, feet: Feet) -> None:
     """A foot between two beams sits deeper by as much as its preload has bent the beam away, on the average."""
     still = weighed(basis, placed)
-    bent = still @ basis.shapes(placed[0].start + feet.points[:, records.OFFSET], 0)
+    bent = still @ basis.shapes(_under(basis, still, *_places(basis, placed, feet)), 0)
     for f in range(len(feet.state)):
         between = (feet.foot == f) & (feet.points[:, records.WEIGHT] < 1.0)
         if between.any():
