@@ -6,8 +6,9 @@ from msgspec.structs import replace
 
 from verify.chain import dynamics, splitting, stretching
 from verify.contact import foot, layer
+from verify.exact import error_laws, sweeps
 from verify.exact import modes as exact_modes
-from verify.exact import sweeps
+from verify.judge import sizing
 from verify.models.catalogue import MODELS
 from verify.motion import carried, friction_kernels, kernels
 from verify.motion.stepping import Sliding
@@ -134,6 +135,16 @@ def others_left_behind(patch):
     patch.setattr(splitting, "linear_states", lambda *given: 0.5 * true(*given))
 
 
+def sizes_of_the_first_mode(patch):
+    true = sizing._reached
+    patch.setattr(sizing, "_reached", lambda bench, model, modes, *given: true(bench, model, modes[:1], *given))
+
+
+def waves_a_little_long(patch):
+    true = error_laws.discrete_wavenumber
+    patch.setattr(error_laws, "discrete_wavenumber", lambda *given: (1.0 - 1e-9) * true(*given))
+
+
 FAULTS = {
     "stress": {
         sliders_a_little_rough: {"sliders-written-out"},
@@ -151,6 +162,8 @@ FAULTS = {
         joints_that_slip_more: {"links-that-slip"},
         sticking_overlooked: {"layers-followed"},
         feet_that_do_not_stand: {"feet-summed-up"},
+        sizes_of_the_first_mode: {"sizes-of-several-modes"},
+        waves_a_little_long: {"waves-on-coarse-parts"},
         others_left_behind: {"low-modes-kicked"},
     }
 }
