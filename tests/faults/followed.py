@@ -147,13 +147,13 @@ def waves_a_little_long(patch):
 
 FAULTS = {
     "stress": {
-        sliders_a_little_rough: {"sliders-written-out"},
+        sliders_a_little_rough: {"sliders-written-out", "sliders-not-felt"},
         sliders_a_little_heavy: {"reactions-written-out"},
         books_a_little_high: {"books-written-out"},
         events_a_little_late: {"changes-written-out"},
         steps_a_little_long: {"friction-branch-by-branch", "friction-at-its-edge"},
         springs_a_little_stiff: {"springs-on-belts", "springs-on-rough-belts"},
-        surfaces_a_little_fast: {"surfaces-given"},
+        surfaces_a_little_fast: {"surfaces-given", "surfaces-that-carry"},
         rods_without_dashpots: {"stretching-written-out"},
         links_a_little_quick: {"joints-at-any-angle"},
         shapes_a_little_high: {"shapes-of-all-supports"},

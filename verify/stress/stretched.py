@@ -20,7 +20,7 @@ from verify.stress.moved import accelerated, systems
 
 SPRINGS = 8.0e4 * np.array([1.0, 0.7, 1.3, 0.9, 1.1, 0.8, 1.2])
 """EA of each link, newton."""
-SAMPLES, STEPS = 3, 40
+SAMPLES, STEPS = 3, 25
 """Of a run, and steps from one to the next, each half of the longest."""
 
 
