@@ -4,7 +4,7 @@ from functools import cache
 
 from msgspec.structs import replace
 
-from verify.chain import dynamics, splitting, stretching
+from verify.chain import dynamics, problems, splitting, stretching
 from verify.contact import foot, layer
 from verify.exact import error_laws, sweeps
 from verify.exact import modes as exact_modes
@@ -145,6 +145,13 @@ def waves_a_little_long(patch):
     patch.setattr(error_laws, "discrete_wavenumber", lambda *given: (1.0 - 1e-9) * true(*given))
 
 
+def drifts_over_half_the_time(patch):
+    true = problems.energy_drift
+    patch.setattr(
+        problems, "energy_drift", lambda beam, n, height, periods, *given: true(beam, n, height, 0.5 * periods, *given)
+    )
+
+
 FAULTS = {
     "stress": {
         sliders_a_little_rough: {"sliders-written-out", "sliders-not-felt"},
@@ -164,6 +171,7 @@ FAULTS = {
         feet_that_do_not_stand: {"feet-summed-up"},
         sizes_of_the_first_mode: {"sizes-of-several-modes"},
         waves_a_little_long: {"waves-on-coarse-parts"},
+        drifts_over_half_the_time: {"energy-that-rk4-loses"},
         others_left_behind: {"low-modes-kicked"},
     }
 }

@@ -213,6 +213,18 @@ def kicked_error(modes: float) -> float:
     return float(abs(found - exact).max() / abs(exact).max())
 
 
+def drift_error(periods: float) -> float:
+    """Of the energy that RK4 loses of two hinged links, which have one motion: 1 - z^6 / 72 + z^8 / 576 a step."""
+    from verify.chain.problems import energy_drift
+
+    s2 = 0.5  # of a quarter turn
+    omega = np.sqrt(48.0 * s2 * s2 / (3.0 - 2.0 * s2)) * STRIP.wave_constant * (2.0 / STRIP.length) ** 2
+    step = 2.0 * pi * periods / float(omega) / 64.0
+    z = float(omega) * step
+    exact = 1.0 - (1.0 - z**6 / 72.0 + z**8 / 576.0) ** 64
+    return abs(energy_drift(STRIP, 2, 1e-6, periods, step, 1e-9) / exact - 1.0)
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="shapes-of-all-supports",
@@ -277,5 +289,15 @@ ROWS: tuple[Row, ...] = (
         promise=1e-7,
         error=kicked_error,
         kernels=warm.modal,
+    ),
+    Floor(
+        id="energy-that-rk4-loses",
+        title="Energy that Runge and Kutta's steps lose of two hinged links, against their factor for one motion",
+        why="chain/problems.py: read at the steps themselves; the factor is exact for small motion.",
+        along="periods",
+        at=(3.0, 6.0),
+        promise=1e-8,
+        error=drift_error,
+        kernels=warm.rigid,
     ),
 )

@@ -247,7 +247,7 @@ ROWS: tuple[Row, ...] = (
         why="motion/friction_kernels.py: exact; 1e-11 of a short step, roundings of speeds in others.",
         along="1/(K mu g)",
         at=(1e-3, 0.04, 0.8, 3.0, 11.0, 150.0),
-        promise=1e-10,
+        promise=2e-11,
         error=partial(tanh_error, PULLS),
         kernels=_belts,
     ),
