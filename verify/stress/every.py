@@ -1,5 +1,6 @@
 """Formulas at all their supports, slow and fast drives, contacts that stick and slip, each written out another way."""
 
+from collections.abc import Iterator
 from functools import cache
 from math import cos, pi, sin
 
@@ -10,6 +11,7 @@ from verify.attached import PointMass, PointSpring
 from verify.beam import PointForce
 from verify.chain import warm
 from verify.models.arrays import Array
+from verify.models.compiling import Call
 from verify.stress.anything import States
 from verify.stress.beams import PLAIN, STRIP, held
 from verify.stress.kind import Floor, Row
@@ -225,6 +227,12 @@ def drift_error(periods: float) -> float:
     return abs(energy_drift(STRIP, 2, 1e-6, periods, step, 1e-9) / exact - 1.0)
 
 
+def _kicks() -> Iterator[Call]:
+    """Accelerations, for the modes, and steps in them."""
+    yield from warm.accelerations()
+    yield from warm.modal()
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="shapes-of-all-supports",
@@ -288,7 +296,7 @@ ROWS: tuple[Row, ...] = (
         at=(3, 8),
         promise=1e-7,
         error=kicked_error,
-        kernels=warm.modal,
+        kernels=_kicks,
     ),
     Floor(
         id="energy-that-rk4-loses",
