@@ -4,7 +4,7 @@ from itertools import chain
 
 import faults.everything  # noqa: F401
 import pytest
-from faults import anything, contact, driven, felt, modes, motion, motor, stress, waves
+from faults import anything, contact, driven, felt, followed, modes, motion, motor, stress, waves
 from faults import chain as of_the_chain
 
 from verify.quantities.catalogue import QUANTITIES
@@ -22,6 +22,7 @@ FAMILIES = (
     stress.FAULTS,
     anything.FAULTS,
     felt.FAULTS,
+    followed.FAULTS,
     contact.FAULTS,
     motor.FAULTS,
 )

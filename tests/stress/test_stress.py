@@ -49,6 +49,10 @@ def light():
         "said",
         "verdicts",
         "readings",
+        "sliders",
+        "slips",
+        "stretched",
+        "every",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

@@ -9,7 +9,7 @@ from verify.stress.kind import Row
 FAMILIES = (
     *("sizes", "scales", "standing", "drive", "friction", "turns", "runs", "growth", "many", "laws", "books"),
     *("anything", "written", "moving", "moved", "tableaux", "waves", "choices", "rules", "felt", "stacked", "coiled"),
-    *("said", "verdicts", "readings", "refused_verbs"),
+    *("said", "verdicts", "readings", "sliders", "slips", "stretched", "every", "refused_verbs"),
     *("refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs"),
 )
 """Modules of this room with `ROWS`, in the order of the table."""

@@ -6,6 +6,8 @@ from math import cos, log, pi, sin, sqrt
 import numpy as np
 from msgspec.structs import replace
 
+from verify.attached import PointMass
+from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.stress.beams import STEPPED, STRIP, held
 from verify.stress.kind import Floor, Row
@@ -76,6 +78,60 @@ def scanned_error(mode: float) -> float:
     return missed
 
 
+LADEN = replace(held("clamped", "free"), mass=(PointMass(position=0.41, mass=0.06),))
+"""A body falls anywhere within a part, so that errors go up and down with the size."""
+
+
+def several_error(most: float) -> float:
+    """Of sizes from which on modes 1 to so many are all kept, and which asks for most, against all sizes."""
+    from verify.judge.sizing import enough_from
+
+    asked, wrong = range(1, int(most) + 1), 0.0
+    for beam in (LADEN, STRIP):
+        bench = Workbench(beam)
+        for model in ("segment", "fem"):
+            found = enough_from(bench, model, asked, 0.01)
+            off = {n: [_error_at(bench, model, n, mode) for mode in asked] for n in range(2, 13)}
+            count = max((n for n, errors in off.items() if max(errors) > 0.01), default=1) + 1
+            worst = max(asked, key=lambda mode: off[count - 1][mode - 1]) if count > 2 else found.mode
+            wrong += abs(found.count - count) + (found.mode != worst)
+    return wrong
+
+
+def _error_at(bench: Workbench, model: str, count: int, mode: int) -> float:
+    """Of a frequency; 1 where so few parts have it not."""
+    try:
+        return abs(bench.frequency_error(model, count, mode))
+    except InputError:
+        return 1.0
+
+
+def carried_error(count: float) -> float:
+    """Of wavenumbers on coarse parts with loss: what is left of a node's equations, over how they change with it."""
+    from verify.exact.error_laws import cut_off_hz, discrete_wavenumber
+
+    worst, beam = 0.0, replace(STRIP, loss_factor=0.04)
+    part = beam.length / count
+    for share in (0.02, 0.3, 0.7, 0.97):
+        for model in ("segment", "fem"):
+            hertz = share * cut_off_hz(model, beam, int(count))
+            root = (2.0 * pi * hertz / beam.wave_constant * part**2) ** 2 / (1.0 + 0.04j)
+            turn = discrete_wavenumber(model, beam, int(count), hertz) * part
+            left, above, below = (_node(model, turn * (1.0 + d), root) for d in (0.0, 1e-5, -1e-5))
+            worst = max(worst, abs(left / ((above - below) / 2e-5)), turn.imag > 0.0)
+    return worst
+
+
+def _node(model: str, turn: complex, root: complex) -> complex:
+    """Nought where a wave of such a turn from part to part runs."""
+    c, s = np.cos(turn), np.sin(turn)
+    if model == "segment":
+        return complex(4.0 * (1.0 - c) ** 2 - root * (1.0 - (1.0 - c) / 3.0))
+    stiffness = np.array([[24.0 - 24.0 * c, 12.0 * s], [12.0 * s, 8.0 + 4.0 * c]])
+    mass = np.array([[312.0 + 108.0 * c, -26.0 * s], [-26.0 * s, 8.0 - 6.0 * c]]) / 420.0
+    return complex(np.linalg.det(stiffness - root * mass))
+
+
 def gallop_error(start: float) -> float:
     """By how far the first of all sizes that reach is missed from a guess, and how many sizes are tried beyond need."""
     from verify.judge.sizing import _around
@@ -109,7 +165,7 @@ def crossing_error(order: float) -> float:
     met = crossing(*lines)  # type: ignore[arg-type]
     if not isinstance(met, Crossing) or len(met.crossings) != 1:
         return 1.0
-    worst = abs(met.crossings[0] / exact - 1.0)
+    worst = abs(met.crossings[0] / exact - 1.0) + abs(met.spread - 0.08)
     for wanted in (0.7 * sizes[1] ** -order, 2.0 * sizes[0] ** -order):
         cost = 1e-4 * max(wanted ** (-1.0 / order), sizes[0])
         worst = max(worst, abs((within(first, wanted) or 0.0) / cost - 1.0))
@@ -218,5 +274,22 @@ ROWS: tuple[Row, ...] = (
         at=(2.0, 3.0, 4.0),
         promise=1e-12,
         error=crossing_error,
+    ),
+    _row(
+        id="sizes-of-several-modes",
+        title="Sizes from which on several modes are kept, and which asks for most, with a body on parts and without",
+        why="judge/sizing.py: sizes are gone through, to a part.",
+        along="modes",
+        at=(3,),
+        error=several_error,
+    ),
+    Floor(
+        id="waves-on-coarse-parts",
+        title="Wavenumbers on coarse parts with loss, to just below where no wave runs, by a node's equations",
+        why="exact/error_laws.py: roots of a quadratic, to rounding.",
+        along="parts",
+        at=(3, 20),
+        promise=1e-12,
+        error=carried_error,
     ),
 )

@@ -266,7 +266,7 @@ def transient_error(number: float) -> float:
     from verify.chain.splitting import modal_basis, simulate_modal
     from verify.chain.stepping import simulate
 
-    system, times = _pushed(int(number)), np.array([0.007, 0.011, 0.017])
+    system, times = _pushed(int(number)), np.array([0.007007, 0.011011, 0.017])
     n = system.n_links
 
     def rates(t: float, y: Array) -> Array:

@@ -14,13 +14,14 @@ from verify.stress.anything import PLAIN, SECTIONS
 from verify.stress.kind import Floor, Row
 
 PARTS, MODES, BEAMS = 13, 3, 5
-END = PointSpring(position=0.61, rotational=2.6)
+END, START = PointSpring(position=0.61, rotational=2.6), PointSpring(position=0.0, rotational=1.7)
 RAYLEIGH: dict[str, Any] = {"theory": "rayleigh"}
 CARRYING: tuple[tuple[Beam, dict[str, Any]], ...] = (
     (replace(PLAIN, tension=37.0, foundation=2100.0, section=SECTIONS), {"grading": 1.6}),
     (replace(PLAIN, section=SECTIONS, supports=("guided", "pinned")), RAYLEIGH),
     (replace(PLAIN, tension=21.0, spring=(END,), supports=("clamped", "pinned")), {}),
     (replace(PLAIN, foundation=900.0, supports=("free", "guided")), RAYLEIGH | {"grading": 0.7}),
+    (replace(PLAIN, tension=9.0, spring=(START,), supports=("pinned", "clamped")), {}),
 )
 
 
@@ -96,7 +97,7 @@ ROWS: tuple[Row, ...] = tuple(
         title="Five beams with tension, ground, sections, turning, grading in one call, against each by itself",
         why="models/stacks.py: each as right as if it had been asked for alone.",
         along="case",
-        at=(0, 1, 2, 3),
+        at=(0, 1, 2, 3, 4),
         promise=1e-11,
         error=together_error(model),
     )
