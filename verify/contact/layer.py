@@ -128,7 +128,7 @@ def _sticks_at(s: float, r: float, slope: float, way: int) -> float:
     if abs(r) > size:
         return pi
     middle, half = atan(slope), acos(r / size)
-    edges = (middle - half, middle + half, middle - half + 2.0 * pi, middle + half + 2.0 * pi)
+    edges = (middle - half, middle + half, middle - half + 2.0 * pi, middle + half - 2.0 * pi)
 
     def turns(edge: float) -> bool:
         return way * (-sin(edge) + slope * cos(edge)) < 0.0
