@@ -30,8 +30,16 @@ def mapped(phi, r, epsilon, steps):
 
 @pytest.mark.parametrize(
     ("phi", "r", "epsilon"),
-    [(1.0, 0.0, 3.0), (1.0, 0.87, 0.1), (1.3, 0.6, 0.4), (2.1, -0.3, 1.7), (0.4, 0.99, 0.05), (1.0, 1.2, 0.3)]
-    + [(3.0, -1.7, 2.0), (3.0, -1.7, 3.0)],  # which slip from the start and stick before the crest
+    [
+        (1.0, 0.0, 3.0),
+        (1.0, 0.87, 0.1),
+        (1.3, 0.6, 0.4),
+        (2.1, -0.3, 1.7),
+        (0.4, 0.99, 0.05),
+        (1.0, 1.2, 0.3),
+        (3.0, -1.7, 2.0),  # slips from the start and sticks before the crest
+        (3.0, -1.7, 3.0),
+    ],
 )
 def test_a_layer_that_gives_way_carries_what_return_mapping_finds(phi, r, epsilon):
     coarse, fine = mapped(phi, r, epsilon, 4000), mapped(phi, r, epsilon, 8000)
