@@ -16,15 +16,18 @@ from verify.identify.fitting import (
     Fit,
     Identified,
     best_of,
+    beyond_unit,
     in_order,
     likelier,
     units,
     with_gaps,
 )
-from verify.identify.yielding import CREDIBLE, FEWEST, SHARE, borne_out, yielding
+from verify.identify.yielding import CREDIBLE, FEWEST, borne_out, yielding
 
 _SMALL_FACTOR = 5e-3
 """A common factor nearer to one is believed only where it leaves nothing to explain."""
+_SHARE = 0.02
+"""Of what a factor changes: one that leaves more does not explain the list."""
 _SHARP = 1e-8
 """Rounding of a list, relative, below which what fits it but for rounding is no chance."""
 
@@ -62,8 +65,13 @@ def _credible(found: Identified) -> bool:
         return True
     if found.best.residual > CREDIBLE:
         return False
-    change = abs(log(found.best.factor))
-    return found.reading.factor is not None or (change >= _SMALL_FACTOR and found.best.residual <= SHARE * change)
+    return found.reading.factor is not None or _by_factor(found.best)
+
+
+def _by_factor(best: Fit) -> bool:
+    """Whether one factor on all frequencies leaves little of what it changes, a wrong unit apart."""
+    change = abs(log(beyond_unit(best.factor)[0]))
+    return change >= _SMALL_FACTOR and best.residual <= _SHARE * change
 
 
 def _weighed(causes: list[Identified], data: Data, count: int | None) -> Identified | None:
@@ -88,9 +96,4 @@ def _as_good(best: Identified, other: Identified, rounding: float, count: int | 
         if not (sized and unsized):
             return False
         fit = unsized[0]
-    return likelier(_least(best.best, rounding), _least(fit, rounding), len(fit.pairs.entries)) < SURE
-
-
-def _least(fit: Fit, rounding: float) -> Fit:
-    """The same, what it leaves no smaller than the rounding of the list."""
-    return msgspec.structs.replace(fit, residual=max(fit.residual, rounding))
+    return likelier(best.best, fit, len(fit.pairs.entries), rounding) < SURE

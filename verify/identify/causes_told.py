@@ -1,8 +1,13 @@
 """What is behind a list, in words: the unit, the factor or the clamp, or those of them that it does not tell apart."""
 
-from verify.identify.fitting import FLOOR, PLAIN, UNITS, Fit, Identified
+from math import log
+
+from verify.identify.fitting import FLOOR, PLAIN, UNITS, Fit, Identified, beyond_unit
 from verify.identify.pairing import Found
 from verify.words import percent
+
+_LITTLE = 1e-3
+"""Of what a common factor changes: one that leaves more is not claimed, but told as the nearest."""
 
 
 def cause_of(found: Identified) -> tuple[Found, ...]:
@@ -58,21 +63,30 @@ def _among(found: Identified) -> str:
 
 def _words(found: Identified) -> str:
     kind, best = kind_of(found), found.best
-    if best.clamp is not None:
-        return best.clamp.words
+    unit = UNITS.get(found.reading.factor or 1.0, "")
+    said = [f"the frequencies are too large by {unit}"] if unit else []
+    said += [best.clamp.words] if best.clamp is not None else []
     if kind == "scale":
-        return _scale_words(best.factor, found.explained)
-    if kind == "unit":
-        return f"the frequencies are too large by {UNITS[found.reading.factor or 1.0]}"
-    return "nothing is off" if found.reading == PLAIN else "modes are missing or too many"
+        return _scale_words(best)
+    return "; ".join(said) or ("nothing is off" if found.reading == PLAIN else "modes are missing or too many")
 
 
-def _scale_words(factor: float, explains: bool) -> str:
+def loosely(best: Fit) -> bool:
+    """Whether what a factor leaves over is not quite nothing beside what it changes: it is told, and not claimed."""
+    change = abs(log(beyond_unit(best.factor)[0]))
+    return best.residual > max(FLOOR, _LITTLE * change)
+
+
+def _scale_words(best: Fit) -> str:
     """One factor on all frequencies, and what it may be of: sqrt(E / rho), thickness, 1 / L^2."""
-    had = "all frequencies have the common factor" if explains else "nearest comes a common factor of all frequencies,"
+    factor, unit = beyond_unit(best.factor)
+    plainly = not loosely(best)
+    had = "all frequencies have the common factor" if plainly else "nearest comes a common factor of all frequencies,"
+    beside = f", {factor:.6g} times {UNITS[unit]}, and" if unit != 1.0 else ""
     return (
-        f"{had} {factor:.6g}: E is {_change(factor**2)} or rho {_change(factor**-2)}, "
+        f"{had} {best.factor:.6g}{beside or ':'} E is {_change(factor**2)} or rho {_change(factor**-2)}, "
         f"or the thickness {_change(factor)}, or the length {_change(factor**-0.5)}"
+        f"{'' if plainly else f', and {left(best)} is left'}"
     )
 
 

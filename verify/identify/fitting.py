@@ -35,11 +35,13 @@ UNITS = {
     0.5e-3 / pi: "1/(2000 pi): they are in rad/ms, or divided by 2 pi and 1000",
 }
 """Factors that a wrong unit brings, and which."""
+_NEAR_UNIT = 0.2
+"""Difference in log frequency up to which a common factor may be a wrong unit and something else."""
 _UNKNOWN_NOISE = 1e-4
 """Relative; of a list that is too short to show its own."""
 _ANYWHERE_NEAR = 0.7
 """Difference in log frequency that dividing a beam and missing a mode or two may make."""
-_UNIT_COST, SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
+UNIT_COST, SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
 """In natural logarithms of likelihood."""
 _CLOSER = 6
 """Candidates that are looked at closely on a beam with steps."""
@@ -78,13 +80,13 @@ PLAIN = Reading(factor=1.0, aligned=False, cost=0.0)
 
 def in_order(n: int, units: Sequence[float]) -> tuple[Reading, ...]:
     """Readings by which no mode is missing, the plain one first."""
-    scaled = [Reading(factor=factor, aligned=False, cost=_UNIT_COST) for factor in units]
+    scaled = [Reading(factor=factor, aligned=False, cost=UNIT_COST) for factor in units]
     return PLAIN, *scaled, *([Reading(factor=None, aligned=False, cost=SCALE_COST)] if n >= 3 else [])
 
 
 def with_gaps(units: Sequence[float]) -> tuple[Reading, ...]:
     """Readings by which modes are missing or too many."""
-    factors = {1.0: 0.0} | dict.fromkeys(units, _UNIT_COST)
+    factors = {1.0: 0.0} | dict.fromkeys(units, UNIT_COST)
     return tuple(Reading(factor=factor, aligned=True, cost=cost) for factor, cost in factors.items())
 
 
@@ -131,7 +133,8 @@ def judged_fit(
     """A candidate by what is left of it, `logs` (k,): its residual and its score among n entries."""
     beyond = np.maximum(abs(logs) - rounding, 0.0)
     residual = float(np.sqrt(np.mean(beyond**2)))
-    total = cost + pairs.skips(n) * _SKIP_COST if len(pairs.entries) > min(1, n - 1) else inf
+    most = len(pairs.entries) >= min(3, n) and 2 * len(pairs.entries) > n
+    total = cost + pairs.skips(n) * _SKIP_COST if most else inf
     return Fit(
         candidate=candidate,
         count=count,
@@ -217,6 +220,13 @@ def units(data: Data) -> tuple[float, ...]:
     return tuple(factor for factor in UNITS if abs(off - log(factor)) < _ANYWHERE_NEAR)
 
 
+def beyond_unit(factor: float) -> tuple[float, float]:
+    """(a factor less the wrong unit that it is near to, that unit's factor): the factor itself and 1 of none."""
+    unit = min((1.0, *UNITS), key=lambda one: abs(log(factor / one)))
+    near = abs(log(factor / unit)) < _NEAR_UNIT
+    return (factor / unit, unit) if near else (factor, 1.0)
+
+
 def best_of(data: Data, count: int | None, among: Sequence[Reading]) -> Identified | None:
     """The likeliest candidate by the likeliest of these readings; None where none has so many modes."""
     fits = _fits(data, count, among)
@@ -296,12 +306,14 @@ def _ranked(data: Data, best: Fit, reading: Reading, count: int | None) -> Ident
 def ranked(data: Data, found: Sequence[Fit], reading: Reading) -> Identified:
     """Fits of candidates by one reading, one at least, the best first, those as near as it named."""
     place = {candidate: i for i, candidate in enumerate(data.family)}
+    fitted = reading.cost >= SCALE_COST  # a number to the list, so that its last digits tell nobody apart
+    floor = max(FLOOR, float(np.median(data.rounding))) if fitted else FLOOR
     fits = _preferred(sorted(found, key=lambda one: (max(one.residual, FLOOR), place[one.candidate])), place)
     n = len(fits[0].pairs.entries)
     return Identified(
         fits=fits,
         reading=reading,
-        alike=tuple(one for one in fits[1:] if likelier(fits[0], one, n) < SURE),
+        alike=tuple(one for one in fits[1:] if likelier(fits[0], one, n, floor) < SURE),
         systematic=smooth(fits[0], data.rounding),
     )
 
@@ -317,12 +329,12 @@ def same(one: Fit, other: Fit) -> bool:
     return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
 
 
-def likelier(best: Fit, other: Fit, n: int) -> float:
-    """How many times likelier the best is, noise of unknown size on n modes; rounding tells nobody apart.
+def likelier(best: Fit, other: Fit, n: int, floor: float = FLOOR) -> float:
+    """How many times likelier the best is, noise of unknown size on n modes; rounding, `floor`, tells nobody apart.
 
     One or two modes say nothing of their noise, so that `_UNKNOWN_NOISE` is supposed.
     """
-    floor = FLOOR if n > 2 else _UNKNOWN_NOISE
+    floor = floor if n > 2 else _UNKNOWN_NOISE
     ratio = sqrt(other.residual**2 + floor**2) / sqrt(best.residual**2 + floor**2)
     return exp(min(n * log(ratio), 700.0)) if ratio > 1.0 else 1.0
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import msgspec
 
-from verify.identify.causes_told import left, nearest, plain_cause
+from verify.identify.causes_told import left, loosely, nearest, plain_cause
 from verify.identify.family import CHAIN, Candidate
 from verify.identify.fitting import FLOOR, TOLERANCE, Fit, Identified
 from verify.identify.pairing import Found as Remark
@@ -99,7 +99,11 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
                 f"the nearest is {nearest(best)}"
             )
         answer = best.candidate.answer
-        return f"{f'Probably y{answer[1:]}' if self.found.doubtful else answer}{self._parts()}"
+        return f"{f'Probably y{answer[1:]}' if self.found.doubtful or self._loose() else answer}{self._parts()}"
+
+    def _loose(self) -> bool:
+        """Whether it is read with a common factor that is told and not claimed."""
+        return self.found.reading.factor is None and loosely(self.found.best)
 
     def _claimed(self) -> bool:
         """Whether it is said to be one candidate and no other."""

@@ -6,15 +6,28 @@ fitted to the candidate's own frequencies, by Gauss and Newton in its compliance
 
 from collections.abc import Iterator
 from functools import partial
+from itertools import product
 from math import exp
 
+import msgspec
 import numpy as np
 
 from verify.errors import InputError
 from verify.identify.alignment import Pairs, in_order_of
 from verify.identify.clamps import SOFTEST, STIFFEST, Loss, clamp_of, clamped_ends, loss_of, softened
 from verify.identify.family import EXACT, Candidate, frequencies_hz
-from verify.identify.fitting import FLOOR, SCALE_COST, Data, Fit, Identified, Reading, judged_fit, ranked
+from verify.identify.fitting import (
+    FLOOR,
+    SCALE_COST,
+    UNIT_COST,
+    Data,
+    Fit,
+    Identified,
+    Reading,
+    judged_fit,
+    ranked,
+    units,
+)
 from verify.identify.searching import best_size, downhill
 from verify.models.arrays import Array
 
@@ -23,7 +36,7 @@ FEWEST = 3
 READING = Reading(factor=1.0, aligned=False, cost=SCALE_COST)
 """As a common factor, a clamp that gives costs one fitted number."""
 _CLOSER = 6
-"""Candidates whose own frequencies the spring is fitted to: the nearest by what the exact ones lose."""
+"""Candidates whose own frequencies the spring is fitted to: the nearest, and all of Euler and Bernoulli."""
 _STEPS, _SETTLED = 12, 1e-10
 """Of a fit, and the change of frequencies, relative, at which it has settled."""
 SHARE, CREDIBLE = 0.1, 0.02
@@ -31,11 +44,22 @@ SHARE, CREDIBLE = 0.1, 0.02
 
 
 def yielding(data: Data, count: int | None) -> tuple[Identified, ...]:
-    """What the list is if the left clamped end gives, the right one, both: what there is of it."""
+    """What the list is if the left clamped end gives, the right one, both, in hertz or another unit: what there is."""
     if len(data.listed) < FEWEST:
         return ()
-    found = (_of_ends(data, count, ends) for ends in clamped_ends(data.solver.beam))
+    tried = product((1.0, *units(data)), clamped_ends(data.solver.beam))
+    found = (_in_unit(data, count, factor, ends) for factor, ends in tried)
     return tuple(one for one in found if one is not None)
+
+
+def _in_unit(data: Data, count: int | None, factor: float, ends: tuple[str, ...]) -> Identified | None:
+    """The same of a list that is too large by a factor."""
+    found = _of_ends(msgspec.structs.replace(data, listed=data.listed / factor), count, ends)
+    if found is None or factor == 1.0:
+        return found
+    reading = Reading(factor=factor, aligned=False, cost=READING.cost + UNIT_COST)
+    fits = [msgspec.structs.replace(one, factor=factor, score=one.score + UNIT_COST) for one in found.fits]
+    return ranked(data, fits, reading)
 
 
 def frequencies_of(data: Data, one: Fit) -> Array:
@@ -55,10 +79,10 @@ def _of_ends(data: Data, count: int | None, ends: tuple[str, ...]) -> Identified
     near = sorted(_near(data, loss, ends, count), key=lambda one: one.score)
     if not near or not borne_out(near[0], 2.0):
         return None
-    exact = [one for one in near if not one.candidate.sized][:1]
-    closer = [*exact, *(one for one in near[:_CLOSER] if one not in exact)]
+    plain = [one for one in near if one.candidate.theory == "euler-bernoulli"]
+    closer = [*plain, *(one for one in near[:_CLOSER] if one not in plain)]
     found: list[Fit] = []
-    for one in closer:
+    for one in sorted(closer, key=lambda one: one.candidate.sized):
         enough = count is not None or any(settled(fit, data) for fit in found)
         found += [fit] if (fit := _close(data, loss, ends, one, searched=not enough)) is not None else []
     return ranked(data, found, READING) if found else None
