@@ -30,7 +30,7 @@ class Clamp(msgspec.Struct, frozen=True, kw_only=True):
     def words(self) -> str:
         """What gives and how much, without a full stop."""
         which = "both clamped ends turn" if len(self.ends) > 1 else f"the clamped {self.ends[0]} end turns"
-        return f"{which} against a spring of k_r = {self.stiffness:.4g} EI/L ({self.rotational:.4g} N m/rad)"
+        return f"{which} against a spring of k_r = {self.stiffness:.4g} EI/L ({self.rotational:.6g} N m/rad)"
 
 
 def clamped_ends(beam: Beam) -> tuple[tuple[str, ...], ...]:
