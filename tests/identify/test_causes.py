@@ -213,6 +213,9 @@ def test_which_ends_may_give():
     assert clamped_ends(scene('beam.supports=["pinned","free"]', "beam.spring=[]").beam) == ()
     both = scene('beam.supports=["clamped","clamped"]').beam
     assert clamped_ends(both) == (("left",), ("left", "right"))
+    assert clamp_of(both, ("left",), 0.1).words.startswith("one of both clamped ends turns against")
+    assert clamp_of(both, ("left", "right"), 0.1).words.startswith("both clamped ends turn against")
+    assert clamp_of(BEAM, ("left",), 0.1).words.startswith("the clamped left end turns against")
     body = scene('beam.supports=["clamped","clamped"]', "beam.mass=[{position=0.1, mass=0.1}]").beam
     assert clamped_ends(body) == (("left",), ("right",), ("left", "right"))
 

@@ -25,11 +25,14 @@ class Clamp(msgspec.Struct, frozen=True, kw_only=True):
     """k_r L/EI, by the beam's own EI."""
     rotational: float
     """k_r, N m/rad."""
+    either: bool = False
+    """Whether the other end of a beam that is its own mirror image would do as well."""
 
     @property
     def words(self) -> str:
         """What gives and how much, without a full stop."""
-        which = "both clamped ends turn" if len(self.ends) > 1 else f"the clamped {self.ends[0]} end turns"
+        one = "one of both clamped ends turns" if self.either else f"the clamped {self.ends[0]} end turns"
+        which = "both clamped ends turn" if len(self.ends) > 1 else one
         return f"{which} against a spring of k_r = {self.stiffness:.4g} EI/L ({self.rotational:.6g} N m/rad)"
 
 
@@ -45,7 +48,9 @@ def clamped_ends(beam: Beam) -> tuple[tuple[str, ...], ...]:
 def clamp_of(beam: Beam, ends: tuple[str, ...], compliance: float) -> Clamp:
     """The clamp of a compliance EI/(k_r L)."""
     stiffness = 1.0 / compliance
-    return Clamp(ends=ends, stiffness=stiffness, rotational=stiffness * beam.bending_stiffness / beam.length)
+    rotational = stiffness * beam.bending_stiffness / beam.length
+    either = len(ends) == 1 and beam.supports == ("clamped", "clamped") and beam.mirrored() == beam
+    return Clamp(ends=ends, stiffness=stiffness, rotational=rotational, either=either)
 
 
 def softened(beam: Beam, clamp: Clamp) -> Beam:
