@@ -11,13 +11,16 @@ import numpy as np
 
 from verify.checks import check_whole
 from verify.errors import InputError
+from verify.identify.causes import identify
+from verify.identify.causes_told import cause_of
 from verify.identify.family import CHAIN, ELEMENTS, EXACT, Candidate, Solver, exact_hz, family
-from verify.identify.fitting import CREDIBLE, PLAIN, UNITS, Data, Identified, identify
+from verify.identify.fitting import PLAIN, Data, Identified
 from verify.identify.outside import asked_of
 from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic_of, missing, swapped
 from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
 from verify.identify.sizing import Enough, enough
 from verify.identify.told import Compared, Row, judged
+from verify.identify.yielding import CREDIBLE, frequencies_of
 from verify.models.arrays import Array
 from verify.options import Support
 from verify.patience import check_work
@@ -207,13 +210,9 @@ def _explaining(data: Data, counts: Sequence[int | None]) -> Identified | None:
 
 
 def _of_list(found: Identified, data: Data) -> tuple[Found, ...]:
-    """What the best reading of a list says of it: its unit, a common factor, what is missing."""
-    best, told = found.best, []
-    if found.reading.factor is None:
-        told.append(Found(kind="scale", words=_scale_words(best.factor, found.explained)))
-    elif found.reading.factor in UNITS:
-        told.append(Found(kind="unit", words=f"the frequencies are {UNITS[found.reading.factor]}"))
-    return (*told, *(missing(best.pairs, len(data.listed)) if data.paired is None else ()))
+    """What the best reading of a list says of it: its unit, a common factor, a clamp, what is missing."""
+    gaps = missing(found.best.pairs, len(data.listed)) if data.paired is None else ()
+    return (*cause_of(found), *gaps)
 
 
 def _of_supports(scene: Scene, found: Identified, data: Data) -> tuple[Found, ...]:
@@ -236,35 +235,24 @@ def _of_supports(scene: Scene, found: Identified, data: Data) -> tuple[Found, ..
     return (Found(kind="supports", words=words),)
 
 
-def _scale_words(factor: float, explains: bool) -> str:
-    """One factor on all frequencies, and what it may be of: sqrt(E / rho), thickness, 1 / L^2."""
-    had = "all frequencies have the common factor" if explains else "nearest comes a common factor of all frequencies,"
-    return (
-        f"{had} {factor:.6g}: E is {_change(factor**2)} or rho {_change(factor**-2)}, "
-        f"or the thickness {_change(factor)}, or the length {_change(factor**-0.5)}"
-    )
-
-
-def _change(ratio: float) -> str:
-    return f"{100.0 * (ratio - 1.0):+.3g} %" if 0.5 < ratio < 2.0 else f"{ratio:.4g} times the scene's"
-
-
 def _rows(data: Data, found: Identified, exact: Array, likeness: dict[int, float], elastic: Elastic) -> tuple[Row, ...]:
-    """Every paired mode: yours in hertz and freed of a wrong unit or factor, exact, of the best candidate."""
+    """Every paired mode: yours as it was given, exact, freed of a wrong unit or factor, of the best candidate."""
     best = found.best
-    known = data.solver(best.candidate, best.count)
+    known = frequencies_of(data, best)
     rows = []
     for entry, mode, off in zip(best.pairs.entries, best.pairs.modes, best.differences, strict=True):
         given = float(data.listed[entry])
-        yours = given / best.factor
+        scaled = None if best.factor == 1.0 else given / best.factor
         rows.append(
             Row(
                 mode=int(mode) + 1,
                 entry=int(elastic.kept[entry]) + 1,
                 given_hz=given,
-                frequency_hz=yours,
+                frequency_hz=given,
                 exact_hz=float(exact[mode]),
-                error=yours / float(exact[mode]) - 1.0,
+                error=given / float(exact[mode]) - 1.0,
+                scaled_hz=scaled,
+                scaled_error=None if scaled is None else scaled / float(exact[mode]) - 1.0,
                 best_hz=float(known[mode]),
                 difference=float(off),
                 beyond=max(abs(float(off)) - float(data.rounding[entry]), 0.0),

@@ -24,8 +24,18 @@ _WALLS = {
     "five-joint": "has the five-joint weights at the wall",
     "full": "has a whole joint EI/l at the wall",
     "rigid": "has a first link held fast by the wall",
+    "stiff": "has a joint 4EI/l at the wall, twice as stiff as it should be",
 }
-_WALL_ORDERS = {"half": 2, "gregory": 4, "welded": 2, "third-order": 3, "five-joint": 4, "full": 1, "rigid": 1}
+_WALL_ORDERS = {
+    "half": 2,
+    "gregory": 4,
+    "welded": 2,
+    "third-order": 3,
+    "five-joint": 4,
+    "full": 1,
+    "rigid": 1,
+    "stiff": 1,
+}
 _LINKS = {
     "links": "has rigid links with their own inertia m l^2/12",
     "points": "has links without their own inertia m l^2/12",
@@ -124,14 +134,14 @@ def family(beam: Beam) -> tuple[Candidate, ...]:
 def _chains(beam: Beam) -> Iterator[Candidate]:
     clamped = "clamped" in beam.supports
     walls: tuple[str | None, ...] = (
-        ("half", *(w for w in WALLS if w != "half"), "full", "rigid") if clamped else (None,)
+        ("half", *(w for w in WALLS if w != "half"), "full", "rigid", "stiff") if clamped else (None,)
     )
     elastic = has_wall(beam) and not clamped  # an end that turns against a spring has the joint of a wall
     made: tuple[str | None, ...] = ("half", *(w for w in WALLS if w not in ("half", "welded"))) if elastic else walls
     rules = ["series"] + ["printed"] * beam.stepped + ["tensioned"] * bool(beam.tension)
     for joints, wall, theory in product(rules, made, THEORIES):
         euler_alone = wall == "welded" and theory != "euler-bernoulli"
-        if not euler_alone and (theory != "timoshenko" or wall not in ("full", "rigid")):
+        if not euler_alone and (theory != "timoshenko" or wall not in ("full", "rigid", "stiff")):
             order = _order(beam, wall, joints, theory)
             yield Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", theory=theory, order=order)
     if told_by_lever(beam):

@@ -13,6 +13,7 @@ import msgspec
 import numpy as np
 
 from verify.identify.alignment import BAND, Pairs, aligned_pairs, in_order_of
+from verify.identify.clamps import Clamp
 from verify.identify.family import EXACT, Candidate, Solver, goes_up_and_down, inner_places
 from verify.identify.searching import best_size, closest
 from verify.models.arrays import Array
@@ -23,8 +24,6 @@ SURE = 100.0
 """By how much likelier the best has to be than another for both to be told apart, with noise of unknown size."""
 TOLERANCE = 1e-3
 """Up to here a candidate is said to explain a list."""
-CREDIBLE = 0.02
-"""A list that is farther than this from every candidate is not said to be in another unit, or to lack a mode."""
 UNITS = {
     2.0 * pi: "too large by 2 pi: they are in rad/s, not Hz",
     0.5 / pi: "too small by 2 pi: they were divided by 2 pi once too often",
@@ -36,13 +35,13 @@ UNITS = {
     0.5e-3 / pi: "too small by 2000 pi: they are in rad/ms, or divided by 2 pi and 1000",
 }
 """Factors that a wrong unit brings, and which."""
+_NEAR_UNIT = 0.2
+"""Difference in log frequency up to which a common factor may be a wrong unit and something else."""
 _UNKNOWN_NOISE = 1e-4
 """Relative; of a list that is too short to show its own."""
 _ANYWHERE_NEAR = 0.7
 """Difference in log frequency that dividing a beam and missing a mode or two may make."""
-_SMALL_FACTOR = 5e-3
-"""A common factor nearer to one is believed only where it leaves nothing to explain."""
-_UNIT_COST, _SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
+UNIT_COST, SCALE_COST, _SKIP_COST = 5.0, 9.0, 6.0
 """In natural logarithms of likelihood."""
 _CLOSER = 6
 """Candidates that are looked at closely on a beam with steps."""
@@ -62,6 +61,8 @@ class Fit(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Root mean square of the differences, less what the rounding of the list explains."""
     score: float
     """Minus log likelihood with noise of unknown size, and what its reading costs: the least is best."""
+    clamp: Clamp | None = None
+    """The rotational spring that stands in place of a clamped end; None where the walls are those of the scene."""
 
 
 class Reading(msgspec.Struct, frozen=True, kw_only=True):
@@ -79,13 +80,13 @@ PLAIN = Reading(factor=1.0, aligned=False, cost=0.0)
 
 def in_order(n: int, units: Sequence[float]) -> tuple[Reading, ...]:
     """Readings by which no mode is missing, the plain one first."""
-    scaled = [Reading(factor=factor, aligned=False, cost=_UNIT_COST) for factor in units]
-    return PLAIN, *scaled, *([Reading(factor=None, aligned=False, cost=_SCALE_COST)] if n >= 3 else [])
+    scaled = [Reading(factor=factor, aligned=False, cost=UNIT_COST) for factor in units]
+    return PLAIN, *scaled, *([Reading(factor=None, aligned=False, cost=SCALE_COST)] if n >= 3 else [])
 
 
 def with_gaps(units: Sequence[float]) -> tuple[Reading, ...]:
     """Readings by which modes are missing or too many."""
-    factors = {1.0: 0.0} | dict.fromkeys(units, _UNIT_COST)
+    factors = {1.0: 0.0} | dict.fromkeys(units, UNIT_COST)
     return tuple(Reading(factor=factor, aligned=True, cost=cost) for factor, cost in factors.items())
 
 
@@ -115,10 +116,10 @@ def fit(
         return None
     raw = logs[pairs.entries] - known[pairs.modes]
     shift = float(np.median(raw)) if reading.factor is None else log(reading.factor)
-    return _judged(candidate, count, pairs, raw - shift, exp(shift), rounding[pairs.entries], reading.cost, n)
+    return judged_fit(candidate, count, pairs, raw - shift, exp(shift), rounding[pairs.entries], reading.cost, n)
 
 
-def _judged(
+def judged_fit(
     candidate: Candidate,
     count: int | None,
     pairs: Pairs,
@@ -127,10 +128,13 @@ def _judged(
     rounding: Array,
     cost: float,
     n: int,
+    clamp: Clamp | None = None,
 ) -> Fit:
+    """A candidate by what is left of it, `logs` (k,): its residual and its score among n entries."""
     beyond = np.maximum(abs(logs) - rounding, 0.0)
     residual = float(np.sqrt(np.mean(beyond**2)))
-    total = cost + pairs.skips(n) * _SKIP_COST if len(pairs.entries) > min(1, n - 1) else inf
+    most = len(pairs.entries) >= min(3, n) and 2 * len(pairs.entries) > n
+    total = cost + pairs.skips(n) * _SKIP_COST if most else inf
     return Fit(
         candidate=candidate,
         count=count,
@@ -139,6 +143,7 @@ def _judged(
         differences=np.expm1(logs),
         residual=residual,
         score=n * log(sqrt(residual**2 + FLOOR**2)) + total,
+        clamp=clamp,
     )
 
 
@@ -152,6 +157,8 @@ class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """The others that the best cannot be told apart from."""
     systematic: bool
     """Whether what is left over goes smoothly with the mode, as noise would not."""
+    rivals: tuple["Identified", ...] = ()
+    """What else may be behind the list: other readings, or a clamp that gives, that leave about as much."""
 
     @property
     def best(self) -> Fit:
@@ -205,24 +212,7 @@ class Data(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return fit(self.listed, self.rounding, candidate, count, found, reading, paired)
 
 
-def identify(data: Data, count: int | None) -> Identified | None:
-    """Which candidate a list is of; None where none has so many modes.
-
-    `count` is the number of its parts; None tries all plausible ones. Gaps are looked for where nothing else explains
-    the list and nobody says which mode each entry is.
-    """
-    n, units = len(data.listed), _units(data)
-    found = _best_of(data, count, in_order(n, units))
-    if data.paired is None and n >= 3 and not (found is not None and found.explained):
-        gapped = _best_of(data, count, with_gaps(units))
-        if gapped is not None and (found is None or gapped.best.score < found.best.score):
-            found = gapped
-    if found is not None and not _credible(found):
-        return _best_of(data, count, (PLAIN,)) or found
-    return found
-
-
-def _units(data: Data) -> tuple[float, ...]:
+def units(data: Data) -> tuple[float, ...]:
     """Those factors of a wrong unit that bring the list anywhere near the exact beam."""
     pairs = data.paired or in_order_of(len(data.listed))
     exact = data.solver.or_nothing(Candidate(model=EXACT), None)
@@ -230,15 +220,15 @@ def _units(data: Data) -> tuple[float, ...]:
     return tuple(factor for factor in UNITS if abs(off - log(factor)) < _ANYWHERE_NEAR)
 
 
-def _credible(found: Identified) -> bool:
-    """Whether what a list is said to suffer from is borne out: what is left is small, and smaller than a factor."""
-    if found.reading == PLAIN or found.explained:
-        return True
-    small_factor = found.reading.factor is None and abs(log(found.best.factor)) < _SMALL_FACTOR
-    return found.best.residual <= CREDIBLE and not small_factor
+def beyond_unit(factor: float) -> tuple[float, float]:
+    """(a factor less the wrong unit that it is near to, that unit's factor): the factor itself and 1 of none."""
+    unit = min((1.0, *UNITS), key=lambda one: abs(log(factor / one)))
+    near = abs(log(factor / unit)) < _NEAR_UNIT
+    return (factor / unit, unit) if near else (factor, 1.0)
 
 
-def _best_of(data: Data, count: int | None, among: Sequence[Reading]) -> Identified | None:
+def best_of(data: Data, count: int | None, among: Sequence[Reading]) -> Identified | None:
+    """The likeliest candidate by the likeliest of these readings; None where none has so many modes."""
     fits = _fits(data, count, among)
     plainly = any(_settled(one) for (_, reading), one in fits.items() if reading == among[0])
     if count is None and not plainly and _looked_closer(data, fits, among):
@@ -310,14 +300,20 @@ def _ranked(data: Data, best: Fit, reading: Reading, count: int | None) -> Ident
     """All candidates by the best one's pairs and factor, those as near as the best named."""
     known = Reading(factor=reading.factor, aligned=False, cost=reading.cost)
     sized = (_sized(partial(_tried, data, one, known, best.pairs), data, one, count) for one in data.family)
+    return ranked(data, [one for one in sized if one is not None], reading)
+
+
+def ranked(data: Data, found: Sequence[Fit], reading: Reading) -> Identified:
+    """Fits of candidates by one reading, one at least, the best first, those as near as it named."""
     place = {candidate: i for i, candidate in enumerate(data.family)}
-    found = [one for one in sized if one is not None]
+    fitted = reading.cost >= SCALE_COST  # a number to the list, so that its last digits tell nobody apart
+    floor = max(FLOOR, float(np.median(data.rounding))) if fitted else FLOOR
     fits = _preferred(sorted(found, key=lambda one: (max(one.residual, FLOOR), place[one.candidate])), place)
-    n = len(best.pairs.entries)
+    n = len(fits[0].pairs.entries)
     return Identified(
         fits=fits,
         reading=reading,
-        alike=tuple(one for one in fits[1:] if likelier(fits[0], one, n) < SURE),
+        alike=tuple(one for one in fits[1:] if likelier(fits[0], one, n, floor) < SURE),
         systematic=smooth(fits[0], data.rounding),
     )
 
@@ -333,12 +329,12 @@ def same(one: Fit, other: Fit) -> bool:
     return bool(abs(one.differences - other.differences).max() <= 10.0 * FLOOR)
 
 
-def likelier(best: Fit, other: Fit, n: int) -> float:
-    """How many times likelier the best is, noise of unknown size on n modes; rounding tells nobody apart.
+def likelier(best: Fit, other: Fit, n: int, floor: float = FLOOR) -> float:
+    """How many times likelier the best is, noise of unknown size on n modes; rounding, `floor`, tells nobody apart.
 
     One or two modes say nothing of their noise, so that `_UNKNOWN_NOISE` is supposed.
     """
-    floor = FLOOR if n > 2 else _UNKNOWN_NOISE
+    floor = floor if n > 2 else _UNKNOWN_NOISE
     ratio = sqrt(other.residual**2 + floor**2) / sqrt(best.residual**2 + floor**2)
     return exp(min(n * log(ratio), 700.0)) if ratio > 1.0 else 1.0
 

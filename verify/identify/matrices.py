@@ -17,8 +17,8 @@ from verify.models.division import Parts, divide
 from verify.models.eigen import lowest
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 
-WALL_JOINTS = {"half": 0.5, "full": 1.0, "rigid": 0.0}
-"""Compliance of the joint at a clamped wall, l/EI: 2EI/l, EI/l, and a first link that the wall holds fast."""
+WALL_JOINTS = {"half": 0.5, "full": 1.0, "rigid": 0.0, "stiff": 0.25}
+"""Compliance of the joint at a clamped wall, l/EI: 2EI/l, EI/l, a first link that the wall holds fast, and 4EI/l."""
 LARGEST = 1500
 """Parts up to which these are solved."""
 _LITTLE = 1e-5

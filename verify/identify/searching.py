@@ -46,7 +46,7 @@ def best_size(tried: Tried, more: Sequence[int] = ()) -> "Fit | None":
         return None
     pointed = _pointed_to([known[n] for n in sizes[max(at - 1, 0) : at + 2]])
     here = min({sizes[at], pointed}, key=lambda n: _score(tried, known, n))
-    return known[_downhill(tried, known, here, lambda size: 1)]
+    return known[downhill(tried, known, here, lambda size: 1)]
 
 
 def closest(
@@ -69,7 +69,7 @@ def closest(
     best = known[here]
     if best is None or settled(best):
         return best
-    return known[_downhill(tried, known, here, lambda size: max(_NEAR, ceil(_NEARLY * size)))]
+    return known[downhill(tried, known, here, lambda size: max(_NEAR, ceil(_NEARLY * size)))]
 
 
 def _score(tried: Tried, known: Known, size: int) -> float:
@@ -79,7 +79,7 @@ def _score(tried: Tried, known: Known, size: int) -> float:
     return inf if one is None else one.score
 
 
-def _downhill(tried: Tried, known: Known, here: int, near: Callable[[int], int]) -> int:
+def downhill(tried: Tried, known: Known, here: int, near: Callable[[int], int]) -> int:
     """The best size of those as near to it as `near` says, from `here` on: the nearest first, and anew at a better."""
     seen: set[int] = set()
     while unseen := [n for n in range(here - near(here), here + near(here) + 1) if n not in seen]:

@@ -4,6 +4,7 @@ from typing import Any
 
 import msgspec
 
+from verify.identify.causes_told import left, loosely, nearest, plain_cause
 from verify.identify.family import CHAIN, Candidate
 from verify.identify.fitting import FLOOR, TOLERANCE, Fit, Identified
 from verify.identify.pairing import Found as Remark
@@ -14,7 +15,9 @@ from verify.studies.charting import GREY, line, percent, plain_line
 from verify.studies.told import Column, Found, Table
 from verify.words import percent as in_percent
 
-_YOURS, _BEST, _NEXT = "#d6427a", "#2f80ed", "#e8760c"
+_YOURS, _BEST, _NEXT, _SCALED = "#d6427a", "#2f80ed", "#e8760c", "#7a4fb5"
+_OFF_THE_CHART = 2.0
+"""A factor beyond which a list as given is not drawn beside the candidates."""
 _SHOWN = 8
 """Candidates in the terminal."""
 
@@ -26,16 +29,20 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     entry: int
     """Of the list, from 1."""
     given_hz: float
-    """As it was given, in hertz."""
+    """The same as `frequency_hz`."""
     frequency_hz: float
-    """Freed of a wrong unit or a common factor."""
+    """As it was given, in hertz."""
     exact_hz: float
     error: float
-    """Of `frequency_hz`, relative to exact."""
+    """Of what was given, relative to exact."""
+    scaled_hz: float | None
+    """Freed of a wrong unit or a common factor that was diagnosed; None without one."""
+    scaled_error: float | None
+    """Of `scaled_hz`, relative to exact."""
     best_hz: float
     """Of the best candidate."""
     difference: float
-    """Of `frequency_hz`, relative to the best candidate."""
+    """Of `scaled_hz`, else of what was given, relative to the best candidate."""
     beyond: float
     """Its size, less what the rounding of the list explains."""
     likeness: float | None
@@ -76,22 +83,31 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
 
     def _identity(self) -> str:
         best = self.found.best
+        if self.found.rivals:
+            return f"read by (a), the nearest is {nearest(best)}"
         if best.residual > TOLERANCE:
-            left = in_percent(best.residual, sign=False)
             known = "what is known of the family on this beam" if self.left_out else "the known family"
-            return f"none of {known} fits: the nearest, {best.candidate.words}{_sized(best)}, leaves {left}"
+            return f"none of {known} fits: the nearest, {nearest(best)}, leaves {in_percent(best.residual, sign=False)}"
         if self.found.systematic:
             return (
-                f"nothing of the known family is it quite: the nearest, {best.candidate.words}{_sized(best)}, leaves "
+                f"nothing of the known family is it quite: the nearest, {nearest(best)}, leaves "
                 f"{in_percent(best.residual, sign=False)}, which goes smoothly with the mode"
             )
         if self._unseen():
             return (
                 "these frequencies do not show how the beam was divided: too few, too noisy, or divided too finely; "
-                f"the nearest is {best.candidate.words}{_sized(best)}"
+                f"the nearest is {nearest(best)}"
             )
         answer = best.candidate.answer
-        return f"{f'Probably y{answer[1:]}' if self.found.doubtful else answer}{self._parts()}"
+        return f"{f'Probably y{answer[1:]}' if self.found.doubtful or self._loose() else answer}{self._parts()}"
+
+    def _loose(self) -> bool:
+        """Whether it is read with a common factor that is told and not claimed."""
+        return self.found.reading.factor is None and loosely(self.found.best)
+
+    def _claimed(self) -> bool:
+        """Whether it is said to be one candidate and no other."""
+        return self.found.explained and not self._unseen() and not self.found.rivals
 
     def _unseen(self) -> bool:
         """Whether the exact beam fits about as well as the best model of parts."""
@@ -112,10 +128,10 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
     def _surety(self) -> str:
         """How surely: what is left over, what else it may be, how far off the next is."""
         best = self.found.best
-        if not self.found.explained:
+        if not self.found.explained or self.found.rivals:
             return ""
-        left = f"{f'With {best.count} parts' if best.count else 'So read,'} it leaves {_left(best)}"
-        return "; ".join(part for part in (left, self._alike(), self._following()) if part)
+        leaves = f"{f'With {best.count} parts' if best.count else 'So read,'} it leaves {left(best)}"
+        return "; ".join(part for part in (leaves, self._alike(), self._following()) if part)
 
     def _alike(self) -> str:
         """What it may be as well: what has the same frequencies, and what this list does not tell from it."""
@@ -129,7 +145,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         if following is None:
             return ""
         times = f", {self.found.odds:.2g} times as much" if self.found.best.residual > FLOOR else ""
-        return f"next, with {_left(following)}{times}, comes {following.candidate.words}{_sized(following)}"
+        return f"next, with {left(following)}{times}, comes {nearest(following)}"
 
     def in_short(self) -> str:
         """The answer."""
@@ -140,9 +156,19 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         return (self.answer, self._largest())
 
     def _largest(self) -> str:
+        """Of the list as it was given; beside it of the scaled one, named as such."""
         worst = max(self.rows, key=lambda row: abs(row.error))
-        error = f"{in_percent(worst.error)}, at mode {worst.mode}"
-        return f"Against the exact beam ({self.theory}) the largest error is {error}."
+        said = f"Against the exact beam ({self.theory}) the largest error is {_at(worst.error, worst)}"
+        if not self.scaled:
+            return f"{said}."
+        least = max(self.rows, key=lambda row: abs(row.scaled_error or 0.0))
+        scaled = _at(least.scaled_error or 0.0, least)
+        return f"{said}, of your list as it is; of the list over {self.found.best.factor:.6g} it would be {scaled}."
+
+    @property
+    def scaled(self) -> bool:
+        """Whether the list was read as one that has a wrong unit or a common factor."""
+        return self.rows[0].scaled_hz is not None
 
     def tables(self) -> tuple[Table, ...]:
         """Modes, and candidates."""
@@ -156,6 +182,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             Column("yours, Hz", ".4f"),
             Column("exact, Hz", ".4f"),
             Column("error, %", "bare percent"),
+            *[Column("scaled, Hz", ".4f"), Column("scaled error, %", "bare percent")] * self.scaled,
             Column("best, Hz", ".4f"),
             Column("off it, %", "bare percent"),
             *([Column("MAC", ".4f")] if shaped else []),
@@ -163,9 +190,18 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         rows = []
         for row in self.rows:
             off: float | str = row.difference if abs(row.difference) > FLOOR else "rounding"
-            cells = (row.mode, row.entry, row.frequency_hz, row.exact_hz, row.error, row.best_hz, off)
+            scaled = (row.scaled_hz, row.scaled_error) if self.scaled else ()
+            cells = (row.mode, row.entry, row.frequency_hz, row.exact_hz, row.error, *scaled, row.best_hz, off)
             rows.append((*cells, row.likeness) if shaped else cells)
-        return Table(title="Modes", columns=columns, rows=tuple(rows), shown="both")
+        return Table(title="Modes", columns=columns, rows=tuple(rows), notes=self._scaling(), shown="both")
+
+    def _scaling(self) -> tuple[str, ...]:
+        """What `scaled` and `off it` are, where they are not of what was given."""
+        if not self.scaled:
+            return ()
+        return (
+            f"Scaled: yours over {self.found.best.factor:.6g}, as diagnosed. Off it: the scaled ones off the best.",
+        )
 
     def _candidates(self) -> Table:
         columns = (
@@ -198,24 +234,42 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         best = [row.best_hz / row.exact_hz - 1.0 for row in self.rows]
         lines = [
             plain_line("exact", GREY, modes, [0.0] * len(modes)),
-            line("yours", _YOURS, modes, percent([row.error for row in self.rows]), joined=False),
+            *(line(name, colour, modes, percent(off), joined=False) for name, colour, off in self._points()),
             plain_line(self.found.best.candidate.words, _BEST, modes, percent(best)),
         ]
         following = self.found.next
         if following is not None:
             by_mode = {int(m) + 1: float(d) for m, d in zip(following.pairs.modes, following.differences, strict=True)}
-            errors = [(1.0 + row.error) / (1.0 + by_mode[row.mode]) - 1.0 for row in self.rows]
+            own = [row.error if row.scaled_error is None else row.scaled_error for row in self.rows]
+            errors = [(1.0 + e) / (1.0 + by_mode[row.mode]) - 1.0 for e, row in zip(own, self.rows, strict=True)]
             lines.append(plain_line(following.candidate.words, _NEXT, modes, percent(errors), dash="dash"))
         return (
             Chart(
                 id="compare",
                 title="Your frequencies beside the nearest candidates",
-                caption=f"Points: yours, against the exact beam ({self.theory}). Lines: the candidates.",
+                caption=f"Points: {self._pointed()}, against the exact beam ({self.theory}). Lines: the candidates.",
                 x=Axis("mode number"),
                 y=Axis("frequency error, %"),
                 lines=tuple(lines),
             ),
         )
+
+    def _points(self) -> list[tuple[str, str, list[float]]]:
+        """(name, colour, errors) of yours, and of yours scaled; of these alone where the others lie far off."""
+        given = ("yours", _YOURS, [row.error for row in self.rows])
+        if not self.scaled:
+            return [given]
+        scaled = ("yours, scaled", _SCALED, [row.scaled_error or 0.0 for row in self.rows])
+        return [scaled] if self._far_off() else [given, scaled]
+
+    def _far_off(self) -> bool:
+        return not 1.0 / _OFF_THE_CHART < self.found.best.factor < _OFF_THE_CHART
+
+    def _pointed(self) -> str:
+        over = f"over {self.found.best.factor:.6g}, as diagnosed"
+        if not self.scaled:
+            return "yours"
+        return f"yours {over} (as given they lie off the chart)" if self._far_off() else f"yours, and yours {over}"
 
     def plain(self) -> dict[str, Any]:
         """For JSON."""
@@ -224,7 +278,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             "source": self.source,
             "unit": self.unit,
             "answer": self.answer,
-            "best": _candidate(self.found.best) | {"identified": self.found.explained and not self._unseen()},
+            "best": _candidate(self.found.best) | {"identified": self._claimed()},
             "certainty": {
                 "told_apart": not self.found.alike,
                 "alike": [_candidate(one) for one in self.found.alike],
@@ -233,6 +287,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             },
             "told": msgspec.to_builtins(self.told),
             "factor": self.found.best.factor,
+            "causes": [plain_cause(one) for one in (self.found, *self.found.rivals)],
             "parts_needed": msgspec.to_builtins(self.size),
             "theory": self.theory,
             "modes": msgspec.to_builtins(self.rows),
@@ -245,18 +300,14 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         }
 
 
+def _at(error: float, row: Row) -> str:
+    return f"{in_percent(error)}, at mode {row.mode}"
+
+
 def _either(fits: tuple[Fit, ...]) -> str:
     """The first two, and how many more."""
-    named = " or ".join(f"{one.candidate.words}{_sized(one)}" for one in fits[:2])
+    named = " or ".join(nearest(one) for one in fits[:2])
     return named + (f" or {len(fits) - 2} more" if len(fits) > 2 else "")
-
-
-def _sized(one: Fit) -> str:
-    return f" with N = {one.count}" if one.count else ""
-
-
-def _left(one: Fit) -> str:
-    return "nothing but rounding" if one.residual <= FLOOR else in_percent(one.residual, sign=False)
 
 
 def _candidate(one: Fit) -> dict[str, Any]:
@@ -289,7 +340,8 @@ def judged(
     why = (
         "A model is a member of the family if every mode is its mode, and what is left over does not go with the mode."
     )
-    reason = f"mode {off.mode} is {in_percent(off.difference)} off the nearest candidate"
+    over = f" over {found.best.factor:.6g}" if off.scaled_hz is not None else ""
+    reason = f"mode {off.mode}{over} is {in_percent(off.difference)} off the nearest candidate"
     if found.systematic and off.beyond <= TOLERANCE:
         reason = (
             f"what is left over, up to {in_percent(off.difference)} at mode {off.mode}, goes smoothly with the mode"
@@ -302,11 +354,12 @@ def judged(
 
 
 def _errors(rows: tuple[Row, ...], within: float) -> GateResult:
-    beyond = [row for row in rows if not abs(row.frequency_hz / row.exact_hz - 1.0) <= within]
+    """What was given against the exact beam, whatever it was read as."""
+    beyond = [row for row in rows if not abs(row.error) <= within]
     worst = max(rows, key=lambda row: abs(row.error))
     modes = ", ".join(str(row.mode) for row in beyond[:6]) + (" and more" if len(beyond) > 6 else "")
     reason = f"beyond it: mode{'s' * (len(beyond) > 1)} {modes}; the largest error is {in_percent(worst.error)}"
-    why = "Every mode against the exact beam."
+    why = "Every mode, as it was given, against the exact beam."
     return _gate("within", abs(worst.error), within, reason if beyond else "", why, "1")
 
 

@@ -1,0 +1,94 @@
+"""What is behind a list, in words: the unit, the factor or the clamp, or those of them that it does not tell apart."""
+
+from math import log
+
+from verify.identify.fitting import FLOOR, PLAIN, UNITS, Fit, Identified, beyond_unit
+from verify.identify.pairing import Found
+from verify.words import percent
+
+_LITTLE = 1e-3
+"""Of what a common factor changes: one that leaves more is not claimed, but told as the nearest."""
+
+
+def cause_of(found: Identified) -> tuple[Found, ...]:
+    """What is to be told of a list: its one cause, or all that leave about as much; of one as it stands nothing."""
+    if not found.rivals:
+        kind = kind_of(found)
+        return (Found(kind=kind, words=_words(found)),) if kind != "none" else ()
+    causes = (found, *found.rivals)
+    each = "; ".join(f"({letter}) {_among(one)}" for letter, one in zip("abcdef", causes, strict=False))
+    words = f"this list does not say which it is, and neither is claimed: {each}"
+    return (Found(kind="causes", words=words, wrong=all(kind_of(one) != "none" for one in causes)),)
+
+
+def kind_of(found: Identified) -> str:
+    """unit, scale, clamp, or none."""
+    if found.best.clamp is not None:
+        return "clamp"
+    if found.reading.factor is None:
+        return "scale"
+    return "unit" if found.reading.factor in UNITS else "none"
+
+
+def plain_cause(found: Identified) -> dict[str, object]:
+    """A cause in JSON."""
+    best = found.best
+    clamp = best.clamp
+    return {
+        "kind": kind_of(found),
+        "words": _words(found),
+        "factor": best.factor,
+        "clamp": None
+        if clamp is None
+        else {"ends": list(clamp.ends), "k_r_L_over_EI": clamp.stiffness, "k_r": clamp.rotational},
+        "residual": best.residual,
+        "nearest": nearest(best),
+    }
+
+
+def nearest(one: Fit) -> str:
+    """A candidate and its size."""
+    return one.candidate.words + (f" with N = {one.count}" if one.count else "")
+
+
+def left(one: Fit) -> str:
+    """What a candidate leaves of the list."""
+    return "nothing but rounding" if one.residual <= FLOOR else percent(one.residual, sign=False)
+
+
+def _among(found: Identified) -> str:
+    """One of several causes: what it is, what is nearest by it, what that leaves."""
+    return f"{_words(found)}, which leaves {left(found.best)} with {nearest(found.best)}"
+
+
+def _words(found: Identified) -> str:
+    kind, best = kind_of(found), found.best
+    unit = UNITS.get(found.reading.factor or 1.0, "")
+    said = [f"the frequencies are {unit}"] if unit else []
+    said += [best.clamp.words] if best.clamp is not None else []
+    if kind == "scale":
+        return _scale_words(best)
+    return "; ".join(said) or ("nothing is off" if found.reading == PLAIN else "modes are missing or too many")
+
+
+def loosely(best: Fit) -> bool:
+    """Whether what a factor leaves over is not quite nothing beside what it changes: it is told, and not claimed."""
+    change = abs(log(beyond_unit(best.factor)[0]))
+    return best.residual > max(FLOOR, _LITTLE * change)
+
+
+def _scale_words(best: Fit) -> str:
+    """One factor on all frequencies, and what it may be of: sqrt(E / rho), thickness, 1 / L^2."""
+    factor, unit = beyond_unit(best.factor)
+    plainly = not loosely(best)
+    had = "all frequencies have the common factor" if plainly else "nearest comes a common factor of all frequencies,"
+    beside = f": {UNITS[unit]}; beyond that {factor:.6g}, so that" if unit != 1.0 else ""
+    return (
+        f"{had} {best.factor:.6g}{beside or ':'} E is {_change(factor**2)} or rho {_change(factor**-2)}, "
+        f"or the thickness {_change(factor)}, or the length {_change(factor**-0.5)}"
+        f"{'' if plainly else f', and {left(best)} is left'}"
+    )
+
+
+def _change(ratio: float) -> str:
+    return f"{100.0 * (ratio - 1.0):+.3g} %" if 0.5 < ratio < 2.0 else f"{ratio:.4g} times the scene's"
