@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from verify.errors import InputError
+from verify.errors import InputError, shown
 
 PATIENCE_S = 20.0
 """Seconds of work that are begun without asking."""
@@ -20,7 +20,7 @@ def check_work(field: str, value: object, seconds: float, remedy: str) -> None:
     if seconds <= (limit := _limit()):
         return
     raise InputError(
-        f"{field} = {value!r} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
+        f"{field} = {shown(value)} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
         f"{remedy}, or set {VARIABLE} to more seconds"
     )
 
