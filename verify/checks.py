@@ -37,6 +37,12 @@ def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
     return found
 
 
+def check_kind(field: str, given: Any, *kinds: type) -> None:
+    """Raise InputError, naming the field, unless what was given is a value of one of these kinds."""
+    if not isinstance(given, kinds):
+        raise InputError(f"{field} = {shown(given)}: give a {' or a '.join(kind.__name__ for kind in kinds)}")
+
+
 def settle(value: "msgspec.Struct", where: str = "", **kinds: type) -> None:
     """What a user typed made what a frozen value holds: Python's numbers for numpy's, tuples for lists.
 
