@@ -1,6 +1,6 @@
 """The exact beam over many frequencies or many beams in one call: arrays in, arrays out."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from math import pi
 
 import numpy as np
@@ -68,7 +68,7 @@ def _refuse_resonances(beam: Beam, frequencies: Array) -> None:
 
 
 @as_typed
-def sweep_modes(beams: Sequence[Beam], n_modes: int, theory: str = EULER) -> Array:
+def sweep_modes(beams: Iterable[Beam], n_modes: int, theory: str = EULER) -> Array:
     """Exact frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
 
     Uniform Euler-Bernoulli beams on the same supports share their roots. Raises InputError as `solve_modes` does,
