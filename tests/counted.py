@@ -17,7 +17,7 @@ WORK = {
     "time bases": {(f"{room}/in_time.py", "time_basis") for room in ("elements", "segments", "exact")},
     "contact": {("motion/stepping.py", "_run_stage"), ("motion/stepping.py", "window"), ("chain/ride.py", "ride")},
     "simulations": {("motion/simulate.py", "simulate")},
-    "chain equilibria": {("chain/statics.py", "solve_static")},
+    "chain equilibria": {("chain/statics.py", "solve_static"), ("chain/load_path.py", "_followed")},
     "chain motions": {("chain/stepping.py", "simulate"), ("chain/stretching.py", "simulate")},
     "charts": {("", "charts")},
     "pages": {("report/html.py", "rendered")},

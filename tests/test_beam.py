@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from msgspec.structs import replace
 
@@ -251,3 +252,13 @@ def test_a_stiffness_over_a_mass_too_far_from_one_is_refused_by_both_signs_of_it
         with pytest.raises(InputError, match=r"bending stiffness / \(mass per length"):
             Beam(length=length, bending_stiffness=stiffness, mass_per_length=mass)
     assert Beam(length=1e10, bending_stiffness=1e60, mass_per_length=1e-30).bending_stiffness == 1e60
+
+
+def test_supports_in_a_row_of_numpys_are_those_of_a_pair():
+    sizes = {"length": 0.3, "width": 0.015, "thickness": 0.002, "youngs_modulus": 110e9, "density": 4500.0}
+    found = Beam(**sizes, supports=np.array(["clamped", "free"]))
+    assert found == Beam(**sizes, supports=("clamped", "free"))
+    assert [type(one) for one in found.supports] == [str, str]
+    for wrong in (np.array([["clamped", "free"]]), np.array(["clamped"]), np.array("clamped")):
+        with pytest.raises(InputError, match="give two, for the left and the right end"):
+            Beam(**sizes, supports=wrong)

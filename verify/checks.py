@@ -37,8 +37,14 @@ def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
     return found
 
 
+def check_kind(field: str, given: Any, *kinds: type) -> None:
+    """Raise InputError, naming the field, unless what was given is a value of one of these kinds."""
+    if not isinstance(given, kinds):
+        raise InputError(f"{field} = {shown(given)}: give a {' or a '.join(kind.__name__ for kind in kinds)}")
+
+
 def settle(value: "msgspec.Struct", where: str = "", **kinds: type) -> None:
-    """What a user typed made what a frozen value holds: Python's numbers for numpy's, tuples for lists.
+    """What a user typed made what a frozen value holds: Python's numbers for numpy's, tuples for lists and rows.
 
     `kinds` are fields of many values, `where` is what a message calls their owner. Raises InputError.
     """
@@ -47,9 +53,14 @@ def settle(value: "msgspec.Struct", where: str = "", **kinds: type) -> None:
         if field in kinds:
             kept = several(f"{where}.{field}", given, kinds[field]) if given != () else given
         elif type(given) not in _SETTLED:
-            kept = tuple(map(plain, given)) if isinstance(given, list) else plain(given)
+            kept = tuple(map(plain, given)) if _in_a_row(given) else plain(given)
         if kept is not given:
             slot.__set__(value, kept)
+
+
+def _in_a_row(given: Any) -> bool:
+    """Whether something is a list, or an array of one dimension."""
+    return isinstance(given, list) or (hasattr(given, "dtype") and len(getattr(given, "shape", ())) == 1)
 
 
 @cache

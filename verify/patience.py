@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from verify.errors import InputError
+from verify.errors import InputError, shown
 from verify.words import written
 
 PATIENCE_S = 20.0
@@ -20,7 +20,7 @@ def check_work(field: str, value: object, seconds: float, remedy: str) -> None:
     """
     if seconds <= (limit := _limit()):
         return
-    told = written(value) if isinstance(value, float) else repr(value)
+    told = written(value) if isinstance(value, float) else shown(value)
     raise InputError(
         f"{field} = {told} would take about {_words(seconds)}, more than the {limit:g} s that are waited for: "
         f"{remedy}, or set {VARIABLE} to more seconds"

@@ -3,7 +3,7 @@
 from typing import get_args
 
 from verify.beam import Beam
-from verify.checks import check_number, check_whole, settle
+from verify.checks import check_kind, check_number, check_whole, settle
 from verify.errors import InputError, near_name
 from verify.field_docs import Value
 from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
@@ -170,6 +170,8 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     def __post_init__(self) -> None:
         settle(self, "slider", foot=Foot)
+        if self.contact is not None:
+            check_kind("slider.contact", self.contact, Contact)
         self._check_feet()
         for name, kind in _WORDS.items():
             word, known = getattr(self, name), get_args(kind)

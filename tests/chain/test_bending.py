@@ -1,10 +1,12 @@
-"""A cantilever of links under large dead loads: the elastica, circles, small loads, what is refused."""
+"""A cantilever of links under large dead loads: the elastica, circles, small loads, buckling, what is refused."""
 
 import numpy as np
 import pytest
 from chain_reference import elastica_tip
 from msgspec.structs import replace
+from scipy.optimize import minimize
 
+from verify import segment_model
 from verify.attached import PointMass
 from verify.beam import Beam
 from verify.chain.bending import bend
@@ -100,6 +102,99 @@ def test_a_rod_given_by_its_stiffness_alone_bends_alike():
 def test_losses_do_not_matter_at_rest_and_numpys_whole_numbers_are_counts():
     lossy = replace(ROD, loss_factor=0.02)
     assert np.array_equal(bend(lossy, np.int64(15), [0.0, UNIT]).joints, bend(ROD, 15, UNIT).joints)
+
+
+STRUT = Beam(
+    length=0.3, width=0.015, thickness=0.002, youngs_modulus=110e9, density=4500.0, supports=("clamped", "free")
+)
+
+
+class Links:
+    """The same chain of 20 links written out: wall joint 2EI/l, energy, its gradient and its second derivatives."""
+
+    def __init__(self, along, across, moment=0.0, count=20):
+        self.along, self.across, self.moment, self.l = along, across, moment, STRUT.length / count
+        self.k = np.full(count, STRUT.bending_stiffness / self.l)
+        self.k[0] *= 2.0
+
+    def tip(self, theta):
+        return self.l * np.array([np.cos(theta).sum(), np.sin(theta).sum()])
+
+    def energy(self, theta):
+        x, y = self.tip(theta)
+        joints = 0.5 * self.k @ np.diff(theta, prepend=0.0) ** 2
+        return joints - self.along * (x - STRUT.length) - self.across * y - self.moment * theta[-1]
+
+    def gradient(self, theta):
+        joints = self.k * np.diff(theta, prepend=0.0)
+        turned = self.l * (self.along * np.sin(theta) - self.across * np.cos(theta))
+        return joints - np.append(joints[1:], self.moment) + turned
+
+    def lowest(self, theta):
+        beside = np.diag(self.k[1:], 1)
+        loads = self.l * (self.along * np.cos(theta) + self.across * np.sin(theta))
+        return np.linalg.eigvalsh(np.diag(self.k + np.append(self.k[1:], 0.0) + loads) - beside - beside.T)[0]
+
+    def least(self, start):
+        found = minimize(self.energy, start, jac=self.gradient, method="BFGS", options={"gtol": 1e-9, "maxiter": 5000})
+        return self.tip(found.x)
+
+
+@pytest.mark.parametrize(
+    ("along", "across", "moment"),
+    [
+        (-50.0, 5.0, 0.0),
+        (-50.0, -1.0, 0.0),
+        (-31.0, 1e-9, 0.0),
+        (-50.0, 1e-9, 0.0),
+        (-100.0, 1.0, 0.0),
+        (-400.0, 20.0, 0.0),
+        (-60.0, -3.0, 2.0),
+        (-50.0, 0.0, -1e-5),
+        (-30.0, 0.5, 0.0),
+    ],
+)
+def test_beyond_its_buckling_load_a_cantilever_lies_where_its_energy_is_least_on_the_side_it_is_pushed_to(
+    along, across, moment
+):
+    """Against the least energy of the links, by BFGS from an arc to that side; Euler's load is 30.16 N."""
+    links = Links(along, across, moment)
+    found = bend(STRUT, 20, (along, across), moment=moment, wall="half")
+    side = np.sign(across * STRUT.length / 3.0 + moment / 2.0)  # of the small deflection
+    assert np.sign(found.deflection) == side
+    assert links.lowest(found.angles) > 0.0
+    assert abs(links.gradient(found.angles)).max() < 1e-9
+    assert found.tip == pytest.approx(links.least(side * np.linspace(0.01, 0.5, 20)), abs=1e-6)
+
+
+def test_a_strut_pushed_at_50_newton_and_5_across_bends_to_its_left_as_it_was_worked_out():
+    """Least energy, found outside this suite: (0.0728, 0.2426) m and -3.87 J; it stood at y = -0.0598 m, unstable."""
+    found = bend(STRUT, 20, (-50.0, 5.0), wall="half")
+    assert found.tip == pytest.approx([0.0728, 0.2426], abs=5e-5)
+    assert found.energy + 50.0 * (found.tip[0] - 0.3) - 5.0 * found.deflection == pytest.approx(-3.87, abs=5e-3)
+
+
+def test_a_moment_against_the_force_leads_to_one_side_or_the_other_as_either_is_larger():
+    tips = [bend(STRUT, 20, (-60.0, -3.0), moment=moment).deflection for moment in (0.5, 0.7)]
+    assert tips[0] < -0.2
+    assert tips[1] > 0.2
+
+
+@pytest.mark.parametrize("along", [-31.0, -50.0, -400.0])
+def test_a_straight_strut_beyond_its_buckling_load_is_refused_with_the_load_and_what_to_do(along):
+    load = segment_model.buckling_load(STRUT, 20, wall="half")
+    with pytest.raises(InputError) as found:
+        bend(STRUT, 20, (along, 0.0), wall="half")
+    assert f"load = ({along!r}, 0.0) N pushes" in str(found.value)
+    assert f"its buckling load of {load:.6g} N" in str(found.value)
+    assert "give a small force across" in str(found.value)
+    assert bend(STRUT, 20, (-0.9999 * load, 0.0), wall="half").deflection == 0.0
+    assert bend(STRUT, 20, (-along, 0.0), wall="half").deflection == 0.0
+
+
+def test_a_push_to_a_side_that_rounding_would_choose_is_refused():
+    with pytest.raises(InputError, match=r"buckles the cantilever \(its buckling load is 30.1\d* N\): at 0.602"):
+        bend(STRUT, 20, (-50.0, 1e-30), wall="half")
 
 
 @pytest.mark.parametrize(

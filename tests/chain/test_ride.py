@@ -259,3 +259,14 @@ def test_the_middle_of_a_rigid_link_goes_along_x_as_its_place_changes():
         shares = np.where(np.arange(3) < piece, 1.0, np.where(np.arange(3) == piece, 0.5, 0.0))
         speed = (shares * lengths * np.cos(turned)).sum().imag / 1e-30
         assert _of_rigid(motion, piece)[2][0] == pytest.approx(speed, rel=1e-13)
+
+
+def test_a_slider_that_starts_on_a_joint_and_leaves_is_told_which_and_how_many_segments_have_none_there(paper_beam):
+    """Mid-span of an even chain: the slider is on two pieces at once and comes off its own with its first way back."""
+    middle = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", speed=-0.01)
+    with pytest.raises(InputError, match=r"starts on the joint at 0.25 m, .* \(an odd one for mid-span\), or start it"):
+        ride_from_rest(paper_beam, forces(1.0), 4276.0, middle, 24, 4e-4, step=STEP)
+    assert ride_from_rest(paper_beam, forces(1.0), 4276.0, middle, 25, 4e-4, step=STEP).displacement < 0.0
+    beside = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=0.2403, speed=-3.0)
+    with pytest.raises(InputError, match="shorten time or start it elsewhere"):
+        ride_from_rest(paper_beam, forces(1.0), 4276.0, beside, 25, 4e-4, step=STEP)

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify.beam import Beam
 from verify.errors import InputError
-from verify.exact import closed_forms
+from verify.exact import closed_forms, sweeps
 from verify.exact import modes as analytic_modes
 from verify.options import SUPPORTS
+from verify.section import Section
 
 PAIRS = list(product(SUPPORTS, SUPPORTS))
 
@@ -146,3 +148,35 @@ def test_what_has_no_closed_form_is_refused(titanium_strip):
         analytic_modes.solve_modes(titanium_strip, 0)
     with pytest.raises(InputError, match=r"x = 0\.74 lies off the beam"):
         analytic_modes.solve_modes(titanium_strip, 2).deflection([0.1, 0.74])
+
+
+LONG = Beam(length=0.42, width=0.03, thickness=0.004, youngs_modulus=71e9, density=2710.0, supports=("clamped", "free"))
+WORK = [
+    (LONG, "euler-bernoulli", 1.5e-5),
+    (LONG, "timoshenko", 6e-4),
+    (replace(LONG, section=(Section(length=0.22), Section(length=0.2, thickness=0.003))), "euler-bernoulli", 9e-4),
+]
+
+
+@pytest.mark.parametrize(("beam", "theory", "each"), WORK, ids=["closed", "thick", "stepped"])
+def test_more_modes_than_are_waited_for_are_refused_before_the_first_with_a_time(beam, theory, each, monkeypatch):
+    monkeypatch.setattr(analytic_modes, "frequency_hz", None)  # nothing is solved
+    monkeypatch.setattr(analytic_modes, "general_frequency_hz", None)
+    most = int(20.0 / each)
+    for n_modes in (most + 1, 10**8, 10**30, 10**400, 10**5000):
+        with pytest.raises(InputError, match=r"n_modes = .* would take about .* than the 20 s that are waited for"):
+            analytic_modes.solve_modes(beam, n_modes, theory)
+    with pytest.raises(InputError, match="n_modes = 10000000 would take about"):
+        sweeps.sweep_modes([beam], 10**7, theory)
+
+
+def test_many_modes_of_which_each_takes_little_are_solved():
+    assert analytic_modes.solve_modes(LONG, 20_000).n_modes == 20_000
+
+
+@pytest.mark.parametrize("mode", [0, -3, 2.5, "2", None, 10**31, 10**400])
+def test_a_mode_that_is_none_or_beyond_all_formulas_is_refused(mode):
+    for beam in (WORK[0][0], WORK[2][0]):
+        for solve in (analytic_modes.exact_frequency_hz, lambda beam, mode: analytic_modes.mode_shape(beam, mode, 0.1)):
+            with pytest.raises(InputError, match="mode = "):
+                solve(beam, mode)

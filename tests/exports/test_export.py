@@ -274,3 +274,10 @@ def test_a_shorter_series_takes_the_place_of_a_longer_one_and_of_nothing_else(ex
     with pytest.raises(InputError, match="holds other things than"):
         meshes.write_pvd(sheet, tmp_path / "m.pvd")
     assert (tmp_path / "m-steps" / "mine.txt").read_text() == "kept"
+
+
+@pytest.mark.parametrize("modes", [1_200, 100_000_000])
+def test_more_exact_modes_than_are_waited_for_are_refused_with_a_time(refused, modes):
+    said = refused("paper", "--what", "modes", "--model", "analytic", "--modes", str(modes))
+    assert f"modes = {modes} would take about" in said
+    assert "export fewer" in said

@@ -258,3 +258,12 @@ def test_a_sweep_takes_a_fraction_of_a_loops_time(model):
         lambda: [module.solve_harmonic(LOSSY, FORCES, float(f), *size).deflection(X) for f in frequencies]
     )
     assert loop > 5.0 * sweep
+
+
+@pytest.mark.parametrize("name", SIZED)
+def test_beams_may_be_any_that_can_be_gone_through_a_generator_too(name):
+    module, size = SIZED[name]
+    beams = [replace(BEAM, length=0.3 + 0.1 * i) for i in range(3)]
+    assert np.array_equal(module.sweep_modes(iter(beams), 4, *size), module.sweep_modes(beams, 4, *size))
+    with pytest.raises(InputError, match="beams has 3: give a Beam"):
+        module.sweep_modes((one for one in (BEAM, 3)), 4, *size)

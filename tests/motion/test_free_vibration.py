@@ -247,3 +247,49 @@ def test_the_exact_frequency_is_that_of_the_notes():
     found = freed(1, model="analytic", amplitude=1e-3, modes=30)
     assert found.notes == ("modes: the first 30, the others left out", "damping: a ratio 0 of every mode")
     assert found.frequencies_hz[29] == pytest.approx(frequency_hz(STRIP, 30), rel=1e-14)
+
+
+# ------------------------------------------------------------------------------------------------- where it is held
+
+
+@pytest.mark.parametrize(
+    ("supports", "values", "said"),
+    [
+        (("pinned", "pinned"), (1.0, 1e-3, 0.0), "shape = 1.0 m at x = 0.0 m, where the beam is pinned"),
+        (("pinned", "pinned"), (0.0, 1e-3, -2e-3), f"shape = -0.002 m at x = {L!r} m, where the beam is pinned"),
+        (("clamped", "free"), (1e-5, 1e-3, 2e-3), "shape = 1e-05 m at x = 0.0 m, where the beam is clamped"),
+        (("guided", "clamped"), (0.2, 0.1, 1e-4), f"shape = 0.0001 m at x = {L!r} m, where the beam is clamped"),
+    ],
+)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_shape_that_leaves_a_support_is_refused_with_place_and_value(model, supports, values, said):
+    table = ((0.0, 0.3 * L, L), values)
+    for shape in (table, lambda x: np.interp(x, *table)):
+        with pytest.raises(InputError) as found:
+            freed(shape, beam=replace(STRIP, supports=supports), model=model)
+        assert said in str(found.value)
+
+
+@pytest.mark.parametrize(
+    ("supports", "values"),
+    [
+        (("pinned", "pinned"), (1e-17, 1e-3, -1e-16)),
+        (("clamped", "free"), (0.0, 1e-3, 2e-3)),
+        (("guided", "pinned"), (2e-3, 1e-3, 0.0)),
+    ],
+)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_shape_may_round_where_the_beam_is_held_and_be_anything_where_it_is_not(model, supports, values):
+    at = np.array([0.0, 0.3 * L, L])
+    found = freed((at, values), beam=replace(STRIP, supports=supports), model=model, at=at)
+    assert found.deflection[0] == pytest.approx(values, abs=4e-5)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_what_a_start_misses_of_a_table_at_its_own_places_is_told(model):
+    at, values = np.array([0.0, 0.31 * L, L]), np.array([0.0, 1.7e-3, 0.0])
+    found = freed((at, values), model=model, at=at)
+    off = found.deflection[0, 1] - values[1]
+    assert 0.0 < abs(off) < 0.05 * 1.7e-3
+    assert found.notes[-1] == (f"start: {off:+.2g} m off the shape at x = {at[1]:g} m, the most at its own places")
+    assert not any(note.startswith("start: ") for note in freed(sine(2), model=model).notes)

@@ -346,6 +346,38 @@ def test_the_time_of_a_run_is_the_processors_and_nothing_is_kept_from_the_one_be
     assert told == ["run"] * 2 + ["forget", "run"] * (work.n_runs - 2)
 
 
+@pytest.mark.parametrize(
+    ("slider", "begins"),
+    [
+        ({"mass": 0.02}, "full friction moves"),
+        (
+            {"mass": 0.02, "normal": "massless", "coupling": "two-way"},
+            "slider.coupling = 'two-way'; full friction moves",
+        ),
+        ({"mass": 0.02, "coupling": "one-way"}, ""),
+        ({"mass": 1e-9}, ""),
+    ],
+)
+def test_a_table_of_one_way_runs_says_where_the_scene_s_slider_is_felt_and_compares_nothing(slider, begins):
+    """Of 20 g on the paper's beam `verify plan` says two-way: its errors are not those of one that is not felt."""
+    from verify.studies import work_precision
+    from verify.studies.slider_tables import work_table
+
+    scene = load_scene("paper-slider")
+    scene = replace(scene, readings=None, slider=replace(scene.slider, **slider))
+    own = work_precision.run_once(scene, "segment", 10).coupling
+    work = work_of(scene, (10, 20, 30))
+    assert own.two_way == bool(begins) == bool(work.felt)
+    assert work.felt.startswith(begins)
+    notes, answer = " ".join(work_table(work).notes), at_equal_error(work)
+    assert ("coupling = 'one-way', not the scene's" in notes) is bool(begins)
+    if begins:
+        assert "the beam feels the scene's own slider" in answer.why
+        assert "slider.coupling = 'one-way'" in answer.remedy
+    else:
+        assert "feels" not in answer_in_words(answer)
+
+
 WAIT_S = 0.05
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from msgspec import structs
 
 from verify.beam import Beam
-from verify.chain.statics import solve_static
+from verify.chain.load_path import led_to
 from verify.chain.system import LinkLoad, build_system
 from verify.chain.work import STATIC_LINKS, check_links
 from verify.checks import check_number, check_whole
@@ -67,8 +67,10 @@ def bend(
     `load` is one number across the straight beam, or a pair (along, across); it keeps its direction as the beam bends.
     A load that follows the tip has no place in the chain's statics. The reference is the elastica (K. E. Bisshopp and
     D. C. Drucker, Quart. Appl. Math. 3 (1945) 272), approached with order 2 in `count`; under a moment alone and
-    wall = "half" the circle closes exactly. Newton raises the load in parts where one does not suffice. Raises
-    InputError for supports other than clamped and free, what stands on the beam, and where no equilibrium is found.
+    wall = "half" the circle closes exactly. Beyond the buckling load, where a chain has several equilibria, the load
+    grows from nothing, and the equilibrium is the stable one that it leads to. Raises InputError for supports other
+    than clamped and free, what stands on the beam, a push along alone beyond the buckling load, and where no
+    equilibrium is found.
     """
     if beam.supports != ("clamped", "free"):
         raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
@@ -82,7 +84,7 @@ def bend(
     system = build_system(structs.replace(beam, loss_factor=0.0), count, wall=wall, joints=joints)
     along, across = (float(part) for part in (force if len(force) == 2 else (0.0, force[0])))
     end = LinkLoad(link=count, at=float(system.lengths[-1]), force=(along, across), moment=float(moment))
-    turned = solve_static(replace(system, loads=(end,))).angles
+    turned = led_to(replace(system, loads=(end,)), along, across, float(moment))
     angles, moments = np.cumsum(turned), np.append(system.stiffness * turned, moment)
     steps = system.lengths[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     return Bent(

@@ -222,10 +222,21 @@ def ride_from_rest(
     found = ride(moved, beam, slider)
     if not found.statistics.finished:
         raise InputError(
-            f"the slider {found.statistics.stopped} after {found.times[-1]:.6g} s of {written(duration)} s: shorten "
-            "time or start it elsewhere"
+            f"the slider {found.statistics.stopped} after {found.times[-1]:.6g} s of {written(duration)} s: "
+            f"{_start_elsewhere(system, slider.start_on(beam))}"
         )
     return found
+
+
+def _start_elsewhere(system: ChainSystem, start: float) -> str:
+    """What to do about a slider that leaves its piece: at once where it starts on a joint, as mid-span of even N."""
+    joint = float(system.nodes[np.argmin(abs(system.nodes - start))])
+    if abs(joint - start) > 1e-6 * system.length / system.n_links:
+        return "shorten time or start it elsewhere"
+    return (
+        f"it starts on the joint at {joint:.6g} m, where pieces meet; give a number of segments that has none there "
+        "(an odd one for mid-span), or start it between two joints"
+    )
 
 
 def check_moved(moved: ChainMotion | ElasticMotion) -> None:

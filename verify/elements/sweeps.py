@@ -1,6 +1,6 @@
 """Elements over many frequencies or many beams in one call: arrays in, arrays out."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from functools import partial
 from math import pi
 
@@ -76,7 +76,7 @@ def sweep_harmonic(
 
 @as_typed
 def sweep_modes(
-    beams: Sequence[Beam],
+    beams: Iterable[Beam],
     n_modes: int,
     n_elements: int,
     *,

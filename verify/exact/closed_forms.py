@@ -7,9 +7,11 @@ pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model fo
 from math import atan, exp, pi, sqrt
 
 from verify.beam import Beam
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, shown
 from verify.options import THEORIES
 
+HIGHEST = 10**30
+"""Mode of which there is a frequency."""
 # beta L = (n + c) pi + s(n) g atan(exp(-2 y/g)), the exponential form of cos y cosh y = +-1 and its kin.
 # pair -> (c, sign rule, g); the sign rule is 0, a constant, or "odd" for +1 at odd n and -1 at even n.
 _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
@@ -27,9 +29,11 @@ _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
 
 
 def check_mode(mode: int) -> None:
-    """Raise InputError unless `mode` counts from 1."""
-    if mode < 1:
-        raise InputError(f"mode = {mode!r}: modes are numbered from 1, elastic modes only")
+    """Raise InputError unless `mode` counts from 1, and not beyond what formulas hold."""
+    if not hasattr(mode, "__index__") or mode < 1:
+        raise InputError(f"mode = {shown(mode)}: modes are numbered from 1, elastic modes only")
+    if mode > HIGHEST:
+        raise InputError(f"mode = {shown(mode)}: no formula holds one so high, give at most {HIGHEST:.0e}")
 
 
 def check_uniform(beam: Beam) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.checks import check_whole
 from verify.exact.buckling import check_stable
-from verify.exact.closed_forms import check_mode, frequency_hz, root_parts
+from verify.exact.closed_forms import HIGHEST, check_mode, frequency_hz, root_parts
 from verify.exact.harmonic import solve_harmonic, unit_responses
 from verify.exact.roots import general_frequency_hz, modes_below
 from verify.models.arrays import Array
@@ -17,6 +17,7 @@ from verify.models.modes import Modes
 from verify.models.places import Numbers, as_typed, real_array
 from verify.models.theory import check_theory
 from verify.options import THEORIES
+from verify.patience import check_work
 
 __all__ = [
     "exact_frequency_hz",
@@ -29,6 +30,8 @@ __all__ = [
     "unit_responses",
 ]
 
+_CLOSED_S, _COUNTED_S = 1.5e-5, 3e-4
+"""Seconds that a mode takes, from above: in closed form, and counted on each stretch of a beam and once more."""
 _MIRRORED = {
     ("pinned", "clamped"),
     ("pinned", "free"),
@@ -45,9 +48,10 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
 
     Of uniform Euler-Bernoulli beams roots in the exponential form y = (n + c) pi + s g atan(exp(-2 y / g)), shapes with
     decaying exponentials from both ends; of all others as `exact_frequency_hz` and `exact.shapes`. Raises InputError
-    for n_modes < 1, an unknown theory, what a theory lacks, and compression beyond buckling.
+    for n_modes < 1 or so many that they take longer than is waited for, an unknown theory, what a theory lacks, and
+    compression beyond buckling.
     """
-    check_whole("n_modes", n_modes, 1)
+    check_n_modes(beam, n_modes, theory)
     plain = theory == "euler-bernoulli" and beam.uniform
     solve = frequency_hz if plain else exact_frequency_hz
     frequencies = np.array([solve(beam, n, theory) for n in range(1, n_modes + 1)])
@@ -72,6 +76,14 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
         curvatures=nowhere,
         method="closed form" if plain or has_closed_form(beam, n_modes, theory) else "counted",
     )
+
+
+def check_n_modes(beam: Beam, n_modes: int, theory: str, n_beams: int = 1) -> None:
+    """Raise InputError where there are no modes to be found, or where finding them takes longer than is waited for."""
+    check_whole("n_modes", n_modes, 1)
+    closed = has_closed_form(beam, min(n_modes, HIGHEST), theory)
+    each = _CLOSED_S if closed else _COUNTED_S * (1 + len(beam.pieces))
+    check_work("n_modes", n_modes, min(n_modes, HIGHEST) * n_beams * each, "ask for fewer modes")
 
 
 def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:

@@ -1,6 +1,6 @@
 """The exact beam over many frequencies or many beams in one call: arrays in, arrays out."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from math import pi
 
 import numpy as np
@@ -10,7 +10,7 @@ from verify.checks import check_whole, several
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
 from verify.exact.harmonic import check_off_resonance, resonant, solve_harmonic, uniform_shapes
-from verify.exact.modes import exact_frequency_hz
+from verify.exact.modes import check_n_modes, exact_frequency_hz
 from verify.models.arrays import Array, ComplexArray
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import FIELD, HarmonicSweep, check_held, of_each, swept_frequencies
@@ -68,7 +68,7 @@ def _refuse_resonances(beam: Beam, frequencies: Array) -> None:
 
 
 @as_typed
-def sweep_modes(beams: Sequence[Beam], n_modes: int, theory: str = EULER) -> Array:
+def sweep_modes(beams: Iterable[Beam], n_modes: int, theory: str = EULER) -> Array:
     """Exact frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
 
     Uniform Euler-Bernoulli beams on the same supports share their roots. Raises InputError as `solve_modes` does,
@@ -79,6 +79,8 @@ def sweep_modes(beams: Sequence[Beam], n_modes: int, theory: str = EULER) -> Arr
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
     check_held(len(beams), n_modes, "beams")
+    slowest = max(beams, key=lambda beam: (not beam.uniform, len(beam.pieces)))
+    check_n_modes(slowest, n_modes, theory, 1 if theory == EULER and slowest.uniform else len(beams))
     plain = np.array([theory == EULER and beam.uniform for beam in beams])
     found = np.empty((len(beams), n_modes))
     for supports in {beam.supports for beam in beams}:

@@ -6,8 +6,8 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
 
-from verify.beam import PointForce
-from verify.checks import plain, several
+from verify.beam import Beam, PointForce
+from verify.checks import check_kind, plain, several
 from verify.errors import InputError, shown
 from verify.models.arrays import Array
 
@@ -23,13 +23,20 @@ SLACK = 1e-12
 
 
 def as_typed(verb: Callable[Given, Found]) -> Callable[Given, Found]:
-    """The verb, which then takes numpy's scalars for counts and figures, and a force alone for a list of it."""
+    """The verb, which then takes numpy's scalars for counts and figures, and a force alone for a list of it.
+
+    What is no Beam where a verb begins with one is refused.
+    """
+    begins = getattr(verb, "__code__", None)
+    on_beam = begins is not None and begins.co_varnames[:1] == ("beam",)
 
     def settled(value: Any) -> Any:
         return (value,) if isinstance(value, PointForce) else plain(value)
 
     @wraps(verb)
     def called(*args: Given.args, **named: Given.kwargs) -> Found:
+        if on_beam and (args or "beam" in named):
+            check_kind("beam", args[0] if args else named["beam"], Beam)
         return verb(*map(settled, args), **{name: settled(value) for name, value in named.items()})
 
     return called

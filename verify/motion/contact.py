@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.field_docs import Value
@@ -57,6 +58,12 @@ class Coupling(Value, frozen=True, kw_only=True):
     def pushes_back(self) -> bool:
         """Whether the beam carries the slider's weight and inertia."""
         return self.two_way and self.normal == "held"
+
+    @property
+    def felt(self) -> bool:
+        """Whether the beam feels the slider, by size, whatever the slider says."""
+        size = larger(self.friction_size, self.normal_size * (self.normal == "held"))
+        return size is None or size > FELT
 
     @property
     def note(self) -> str:
@@ -127,8 +134,11 @@ def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: 
     answer = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
     friction_size = float(answer / surface_speed) if surface_speed > 0.0 else None
     normal_size = float(slider.mass * omega**2 * abs(receptance))
-    forced, size = slider.coupling != "auto", larger(friction_size, normal_size * (slider.normal == "held"))
-    two_way = slider.coupling == "two-way" if forced else size is None or size > FELT
-    return Coupling(
-        two_way=two_way, friction_size=friction_size, normal_size=normal_size, normal=slider.normal, forced=forced
+    found = Coupling(
+        two_way=slider.coupling == "two-way",
+        friction_size=friction_size,
+        normal_size=normal_size,
+        normal=slider.normal,
+        forced=slider.coupling != "auto",
     )
+    return found if found.forced else replace(found, two_way=found.felt)

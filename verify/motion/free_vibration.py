@@ -29,6 +29,12 @@ FINE = 3
 POINTS = 30_000_000
 """Shapes at places, or modes at times, held at once."""
 MOST_SAMPLES = 1_000_000
+HELD = ("pinned", "clamped")
+"""Ends where nothing is deflected."""
+ROUNDED = 1e-6
+"""Of its largest value: what a shape may have at such an end by rounding."""
+ENDS = 33
+"""Places at which a shape's size is seen, both ends among them."""
 NEAR = 1e-3
 """Of its largest value: what a mode's shape has where it first moves off its left end."""
 
@@ -95,8 +101,9 @@ def free_vibration(
 
     `shape` and `velocity` are each a function of x, a pair (x, values) with straight lines between the places, which
     lead from 0 to L, or None for nothing. `shape` may be a mode's number with `amplitude`, its largest deflection in
-    metres, positive where it first moves off its left end; a number for `velocity` is refused. What a model cannot
-    take of a shape is left out in the mass-weighted mean square (`unread`); from there on every mode is
+    metres, positive where it first moves off its left end; a number for `velocity` is refused, and a shape that is not
+    0 where the beam is held. What a model cannot take of a shape is left out in the mass-weighted mean square
+    (`unread`; `notes` say what is missed at a table's own places); from there on every mode is
     q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
     Vibrations, 1967, ch. 5). Damping is a ratio zeta of every mode, half the beam's loss factor unless given. The exact
     beam keeps `modes` modes, the others all they have. `at` are p places in metres, or one, where `samples` values are
@@ -114,7 +121,8 @@ def free_vibration(
     MODELS.named(model)
     basis = basis_of(beam, model, count, modes)
     q, rates, unread = _start(basis, shape, amplitude, velocity)
-    return _told(basis, zeta, points, np.linspace(0.0, duration, samples), q, rates, unread)
+    found = _told(basis, zeta, points, np.linspace(0.0, duration, samples), q, rates, unread)
+    return msgspec.structs.replace(found, notes=(*found.notes, *_missed(basis, shape, q)))
 
 
 def _start(
@@ -130,6 +138,8 @@ def _start(
         raise InputError(f"amplitude = {amplitude!r} is that of a mode: give shape a mode's number, or leave it out")
     drawn = {"shape": None if numbered else shape, "velocity": velocity}
     breaks = [_breaks(name, given, basis.beam.length) for name, given in drawn.items() if given is not None]
+    if drawn["shape"] is not None:
+        _check_held(basis.beam, drawn["shape"])
     still = np.zeros(len(basis.omegas)), 0.0
     known = _quadrature(basis, np.concatenate(breaks)) if breaks else None
     found = {name: _shares(known, name, given) if known else still for name, given in drawn.items()}
@@ -174,6 +184,29 @@ def _breaks(name: str, given: Shape, length: float) -> Array:
             f"{name}[0] runs from {float(x[0])!r} to {float(x[-1])!r}: let x ascend from 0 to {length!r} m"
         )
     return x
+
+
+def _check_held(beam: Beam, shape: Shape) -> None:
+    """Raise InputError for a shape that is not 0 at an end where the beam is held."""
+    values = _values("shape", shape, np.linspace(0.0, beam.length, ENDS))
+    for support, place, value in zip(beam.supports, (0.0, beam.length), values[[0, -1]], strict=True):
+        if support in HELD and abs(value) > ROUNDED * abs(values).max():
+            raise InputError(
+                f"shape = {float(value)!r} m at x = {place!r} m, where the beam is {support}: let it be 0 there, or "
+                "give the beam another support"
+            )
+
+
+def _missed(basis: TimeBasis, shape: Shape | None, q: Array) -> tuple[str, ...]:
+    """By how much the start leaves a table at its own places, in words; nothing of another shape."""
+    if shape is None or isinstance(shape, int) or callable(shape):
+        return ()
+    x, values = (np.asarray(part, dtype=float) for part in shape)
+    off = q @ basis.shapes(x, 0) - values
+    worst = int(np.argmax(abs(off)))
+    return (
+        f"start: {float(off[worst]):+.2g} m off the shape at x = {float(x[worst]):g} m, the most at its own places",
+    )
 
 
 def _shares(known: "_Known", name: str, given: Shape | None) -> tuple[Array, float]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
-from verify.errors import InputError
+from verify.errors import InputError, shown
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.fields import check_drive
@@ -147,7 +147,13 @@ def _grown(started: Started, frequency_hz: float) -> tuple[tuple[float, Array], 
     """The pieces (seconds, coefficients) over which the forces grow."""
     if started.soft:
         return ((started.soft / frequency_hz, SMOOTH_STEP),)
-    return tuple((seconds, np.asarray(c, dtype=float)) for seconds, c in started.envelope)
+    try:
+        found = tuple((float(seconds), np.asarray(c, dtype=float)) for seconds, c in started.envelope)
+    except (TypeError, ValueError):
+        found = ((0.0, np.zeros(())),)
+    if any(c.ndim != 1 for _, c in found):
+        raise InputError(f"envelope = {shown(started.envelope)}: give pieces (seconds, coefficients)")
+    return found
 
 
 def _check_samples(samples: int) -> None:
@@ -168,6 +174,8 @@ def _check_start(model: str, started: Started) -> None:
     start, soft, envelope, before = started.start, started.soft, started.envelope, started.before
     check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
     MODELS.named(model)
+    if before is not None and not isinstance(getattr(before, "end", None), EndState):
+        raise InputError(f"continue_from = {shown(before)}: give a Motion or a FreeVibration")
     if start not in ("rest", "steady"):
         raise InputError(f"start = {start!r} is not known: known are rest, steady")
     if (soft or envelope) and (start == "steady" or before):

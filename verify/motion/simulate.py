@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.beam import Beam
+from verify.checks import check_kind
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.places import Forces, Numbers, as_forces, as_typed
@@ -66,6 +67,7 @@ def simulate(
     """
     began = perf_counter()
     if slider is not None:
+        check_kind("slider", slider, Slider)
         slider.check_stays()
     request = requested(
         Driven(beam, as_forces(forces), frequency_hz, duration),

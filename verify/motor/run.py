@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.beam import Beam
-from verify.checks import check_number
+from verify.checks import check_kind, check_number, plain, several
 from verify.errors import InputError
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.motion.request import Driven, Modelled, Started, Watched, requested
@@ -70,6 +70,9 @@ def run_motor(
     `steps_per_period`-th of the drive's period, or shorter where the contact is stiff, unless `step` is given; forces
     act in mid-step, of second order, coupled two-way on the modes. Otherwise as `simulate`. Raises InputError.
     """
+    check_kind("slider", slider, Slider)
+    if continue_from is not None:
+        check_kind("continue_from", continue_from, MotorRun)
     driven, by = Driven(beam, as_forces(forces), frequency_hz, duration), Modelled(model, count, modes, modal_damping)
     watched = Watched(at, samples, step, steps_per_period, False)
     asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
@@ -109,8 +112,9 @@ def run_motors(
     driven, by = Driven(beam, as_forces(forces), frequency_hz, duration), Modelled(model, count, modes, modal_damping)
     watched = Watched(at, samples, step, steps_per_period, False)
     asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
-    speeds, stay = _each("held_speed", held_speed, len(sliders)), _each("frozen", frozen, len(sliders))
-    return _run(asked, list(zip(sliders, speeds, stay, strict=True)), [run.state for run in continue_from])
+    put, before = several("sliders", sliders, Slider), several("continue_from", continue_from, MotorRun)
+    speeds, stay = _each("held_speed", held_speed, len(put)), _each("frozen", frozen, len(put))
+    return _run(asked, list(zip(put, speeds, stay, strict=True)), [run.state for run in before])
 
 
 def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
@@ -127,9 +131,10 @@ def _run(
     """The runs of sliders, each with its held speed and whether it stays at its place. Raises InputError."""
     began, beam, model, start = perf_counter(), asked.driven.beam, asked.modelled.model, asked.started.start
     check_together(model, start, [slider for slider, _, _ in put])
-    for _, speed, _ in put:
+    for _, speed, stays in put:
         if speed is not None:
             check_number("held_speed", speed, "m/s")
+        check_kind("frozen", plain(stays), bool)
     linear = msgspec.structs.replace(asked.modelled, model="segment") if model == CHAIN else asked.modelled
     request = requested(asked.driven, linear, asked.started, asked.watched, put[0][0])
     placed = tuple(Placed(slider, slider.start_on(beam), speed, bool(stays)) for slider, speed, stays in put)

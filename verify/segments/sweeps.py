@@ -1,6 +1,6 @@
 """Chains over many frequencies or many beams in one call: arrays in, arrays out."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from functools import partial
 from math import pi
 
@@ -96,7 +96,7 @@ def _damped(beam: Beam, chain: Chain, pencil: FactoredPencil, frequencies: Array
 
 @as_typed
 def sweep_modes(
-    beams: Sequence[Beam],
+    beams: Iterable[Beam],
     n_modes: int,
     n_segments: int,
     *,

@@ -237,8 +237,8 @@ ROWS: tuple[Row, ...] = (
         Case("frequency_hz = ", moved("analytic", None, mode(2)), moved("analytic", None, mode(2), modal_damping=0.01)),
         Case(
             "shape: ",
-            lambda: free_vibration(STRIP, lambda x: x, 0.01, model="analytic", modes=5000),
-            lambda: free_vibration(STRIP, lambda x: x, 0.01, model="analytic", modes=5),
+            lambda: free_vibration(STRIP, lambda x: x * (STRIP.length - x), 0.01, model="analytic", modes=5000),
+            lambda: free_vibration(STRIP, lambda x: x * (STRIP.length - x), 0.01, model="analytic", modes=5),
         ),
         Case("position = ", lambda: beam_impedance(STRIP, HERTZ, 0.0, "clamped", turning=True)),
     ),

@@ -72,7 +72,18 @@ def work_table(work: "Work") -> Table:
             f"{100 * work.step_floor:.1g} %; run time of the loop for a simulated millisecond, and set-up "
             "(modes, tables, margins): processor time in one thread, medians of interleaved rounds. All of it one-way: "
             "the beam does not feel the slider.",
+            *_not_its_own(work.felt),
         ),
+    )
+
+
+def _not_its_own(felt: str) -> tuple[str, ...]:
+    """A note where the beam feels the scene's own slider, which these runs are not of."""
+    if not felt:
+        return ()
+    return (
+        f"The beam feels the scene's own slider, two-way ({felt}): these displacements and errors are of "
+        "coupling = 'one-way', not the scene's.",
     )
 
 

@@ -67,6 +67,8 @@ class Work(msgspec.Struct, frozen=True, kw_only=True):
     """Of the motion, seconds."""
     n_runs: int
     """Simulations that were done."""
+    felt: str = ""
+    """Why the beam feels the scene's own slider, in words; empty where it does not, as in these runs."""
 
 
 class WorkFound(Found, frozen=True, eq=False, kw_only=True):
@@ -163,7 +165,8 @@ class NotCompared(msgspec.Struct, frozen=True, kw_only=True):
 def work_of(scene: "Scene", counts: tuple[int, ...], progress: Progress = lambda step: None) -> Work:
     """Both models at every size; the exact beam is the reference. Raises InputError."""
     _check_rounds(scene, counts)
-    exact, floor = exact_way(scene)
+    found_exact, floor = _exact_run(scene)
+    exact = found_exact.displacement
     check_reference(exact)
     cases = [(model.name, n) for model in discrete("time_basis", scene.beam) for n in sorted(set(counts))]
     runs: dict[tuple[str, int], list[Timed]] = {case: [] for case in cases}
@@ -177,7 +180,18 @@ def work_of(scene: "Scene", counts: tuple[int, ...], progress: Progress = lambda
         before = rows[-1] if rows and rows[-1].model == model else None
         rows.append(_row(model, n, found, exact, before))
     n_runs = EXACT + ROUNDS * len(cases)
-    return Work(rows=tuple(rows), step_floor=floor, duration=scene.motion.duration, n_runs=n_runs)
+    felt = _felt(scene, found_exact)
+    return Work(rows=tuple(rows), step_floor=floor, duration=scene.motion.duration, n_runs=n_runs, felt=felt)
+
+
+def _felt(scene: "Scene", found: "Motion") -> str:
+    """Why the scene's own slider is coupled two-way; empty where it is not."""
+    assert scene.slider is not None
+    assert found.coupling is not None
+    if scene.slider.coupling == "one-way":
+        return ""
+    chosen = "slider.coupling = 'two-way'; " if scene.slider.coupling == "two-way" else ""
+    return chosen + found.coupling.told if chosen or found.coupling.felt else ""
 
 
 def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
@@ -209,15 +223,20 @@ def _windows_seconds(scene: "Scene") -> float:
 
 def exact_way(scene: "Scene") -> tuple[float, float]:
     """The exact beam's displacement, and by what share half the step changes it. Raises InputError where it is none."""
+    found, floor = _exact_run(scene)
+    return found.displacement, floor
+
+
+def _exact_run(scene: "Scene") -> "tuple[Motion, float]":
+    """The slider on the exact beam, and by what share half the step changes its displacement. Raises InputError."""
     assert scene.motion is not None
     finer = replace(scene.motion, steps_per_period=2 * scene.motion.steps_per_period)
-    way, finer_way = (
-        run_once(one, "analytic", None, coupling="one-way").displacement
-        for one in (scene, replace(scene.bare, motion=finer))
+    found, closer = (
+        run_once(one, "analytic", None, coupling="one-way") for one in (scene, replace(scene.bare, motion=finer))
     )
-    if way == 0.0:
+    if found.displacement == 0.0:
         raise InputError("the slider does not move on the exact beam: no error can be relative to that, drive it")
-    return way, abs(finer_way / way - 1.0)
+    return found, abs(closer.displacement / found.displacement - 1.0)
 
 
 def run_once(
@@ -269,6 +288,11 @@ def _row(model: str, count: int, times: list[Timed], exact: float, before: WorkR
 
 def at_equal_error(work: Work) -> Comparison | NotCompared:
     """Both models at the smallest error that both reach, by logarithms, where errors fall at their order."""
+    if work.felt:
+        return NotCompared(
+            why=f"the beam feels the scene's own slider ({work.felt}), and these runs are of one that it does not",
+            remedy="give slider.coupling = 'one-way' to ask for that",
+        )
     both = bounding()
     lines = {model.name: [row for row in work.rows if row.model == model.name] for model in both}
     unfit = (_unfit(model.parts, lines[model.name], work) for model in both)

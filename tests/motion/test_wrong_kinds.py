@@ -1,0 +1,107 @@
+"""What is of another kind than a public verb takes: refused in one sentence that names the field, by no Python error."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify import (
+    Beam,
+    Contact,
+    PointForce,
+    Slider,
+    analytic_modes,
+    bend,
+    fem_beam,
+    free_vibration,
+    run_motor,
+    run_motors,
+    segment_model,
+    simulate,
+)
+from verify.errors import InputError
+
+STRIP = Beam(length=0.31, width=0.015, thickness=0.002, youngs_modulus=110e9, density=4500.0)
+RIDER = Slider(mass=1e-3, mu=0.2)
+MOTOR = Slider(mass=5e-3, mu=0.25, contact=Contact(stiffness=1e6))
+ASKED = {"beam": STRIP, "forces": PointForce(position=0.05), "frequency_hz": 900.0, "duration": 1e-3, "count": 20}
+
+
+def refusal(call):
+    with pytest.raises(InputError) as found:
+        call()
+    assert "\n" not in str(found.value)
+    return str(found.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "begins"),
+    [
+        ({"slider": 3}, "slider = 3: give a Slider"),
+        ({"slider": [RIDER]}, "slider = [Slider("),
+        ({"slider": {"mass": 1.0}}, "slider = {'mass': 1.0}: give a Slider"),
+        ({"continue_from": 3}, "continue_from = 3: give a Motion or a FreeVibration"),
+        ({"continue_from": 0}, "continue_from = 0: give a Motion or a FreeVibration"),
+        ({"envelope": "x"}, "envelope = 'x': give pieces (seconds, coefficients)"),
+        ({"envelope": 3}, "envelope = 3: give pieces"),
+        ({"envelope": [(1e-4, 2.0)]}, "envelope = [(0.0001, 2.0)]: give pieces"),
+        ({"envelope": [[1e-4]]}, "envelope = [[0.0001]]: give pieces"),
+        ({"beam": None}, "beam = None: give a Beam"),
+    ],
+)
+def test_simulate(given, begins):
+    assert refusal(lambda: simulate(**{**ASKED, "slider": RIDER, **given})).startswith(begins)
+
+
+@pytest.mark.parametrize(
+    ("given", "begins"),
+    [
+        ({"slider": None}, "slider = None: give a Slider"),
+        ({"continue_from": 3}, "continue_from = 3: give a MotorRun"),
+        ({"frozen": 3}, "frozen = 3: give a bool"),
+        ({"frozen": "no"}, "frozen = 'no': give a bool"),
+        ({"beam": "strip"}, "beam = 'strip': give a Beam"),
+    ],
+)
+def test_run_motor(given, begins):
+    assert refusal(lambda: run_motor(**{**ASKED, "slider": MOTOR, **given})).startswith(begins)
+
+
+@pytest.mark.parametrize(
+    ("given", "begins"),
+    [
+        ({"sliders": 3}, "sliders has 3: give a Slider"),
+        ({"sliders": [MOTOR, None]}, "sliders has None: give a Slider"),
+        ({"sliders": []}, "sliders is empty"),
+        ({"sliders": [MOTOR], "continue_from": 3}, "continue_from has 3: give a MotorRun"),
+        ({"sliders": [MOTOR], "frozen": [3]}, "frozen = 3: give a bool"),
+    ],
+)
+def test_run_motors(given, begins):
+    assert refusal(lambda: run_motors(**{**ASKED, **given})).startswith(begins)
+
+
+def test_one_slider_alone_stands_for_a_list_of_it_and_numpys_truth_is_one():
+    one_way = replace(MOTOR, coupling="one-way")
+    (alone,) = run_motors(**ASKED, sliders=one_way, frozen=np.bool_(True))
+    assert np.array_equal(alone.travelled, run_motor(**ASKED, slider=one_way, frozen=True).travelled)
+
+
+@pytest.mark.parametrize("contact", [{}, 3, "hard", RIDER])
+def test_a_contact_that_is_none(contact):
+    assert "slider.contact = " in refusal(lambda: Slider(mass=1.0, mu=0.1, contact=contact))
+
+
+@pytest.mark.parametrize(
+    "verb",
+    [
+        lambda beam: analytic_modes.solve_modes(beam, 3),
+        lambda beam: fem_beam.solve_modes(beam, 3, 9),
+        lambda beam: segment_model.solve_modes(beam, n_modes=3, n_segments=9),
+        lambda beam: segment_model.solve_harmonic(beam, PointForce(position=0.1), 90.0, 9),
+        lambda beam: bend(beam, 9, 1.0),
+        lambda beam: free_vibration(beam, 1, 0.1, amplitude=1e-3, count=9),
+    ],
+)
+@pytest.mark.parametrize("given", [None, 3, "strip", {"length": 1.0}])
+def test_a_beam_that_is_none(verb, given):
+    assert refusal(lambda: verb(given)).startswith("beam = ")
