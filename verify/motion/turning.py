@@ -1,0 +1,40 @@
+"""How far a beam turns where a couple acts on it, which is what friction at its surface is."""
+
+import numpy as np
+
+from verify.beam import Beam, PointForce
+from verify.models.fields import HarmonicField
+from verify.models.time_basis import TimeBasis
+
+HAIR = 1e-5
+"""Of 1/k, or of the beam where it is shorter: between the forces that stand for a couple. Its square is the error."""
+
+
+def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
+    """A unit couple at x, 1 N m, as three forces a hair apart: a derivative over their place, from x inwards.
+
+    Good to second order, though the shear that a force leaves behind makes its answers kink at its own place. Under a
+    couple curvature jumps: elements turn too little by up to 0.066 l/EI, links of length l by 0.15, at an end by 0.30.
+    """
+    near = HAIR * min(float(np.sqrt(beam.wave_constant / (2.0 * np.pi * frequency_hz))), beam.length)
+    inwards = near if x < 0.5 * beam.length else -near
+    places = np.array([x, x + inwards, x + 2.0 * inwards])
+    one, two = places[1:] - x  # as they came out, rounded
+    weights = np.array([0.0, two / (one * (two - one)), -one / (two * (two - one))])
+    weights[0] = -weights.sum()
+    return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
+
+
+def turned_by(field: HarmonicField, x: float) -> complex:
+    """Slope at x of the field under `couple` there, rad/(N m)."""
+    return complex(field.slope([x])[0])
+
+
+def modal_turning(basis: TimeBasis, x: float, omega: float, damping: float) -> complex:
+    """The same of all modes, and of those beyond the last where they were cut off: their sum falls as slowly as 1/n."""
+    here = basis.shapes(np.array([x]), 1)[:, 0]
+    found = complex(here @ (here / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)))
+    if basis.tail is None:
+        return found
+    frequency = omega / (2.0 * np.pi)
+    return found + complex(basis.tail(couple(basis.beam, x, frequency), frequency, damping)(np.array([x]), 1)[0])
