@@ -6,22 +6,23 @@ from verify.beam import Beam, PointForce
 from verify.models.fields import HarmonicField
 from verify.models.time_basis import TimeBasis
 
-HAIR = 1e-5
-"""Of 1/k, or of the beam where it is shorter: between the forces that stand for a couple. Its square is the error."""
+HAIR = 1e-3
+"""Of 1/k, or of a fiftieth of the beam where that is shorter: between the forces that stand for a couple."""
+FORCES = 5
+"""In a row, which leave the fourth power of a hair."""
 
 
 def couple(beam: Beam, x: float, frequency_hz: float) -> tuple[PointForce, ...]:
-    """A unit couple at x, 1 N m, as three forces a hair apart: a derivative over their place, from x inwards.
+    """A unit couple at x, 1 N m, as forces a hair apart: a derivative over their place, from x inwards.
 
-    Good to second order, though the shear that a force leaves behind makes its answers kink at its own place. Under a
+    Good to fourth order, though the shear that a force leaves behind makes its answers kink at its own place. Under a
     couple curvature jumps: elements turn too little by up to 0.066 l/EI, links of length l by 0.15, at an end by 0.30.
     """
-    near = HAIR * min(float(np.sqrt(beam.wave_constant / (2.0 * np.pi * frequency_hz))), beam.length)
+    near = HAIR * min(float(np.sqrt(beam.wave_constant / (2.0 * np.pi * frequency_hz))), 0.02 * beam.length)
     inwards = near if x < 0.5 * beam.length else -near
-    places = np.array([x, x + inwards, x + 2.0 * inwards])
-    one, two = places[1:] - x  # as they came out, rounded
-    weights = np.array([0.0, two / (one * (two - one)), -one / (two * (two - one))])
-    weights[0] = -weights.sum()
+    places = x + inwards * np.arange(FORCES)
+    powers = np.vander((places - x) / inwards, increasing=True).T  # of where they came out, rounded
+    weights = np.linalg.solve(powers, np.eye(FORCES)[1]) / inwards
     return tuple(PointForce(position=float(p), amplitude=float(w)) for p, w in zip(places, weights, strict=True))
 
 
