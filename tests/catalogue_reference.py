@@ -4,6 +4,7 @@ Closed forms of the paper's beam, of its waves and of friction; matrices in 40 d
 figure; polygons, power series and least energy for the chain. Nothing of the suite but what a scene holds.
 """
 
+import math
 from functools import cache
 
 import mpmath as mp
@@ -491,9 +492,63 @@ def pure_amplitude():
     return abs(np.sin(Paper.K * Paper.D)) / (2 * Paper.EI * Paper.K**3)
 
 
+def at_once(modes, times, x=0.25):
+    """w', dw/dt, dw'/dt, dw''/dt of the pinned beam at x under cos wt and -sin wt from rest, (4, n): a sum of sines."""
+    n = np.arange(1, modes + 1) * np.pi / Paper.L
+    own, w = n**2 * Paper.C, Paper.W
+    left, right = (2 / (Paper.LINE * Paper.L) * np.sin(n * p) / (own**2 - w**2) for p in (Paper.D, Paper.L - Paper.D))
+    across, slope, bend = np.sin(n * x), n * np.cos(n * x), -(n**2) * np.sin(n * x)
+
+    def parts(t):
+        c, s, driven = np.cos(np.outer(t, own)), np.sin(np.outer(t, own)), np.array([np.cos(w * t), np.sin(w * t)])
+
+        def rate(shape):
+            forced = -w * np.array([shape @ right, shape @ left]) @ driven
+            return forced + s @ (shape * left * own) + c @ (shape * right * w)
+
+        still = np.array([slope @ left, -slope @ right]) @ driven - c @ (slope * left) + s @ (slope * right * w / own)
+        return np.array([still, rate(across), rate(slope), rate(bend)])
+
+    return np.concatenate([parts(block) for block in np.array_split(times, 20)], axis=1)
+
+
+def slider_at_once(modes=800, steps=25_000, friction=0.2 * GRAVITY, slope=1e4):
+    """Way of a slider of Eq. (3) in 1 ms, x'' = -mu g tanh(K (x' - v)), v the surface's at x to second order."""
+    turned, rise, turning, bending = at_once(modes, np.linspace(0.0, 1e-3, 2 * steps + 1))
+    half, h = Paper.H / 2, 1e-3 / steps
+    flat, tilt = (turned * rise - half * turning - half * bending * half * turned).tolist(), (-half * bending).tolist()
+    x = v = 0.0
+
+    def pull(j, x, v):
+        return -friction * math.tanh(slope * (v - flat[j] - tilt[j] * x))
+
+    for j in range(0, 2 * steps, 2):
+        a = pull(j, x, v)
+        b = pull(j + 1, x + h / 2 * v, v + h / 2 * a)
+        c = pull(j + 1, x + h / 2 * (v + h / 2 * a), v + h / 2 * b)
+        d = pull(j + 2, x + h * (v + h / 2 * b), v + h * c)
+        x, v = x + h * v + h * h / 6 * (a + b + c), v + h / 6 * (a + 2 * b + 2 * c + d)
+    return x
+
+
+def turned(place, hertz=4276.0):
+    """Slope of the paper's beam under a unit couple there, two waves and two near fields between its pins, 30 digits."""
+    with mp.workdps(30):
+        k = mp.sqrt(2 * mp.pi * hertz / mp.sqrt(mp.mpf(Paper.EI) / Paper.LINE))
+        a, b = k * mp.mpf(place), k * (Paper.L - mp.mpf(place))
+        waves, near = mp.cos(a) * mp.cos(b) / mp.sin(a + b), mp.cosh(a) * mp.cosh(b) / mp.sinh(a + b)
+        return abs(float((near - waves) / (2 * Paper.EI * k)))
+
+
 def friction_size():
-    slope = exact_field(0.25, derivative=1)
-    return 2e-3 * Paper.H / 2 * np.sqrt(2) / (4 * Paper.EI * Paper.K * abs(slope))
+    return 2e-3 * Paper.H / 2 * turned(0.25) / abs(exact_field(0.25, derivative=1))
+
+
+def friction_size_elsewhere():
+    """At 0.2137 m and 4465 Hz, two thousandths of the way to a resonance: slopes by Green's function in 60 digits."""
+    beam = load_scene("paper-slider").beam
+    slopes = [unit_field(beam, "euler-bernoulli", 4465.0, at, 0.2137)[1] for at in (Paper.D, Paper.L - Paper.D)]
+    return 2e-3 * Paper.H / 2 * turned(0.2137, 4465.0) / abs(slopes[0] + 1j * slopes[1])
 
 
 def normal_size():
@@ -513,10 +568,12 @@ SLIDER = {
     "terminal-speed-steep": lambda: 2 * mean_of_the_wave(2.3e-7),
     "terminal-speed-quarter": lambda: mean_of_the_wave(1.15e-7),
     "terminal-speed-following": lambda: -Paper.K * Paper.W * 2.3e-7**2 / 2 * (Paper.K * Paper.H / 2) ** 2,
+    "slider-at-once": slider_at_once,
     "slider-against-the-wave": lambda: 2 * mean_of_the_wave(pure_amplitude()),
     "slider-reversed": lambda: -2 * mean_of_the_wave(pure_amplitude()),
     "chain-slider-saturates": lambda: 0.2 * SLIDER_MASS * GRAVITY,
     "friction-size": friction_size,
+    "friction-size-near-a-resonance": friction_size_elsewhere,
     "normal-size": normal_size,
     "loaded-exact": lambda: loaded(0.31, 1.3e-3, 0.2137),
     "loaded-segments": lambda: loaded(0.31, SLIDER_MASS, 0.25),
@@ -629,7 +686,76 @@ CHAIN = {
     "small-force-linear": lambda: 0.1 * linear_links()[3],
 }
 
+
+def clasp(steps=480, periods=24, last=12, speed=-0.0213):
+    """(force, surface's power, share of points in contact) of `preloaded-motor` held at a speed, its last periods.
+
+    One of its two feet, which are mirror images, from the height of a layer at rest: height and pitch on 15 springs with
+    dashpots that never pull, on the two waves of the exact field, read where the material is. Friction turns nothing.
+    """
+    mass, length, points, stiffness, damping, load, mu = 0.005, 0.0465, 15, 6.3e4, 0.1, 0.1, 0.2
+    k, w, half, inertia = Paper.K, Paper.W, Paper.H / 2, mass * length**2 / 12
+    x, s = np.linspace(0.23, 0.27, 41), length * ((np.arange(points) + 0.5) / points - 0.5)
+    waves = np.exp(np.outer(x - Paper.L / 2, [-1j * k, 1j * k]))
+    (a, b), *_ = np.linalg.lstsq(waves, 9.0 * exact_field(x), rcond=None)
+
+    def line(at, t):
+        ahead, back = a * np.exp(1j * (w * t - k * at)), b * np.exp(1j * (w * t + k * at))
+        both, tilt = ahead + back, 1j * k * (back - ahead)
+        return both.real, -w * both.imag, tilt.real, -w * tilt.imag
+
+    def touched(t, y):
+        """(what every point is pressed by, speed of the surface below it)."""
+        _, _, tilt, turn = line(s, t)
+        height, lift, slope, twist = line(s + half * tilt, t)
+        deep, closing = height - y[0] - y[2] * s, lift + slope * half * turn - y[1] - y[3] * s
+        push = np.where(deep > 0, np.maximum(stiffness * deep + damping * closing, 0.0), 0.0) / points
+        return push, (lift * slope - half * twist) / np.sqrt(1 + slope**2)
+
+    def rates(t, y):
+        push, _ = touched(t, y)
+        return np.array([y[1], (push.sum() - load) / mass, y[3], push @ s / inertia])
+
+    y, h, found = np.array([abs(a) * np.cos(1.0212), 0.0, 0.0, 0.0]), 2 * np.pi / w / steps, np.zeros(3)
+    push, along = touched(0.0, y)
+    for i in range(periods * steps):
+        one = rates(i * h, y)
+        two = rates((i + 0.5) * h, y + h / 2 * one)
+        three = rates((i + 0.5) * h, y + h / 2 * two)
+        y = y + h / 6 * (one + 2 * two + 2 * three + rates((i + 1) * h, y + h * three))
+        before, was = push, along
+        push, along = touched((i + 1) * h, y)
+        if i >= (periods - last) * steps:
+            way = (was + along - 2 * speed) / (abs(was - speed) + abs(along - speed))  # the mean sign over the step
+            drag = mu * 0.5 * (before + push) * way
+            found += [2 * drag.sum(), drag @ (was + along), np.mean(push > 0)]
+    return found / (last * steps)
+
+
+clasp = cache(clasp)
+MOTOR = {
+    "share-of-contact": lambda: clasp()[2],
+    "force-at-three-quarters": lambda: clasp()[0],
+    "power-at-three-quarters": lambda: -0.0213 * clasp()[0],
+    "efficiency-at-three-quarters": lambda: -0.0213 * clasp()[0] / clasp()[1],
+}
+
+
+def graded_order(mode=3, grading=1.7, sizes=((20, 28), (40, 56), (80, 112))):
+    """Observed order of links in geometric rows on both sections of the stepped beam."""
+    beam, found = load_scene("stepped-beam").beam, []
+    for size in sizes:
+        rows = [grading ** (np.arange(n) / (n - 1)) for n in size]
+        parts = [
+            (piece, one * piece.length / row.sum()) for piece, row in zip(beam.pieces, rows, strict=True) for one in row
+        ]
+        found.append(Links(beam, parts).mode(mode)[0])
+    errors = abs(np.array(found) / frequency_near(beam, "euler-bernoulli", found[-1]) - 1)
+    return -np.polyfit(np.log(np.sum(sizes, axis=1)), np.log(errors), 1)[0]
+
+
 STEPPED = {
+    "graded-segments": graded_order,
     "exact-mode-1": lambda: frequency_near(load_scene("stepped-beam").beam, "euler-bernoulli", 25.2475),
     "exact-mode-6": lambda: frequency_near(load_scene("stepped-beam").beam, "euler-bernoulli", 666.276),
 }
@@ -646,6 +772,7 @@ KNOWN = {
     "moving-load": MOVING,
     "paper-slider": SLIDER,
     "heavy-slider": HEAVY_SLIDER,
+    "preloaded-motor": MOTOR,
     "chain": CHAIN,
 }
 """By scene and gate."""

@@ -82,10 +82,11 @@ BENCH_SETS: tuple[str, ...] = get_args(BenchSet)
 """What a bench compares methods in. modes: natural frequencies. harmonic: the steady field under the drive. transient:
 the linear beam in time. slider: its displacement on that beam. chain: the nonlinear chain from rest."""
 
-Reference = Literal["closed form", "independent method", "published", "other code", "regression"]
+Reference = Literal["closed form", "independent method", "published", "other code", "regression", "promise", "refusal"]
 REFERENCES: tuple[str, ...] = get_args(Reference)
 """What stands behind a gate's expectation, or its bound. closed form: a formula. independent method: another derivation
-of the figure. published: a publication. other code: another program. regression: this suite itself, once."""
+of the figure. published: a publication. other code: another program. regression: this suite itself, once. promise: what
+this suite says of its own error or cost, held against the source. refusal: what it says that it refuses."""
 Exported = Literal["modes", "field", "motion", "tables"]
 EXPORTED: tuple[str, ...] = get_args(Exported)
 """What a scene gives to other tools. modes: shapes and frequencies. field: the steady answer to the drive. motion: the

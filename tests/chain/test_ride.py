@@ -194,8 +194,10 @@ def test_what_the_chain_would_feel_is_sized_as_on_the_linear_one(paper_beam):
     found = coupling_on_chain(system, paper_beam, slider)
     drive = segment_model.solve_harmonic(paper_beam, forces(2.0), 4276.0, 25)
     unit = segment_model.solve_harmonic(paper_beam, [PointForce(position=0.231)], 4276.0, 25)
-    expected = coupling_of(slider, paper_beam, 4276.0, surface_speed(drive, 0.231), unit.deflection([0.231])[0])
-    assert found.friction_size == pytest.approx(expected.friction_size, rel=1e-9)
+    couple = [PointForce(position=0.231 + s * 1e-5, amplitude=0.5e5 * s) for s in (-1, 1)]
+    turns = segment_model.solve_harmonic(paper_beam, couple, 4276.0, 25).slope([0.231])[0]
+    expected = coupling_of(slider, paper_beam, 4276.0, surface_speed(drive, 0.231), unit.deflection([0.231])[0], turns)
+    assert found.friction_size == pytest.approx(expected.friction_size, rel=1e-6)
     assert found.normal_size == pytest.approx(expected.normal_size, rel=5e-3)  # read by the spline, not by reciprocity
     assert found.normal_size > 1e-3
 

@@ -290,7 +290,7 @@ def test_the_choice_of_coupling_is_told_with_both_sizes():
     from verify.run.plan import plan_scene
 
     chosen = {entry.what: entry.why for entry in plan_scene(scene).chosen}
-    assert "9.3e-05" in chosen["one-way coupling"]
+    assert "1.4e-04" in chosen["one-way coupling"]
     assert "1.2 of its motion" in chosen["slider that the beam does not carry"]
     held = replace(scene, slider=replace(scene.slider, normal="held"), readings=None)
     chosen = {entry.what: entry.why for entry in plan_scene(held).chosen}

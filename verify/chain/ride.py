@@ -35,7 +35,7 @@ from verify.motion.records import Given, Rider
 from verify.motion.result import END, Ride, Statistics
 from verify.motion.stepping import contact_space, fresh_motion
 from verify.options import LINKS, Links
-from verify.segments.links import chain_pencil, free_joints, with_ends
+from verify.segments.links import Chain, chain_pencil, free_joints, with_ends
 from verify.segments.loads import joint_weights
 from verify.segments.reading import contact_line, contact_piece
 from verify.slider import Slider
@@ -164,17 +164,34 @@ def coupling_on_chain(system: ChainSystem, beam: Beam, slider: Slider) -> Coupli
 
 
 def _sized(system: ChainSystem, beam: Beam, slider: Slider, frequency_hz: float) -> Coupling:
-    """Sizes of friction and inertia at one frequency: slope under the loads, deflection under a unit force at x."""
+    """Sizes of friction and inertia at one frequency: slope under the loads, answers to a unit force and a couple."""
     chain, x, omega = straight_chain(system), slider.start_on(beam), circular(frequency_hz)
     pencil = chain_pencil(chain)
     dashpots = system.dashpots[system.n_links - len(pencil.stiffness) :]
     stiffness: ComplexArray = np.asarray(pencil.stiffness + 1j * omega * dashpots)
     drive = sum(_on_joints(system, load) for load in system.loads if load.frequency_hz == frequency_hz)
-    loads = np.stack([drive, joint_weights(chain, x, "reciprocal")], axis=1)[free_joints(chain)]
+    unit, couple = joint_weights(chain, x, "reciprocal"), _couple(system, chain, x)
+    loads = np.stack([drive, unit, couple], axis=1)[free_joints(chain)]
     joints = with_ends(chain, forced_response(pencil, loads, omega**2, stiffness)).T
     real, imaginary = (contact_line(chain, part) for part in (joints.real, joints.imag))
-    speed = beam.surface_distance * omega * float(np.hypot(real(x, 1)[0], imaginary(x, 1)[0]))
-    return coupling_of(slider, beam, frequency_hz, speed, complex(real(x)[1], imaginary(x)[1]))
+    slopes = real(x, 1) + 1j * imaginary(x, 1)
+    speed = beam.surface_distance * omega * float(abs(slopes[0]))
+    return coupling_of(slider, beam, frequency_hz, speed, complex(real(x)[1], imaginary(x)[1]), complex(slopes[2]))
+
+
+def _couple(system: ChainSystem, chain: Chain, x: float) -> Array:
+    """Weights of all joints for a unit couple at x, (N + 1,), 1/m: the derivative over its place of a force's.
+
+    Cubic along a link, so that four places on it tell it.
+    """
+    link = _piece_at(system, x)
+    start, length = float(system.nodes[link]), float(system.lengths[link])
+    places = np.array([0.125, 0.375, 0.625, 0.875])
+    weights = np.stack([joint_weights(chain, start + length * s, "reciprocal") for s in places])
+    powers = np.linalg.solve(np.vander(places, increasing=True), weights)
+    return np.asarray(
+        np.array([0.0, 1.0, 2.0, 3.0]) * ((x - start) / length) ** np.array([0, 0, 1, 2]) @ powers / length
+    )
 
 
 def _on_joints(system: ChainSystem, load: LinkLoad) -> ComplexArray:

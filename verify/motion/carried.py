@@ -39,6 +39,7 @@ from verify.motion.sound_books import check_books
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
 from verify.motion.stepping import Sliding, fresh_motion, run_stages, slider_seconds
 from verify.motion.surface import Stage
+from verify.motion.turning import couple, modal_turning, turned_by
 from verify.patience import check_work
 from verify.slider import Slider
 from verify.words import written
@@ -52,12 +53,20 @@ def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis
     x, omega = put_on(request, slider)[0], request.omega
     slope = abs(stage.drive_shapes(np.array([x]), 1))[:2]
     speed = request.beam.surface_distance * omega * float(np.hypot(*slope[:, 0]))
-    felt = (
-        receptance(basis, x, omega, request.damping)
-        if basis
-        else complex(steady_field(request, (PointForce(position=x),)).deflection([x])[0])
-    )
-    return coupling_of(slider, request.beam, request.frequency_hz, speed, felt)
+    return coupling_of(slider, request.beam, request.frequency_hz, speed, *yielding(request, x, basis))
+
+
+def yielding(request: Request, x: float, basis: TimeBasis | None) -> tuple[complex, complex]:
+    """(deflection under a unit force, m/N, slope under a unit couple, rad/(N m)), both at x. Raises InputError.
+
+    Of the modes where there are any, else of the model's steady fields.
+    """
+    if basis:
+        given = (basis, x, request.omega, request.damping)
+        return receptance(*given), modal_turning(*given)
+    unit = steady_field(request, (PointForce(position=x),))
+    turned = steady_field(request, couple(request.beam, x, request.frequency_hz))
+    return complex(unit.deflection([x])[0]), turned_by(turned, x)
 
 
 def steady_field(request: Request, forces: tuple[PointForce, ...]) -> "HarmonicField":

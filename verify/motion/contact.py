@@ -121,17 +121,23 @@ def surface_speed(field: "HarmonicField", x: float) -> float:
     return field.beam.surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
-def coupling_of(slider: Slider, beam: Beam, frequency_hz: float, surface_speed: float, receptance: complex) -> Coupling:
-    """One-way or two-way by size, unless the slider says which. `receptance` is G(x, x) under it at the drive, m/N.
+def friction_speed(slider: Slider, beam: Beam, omega: float, turning: complex) -> float:
+    """Speed that full friction gives to the surface, m/s: a couple (h/2) mu N turns the beam, the surface h/2 off."""
+    return float(slider.mu * slider.normal_force * beam.surface_distance**2 * omega * abs(turning))
 
-    Full friction is a moment (h/2) mu N on an infinite beam, whose slope answers with the speed
-    omega sqrt(2) / (4 EI k); its surface speed is held against the drive's. A mass held on the surface pushes with
-    m omega^2 w, which moves the surface by m omega^2 G w.
+
+def coupling_of(
+    slider: Slider, beam: Beam, frequency_hz: float, surface_speed: float, receptance: complex, turning: complex
+) -> Coupling:
+    """One-way or two-way by size, unless the slider says which.
+
+    `receptance` is G(x, x) under it at the drive, m/N, `turning` the slope there under a unit couple, rad/(N m): both
+    the driven beam's own, whose resonances they know. Full friction is a couple (h/2) mu N, the speed of the surface
+    under it is held against the drive's. A mass held on the surface pushes with m omega^2 w, which moves the surface
+    by m omega^2 G w.
     """
     omega = 2.0 * np.pi * frequency_hz
-    k = float(np.sqrt(omega / beam.wave_constant))
-    lever = beam.surface_distance
-    answer = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
+    answer = friction_speed(slider, beam, omega, turning)
     friction_size = float(answer / surface_speed) if surface_speed > 0.0 else None
     normal_size = float(slider.mass * omega**2 * abs(receptance))
     found = Coupling(

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from verify.beam import Beam, PointForce
+from verify.beam import Beam
 from verify.models.time_basis import TimeBasis
-from verify.motion.carried import steady_field
-from verify.motion.contact import FELT, Coupling
-from verify.motion.moving_mass import receptance
+from verify.motion.carried import yielding
+from verify.motion.contact import FELT, Coupling, friction_speed
 from verify.motion.request import Request
 from verify.motion.surface import Stage
 from verify.motor.feet import Placed
@@ -16,18 +15,17 @@ from verify.slider import Slider
 
 
 def sizes(
-    slider: Slider, beam: Beam, omega: float, moved: float, turned: float, yielding: complex
+    slider: Slider, beam: Beam, omega: float, moved: float, turned: float, receptance: complex, turning: complex
 ) -> tuple[float, float | None]:
     """What the slider's whole load moves the surface by, over what the drive moves: (across, by friction along).
 
-    `moved` (metres) and `turned` are the drive's amplitudes of deflection and slope under it, `yielding` is the beam's
-    receptance there, G(x, x) in m/N. Friction is a moment (h/2) mu N on an infinite beam. Along, None where the drive
-    does not turn the surface.
+    `moved` (metres) and `turned` are the drive's amplitudes of deflection and slope under it, `receptance` is the
+    beam's there, G(x, x) in m/N, `turning` its slope under a unit couple, rad/(N m). Along, None where the drive does
+    not turn the surface.
     """
-    lever, k = beam.surface_distance, float(np.sqrt(omega / beam.wave_constant))
-    rub = slider.mu * slider.normal_force * lever**2 * np.sqrt(2.0) * omega / (4.0 * beam.bending_stiffness * k)
-    across = slider.normal_force * abs(yielding) / moved if moved else np.inf
-    return float(across), float(rub / (lever * omega * turned)) if turned else None
+    rub = friction_speed(slider, beam, omega, turning)
+    across = slider.normal_force * abs(receptance) / moved if moved else np.inf
+    return float(across), float(rub / (beam.surface_distance * omega * turned)) if turned else None
 
 
 def coupled(slider: Slider, across: float, along: float | None) -> Coupling:
@@ -60,9 +58,4 @@ def _load_sizes(request: Request, one: Placed, stage: Stage, basis: TimeBasis | 
     """What all that presses a slider on moves the surface by, over its own motion: (across, by friction along)."""
     beam, omega, slider, x = request.beam, request.omega, one.slider, np.array([one.start])
     moved, turned = (float(np.hypot(*stage.drive_shapes(x, d)[:2, 0])) for d in (0, 1))
-    felt = (
-        receptance(basis, one.start, omega, request.damping)
-        if basis
-        else complex(steady_field(request, (PointForce(position=one.start),)).deflection(x)[0])
-    )
-    return sizes(slider, beam, omega, moved, turned, felt)
+    return sizes(slider, beam, omega, moved, turned, *yielding(request, one.start, basis))

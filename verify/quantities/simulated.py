@@ -182,9 +182,12 @@ def _fields(a: Steady, scene: "Scene") -> "tuple[Slider, float, float, HarmonicF
 def coupling_size(a: CouplingSize, scene: "Scene") -> float:
     """The size of a slider's friction or of its inertia at its place, by one model. Raises InputError."""
     from verify.motion.contact import coupling_of, surface_speed
+    from verify.motion.turning import couple, turned_by
 
     slider, x, frequency, drive, unit = _fields(a, scene)
-    found = coupling_of(slider, scene.beam, frequency, surface_speed(drive, x), unit.deflection([x])[0])
+    turned = MODELS.named(a.model).solve_harmonic(scene.beam, couple(scene.beam, x, frequency), frequency, a.count)
+    yields = complex(unit.deflection([x])[0]), turned_by(turned, x)
+    found = coupling_of(slider, scene.beam, frequency, surface_speed(drive, x), *yields)
     if a.of == "normal":
         return found.normal_size
     if found.friction_size is None:

@@ -8,6 +8,7 @@ from verify.beam import PointForce
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.motion.contact import FELT, coupling_of, surface_speed
+from verify.motion.turning import couple, turned_by
 from verify.motion.validity import NONLINEAR, field_size
 
 if TYPE_CHECKING:
@@ -37,23 +38,25 @@ def _damped(scene: "Scene") -> "Beam":
 
 def _coupling(slider: "Slider", field: "HarmonicField") -> list[tuple[str, str]]:
     """One-way or two-way, and that a slider without normal inertia is a simplification."""
-    x = slider.start_on(field.beam)
-    unit = MODELS["analytic"].solve_harmonic(field.beam, (PointForce(position=x),), field.frequency_hz, None)
+    x, exact, frequency = slider.start_on(field.beam), MODELS["analytic"], field.frequency_hz
+    unit = exact.solve_harmonic(field.beam, (PointForce(position=x),), frequency, None)
+    turned = exact.solve_harmonic(field.beam, couple(field.beam, x, frequency), frequency, None)
+    yields = complex(unit.deflection([x])[0]), turned_by(turned, x)
     if slider.contact is not None:
-        return [_on_feet(slider, field, complex(unit.deflection([x])[0]))]
-    found = coupling_of(slider, field.beam, field.frequency_hz, surface_speed(field, x), unit.deflection([x])[0])
+        return [_on_feet(slider, field, *yields)]
+    found = coupling_of(slider, field.beam, frequency, surface_speed(field, x), *yields)
     why = ", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"
     chosen = [(f"{'two' if found.two_way else 'one'}-way coupling", found.told + why)]
     return chosen + ([("slider that the beam does not carry", found.simplified)] if found.simplified else [])
 
 
-def _on_feet(slider: "Slider", field: "HarmonicField", receptance: complex) -> tuple[str, str]:
+def _on_feet(slider: "Slider", field: "HarmonicField", receptance: complex, turning: complex) -> tuple[str, str]:
     """The same of a slider that may leave the beam."""
     from verify.motor.coupling import coupled, in_words, sizes
 
     x = slider.start_on(field.beam)
     moved, turned = float(abs(field.deflection([x])[0])), float(abs(field.slope([x])[0]))
-    found = coupled(slider, *sizes(slider, field.beam, field.omega, moved, turned, receptance))
+    found = coupled(slider, *sizes(slider, field.beam, field.omega, moved, turned, receptance, turning))
     why = ", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"
     return f"slider that may leave the beam, {'two' if found.two_way else 'one'}-way", in_words(found) + why
 

@@ -78,7 +78,8 @@ def _departures(study: "AxialFound") -> Chart:
         id="axial-departures",
         title=f"Departure from the linear chain at x = {study.x:g} m over the force, N = {study.count}",
         caption="Over the linear chain's rms deflection: at the end of the run, and as rms over the run. Grey: the "
-        f"number that decides between linear and nonlinear, felt from {NONLINEAR:g} on.",
+        f"number that decides between linear and nonlinear, felt from {NONLINEAR:g} on: the size of a term, no bound "
+        "of what it does in time.",
         x=Axis("force, N", log=True),
         y=Axis("departure, relative", log=True),
         lines=(size, *lines),
@@ -95,9 +96,9 @@ def _forces_table(study: "AxialFound") -> Table:
         before="Rigid links cannot stretch: bending draws the sliding tip in and takes the mass of the chain along. "
         "This axial inertia, of relative size (kL)² ⟨θ²⟩, makes the chain nonlinear, not the amplitude over the "
         "thickness. Below, how far each chain lies from the linear chain of as many links, over the linear chain's rms "
-        f"deflection at x = {study.x:g} m: at the end of {1e3 * study.duration:g} ms from rest (at end), and as rms "
-        "over that time (rms). Other places depart by more or less: beside it the range of the rigid links' figure at "
-        "the end over the tenths of the beam.",
+        f"deflection at x = {study.x:g} m, at the end of {1e3 * study.duration:g} ms from rest (at end), and as rms "
+        "over that time (rms). It grows with time as with the force. Other places depart by more or less: beside it "
+        "the range of the rigid links' figure at the end over the tenths of the beam.",
         columns=(
             Column("force", "g", unit=" N"),
             Column("rms deflection, µm", ".3g", 1e6),
@@ -142,7 +143,7 @@ def _beside_table(study: "AxialFound") -> Table:
         rows=tuple((NAMES[row.model], row.error or None, row.at_end) for row in study.beside),
         notes=(
             "The exact field is linear Euler-Bernoulli from rest, undamped like all the others. The beam itself "
-            "stretches by its EA, as the links EA/l do: most of the rigid links' nonlinearity is a property of the "
-            "model, not of the beam.",
+            "stretches by its EA, as the links EA/l do: how far those depart is the beam's own, what rigid links "
+            "depart by beside it is their model's. Both grow with time.",
         ),
     )
