@@ -82,6 +82,27 @@ def test_an_order_is_refused_where_there_is_none(counts, errors, message):
         compare.observed_order(counts, errors)
 
 
+@pytest.mark.parametrize("due", [None, 4])
+def test_an_order_is_settled_where_the_error_falls_alike_from_size_to_size(due):
+    counts, errors = (80, 20, 40), (2e-7, 4.2e-5, 3e-6)
+    assert compare.settled_order(counts, errors, due) == compare.observed_order(counts, errors)
+
+
+@pytest.mark.parametrize(
+    ("errors", "due", "message"),
+    [
+        ((0.122, 0.0024, 0.001), None, r"no settled order between them \(5.67, 1.26\)"),
+        ((1e-3, 2e-3, 1e-5), None, "no settled order"),
+        ((1e-3, 1e-3 / 37, 1e-3 / 37**2), 4, "5.21, 5.21, where 4 is due"),
+        ((1e-3, 1e-3 / 3.0, 1e-4), 4, "no settled order"),
+    ],
+)
+def test_a_slope_through_errors_that_fall_at_no_order_is_refused(errors, due, message):
+    assert compare.observed_order((60, 120, 240), errors) > 0.0
+    with pytest.raises(InputError, match=message):
+        compare.settled_order((60, 120, 240), errors, due)
+
+
 def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():
     found = compare.bracket(99.0, 101.0)
     assert (found.mean, found.relative_width) == (100.0, 0.02)

@@ -25,6 +25,7 @@ ONLY_SOLVED = (
     "changes sign between",
     "does not reach it up to",
     "has no order there",
+    "no settled order between",
     "nodes between the ends",
     "is rounding (floor",
     "at rest at every node",

@@ -5,9 +5,10 @@ The models are not asked: this is what they are checked against.
 """
 
 from cmath import asin
+from cmath import exp as cexp
 from cmath import sqrt as csqrt
 from collections.abc import Callable
-from math import cos, pi, sin, sqrt
+from math import ceil, cos, exp, factorial, pi, sin, sqrt
 
 import msgspec
 
@@ -19,6 +20,12 @@ MEAN_LIMIT = 2.187653657707005
 """mu at which the error of segments is -3 times that of Hermite elements, so that their mean has the elements' size."""
 _HERMITE_HUMP = 2.975618
 """mu at which the Hermite elements' frequency error is largest on the lower branch, 3.7056 %."""
+KEPT, KEPT_FROM, _KEPT_TO = 1.0 / 3.0, 20, 2.5
+"""Errors keep to `expected_error` within this share of its terms, from these parts on, for these mu (tests/exact)."""
+_GREGORY = (-5.0 / 8.0, 1.0 / 6.0, -1.0 / 24.0)
+_BERNOULLI = {2: 1 / 6, 4: -1 / 30, 6: 1 / 42, 8: -1 / 30, 10: 5 / 66, 12: -691 / 2730, 14: 7 / 6, 16: -3617 / 510}
+_SMALL = 0.2
+"""mu below which the wall's sums are a series: they cancel to mu^4/6 there."""
 
 
 def sine_fits(supports: tuple[str, str]) -> bool:
@@ -112,7 +119,8 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
     """The leading relative frequency error of a uniform beam of equal parts.
 
     +mu^4/1440 for Hermite elements; mu^4 (-1/1440 + c / (12 N)) for segments with Gregory's joints at their c
-    clamped ends; mu = beta L / N.
+    clamped ends; mu = beta L / N. That one is right for N well above 120 c alone: before it both terms are about to
+    cancel, and what is left out decides (`expected_error`).
     """
     law = law_of(model)
     mu4 = (wavenumber_length(supports, mode) / count) ** 4
@@ -120,24 +128,92 @@ def leading_error(model: str, supports: tuple[str, str], mode: int, count: int) 
 
 
 def expected_error(model: str, beam: Beam, mode: int, count: int) -> float:
-    """What error to expect: the exact one where the dispersion is known, else the leading law."""
-    if not sine_fits(beam.supports):
-        return leading_error(model, beam.supports, mode, count)
-    exact = wavenumber_length(beam.supports, mode) / count
-    root = law_of(model).root(exact)
-    return sqrt(root) / exact**2 - 1.0
+    """What error to expect of a uniform beam: that of the dispersion, exact between pinned and guided ends, and walls'.
+
+    At other ends it is a law for practical sizes too: from N = 20 on errors keep to it within a third of the sum of its
+    terms' sizes. Its leading terms, `leading_error`, are right only beyond some hundred links.
+    """
+    own, walls = _terms(model, beam.supports, mode, count)
+    return own + walls
+
+
+def _terms(model: str, supports: tuple[str, str], mode: int, count: int) -> tuple[float, float]:
+    """(the dispersion's error, what clamped ends add) of a mode."""
+    mu, law = wavenumber_length(supports, mode) / count, law_of(model)
+    clamped = supports.count("clamped") if law.feels_clamps else 0
+    return sqrt(law.root(mu)) / mu**2 - 1.0, -0.5 * clamped * wall_residual(mu) / count if clamped else 0.0
+
+
+def is_kept(model: str, beam: Beam, mode: int, count: int, error: float, floor: float) -> bool:
+    """Whether an error found is within a third of the terms of `expected_error`, or `floor`, of it."""
+    own, walls = _terms(model, beam.supports, mode, count)
+    return abs(error - own - walls) <= KEPT * (abs(own) + abs(walls)) + floor
+
+
+def certain_from(model: str, beam: Beam, mode: int, error: float) -> int:
+    """The size from which on every error that keeps to `expected_error` (`is_kept`) is within `error`.
+
+    There the dispersion's error and mu^4/6 for the residual of a clamped end, which is less, only fall.
+    """
+    y, law = wavenumber_length(beam.supports, mode), law_of(model)
+    clamped = beam.supports.count("clamped") if law.feels_clamps else 0
+
+    def reached(count: int) -> bool:
+        mu = y / count
+        own = abs(sqrt(law.root(mu)) / mu**2 - 1.0)
+        return (1.0 + KEPT) * (own + clamped * mu**4 / 12.0 / count) <= error
+
+    high = max(KEPT_FROM, ceil(y / _KEPT_TO), smallest_count(beam, mode))
+    low = high - 1
+    while not reached(high):
+        low, high = high, 2 * high
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if reached(middle) else (middle, high)
+    return high
+
+
+def wall_residual(mu: float) -> float:
+    """What Gregory's sum of M^2 over the joints from a clamped end on has more than its integral, in links.
+
+    M^2 = (cos z - sin z + e^-z)^2 at z = k mu, of mean 1, is the bending moment there. Half of it over N is taken off
+    the frequency. -mu^4/6 for small mu, zero at 0.42, largest 0.12 mu^4 up to mu = 2.5.
+    """
+    if mu < _SMALL:
+        return _wall_series(mu)
+
+    def beyond(a: complex) -> complex:
+        """The sum of e^(-a k) less the integral."""
+        return 1.0 / (1.0 - cexp(-a)) - 1.0 / a
+
+    waves = beyond(complex(mu, -mu))
+    sums = 0.5 - beyond(complex(0.0, -2.0 * mu)).imag + 2.0 * (waves.real - waves.imag) + beyond(2.0 * mu).real
+    squares = ((cos(k * mu) - sin(k * mu) + exp(-k * mu)) ** 2 for k in range(3))
+    return sums + sum(a * square for a, square in zip(_GREGORY, squares, strict=True))
+
+
+def _wall_series(mu: float) -> float:
+    """The same by Euler and Maclaurin's terms and the powers of Gregory's, from mu^4 on."""
+    total = 0.0
+    for p in range(4, 16):
+        derivative = -((2j) ** p).imag + 2.0 * ((1.0 + 1.0j) * (-1.0 + 1.0j) ** p).real + (-2.0) ** p
+        own = (_GREGORY[1] + _GREGORY[2] * 2**p) / factorial(p)
+        total += derivative * (own - _BERNOULLI.get(p + 1, 0.0) / factorial(p + 1)) * mu**p
+    return total
 
 
 def parts_from_here_on(model: str, beam: Beam, mode: int, error: float) -> int:
-    """The size from which on the expected error is within `error`, there and at every larger size.
+    """The size from which on the exact or else the leading error is within `error`, there and at every larger size.
 
     Raises InputError for an error that is as small as rounding.
     """
     if error < 1e-12:
         raise InputError(f"error = {error!r} is as small as rounding: ask for 1e-12 or more")
 
+    expected = expected_error if sine_fits(beam.supports) else _leading
+
     def reached(count: int) -> bool:
-        return abs(expected_error(model, beam, mode, count)) <= error
+        return abs(expected(model, beam, mode, count)) <= error
 
     smallest = smallest_count(beam, mode)
     falls_to, hump = last_hump(model, beam, mode)
@@ -154,6 +230,11 @@ def parts_from_here_on(model: str, beam: Beam, mode: int, error: float) -> int:
         middle = (low + high) // 2
         low, high = (low, middle) if reached(middle) else (middle, high)
     return high
+
+
+def _leading(model: str, beam: Beam, mode: int, count: int) -> float:
+    """`leading_error` of a beam's supports."""
+    return leading_error(model, beam.supports, mode, count)
 
 
 def last_hump(model: str, beam: Beam, mode: int) -> tuple[int, float]:

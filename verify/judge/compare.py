@@ -1,6 +1,7 @@
 """Judgement: modes paired, errors, observed order, two-sided bounds. Sees arrays, knows no model."""
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from math import isfinite
 from typing import TypeVar
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from verify.errors import InputError, NoBracketError, NoFigureError, PairingError
 from verify.judge.bracket import Bracket
+from verify.judge.crossing import ASTRAY
 from verify.models.arrays import Array, Indices
 from verify.models.modes import Modes
 from verify.models.search import zero_between
@@ -137,6 +139,25 @@ def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:
     if len(set(np.sign(values))) > 1:
         raise InputError(f"counts = {list(counts)}: the error changes sign between them, so it has no order there")
     return float(-np.polyfit(np.log(sizes), np.log(abs(values)), 1)[0])
+
+
+def settled_order(counts: Sequence[int], errors: Sequence[float], due: int | None = None) -> float:
+    """`observed_order` of errors that fall from size to size at orders within ASTRAY of the one that is due.
+
+    Of each other where nobody knows that one. Raises InputError where they do not: sizes are too coarse, or the error
+    is about to change its sign, and a slope through them is no order.
+    """
+    found = observed_order(counts, errors)
+    by_size = sorted(zip(counts, np.abs(errors), strict=True))
+    orders = [float(np.log(e / f) / np.log(m / n)) for (n, e), (m, f) in pairwise(by_size)]
+    low, high = (min(orders), max(orders)) if due is None else (due, due)
+    if min(orders) <= 0.0 or max(orders) - low > ASTRAY or high - min(orders) > ASTRAY:
+        seen = ", ".join(f"{order:.2f}" for order in orders)
+        raise InputError(
+            f"counts = {list(counts)}: the error falls at no settled order between them ({seen}"
+            f"{'' if due is None else f', where {due} is due'}), near a change of sign or too coarse: give others"
+        )
+    return found
 
 
 def bracket(below: float, above: float) -> Bracket:

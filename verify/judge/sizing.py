@@ -1,13 +1,22 @@
 """How many segments or elements an accuracy takes: from which size on it is kept, and how that is known."""
 
 from collections.abc import Callable
-from math import ceil, inf
+from math import ceil
 from typing import TYPE_CHECKING, TypeAlias
 
 import msgspec
 
 from verify.errors import InputError
-from verify.exact.error_laws import LAWS, expected_error, law_of, parts_from_here_on, sine_fits, smallest_count
+from verify.exact.error_laws import (
+    LAWS,
+    certain_from,
+    expected_error,
+    law_of,
+    parts_from_here_on,
+    sine_fits,
+    smallest_count,
+)
+from verify.judge.known import by_law, kept, worst_of
 from verify.judge.variants import Rules, Variant, beside, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
@@ -110,12 +119,13 @@ def enough_from(
 
     `mode` may be a range: all its modes are within. Where the discrete dispersion is known, it proves it. Elsewhere an
     error may change its sign and dip under `error` before it stays there: sizes are gone through from the smallest to
-    twice the last that fails. Where a body, a spring or a step falls anywhere within a part, the error goes up and down
-    with N, and those after the last that fails are solved one by one (`_walked`). What holds beyond is the error law's
-    word, where there is one. Where the law asks for more than 2000 parts, and for modes beyond the hundredth, its
-    answer alone is looked around. Raises InputError where no size up to 200 000 reaches the error, or, where it goes
-    up and down, where one beyond 2000 fails, and as soon as sizes to be gone through would take longer, with
-    `before_s` seconds of work done before, than is waited for.
+    twice the last that fails, and to where the error law is certain of larger ones. Where a body, a spring or a step
+    falls anywhere within a part, the error goes up and down with N, and those after the last that fails are solved one
+    by one (`walked`). What holds beyond is the law's word, where there is one and every size tried keeps to it
+    (`known`). Where the law asks for more than 2000 parts, and for modes beyond the hundredth, its answer alone is
+    looked around. Raises InputError where no size up to 200 000 reaches the error, or, where it goes up and down, where
+    one beyond 2000 fails, and as soon as sizes to be gone through would take longer, with `before_s` seconds of work
+    done before, than is waited for.
     """
     check_reachable(bench.beam, model, settings)
     modes = _several(mode)
@@ -127,17 +137,18 @@ def enough_from(
         beside = {one: _beside_guess(bench, model, one, error, smallest) for one in modes}
         worst = max(beside, key=lambda one: (beside[one], one))
         if not proven:
-            known_by = "every larger N does by the error law; smaller ones were not looked through"
-            return Enough(count=beside[worst], mode=worst, known_by=known_by)
+            return Enough(count=beside[worst], mode=worst, known_by=by_law(bench, model, worst, beside[worst]))
         smaller = _dip(model, bench.beam, mode, error, beside[worst])
         known_by = "every larger N does, proven by the discrete dispersion"
         return Enough(count=beside[worst], mode=worst, smaller=smaller, known_by=known_by)
     reached = _reached(bench, model, modes, error, settings)
     uneven = falls_within(bench.beam)
     each_s = _part_s(bench.beam, modes[-1])
-    count, smaller, does = _scanned(reached, smallest, guess, model, error, uneven, each_s, before_s)
-    worst = _worst(bench, model, modes, count - 1, settings)
-    known_by, work_s = solved(count, does, law), each_s * sum(does)
+    certain = max(certain_from(model, bench.beam, one, error) for one in modes) if law else 0
+    count, smaller, does = _scanned(reached, smallest, max(guess, certain), model, error, uneven, each_s, before_s)
+    worst = worst_of(bench, model, modes, count - 1, settings)
+    beyond = kept(bench, model, modes, count, does) if law and max(does) >= certain else ""
+    known_by, work_s = solved(count, does, beyond), each_s * sum(does)
     return Enough(count=count, mode=worst, smaller=smaller, known_by=known_by, work_s=work_s)
 
 
@@ -170,16 +181,8 @@ def _beside_guess(bench: Workbench, model: str, mode: int, error: float, smalles
     return _around(reached, count_guess(model, bench.beam, mode, error), smallest, model, error)
 
 
-def _worst(bench: Workbench, model: str, modes: range, count: int, settings: Settings) -> int:
-    """Which of the modes has the largest error at a size; the highest where the size has not all of them."""
-    if len(modes) == 1:
-        return modes[0]
-    found = {mode: bench.error_or_why(model, count, mode, settings)[0] for mode in modes}
-    return max(modes, key=lambda mode: (inf if (error := found[mode]) is None else abs(error), mode))
-
-
-def solved(count: int, does: dict[int, bool], law: bool = False) -> str:
-    """Which sizes from `count` on do, by what was solved, and what of larger ones."""
+def solved(count: int, does: dict[int, bool], beyond: str = "") -> str:
+    """Which sizes from `count` on do, by what was solved, and what of larger ones: `beyond`, else that none was."""
     last = count
     while does.get(last + 1):
         last += 1
@@ -187,7 +190,7 @@ def solved(count: int, does: dict[int, bool], law: bool = False) -> str:
     one_by_one = f"all N from {count} to {last} do" * (last > count)
     tried = f"those tried up to {end}" * (end > last)
     said = f"{one_by_one}, and {tried}" if one_by_one and tried else one_by_one or f"{tried or f'N = {count}'} do"
-    return f"{said}; larger ones {'do by the error law' if law else 'were not solved'}"
+    return f"{said}; larger ones {beyond or 'were not solved'}"
 
 
 def _dip(model: str, beam: "Beam", mode: Modes, error: float, count: int) -> int | None:

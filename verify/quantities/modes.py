@@ -117,9 +117,11 @@ def _law_ratio(a: DiscreteAtSize, scene: "Scene", bench: Workbench) -> float:
 
 
 def _order(a: OverSizes, scene: "Scene", bench: Workbench) -> float:
-    from verify.judge.compare import observed_order
+    from verify.judge.compare import settled_order
 
-    return observed_order(a.counts, [bench.frequency_error(a.model, n, a.mode, a.settings) for n in a.counts])
+    due = None if a.model == MEAN else MODELS.named(a.model).order(scene.beam, **dict(a.settings))
+    errors = [bench.frequency_error(a.model, n, a.mode, a.settings) for n in a.counts]
+    return settled_order(a.counts, errors, due)
 
 
 def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
@@ -242,7 +244,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "mode.law_ratio",
         "1",
-        "Frequency error over its leading law, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)).",
+        "Frequency error over its leading law, mu^4/1440 or mu^4 (-1/1440 + c/(12 N)), which is for N beyond 200 c.",
         DiscreteAtSize,
         "modes",
         _law_ratio,
@@ -296,7 +298,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "mode.order",
         "1",
-        "Observed order of the frequency error over sizes.",
+        "Observed order of the frequency error over sizes, refused where it is not settled between them.",
         OverSizes,
         "modes",
         _order,

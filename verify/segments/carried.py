@@ -7,7 +7,8 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import Parts, part_counts
-from verify.segments.attached import felt_at, shear_give
+from verify.segments.attached import shear_give
+from verify.segments.crowded import felt_together
 from verify.segments.links import Body, Chain, elastic_ends, series_compliances
 from verify.segments.walls import reading_factors, shear_factors, tension_excess
 
@@ -109,11 +110,12 @@ def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
         slips = softness * shear_factors(beam.supports, n, wall)
         return replace(chain, softness=softness, slips=slips, slip_masses=_slip_masses(chain, slips))
     slips = softness * shear_factors(beam.supports, n, wall, loaded)
-    bodies = []
-    for place in sorted({body.position for body in chain.bodies}):
+    bodies, every = [], sorted({body.position for body in chain.bodies})
+    weights = felt_together(chain, every, chain.attachment)[0]
+    for place, felt in zip(every, weights, strict=True):
         body = _one_body([body for body in chain.bodies if body.position == place])
         end = free.get(place)
-        give = _give(chain, softness, place) if end is None else slips[end]
+        give = _give(chain, softness, place, felt) if end is None else slips[end]
         if body.stiffness and not body.mass:
             body = replace(body, stiffness=1.0 / (1.0 / body.stiffness + give))
             if end is not None:
@@ -135,9 +137,11 @@ def _slip_masses(chain: Chain, slips: Array) -> Array | None:
     return np.where(np.isfinite(slips), masses * halves / 12.0, 0.0)
 
 
-def _give(chain: Chain, softness: Array, place: float) -> float:
-    """Compliance of the slip of what stands at a place inside, or at a guided end, which stands for both its sides."""
-    felt = felt_at(chain, [place], chain.attachment)[0][0]
+def _give(chain: Chain, softness: Array, place: float, felt: Array) -> float:
+    """Compliance of the slip of what stands at a place inside, or at a guided end, which stands for both its sides.
+
+    `felt` (N + 1,) are the joints' weights there.
+    """
     nearest = int(abs(chain.nodes - place).argmin())
     if nearest in (0, chain.n_segments) and abs(chain.nodes[nearest] - place) < 1e-9 * chain.unit:
         inward = felt if nearest == 0 else felt[::-1]

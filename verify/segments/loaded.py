@@ -34,7 +34,7 @@ import numpy as np
 
 from verify.models.arrays import Array, ComplexArray
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
-from verify.segments.attached import felt_at
+from verify.segments.crowded import felt_together
 from verify.segments.links import Chain
 
 
@@ -249,7 +249,7 @@ def _placed(chain: Chain) -> _Placed:
     springs = [row for row, body in enumerate(chain.bodies) if body.stiffness]
     rotational = [row for row, body in enumerate(chain.bodies) if body.rotational]
     each = [chain.bodies[row].stiffness for row in springs] + [chain.bodies[row].rotational for row in rotational]
-    felt, turned = felt_at(chain, [body.position for body in chain.bodies], chain.attachment)
+    felt, turned = felt_together(chain, [body.position for body in chain.bodies], chain.attachment)
     return _Placed(
         stiffness=np.concatenate([*of_middles, *of_turns, each]),
         n_grounded=len(of_middles),

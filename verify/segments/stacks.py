@@ -13,6 +13,7 @@ from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
 from verify.segments.attached import felt_at, is_mended, mended, places_on
+from verify.segments.crowded import felt_together, near
 from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
 
@@ -131,7 +132,7 @@ def _loaded(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]) ->
     if not (beams[0].mass or beams[0].spring):
         return chains
     joints, bodies = _beyond(beams, chains.joints, _bodies(beams, unit), elastic)
-    felt, turned = _where_felt(beams, chains, unit, attachment)
+    felt, turned = _where_felt(beams, chains, unit, attachment, elastic)
     return replace(chains, joints=joints, bodies=bodies, felt=felt, turned=turned)
 
 
@@ -164,11 +165,14 @@ def _beyond(beams: Sequence[Beam], joints: Array, bodies: Array, elastic: tuple[
     return joints, bodies
 
 
-def _where_felt(beams: Sequence[Beam], chains: Chains, unit: Array, attachment: str) -> tuple[Array, Array]:
-    """Where bodies are felt (`felt_at`), (bodies, N + 1, n_beams) and (bodies, N, n_beams)."""
+def _where_felt(
+    beams: Sequence[Beam], chains: Chains, unit: Array, attachment: str, elastic: tuple[bool, bool]
+) -> tuple[Array, Array]:
+    """Where bodies are felt (`felt_together`), (bodies, N + 1, n_beams) and (bodies, N, n_beams)."""
     n, n_beams = chains.lengths.shape
-    felt, turned = [], []
-    for row in np.array([_positions_of(beam) for beam in beams]).T:
+    felt, turned, standing = [], [], []
+    positions = np.array([_positions_of(beam) for beam in beams]).T
+    for row in positions:
         links, on, even = places_on(chains.lengths, row / unit)
         at_once = even & is_mended(attachment, n)
         deflections, turns = np.zeros((n_beams, n + 1)), np.zeros((n_beams, n))
@@ -177,18 +181,25 @@ def _where_felt(beams: Sequence[Beam], chains: Chains, unit: Array, attachment: 
             (deflections[j],), (turns[j],) = felt_at(_chain_of(beams[j], chains, j), [float(row[j])], attachment)
         felt.append(deflections.T)
         turned.append(turns.T)
-    return np.array(felt), np.array(turned)
+        standing.append(links)
+    found = np.array(felt), np.array(turned)
+    for j in map(int, np.flatnonzero(near(np.array(standing), n) & is_mended(attachment, n))):
+        chain = replace(_chain_of(beams[j], chains, j), elastic=elastic)
+        found[0][:, :, j], found[1][:, :, j] = felt_together(chain, positions[:, j].tolist(), attachment)
+    return found
 
 
 def _chain_of(beam: Beam, chains: Chains, index: int) -> Chain:
-    """The links of a beam, whose joints nobody asks for."""
+    """The links of a beam and the beam's own joints."""
     return Chain(
         supports=beam.supports,
         rigid_motions=beam.rigid_motions,
         unit=beam.length / len(chains.lengths),
         start=0.0,
         lengths=chains.lengths[:, index],
-        compliances=np.zeros(len(chains.joints)),
+        compliances=np.divide(
+            1.0, chains.joints[:, index], out=np.full(len(chains.joints), np.inf), where=chains.joints[:, index] > 0.0
+        ),
         masses=chains.masses[:, index],
         inertias=chains.inertias[:, index],
     )

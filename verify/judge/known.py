@@ -1,0 +1,36 @@
+"""How it is known that sizes beyond those that were solved keep an accuracy: by an error law that those kept to."""
+
+from math import inf
+
+from verify.exact.error_laws import KEPT, KEPT_FROM, expected_error, is_kept
+from verify.judge.compare import ORDER_FLOOR
+from verify.judge.workbench import Settings, Workbench
+
+
+def kept(bench: Workbench, model: str, modes: range, count: int, does: dict[int, bool]) -> str:
+    """That larger sizes do by the error law, where every size tried from here on keeps to it; empty where one does not.
+
+    Which of its terms' sizes an error may differ by is counted in for those that were not tried (`certain_from`).
+    """
+    sizes = [n for n in does if n >= max(count, KEPT_FROM)]
+    for n in sizes:
+        found = {mode: bench.frequency_error(model, n, mode) for mode in modes}
+        if not all(is_kept(model, bench.beam, mode, n, off, ORDER_FLOOR) for mode, off in found.items()):
+            return ""
+    return f"do by the error law, to which those from {sizes[0]} on keep within a third of its terms" if sizes else ""
+
+
+def by_law(bench: Workbench, model: str, mode: int, count: int) -> str:
+    """What is said of larger sizes where a size was found next to the error law's answer alone."""
+    off = abs(bench.frequency_error(model, count, mode) / expected_error(model, bench.beam, mode, count) - 1.0)
+    if off > KEPT:
+        return "neither larger nor smaller ones were looked through"
+    return f"every larger N does by the error law, {off:.1%} off here; smaller ones were not looked through"
+
+
+def worst_of(bench: Workbench, model: str, modes: range, count: int, settings: Settings) -> int:
+    """Which of the modes has the largest error at a size; the highest where the size has not all of them."""
+    if len(modes) == 1:
+        return modes[0]
+    found = {mode: bench.error_or_why(model, count, mode, settings)[0] for mode in modes}
+    return max(modes, key=lambda mode: (inf if (error := found[mode]) is None else abs(error), mode))
