@@ -223,6 +223,9 @@ def given_error(number: float) -> float:
     pairs = [(rows[:, 0], exact[0]), (rows[:, 1], exact[1]), (rows[:, 3], seen)]
     if static is None:
         pairs.append((rows[:, 2], -FULL * np.tanh(SLOPE * (exact[1] - seen))))
+    if sticks:  # what holds it on gives it its speed
+        before = kept[KEPT // 12 - 1 :: KEPT // 12]
+        pairs.append((rows[1:, 2], (rows[1:, 1] - before[:12, 1]) * KEPT / LONG))
     return max(float(abs(a - b).max() / abs(b).max()) for a, b in pairs)
 
 
