@@ -5,7 +5,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.exact import error_laws
-from verify.judge import sizing
+from verify.judge import known, sizing
 from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
 from verify.scenes.scene import load_scene
@@ -107,15 +107,13 @@ def test_an_error_that_goes_up_and_down_far_out_is_refused_and_not_guessed():
 
 
 def test_what_is_said_of_larger_sizes_is_what_was_solved():
-    assert (
-        sizing.solved(5, {3: False, 5: True, 6: True, 7: True}) == "all N from 5 to 7 do; larger ones were not solved"
-    )
+    assert known.solved(5, {3: False, 5: True, 6: True, 7: True}) == "all N from 5 to 7 do; larger ones were not solved"
     some = {4: False, 5: True, 6: True, 9: True}
     assert (
-        sizing.solved(5, some, "do by the error law")
+        known.solved(5, some, "do by the error law")
         == "all N from 5 to 6 do, and those tried up to 9; larger ones do by the error law"
     )
-    assert sizing.solved(5, {4: False, 8: True}) == "those tried up to 8 do; larger ones were not solved"
+    assert known.solved(5, {4: False, 8: True}) == "those tried up to 8 do; larger ones were not solved"
 
 
 def test_a_high_mode_of_a_beam_without_an_error_law_goes_by_no_law():

@@ -8,7 +8,8 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.identify.family import CHAIN, ELEMENTS, Candidate, exact_hz, frequencies_hz
-from verify.judge.sizing import between, enough_from, solved, walked
+from verify.judge.known import solved
+from verify.judge.sizing import between, enough_from, walked
 from verify.judge.variants import falls_within
 from verify.judge.workbench import Workbench
 

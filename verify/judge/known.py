@@ -20,6 +20,18 @@ def kept(bench: Workbench, model: str, modes: range, count: int, does: dict[int,
     return f"do by the error law, to which those from {sizes[0]} on keep within a third of its terms" if sizes else ""
 
 
+def solved(count: int, does: dict[int, bool], beyond: str = "") -> str:
+    """Which sizes from `count` on do, by what was solved, and what of larger ones: `beyond`, else that none was."""
+    last = count
+    while does.get(last + 1):
+        last += 1
+    end = max(does)
+    one_by_one = f"all N from {count} to {last} do" * (last > count)
+    tried = f"those tried up to {end}" * (end > last)
+    said = f"{one_by_one}, and {tried}" if one_by_one and tried else one_by_one or f"{tried or f'N = {count}'} do"
+    return f"{said}; larger ones {beyond or 'were not solved'}"
+
+
 def by_law(bench: Workbench, model: str, mode: int, count: int) -> str:
     """What is said of larger sizes where a size was found next to the error law's answer alone."""
     off = abs(bench.frequency_error(model, count, mode) / expected_error(model, bench.beam, mode, count) - 1.0)

@@ -16,7 +16,7 @@ from verify.exact.error_laws import (
     sine_fits,
     smallest_count,
 )
-from verify.judge.known import by_law, kept, worst_of
+from verify.judge.known import by_law, kept, solved, worst_of
 from verify.judge.variants import Rules, Variant, beside, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
@@ -179,18 +179,6 @@ def _beside_guess(bench: Workbench, model: str, mode: int, error: float, smalles
     """From where one mode is within `error`, next to the error law's answer."""
     reached = _reached(bench, model, _several(mode), error, ())
     return _around(reached, count_guess(model, bench.beam, mode, error), smallest, model, error)
-
-
-def solved(count: int, does: dict[int, bool], beyond: str = "") -> str:
-    """Which sizes from `count` on do, by what was solved, and what of larger ones: `beyond`, else that none was."""
-    last = count
-    while does.get(last + 1):
-        last += 1
-    end = max(does)
-    one_by_one = f"all N from {count} to {last} do" * (last > count)
-    tried = f"those tried up to {end}" * (end > last)
-    said = f"{one_by_one}, and {tried}" if one_by_one and tried else one_by_one or f"{tried or f'N = {count}'} do"
-    return f"{said}; larger ones {beyond or 'were not solved'}"
 
 
 def _dip(model: str, beam: "Beam", mode: Modes, error: float, count: int) -> int | None:
