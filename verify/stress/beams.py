@@ -19,6 +19,8 @@ STRIP = Beam(
 STEPPED = replace(STRIP, section=(Section(length=0.4), Section(length=0.33, thickness=0.003)))
 PLAIN = Beam(length=0.73, bending_stiffness=3.1, mass_per_length=0.27)
 """Given by figures alone."""
+COUPLE = ((-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+"""(steps from its place, weight): forces that are a couple's derivative over a step, of cubics to rounding."""
 
 
 def held(*supports: str) -> Beam:

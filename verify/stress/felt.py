@@ -11,7 +11,7 @@ from verify.beam import Beam, PointForce
 from verify.errors import ResonanceError
 from verify.models.arrays import Array
 from verify.stress.anything import ANY, FORCES, MASSES, PLAIN, SECTIONS
-from verify.stress.beams import STRIP, held
+from verify.stress.beams import COUPLE, STRIP, held
 from verify.stress.kind import Floor, Row
 
 # --- Bodies -----------------------------------------------------------------------------------------------------------
@@ -168,13 +168,6 @@ def readings_error(count: float) -> float:
         for (found, exact), left in zip(pairs, (0.2 * mu**3, 0.8 * mu**3, 0.25 * mu**4), strict=False):
             worst = max(worst, float(abs(side * found - exact).max() / abs(exact).max()) / left)
     return worst
-
-
-# --- Riders -----------------------------------------------------------------------------------------------------------
-
-
-COUPLE = ((-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
-"""(steps from its place, weight): forces that are a couple's derivative over a step, of cubics to rounding."""
 
 
 def rider_error(hertz: float) -> float:
