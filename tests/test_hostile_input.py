@@ -655,7 +655,7 @@ def test_a_table_takes_no_option_that_would_change_nothing(verify, words, said):
 
 def test_a_study_told_in_charts_has_rows_for_other_programs(verify):
     spectrum = verify("table", "paper", "--of", "spectrum", "--csv")[1].splitlines()
-    assert spectrum[0] == "mode,count,segment_error,fem_error,rayleigh_error,timoshenko_error"
+    assert spectrum[0] == "mode,count,segment_error,fem_error,rayleigh_error,timoshenko_error,plate_error"
     last = load_scene("paper").spectrum.modes
     assert [row.split(",")[0] for row in spectrum[1:]] == [str(mode) for mode in range(1, last + 1)]
     assert float(spectrum[22].split(",")[2]) == pytest.approx(-4.28e-3, rel=1e-3)

@@ -8,11 +8,10 @@ import msgspec
 
 from verify.attached import PointMass, PointSpring
 from verify.checks import Relative, check_number, settle
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, written
 from verify.field_docs import Value
 from verify.options import SUPPORTS, Support
 from verify.section import Piece, Section, Sizes, check_decades, check_used, merged, piece_of, shear_coefficient
-from verify.words import written
 
 SHORTEST_SECTION = 1e-6
 """Of the beam's length."""

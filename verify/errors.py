@@ -119,6 +119,11 @@ def shown(value: object) -> str:
     return shortened(_Short().repr(value), VALUE)
 
 
+def written(number: float) -> str:
+    """A number as a person writes it: 30, where a sum left 30.000000000000004."""
+    return f"{number:.12g}"
+
+
 def shortened(text: str, limit: int) -> str:
     """A text without its middle where it is longer than `limit`."""
     if len(text) <= limit:

@@ -4,8 +4,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from verify.errors import InputError, shown
-from verify.words import written
+from verify.errors import InputError, shown, written
 
 PATIENCE_S = 20.0
 """Seconds of work that are begun without asking."""

@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable
 from math import isfinite, isnan
 from typing import Any
 
+from verify.errors import written
+
 
 def seconds_in_words(seconds: float | None) -> str:
     """A duration with a unit that suits it."""
@@ -14,11 +16,6 @@ def seconds_in_words(seconds: float | None) -> str:
         if seconds < limit:
             return f"{seconds * factor:.3g} {unit}"
     return f"{seconds:.3g} s"
-
-
-def written(number: float) -> str:
-    """A number as a person writes it: 30, where a sum left 30.000000000000004."""
-    return f"{number:.12g}"
 
 
 def as_written(numbers: Iterable[float]) -> str:

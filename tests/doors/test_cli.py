@@ -29,7 +29,7 @@ def verify(capsys, tmp_path, monkeypatch):
 def test_run_paper_passes_and_writes_its_report(verify, tmp_path):
     status, out, err = verify("run", "paper")
     assert status == 0
-    assert "all 24 gates passed" in out
+    assert "all 25 gates passed" in out
     assert err == ""
     assert sorted(p.name for p in (tmp_path / "reports").iterdir()) == ["paper", "paper.html"]
 
@@ -49,7 +49,7 @@ def test_run_as_json_holds_the_gates_and_nothing_else_is_printed(verify):
 def test_a_failing_gate_exits_with_1_and_says_which_and_why(verify, tmp_path):
     status, out, _ = verify("run", "paper", "--set", "gate.segment-mode-22.expect=-0.005")
     assert status == 1
-    assert "1 of 24 gates failed" in out
+    assert "1 of 25 gates failed" in out
     assert "gate segment-mode-22: measured -0.00428" in out
     assert "failed" in (tmp_path / "reports" / "paper.html").read_text("utf-8")[:600]
 

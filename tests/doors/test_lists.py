@@ -165,7 +165,7 @@ def test_a_failed_gate_counts_beside_those_set_aside(verify):
     asked = ("--set", "drive.frequency_hz=4100", "--set", "gate.segment-order.expect=3.0", "--no-report")
     status, out, _ = verify("run", "paper", *asked)
     assert status == 1
-    assert "1 of 23 gates failed, 1 not applicable" in words_of(out)
+    assert "1 of 24 gates failed, 1 not applicable" in words_of(out)
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ def test_what_was_not_run_is_expected_and_not_measured():
     assert ["reference", "closed form ± 1.4e-09"] in cells(text)
     assert ["reference", "closed form, exact"] in cells(text)
     assert ["reference", "published ± 0.5 Hz"] in cells(text)
-    assert "24 figures: 17 closed form, 3 published, 4 other code." in text
+    assert "25 figures: 17 closed form, 1 independent method, 3 published, 4 other code." in text
 
 
 def test_what_was_run_is_measured_with_its_share_of_the_band():
@@ -112,7 +112,7 @@ def test_a_drawing_takes_its_slot():
 
 def test_the_index_counts_references_and_lists_every_sheet():
     text = index([sheet("paper"), sheet("moving-load")])
-    assert "28 figures: 21 closed form, 3 published, 4 other code." in text
+    assert "29 figures: 21 closed form, 1 independent method, 3 published, 4 other code." in text
     assert "[A force that crosses a pinned beam at half its critical speed](moving-load.md)" in text
     assert "```{toctree}\n:hidden:\n\npaper\nmoving-load\n```" in text
 

@@ -29,7 +29,7 @@ def test_gates_of_another_beam_neither_pass_nor_fail():
 
 def test_the_same_beam_without_an_override_is_judged_by_every_gate():
     result = run_scene(load_scene("paper", (LONGER,)))
-    assert len(result.failed) == 7
+    assert len(result.failed) == 8
     assert not result.set_aside
 
 
@@ -72,7 +72,7 @@ def test_friction_with_all_its_arguments_is_judged_whatever_the_beam():
 def test_what_is_set_aside_is_not_planned_and_the_plan_says_so():
     asked = (LONGER,)
     plan = plan_scene(load_scene("paper", asked), asked)
-    assert plan.skipped[0].what == "gates segment-dispersion, fem-dispersion and 22 more"
+    assert plan.skipped[0].what == "gates segment-dispersion, fem-dispersion and 23 more"
     assert plan.skipped[0].why == "stated for another beam: --set beam.length"
     assert not any("gate" in who for solve in plan.solves for who in solve.asked_by)
 

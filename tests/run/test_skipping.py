@@ -125,11 +125,11 @@ def test_a_scene_loads_solves_and_steps_what_it_asks_for_once_and_nothing_else(t
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_plan_does_none_of_what_it_plans(tmp_path, kind):
-    """Two fields of the exact beam, a closed form, say how large it is what a beam may feel of its slider."""
+    """Three fields of the exact beam, closed forms, say how large it is what a beam may feel of its slider."""
     (tmp_path / "strip.toml").write_text(KINDS[kind][0])
     found = counted(tmp_path, "plan", "strip.toml", "--json")
     assert found.status == 0
-    assert found.work == ({"fields": 2} if kind in STEPPED else {})
+    assert found.work == ({"fields": 3} if kind in STEPPED else {})
     assert not found.rooms & {"elements", "segments"} or kind not in STEPPED
     assert not found.libraries & {"numba", "rich", "jinja2", "matplotlib"}
     assert len(found.told["solves"]) == KINDS[kind][1].get("solves", 0)

@@ -21,10 +21,9 @@ from verify.chain.splitting import linear_deflection, modal_basis
 from verify.chain.stretching import simulate_elastic
 from verify.chain.system import axial_stiffness, build_system
 from verify.chain.work import MOST, check_kept, check_modes_of
-from verify.errors import InputError
+from verify.errors import InputError, written
 from verify.models.arrays import Array
 from verify.options import Inertia
-from verify.words import written
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene

@@ -27,7 +27,7 @@ from verify.chain.system import (
 )
 from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
 from verify.checks import check_number
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, written
 from verify.models.arrays import Array, ComplexArray
 from verify.models.eigen import forced_response
 from verify.motion.contact import Coupling, coupling_of, law_of
@@ -39,7 +39,6 @@ from verify.segments.links import Chain, chain_pencil, free_joints, with_ends
 from verify.segments.loads import joint_weights
 from verify.segments.reading import contact_line, contact_piece
 from verify.slider import Slider
-from verify.words import written
 
 
 class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):

@@ -9,7 +9,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import PointForce
-from verify.errors import InputError
+from verify.errors import InputError, written
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS, check_count
 from verify.models.time_basis import TimeBasis
@@ -42,7 +42,6 @@ from verify.motion.surface import Stage
 from verify.motion.turning import couple, modal_turning, turned_by
 from verify.patience import check_work
 from verify.slider import Slider
-from verify.words import written
 
 if TYPE_CHECKING:
     from verify.models.fields import HarmonicField

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
-from verify.errors import InputError, shown
+from verify.errors import InputError, shown, written
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.fields import check_drive
@@ -17,7 +17,6 @@ from verify.motion.forcing import CONSTANT, SMOOTH_STEP
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
 from verify.slider import Slider
-from verify.words import written
 
 if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration

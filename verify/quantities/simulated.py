@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import asdict, replace
 
 from verify.beam import PointForce
-from verify.errors import InputError
+from verify.errors import InputError, written
 from verify.models.catalogue import MODELS
 from verify.motion.case import MotionCase
 from verify.motion.request import STEPS_PER_PERIOD
@@ -24,7 +24,6 @@ from verify.quantities.motion_arguments import (
     Steady,
 )
 from verify.slider import Slider
-from verify.words import written
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

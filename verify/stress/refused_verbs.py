@@ -267,7 +267,7 @@ def of_chains() -> Iterator[Case]:
     passing = partial(problems.transient, STRIP, FORCES, 37.0, [0.0, 1.0], method="linear")
     yield Case(f"segments = {LONG}", lambda: passing(LONG), lambda: passing(3))
     yield Case("segments = 1", lambda: problems.contact_line_error(STRIP, 1, 1, 0.2))
-    yield Case("time = 1.0 s in steps of 1e-05 s", ridden(duration=1.0))
+    yield Case("time = 1 s in steps of 1e-05 s", ridden(duration=1.0))
     yield Case("segments = 1", ridden(count=1))
     yield Case("slider.line = 'raw'", ridden(replace(SLIDER, line="raw")))
     yield Case("beam.section has a thickness", ridden(beam=STEPPED))

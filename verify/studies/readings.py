@@ -7,13 +7,12 @@ import msgspec
 from msgspec import Meta
 
 from verify.checks import check_number
-from verify.errors import InputError
+from verify.errors import InputError, written
 from verify.models.catalogue import MODELS
 from verify.models.naming import Among, model_meta
 from verify.options import Kinematics, NormalChoice
 from verify.scenes.claims import asks_for_turned
 from verify.studies.kind import Progress, Study
-from verify.words import written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
