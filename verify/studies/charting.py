@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from verify.models.arrays import Array
 
 GREY = "#8a8f98"
-MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE = "#2a9d5c", "#9b6bdf", "#d6427a", "#b8860b"
+MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE = "#2a9d5c", "#9b6bdf", "#d6427a", "#00a3a3"
 DASHES: tuple[Dash, ...] = ("solid", "dash", "dot", "dashdot", "longdash")
 PALETTE = ("#2a9d5c", "#d6427a", "#9b6bdf", "#b38a00", "#00a3a3", "#9a7450", "#6f7d8c")
 """Of lines that are told from each other by nothing else."""
