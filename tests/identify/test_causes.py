@@ -223,3 +223,25 @@ def test_which_ends_may_give():
 def test_an_end_that_is_clamped_holds_no_spring():
     with pytest.raises(InputError, match="would do nothing"):
         load_scene("steel-cantilever", ("beam.spring=[{position=0.0, rotational=1.0}]",))
+
+
+def lumped(count, wall, tip, n_modes=6):
+    """A cantilever of massless links, Hz: masses at the joints, `wall` EI/l at the wall, `tip` masses at the free end."""
+    link = BEAM.length / count
+    bends, lever = np.eye(count) - np.eye(count, k=-1), link * np.tril(np.ones((count, count)))
+    joints, masses = np.full(count, BEAM.bending_stiffness / link), np.full(count, BEAM.mass_per_length * link)
+    joints[0], masses[-1] = wall * joints[0], tip * masses[-1]
+    squares = np.linalg.eigvals(np.linalg.solve(lever.T @ (masses[:, None] * lever), bends.T @ np.diag(joints) @ bends))
+    return np.sqrt(np.sort(squares.real)[:n_modes]) / (2.0 * np.pi)
+
+
+@pytest.mark.parametrize(("wall", "tip", "said"), [(1.0, 1.0, "a whole mass"), (1e6, 1e-6, "no mass")])
+def test_a_wrong_mass_at_the_tip_of_a_lumped_cantilever_is_not_called_a_wrong_wall_alone(wall, tip, said):
+    one, other = lumped(23, 2.0, tip, 10), lumped(23, wall, 0.5, 10)
+    assert one == pytest.approx(other, rel=2e-5)
+    told = " ".join(of_list(one, 23).answer.split())
+    assert f"o list can tell it from one with 2EI/l at the wall and {said}" in told
+
+
+def test_a_lumped_cantilever_that_is_right_has_no_twin():
+    assert "twin" not in kinds(of_list(lumped(23, 2.0, 0.5, 10), 23, 9))

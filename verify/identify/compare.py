@@ -20,6 +20,7 @@ from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic
 from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
 from verify.identify.sizing import Enough, enough
 from verify.identify.told import Compared, Row, judged
+from verify.identify.twins import twin_of
 from verify.identify.yielding import CREDIBLE, frequencies_of
 from verify.models.arrays import Array
 from verify.options import Support
@@ -87,6 +88,7 @@ def compared(scene: Scene, asked: Asked, listed: Listed, shapes: Shapes | None, 
     data, told, likeness = _by_shapes(scene, data, shapes, elastic, count)
     found, recounted = _identified(data, count)
     told = (*elastic.told, *told, *_of_list(found, data), *recounted, *_of_supports(scene, found, data))
+    told = (*told, *twin_of(beam, found))
     best = found.best
     mode = asked.mode or int(best.pairs.modes.max()) + 1
     size = enough(beam, best.candidate, mode, asked.error) if best.candidate.sized else None

@@ -22,7 +22,7 @@ class Found(msgspec.Struct, frozen=True, kw_only=True):
     """Something about a list that is to be told."""
 
     kind: str
-    """unit, scale, clamp, causes, missing, extra, twice, rigid, swapped, count, supports, unlike, unsearched."""
+    """unit, scale, clamp, causes, missing, extra, twice, rigid, swapped, count, supports, twin, unlike, unsearched."""
     words: str
     """A sentence without its full stop."""
     wrong: bool = True
