@@ -70,7 +70,7 @@ def test_ends_that_a_sine_fits_differ_by_their_wavenumber_alone(supports, paper_
     [
         ({"supports": ("clamped", "free")}, "pinned and guided"),
         ({"width": 0.004}, "5 times as wide as thick"),
-        ({"foundation": 3e4}, "foundation"),
+        ({"foundation": 3e4}, "beam.foundation: a strip with it has no closed form as a plate here, leave it out"),
     ],
 )
 def test_a_beam_without_a_closed_form_across_says_so(change, said):
