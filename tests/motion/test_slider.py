@@ -126,6 +126,18 @@ def test_steep_tanh_tends_to_coulomb():
     assert off[2] < 3e-4
 
 
+@pytest.mark.parametrize(("model", "size"), [("fem", {"count": 23}), ("segment", {"count": 31}), ("analytic", {"count": None})])
+def test_a_slider_at_rest_on_a_beam_that_feels_it_holds_on_to_static_friction(model, size):
+    """However many modes a step leaves unresolved; what it gives in a step never exceeds it, and in slip is mu N."""
+    slider = replace(HEAVY, law="coulomb", mu=0.3, mu_static=0.55, normal="massless", coupling="two-way")
+    m = slid(slider, model=model, samples=6001, modal_damping=0.01, **size)
+    full = slider.normal_force
+    assert 0.53 * full < abs(m.friction).max() <= 0.55 * full * (1 + 1e-9)
+    apart = abs(m.speed - m.surface_speed) > 1e-6
+    assert apart.any()
+    assert abs(m.friction[apart]) == pytest.approx(0.3 * full, rel=1e-12)
+
+
 def test_a_sticking_slider_rides_on_the_surface_and_its_slips_are_located():
     """Its v is the surface's to the last digit; slip times converge with order 2 in the step."""
     slider = replace(HEAVY, law="coulomb", coupling="one-way", mu=0.05)

@@ -4,7 +4,7 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.models.kernels import FAST, part
-from verify.motion.friction_kernels import slip
+from verify.motion.friction_kernels import hold, slip
 from verify.motion.records import (
     CLIMB,
     FALL,
@@ -159,6 +159,8 @@ def _balance(
     per = law.mass / dt
     most = law.kinetic
     if static is not None:
+        if stuck:
+            return per * hold(v, full, static, law, dt, space.seen, space.slip)
         most = static if static > most else most
     high = 1.000001 * law.mass * most
     low = -high

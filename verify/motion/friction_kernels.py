@@ -256,6 +256,26 @@ def slip(
 
 
 @part()
+def hold(v: float, full: float, static: float, law: Law, dt: float, seen: Array, took: Array) -> float:
+    """Speed change in one step of a slider at rest on a surface that feels it; fills `took`, which holds the last one.
+
+    Under a force that is constant in the step the surface moves less evenly than under the true one, so that means
+    decide: at rest where what holds it is within static friction. Else it slips, from where the line through this mean
+    and the last step's passes static friction: what a slip before the step would have spared is taken off in it.
+    """
+    needed = (seen[2, SURFACE] - took[GIVEN_END] - v) / (dt + law.mass * full)
+    size, before = abs(needed), took[CHANGE] / dt * np.sign(needed)
+    known = took[STICKING] > 0.0 and took[N_EVENTS] == 0.0
+    took[STICKING], took[N_EVENTS], took[CHANGE] = 1.0, 0.0, needed * dt
+    if size > static:
+        stays = (static - before) / (size - before) - 0.5 if known else 0.0
+        mean = stays * 0.5 * (0.5 * (before + size) + static) + (1.0 - stays) * law.kinetic
+        took[STICKING], took[N_EVENTS], took[CHANGE] = 0.0, 1.0, np.sign(needed) * mean * dt
+        took[FIRST_EVENT], took[FIRST_EVENT + 1] = stays * dt, SLIPS
+    return float(took[CHANGE])
+
+
+@part()
 def give(dt: float, seen: Array, took: Array) -> None:
     """What everything but friction adds to the speed by the middle and the end of a step."""
     took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
