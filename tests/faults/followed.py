@@ -56,6 +56,17 @@ def events_a_little_late(patch):
     patch.setattr(Sliding, "events", property(lambda sliding: true(sliding) * (1.001, 1.0, 1.0)))
 
 
+def sticks_a_little_less(patch):
+    _anew(patch)
+    true = carried.law_of
+
+    def weak(slider, beam):
+        law = true(slider, beam)
+        return law if law.static == law.kinetic else law._replace(static=law.static and 0.999 * law.static)
+
+    patch.setattr(carried, "law_of", weak)
+
+
 def _on_belts(times, stiffness):
     def planted(patch):
         true = friction_kernels.slide_on_belt
@@ -158,6 +169,7 @@ FAULTS = {
         sliders_a_little_heavy: {"reactions-written-out"},
         books_a_little_high: {"books-written-out"},
         events_a_little_late: {"changes-written-out"},
+        sticks_a_little_less: {"changes-written-out"},
         steps_a_little_long: {"friction-branch-by-branch", "friction-at-its-edge"},
         springs_a_little_stiff: {"springs-on-belts", "springs-on-rough-belts"},
         surfaces_a_little_fast: {"surfaces-given", "surfaces-that-carry"},

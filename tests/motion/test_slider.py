@@ -126,7 +126,9 @@ def test_steep_tanh_tends_to_coulomb():
     assert off[2] < 3e-4
 
 
-@pytest.mark.parametrize(("model", "size"), [("fem", {"count": 23}), ("segment", {"count": 31}), ("analytic", {"count": None})])
+@pytest.mark.parametrize(
+    ("model", "size"), [("fem", {"count": 23}), ("segment", {"count": 31}), ("analytic", {"count": None})]
+)
 def test_a_slider_at_rest_on_a_beam_that_feels_it_holds_on_to_static_friction(model, size):
     """However many modes a step leaves unresolved; what it gives in a step never exceeds it, and in slip is mu N."""
     slider = replace(HEAVY, law="coulomb", mu=0.3, mu_static=0.55, normal="massless", coupling="two-way")
