@@ -89,6 +89,20 @@ def test_what_the_beam_gives_the_slider_and_friction_take():
     assert books.rubbed + books.slider > 1e-3 * books.work_in
 
 
+@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
+def test_friction_alone_is_rubbed_off_from_a_slider_that_follows(coupling):
+    """The least is lost where mu is least: what turning and gravity do to it stands by itself, and loses nothing."""
+    given = {"mass": 0.02, "speed": 1.7, "kinematics": "following", "coupling": coupling, "preload": 3.0}
+    runs = [slid(replace(HEAVY, **given, mu=mu), steps=960).ledger for mu in (1e-7, 3e-7)]
+    way = 1.7 * DURATION
+    for mu, books in zip((1e-7, 3e-7), runs, strict=True):
+        force = mu * (3.0 + 0.02 * 9.81)
+        assert books.rubbed == pytest.approx(force * way, rel=0.02)
+        own = -books.rubbed - books.contact_on_beam
+        assert books.slider == pytest.approx(books.turned + own, rel=1e-9, abs=1e-12 * abs(books.turned))
+        assert abs(books.turned) > 0.1 * books.rubbed
+
+
 @pytest.mark.parametrize("law", ["tanh", "coulomb"])
 def test_impulse_and_power_of_friction_are_its_own(law):
     """The slider's m dv the integral of F dt; F v_rel <= 0 at all times; |F| <= mu m g."""

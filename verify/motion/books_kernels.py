@@ -7,14 +7,17 @@ from verify.models.kernels import FAST, part
 from verify.motion.records import (
     DAMPED,
     DRIVEN,
+    GIVEN_END,
     LOSS,
     MOVING,
     ON_BEAM,
     ON_SLIDER,
     POWER,
+    PULL,
     RUBBED,
     SIGMA,
     SURFACE,
+    TURNED,
     Books,
     Drive,
     Space,
@@ -64,18 +67,38 @@ def correct_powers(time: float, surface: Surface, books: Books, space: Space) ->
 
 @part()
 def by_parts(v: float, v1: float, moved: float, dt: float, mass: float, seen: Array) -> float:
-    """Work of a step's friction on a beam that does not feel it: of friction times the surface's line, by parts."""
+    """Work of a step's friction on a beam that does not feel it: of friction times the surface's line, by parts.
+
+    As if nothing else moved the slider; `pulled` tells of what does.
+    """
     mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
     rise = seen[2, SURFACE] - seen[0, SURFACE]
     return float(-mass * (v1 * (mean + 0.5 * rise) - v * (mean - 0.5 * rise) - rise / dt * moved))
 
 
 @part()
-def account(v: float, v1: float, pressed: float, dt: float, mass: float, ledger: Array, seen: Array) -> None:
-    """Add one step from the speed v to v1 to the ledger. `pressed` is the work of friction on the beam."""
+def pulled(v: float, v1: float, moved: float, dt: float, mass: float, seen: Array, took: Array) -> tuple[float, float]:
+    """Work of the turning tangent and of gravity along it in a step: (on the slider, at the speed of the surface)."""
+    start, end = mass * dt / 6.0 * seen[0, PULL], mass * dt / 6.0 * seen[2, PULL]
+    middle = mass * took[GIVEN_END] - start - end
+    mean = (seen[0, SURFACE] + 4.0 * seen[1, SURFACE] + seen[2, SURFACE]) / 6.0
+    half = 0.5 * (seen[2, SURFACE] - seen[0, SURFACE])
+    own = start * v + middle * (1.5 * moved / dt - 0.25 * (v + v1)) + end * v1
+    return own, start * (mean - half) + middle * mean + end * (mean + half)
+
+
+@part()
+def account(
+    v: float, v1: float, pressed: float, turned: float, dt: float, mass: float, ledger: Array, seen: Array
+) -> None:
+    """Add one step from the speed v to v1 to the ledger.
+
+    `pressed` is the work of friction on the beam, `turned` that of all else on the slider.
+    """
     ledger[DRIVEN] += dt * (seen[0, POWER] + 4.0 * seen[1, POWER] + seen[2, POWER]) / 6.0
     ledger[DAMPED] += dt * (seen[0, LOSS] + 4.0 * seen[1, LOSS] + seen[2, LOSS]) / 6.0
     on_slider = 0.5 * mass * (v1 * v1 - v * v)
     ledger[ON_BEAM] += pressed
     ledger[ON_SLIDER] += on_slider
-    ledger[RUBBED] -= on_slider + pressed
+    ledger[TURNED] += turned
+    ledger[RUBBED] -= on_slider - turned + pressed

@@ -29,6 +29,7 @@ from verify.motion.records import (
     ON_SLIDER,
     RUBBED,
     STUCK,
+    TURNED,
     Rider,
     V,
     X,
@@ -308,4 +309,5 @@ def _ledger(
         contact_on_beam=on_beam,
         normal_on_beam=lifted,
         residual=driven + charged - damped - gained,
+        turned=booked[TURNED],
     )

@@ -4,7 +4,7 @@ import numpy as np
 
 from verify.models.arrays import Array, Indices
 from verify.models.kernels import lean, part
-from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power
+from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power, pulled
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
 from verify.motion.friction_kernels import advance, friction, give, slip
 from verify.motion.records import (
@@ -172,9 +172,12 @@ def _step(
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
     moved = advance(dt, rate, motion, law, seen, space.slip)
     if books.open:
+        turned, spared = 0.0, 0.0
+        if law.following:
+            turned, spared = pulled(v, motion[V], moved, dt, law.mass, seen, space.slip)
         if two_way is None:
-            pressed = by_parts(v, motion[V], moved, dt, law.mass, seen)
-        account(v, motion[V], pressed, dt, law.mass, books.ledger, seen)
+            pressed = by_parts(v, motion[V], moved, dt, law.mass, seen) + spared
+        account(v, motion[V], pressed, turned, dt, law.mass, books.ledger, seen)
         books.ledger[LIFTED] += lifted
 
 

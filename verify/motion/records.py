@@ -17,8 +17,9 @@ X, V, STUCK, HEIGHT, CLIMB, NORMAL, FALL = range(7)
 the surface, its normal reaction is the mean over the step, the fall is the largest downward acceleration so far."""
 SURFACE, PULL, DRIFT, POWER, LOSS, LEVEL = range(6)
 """Columns of `Space.seen`."""
-ON_BEAM, ON_SLIDER, DRIVEN, DAMPED, RUBBED, LIFTED = range(6)
-"""Entries of `Books.ledger`, joules; LIFTED is the work of the normal reaction on the beam."""
+ON_BEAM, ON_SLIDER, DRIVEN, DAMPED, RUBBED, LIFTED, TURNED = range(7)
+"""Entries of `Books.ledger`, joules; LIFTED is the work of the normal reaction on the beam, TURNED what a slider that
+follows the surface has of its turning and of gravity along it."""
 STEP, SAMPLES, EVENTS = range(3)
 """Entries of `Kept.tally`: steps of this stage, samples and events of the whole run."""
 KEPT_X, KEPT_V, KEPT_FRICTION, KEPT_SURFACE, KEPT_NORMAL = range(5)

@@ -60,6 +60,8 @@ class Ledger(Value, frozen=True, kw_only=True):
     """Work of the normal reaction on the beam; 0 under one-way coupling and of a slider without normal inertia."""
     residual: float
     """What the books miss: quadrature of the power over a step (order 4)."""
+    turned: float = 0.0
+    """Work on a slider that follows the surface of the tangent's turning and of gravity along it."""
 
 
 class EndState(Value, frozen=True, eq=False, kw_only=True):

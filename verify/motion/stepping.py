@@ -64,7 +64,7 @@ class Sliding(msgspec.Struct, eq=False, kw_only=True):
                 tally=np.zeros(3, dtype=np.int64),
             ),
             accounts=accounts,
-            ledger=np.zeros(6),
+            ledger=np.zeros(records.TURNED + 1),
             first=np.zeros((1, 5)),
             first_deflection=np.zeros((1, len(points))),
         )

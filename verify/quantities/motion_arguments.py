@@ -140,10 +140,10 @@ class SliderBooked(SliderInTime, frozen=True, kw_only=True):
     """A line of the books of the driven beam and its slider, from rest."""
 
     of: Annotated[
-        Literal["work_in", "damped", "rubbed", "slider", "contact_on_beam", "normal_on_beam"],
+        Literal["work_in", "damped", "rubbed", "slider", "contact_on_beam", "normal_on_beam", "turned"],
         Meta(
             description="from the start: work of the forces; lost in the beam; lost in friction; gained by the slider; "
-            "work of friction, and of the normal reaction, on the beam"
+            "work of friction, and of the normal reaction, on the beam; of turning and gravity on one that follows"
         ),
     ]
 

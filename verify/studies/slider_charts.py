@@ -105,6 +105,7 @@ def _books(study: "SliderFound") -> tuple[Chart, ...]:
         "damped in the beam": ledger.damped,
         "rubbed off": ledger.rubbed,
         "gained by the slider": ledger.slider,
+        "turning and gravity on the slider": ledger.turned,
         "friction on the beam": ledger.contact_on_beam,
         "normal reaction on the beam": ledger.normal_on_beam,
         "missed by the books": ledger.residual,
