@@ -15,7 +15,9 @@ _UNITS = {
     "rotary_inertia": "kg m^2",
     "rotational_dashpot": "N m s/rad",
 }
-_STILL = {"across": ("pinned", "clamped"), "turning": ("clamped", "guided")}
+HELD = ("pinned", "clamped")
+"""Supports on which nothing moves across."""
+_STILL = {"across": HELD, "turning": ("clamped", "guided")}
 """Supports on which nothing moves across, or turns."""
 
 

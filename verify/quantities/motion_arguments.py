@@ -80,6 +80,12 @@ class OnWave(AtFrequency, frozen=True, kw_only=True):
     gravity: Gravity = GRAVITY
 
 
+def check_law(law: str | None, slope: float | None) -> None:
+    """Raise InputError for a slope of Eq. (3) beside a law that has none."""
+    if law == "coulomb" and slope is not None:
+        raise InputError(f"slope = {slope!r} is K of Eq. (3), law = 'tanh': law = 'coulomb' has none, leave it out")
+
+
 class InTime(DriveArguments, frozen=True, kw_only=True):
     """A driven beam in time: what is not given is the scene's."""
 
@@ -128,6 +134,10 @@ class SliderInTime(InTime, frozen=True, kw_only=True):
     preload: Annotated[float, Meta(ge=0, description="newton pressing it on beside its weight")] | None = None
     slider_position: Annotated[float, Meta(description="where it starts, metres")] | None = None
     slider_speed: Annotated[float, Meta(description="at the start, m/s")] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_law(self.law, self.slope)
 
 
 class SliderDeflection(SliderInTime, frozen=True, kw_only=True):

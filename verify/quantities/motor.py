@@ -13,6 +13,7 @@ from verify.judge.workbench import Workbench
 from verify.quantities import compiled
 from verify.quantities.cases import drive_forces, drive_frequency
 from verify.quantities.kind import WHAT_EXISTS, DriveArguments, MovingModel, Quantity, Size, check_count
+from verify.quantities.motion_arguments import check_law
 
 if TYPE_CHECKING:
     from verify.motor.case import MotorCase
@@ -50,6 +51,7 @@ class Motor(DriveArguments, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         check_count(self.model, self.count)
+        check_law(self.law, self.slope)
 
 
 class AtSpeedOf(Motor, frozen=True, kw_only=True):
