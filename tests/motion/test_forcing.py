@@ -1,11 +1,15 @@
 """Motion of a driven beam without a slider: the forced part, the free part, starts, continuation, refusals."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_reference import FORCES, FREQUENCY, STRIP, linear_motion
+from msgspec.structs import replace
 
+from verify.beam import PointMass
 from verify.errors import InputError, ResonanceError
 from verify.motion.forcing import SMOOTH_STEP, Modal, advanced, answer, free_part, state_of, turns
 from verify.motion.simulate import simulate
@@ -297,7 +301,33 @@ def test_steps_fill_their_stretch_and_are_no_longer_than_asked(duration, steps, 
     assert found.dt > 0.49 * min(duration / steps, duration / samples)
 
 
-def test_a_basis_and_a_run_before_it_have_the_same_modes():
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        (
+            {"count": 12},
+            "continue_from is of model = 'segment', count = 9 and this run of model = 'segment', count = 12",
+        ),
+        ({"model": "fem", "count": 4}, "count = 9 and this run of model = 'fem', count = 4: give both the same"),
+        ({"beam": {"thickness": 2.1e-3}}, "continue_from is of another beam"),
+        ({"beam": {"mass": (PointMass(position=0.11, mass=3e-3),)}}, "continue_from is of another beam"),
+    ],
+)
+def test_a_run_goes_on_in_the_modes_of_the_same_beam_and_model(changed, message):
+    """As many modes are not the same modes: four elements have the eight of nine segments."""
     begun = simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=9)
-    with pytest.raises(InputError, match="continue_from has 8 modes and this run 11"):
-        simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=12, continue_from=begun)
+    asked = {"count": 9, **changed}
+    beam = replace(STRIP, **asked.pop("beam", {}))
+    with pytest.raises(InputError, match=re.escape(message)):
+        simulate(beam, FORCES, FREQUENCY, 1e-3, continue_from=begun, **asked)
+
+
+def test_a_run_goes_on_with_other_losses_and_not_from_a_steady_beam():
+    begun = simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=9)
+    simulate(replace(STRIP, loss_factor=0.07), FORCES, FREQUENCY, 1e-3, count=9, continue_from=begun)
+    steady = simulate(replace(STRIP, loss_factor=0.01), FORCES, FREQUENCY, 1e-3, count=9, start="steady")
+    with pytest.raises(InputError, match="start = 'steady', which has no free modes"):
+        simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=9, continue_from=steady)
+    exact = simulate(STRIP, FORCES, FREQUENCY, 1e-3, model="analytic", modes=30)
+    with pytest.raises(InputError, match="continue_from has 30 modes and this run 31: give both the same modes"):
+        simulate(STRIP, FORCES, FREQUENCY, 1e-3, model="analytic", modes=31, continue_from=exact)

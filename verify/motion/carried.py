@@ -14,6 +14,7 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS, check_count
 from verify.models.time_basis import TimeBasis
 from verify.motion.contact import Coupling, coupling_of, law_of
+from verify.motion.going_on import check_goes_on
 from verify.motion.margins import margins_of
 from verify.motion.moving_mass import carried_along, receptance, weighed_down
 from verify.motion.records import (
@@ -87,10 +88,7 @@ def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Cou
     """
     n = len(stage.modal.squares)
     if request.before is not None:
-        if len(request.before.q) != n:
-            raise InputError(
-                f"continue_from has {len(request.before.q)} modes and this run {n}: give both the same model"
-            )
+        check_goes_on(request.before, request.beam, request.model, request.count, n)
         return stage.start(request.before.q, request.before.rates)
     q, rates = np.zeros(n), np.zeros(n)
     if basis and request.slider and coupling and coupling.pushes_back:
@@ -264,6 +262,9 @@ def _end(
 ) -> EndState:
     height, climb = sliding.held if coupling.pushes_back else (None, 0.0)
     return EndState(
+        beam=request.beam,
+        model=request.model,
+        count=request.count,
         time=_reached(stages, sliding.steps),
         q=q,
         rates=rates,

@@ -288,7 +288,14 @@ def _told(
         frequencies_hz=basis.omegas / (2.0 * np.pi),
         amplitudes=q,
         unread=float(unread),
-        end=EndState(time=float(times[-1]), q=now[-1], rates=speed[-1]),
+        end=EndState(
+            beam=basis.beam,
+            model=basis.model,
+            count=basis.count,
+            time=float(times[-1]),
+            q=now[-1],
+            rates=speed[-1],
+        ),
         notes=(f"modes: {_kept(basis)}", f"damping: a ratio {damping:g} of every mode"),
     )
 

@@ -1,5 +1,6 @@
 """What a simulation returns: times, what was asked to be kept, what it cost, where the energy went."""
 
+from verify.beam import Beam
 from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array
@@ -67,6 +68,12 @@ class Ledger(Value, frozen=True, kw_only=True):
 class EndState(Value, frozen=True, eq=False, kw_only=True):
     """From where a run can go on."""
 
+    beam: Beam
+    """Whose motion it is."""
+    model: str
+    """Of whose modes."""
+    count: int | None
+    """Segments or elements; None of the exact beam."""
     time: float
     """Seconds from the first start."""
     q: Array

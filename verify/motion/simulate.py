@@ -176,7 +176,14 @@ def _closed_form(request: Request, stages: list[Stage], basis: TimeBasis | None,
         statistics=Statistics(
             steps=0, evaluations=len(times), step_s=0.0, set_up_s=ready - began, wall_s=wall, stopped="end"
         ),
-        end=EndState(time=float(times[-1]), q=state[0], rates=state[1]),
+        end=EndState(
+            beam=request.beam,
+            model=request.model,
+            count=request.count,
+            time=float(times[-1]),
+            q=state[0],
+            rates=state[1],
+        ),
     )
 
 

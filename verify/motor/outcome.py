@@ -50,7 +50,7 @@ def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
         beam_margins=plan.margins,
         motor_margins=motor_margins(plan, one.slider),
         ledger=ledger(riding, b),
-        state=_state(b, float(times[-1]), riding, ended),
+        state=_state(b, float(times[-1]), plan, riding, ended),
         statistics=_statistics(plan, riding, ended),
     )
 
@@ -82,10 +82,13 @@ def _across(b: int, n: int, riding: Riding) -> dict[str, Array]:
     }
 
 
-def _state(b: int, time: float, riding: Riding, ended: Ended) -> MotorState:
+def _state(b: int, time: float, plan: Plan, riding: Riding, ended: Ended) -> MotorState:
     """From where slider b can go on."""
     feet = riding.feet
     return MotorState(
+        beam=plan.request.beam,
+        model=plan.request.model,
+        count=plan.request.count,
         time=time,
         q=ended.q,
         rates=ended.rates,

@@ -11,6 +11,7 @@ from verify.models.time_basis import TimeBasis
 from verify.motion.carried import steady_field
 from verify.motion.contact import Coupling, Margins
 from verify.motion.forcing import check_no_resonance
+from verify.motion.going_on import check_goes_on
 from verify.motion.margins import margins_of
 from verify.motion.request import Request
 from verify.motion.step_size import stepped
@@ -69,7 +70,7 @@ def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[Motor
         stages=stages,
         tables=tuple(stage.table(0, len(stage.edges) - 1) for stage in stages),
         basis=basis,
-        z=stages[0].start(*_at_start(stages[0], basis if coupling.two_way else None, placed, before)),
+        z=stages[0].start(*_at_start(request, stages[0], basis if coupling.two_way else None, placed, before)),
         coupling=coupling,
         contact_rate=rate,
         sag=sag_of(request, placed),
@@ -79,14 +80,14 @@ def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[Motor
 
 
 def _at_start(
-    stage: Stage, basis: TimeBasis | None, placed: Sequence[Placed], before: Sequence[MotorState]
+    request: Request, stage: Stage, basis: TimeBasis | None, placed: Sequence[Placed], before: Sequence[MotorState]
 ) -> tuple[Array, Array]:
     """(q, dq/dt) of every mode: as the run before left them, else at rest, or bent by what presses the sliders on."""
     n = len(stage.modal.squares)
     if not before:
         return (weighed(basis, placed) if basis else np.zeros(n)), np.zeros(n)
-    if len(before[0].q) != n:
-        raise InputError(f"continue_from has {len(before[0].q)} modes and this run {n}: give both the same model")
+    if n or len(before[0].q):
+        check_goes_on(before[0], request.beam, request.model, request.count, n)
     return before[0].q, before[0].rates
 
 

@@ -1,5 +1,6 @@
 """What a run of a slider on feet returns."""
 
+from verify.beam import Beam
 from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.motion.contact import Margins
@@ -53,6 +54,12 @@ class MotorLedger(Value, frozen=True, kw_only=True):
 class MotorState(Value, frozen=True, eq=False, kw_only=True):
     """From where a run can go on."""
 
+    beam: Beam
+    """Whose motion it is."""
+    model: str
+    """Of whose modes."""
+    count: int | None
+    """Segments or elements; None of the exact beam."""
     time: float
     """Seconds from the first start."""
     q: Array
