@@ -168,11 +168,11 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Whether it has one section and nothing on it: what closed forms are of."""
         return not self.added
 
-    def check_added(self, who: str, takes: tuple[str, ...] = ()) -> None:
+    def check_added(self, who: str, takes: tuple[str, ...] = (), instead: str = "ask for something else") -> None:
         """Raise InputError for what `who` does not take: whatever is added beside `takes`."""
         for name in self.added:
             if name not in takes:
-                raise InputError(f"beam.{name}: {who} takes none, leave it out or ask for something else")
+                raise InputError(f"beam.{name}: {who} takes none, leave it out or {instead}")
 
     @property
     def rigid_lines(self) -> tuple[tuple[float, float], ...]:

@@ -215,6 +215,8 @@ def test_a_push_to_a_side_that_rounding_would_choose_is_refused():
         ({"wall": "wall"}, "wall = 'wall'"),
         ({"wall": "welded"}, "welded"),
         ({"load": 1e12}, "no equilibrium found"),
+        ({"beam": replace(ROD, tension=3.0)}, "beam.tension = 3.0 N: bend takes it as load = (along, across)"),
+        ({"joints": "tensioned"}, "joints = 'tensioned' are of a beam.tension"),
     ],
     ids=str,
 )

@@ -74,6 +74,12 @@ def bend(
     """
     if beam.supports != ("clamped", "free"):
         raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
+    if beam.tension:
+        raise InputError(f"beam.tension = {beam.tension!r} N: bend takes it as load = (along, across), leave it out")
+    if joints == "tensioned":
+        raise InputError(
+            "joints = 'tensioned' are of a beam.tension, bend has none: give 'series' or 'printed'"
+        )
     check_whole("count", count, 2)
     force = in_a_row("load", load, "newton")
     if force.shape not in ((1,), (2,)):

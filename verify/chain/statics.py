@@ -174,8 +174,8 @@ def solve_static(system: ChainSystem, start: ChainState | None = None) -> ChainS
             part *= 0.25
         else:
             raise InputError(
-                f"chain.loads: no equilibrium found beyond {done:.3g} of the load; give a start nearer to it, or a "
-                "support where the chain is a mechanism"
+                f"chain.loads: no equilibrium found beyond {done:.3g} of the load; give less of it, or a support "
+                "where the chain is a mechanism (in Python, a start nearer to it)"
             )
     return ChainState(angles, np.zeros(system.n_links))
 

@@ -268,7 +268,7 @@ def check_buildable(beam: Beam, wall: str = "gregory") -> None:
     if beam.loss_factor:
         raise InputError(
             f"beam.loss_factor = {beam.loss_factor!r}: the nonlinear chain moves in time and has no complex modulus, "
-            "give 0 (in Python a joint_dashpot damps the joints)"
+            "give 0"
         )
 
 

@@ -25,7 +25,7 @@ MOST = 5000
 
 def check_beam(beam: Beam) -> None:
     """Raise InputError for a beam that `time_basis` does not take."""
-    beam.check_added("the exact beam in time", ("section", "mass"))
+    beam.check_added("the exact beam in time", ("section", "mass"), "give model = 'fem' or 'segment'")
     check_held(beam)
 
 

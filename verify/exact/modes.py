@@ -104,6 +104,7 @@ def mode_shapes(beam: Beam, n_modes: int, x: Numbers, derivative: int = 0, theor
 
 def _shapes(beam: Beam, modes: Sequence[int], x: Numbers, derivative: int, theory: str) -> Array:
     at = np.atleast_1d(real_array("x", x, "metres"))
+    check_whole("derivative", derivative, 0)
     if theory != "euler-bernoulli" or not beam.uniform:
         return _general(beam, modes, at.ravel(), derivative, theory).reshape(len(modes), *at.shape)
     xi = at.ravel() / beam.length
