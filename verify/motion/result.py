@@ -59,7 +59,7 @@ class Ledger(Value, frozen=True, kw_only=True):
     normal_on_beam: float
     """Work of the normal reaction on the beam; 0 under one-way coupling and of a slider without normal inertia."""
     residual: float
-    """What the books miss: quadrature of the power over a step (order 4)."""
+    """What the books miss: with a slider the quadrature of the power over a step (order 4), without one rounding."""
 
 
 class EndState(Value, frozen=True, eq=False, kw_only=True):
