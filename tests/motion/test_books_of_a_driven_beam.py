@@ -134,8 +134,8 @@ def test_closed_integrals_are_those_of_a_quadrature(pieces, asked):
     stages, basis = run_of(pieces, **asked)
     books = booked(stages, basis)
     work, damped = by_quadrature(stages, len(basis.omegas))
-    assert books.work_in == pytest.approx(work, rel=2e-12)
-    assert books.damped == pytest.approx(damped, rel=2e-12)
+    assert books.work_in == pytest.approx(work, rel=2e-12, abs=0.0)
+    assert books.damped == pytest.approx(damped, rel=2e-12, abs=0.0)
     assert abs(books.residual) < 1e-13 * (books.work_in + books.damped)
 
 
@@ -192,21 +192,21 @@ def test_the_books_close_next_to_critical_damping(pieces, short):
     books = booked(*run_of(pieces, 1.0 - short, rest=1e-3))
     assert abs(books.residual) < 1e-12 * books.work_in
     beside = booked(*run_of(pieces, 1.0 - 1.1 * short, rest=1e-3))
-    assert books.damped == pytest.approx(beside.damped, rel=0.2 * short + 1e-12)
+    assert books.damped == pytest.approx(beside.damped, rel=0.2 * short + 1e-12, abs=0.0)
 
 
-@pytest.mark.parametrize("zeta", [0.0, 2e-4])
-@pytest.mark.parametrize("off", [1e-3, 1e-5])
+@pytest.mark.parametrize("zeta", [1e-7, 2e-4])
+@pytest.mark.parametrize("off", [1e-4, 1e-6])
 def test_what_constant_forces_next_to_a_resonance_give_has_no_square_of_its_phasors(off, zeta):
     """The forced and the free part are each 1 / (off omega T) of the motion, which is over before it has beaten."""
-    own = basis_of(STRIP, "segment", 9, 0).omegas[1] / (2 * np.pi)
-    stages, basis = run_of((), zeta, hertz=own * (1 + off), rest=2.3 / own)
+    own = basis_of(STRIP, "segment", 9, 0).omegas[0] / (2 * np.pi)
+    stages, basis = run_of((), zeta, hertz=own * (1 + off), rest=0.3 / own)
     books = booked(stages, basis)
     work, damped = by_quadrature(stages, len(basis.omegas))
     floor = 1e-15 / off
-    assert books.work_in == pytest.approx(work, rel=10 * floor)
-    assert books.damped == pytest.approx(damped, rel=10 * floor)
-    assert abs(books.residual) < 10 * floor * books.work_in
+    assert books.work_in == pytest.approx(work, rel=floor, abs=0.0)
+    assert books.damped == pytest.approx(damped, rel=floor, abs=0.0)
+    assert abs(books.residual) < floor * books.work_in
 
 
 @pytest.mark.parametrize("hertz", [1.0, 1e-3, 1e-6])
@@ -217,8 +217,9 @@ def test_a_slow_sine_keeps_its_digits_where_it_has_hardly_begun(hertz):
     slope = PointForce(position=SINE[0].position, amplitude=SINE[0].amplitude * turn)
     line, _ = run_of(((1e-3, (0.0, *SMOOTH_STEP)),), 0.02, hertz=1e-9, forces=(slope,))
     books, straight = booked(sine, basis), booked(line, basis)
-    assert books.work_in == pytest.approx(straight.work_in, rel=turn**2 + 1e-13)
-    assert books.damped == pytest.approx(straight.damped, rel=turn**2 + 1e-13)
+    near = turn**2 + 4e-16 / turn  # cos(-90 degrees) is 6e-17
+    assert books.work_in == pytest.approx(straight.work_in, rel=near, abs=0.0)
+    assert books.damped == pytest.approx(straight.damped, rel=near, abs=0.0)
     assert abs(books.residual) < 2e-15 / turn * books.work_in  # of the state's, a difference of two phasors
 
 
