@@ -281,14 +281,14 @@ def test_motion_without_a_slider_does_not_depend_on_the_step():
 @pytest.mark.parametrize(("zeta", "soft"), [(0.0, 0.0), (0.02, 1.5)])
 @pytest.mark.parametrize("model", ["segment", "fem"])
 def test_the_books_of_a_driven_beam_close(model, zeta, soft):
-    """Work of the forces by quadrature of their power, against what is in the beam and what was lost."""
+    """Work of the forces against what is in the beam and what was lost: rounding is what they miss."""
     books = simulate(
         STRIP, FORCES, FREQUENCY, 2.7e-3, model=model, count=11, modal_damping=zeta, soft_start_periods=soft
     ).ledger
     assert books.work_in > 0
-    assert abs(books.residual) < 1e-7 * books.work_in
+    assert abs(books.residual) < 1e-13 * books.work_in
     assert (books.damped > 1e-3 * books.work_in) == (zeta > 0)
-    assert books.work_in == pytest.approx(books.kinetic + books.elastic + books.damped, rel=1e-6)
+    assert books.work_in == pytest.approx(books.kinetic + books.elastic + books.damped, rel=1e-13, abs=0.0)
 
 
 @settings(max_examples=60, deadline=None)

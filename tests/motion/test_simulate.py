@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from motion_reference import FORCES, FREQUENCY, STRIP
 
-from verify.beam import PointForce
 from verify.errors import InputError
 from verify.motion import stepping as slider_run
 from verify.motion.records import SLIPS
@@ -229,17 +228,6 @@ def test_notes_say_what_stands_for_what():
     assert "forces grow over" in notes(soft_start_periods=1.0)
     assert "closed-form dispersion" in notes()
     assert "first 30 exact modes" in notes(model="analytic", count=None, modes=30)
-
-
-def test_the_work_of_harmonic_forces_in_closed_form_is_that_of_the_quadrature(titanium_strip):
-    asked = {"frequency_hz": 3100.0, "duration": 0.7e-3, "model": "segment", "count": 11, "modal_damping": 0.013}
-    forces = [PointForce(position=0.3 * titanium_strip.length, amplitude=0.7, phase_deg=20.0)]
-    closed = simulate(titanium_strip, forces, **asked).ledger
-    # the same constant as a line of slope zero goes by quadrature
-    line = simulate(titanium_strip, forces, **asked, envelope=[(0.7e-3, (1.0, 0.0))]).ledger
-    assert closed.work_in == pytest.approx(line.work_in, rel=1e-10)
-    assert closed.damped == pytest.approx(line.damped, rel=1e-10)
-    assert abs(closed.residual) < 1e-12 * closed.work_in
 
 
 def test_what_a_run_says_of_its_time_is_no_longer_than_the_clock_saw():

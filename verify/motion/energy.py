@@ -1,28 +1,74 @@
 """The books of a beam without a slider: work of the forces against what is in it and what was damped."""
 
 from collections.abc import Sequence
-from typing import Any
 
+import msgspec
 import numpy as np
 
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.time_basis import TimeBasis
+from verify.motion.exponentials import multiplied, weighted_powers
+from verify.motion.forcing import Modal, forced_powers, free_part, some, state_of, turns
 from verify.motion.result import Ledger
 from verify.motion.surface import Stage, free_at
 
-GAUSS = 6
-BLOCK = 2000
+SLOW = 2.0
+"""Radians of beat or nepers of decay within a stage below which a mode is driven as a series from rest. The forced part
+of its own would cancel the free one in their squares; where the series begins, its terms are at most e^2 of the sum."""
+STEEP = 3.0
+"""sigma / omega_d from which a mode's own motion is hardly a turn, and its two exponentials cancel in the square."""
+TURN = 21
+"""Powers of an angle below a radian that e^{i angle} is made of: 1/21! is rounding."""
+
+
+class _Drive(msgspec.Struct, frozen=True, eq=False):
+    """The forces over a stage, Re(load sum_d growth_d p^d e^{i omega t}) in every mode, p = t / duration."""
+
+    omega: float
+    loads: ComplexArray
+    """(n,), turned to the start of the stage."""
+    growth: Array
+    """(n, degree + 1)."""
+    turned: complex
+    """e^{i omega duration}."""
+    within: float
+    """SLOW, or more under a growth of many powers."""
+
+
+class _Pushed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Modes under a drive, dq/dt = Re(load sum_k driven_k p^k e^{i omega t}) + Re(free e^{own t})."""
+
+    modes: Modal
+    loads: ComplexArray
+    """(n,)."""
+    growth: Array
+    """(n, degree + 1)."""
+    driven: ComplexArray
+    """(n, powers), under unit loads: what is not damped takes no work but by its free part, to the last digit."""
+    free: ComplexArray
+    """(n,)."""
+    z: Array
+    """(2, n), of the free part at the start."""
+    duration: float
+    """Seconds."""
+    fast: ComplexArray
+    """(k,), integrals of p^k e^{2 i omega t}."""
+    sums: ComplexArray
+    """(powers, n), likewise of e^{(own + i omega) t}."""
+    beats: ComplexArray
+    """(powers, n), likewise of e^{(own - i omega) t}."""
+    ends: ComplexArray
+    """(n,), e^{own duration}."""
 
 
 def driven_ledger(stages: Sequence[Stage], basis: TimeBasis, z: Array) -> Ledger:
-    """From rest to the end; while the forces grow, quadrature with six points to a quarter of the fastest period."""
+    """From rest to the end: all integrals are closed; what the books miss is rounding."""
     work = damped = 0.0
     q, rates = stages[0].state(z, 0.0)
     for stage in stages:
-        z = stage.start(q, rates)
-        here = _integrals(stage, z)
+        here = _integrals(stage, q, rates)
         work, damped = work + here[0], damped + here[1]
-        q, rates = stage.state(free_at(stage, z, stage.duration), stage.duration)
+        q, rates = stage.state(free_at(stage, stage.start(q, rates), stage.duration), stage.duration)
     kinetic, elastic = 0.5 * float(rates @ rates), 0.5 * float((basis.omegas**2 * q) @ q)
     return Ledger(
         kinetic=kinetic,
@@ -37,67 +83,93 @@ def driven_ledger(stages: Sequence[Stage], basis: TimeBasis, z: Array) -> Ledger
     )
 
 
-def _integrals(stage: Stage, z0: Array) -> tuple[float, float]:
-    """(work of the forces, loss of the modes) over a stage, joules: closed form, quadrature while the forces grow."""
-    if stage.forced is not None and stage.forced.amplitudes.shape[1] == 1:
-        return _closed_integrals(stage, z0)
-    fastest = float(max(stage.modal.omegas.max(), stage.omega))
-    panels = max(int(stage.duration * fastest * 2.0 / np.pi), 1)
-    points, weights = np.polynomial.legendre.leggauss(GAUSS)
-    half = 0.5 * stage.duration / panels
+def _integrals(stage: Stage, q: Array, rates: Array) -> tuple[float, float]:
+    """(work of the forces, loss of the modes) over a stage from its state, joules: integrals of t^k e^{z t}."""
+    drive = _drive(stage)
+    beat = abs(-stage.modal.sigmas + 1j * (stage.modal.omegas - drive.omega)) * stage.duration
     work = damped = 0.0
-    for block in np.array_split(np.arange(panels), max(panels // BLOCK, 1)):
-        t = (half * (2 * block[:, None] + 1 + points)).ravel()
-        rates = _rates(stage, z0, t)
-        measure = np.tile(weights * half, len(block))
-        work += float(measure @ np.einsum("tn,tn->t", _loads(stage, t), rates))
-        damped += float(measure @ (rates**2 @ (2.0 * stage.modal.sigmas)))
+    for which in (beat < drive.within, beat >= drive.within):
+        if which.any():
+            pushed = _pushed(drive, stage.duration, some(stage.modal, which), which, (q[which], rates[which]))
+            work, damped = work + _work(pushed), damped + _loss(pushed)
     return work, damped
 
 
-def _closed_integrals(stage: Stage, z0: Array) -> tuple[float, float]:
-    """Integrals of products of exponentials: force and rates are Re(A e^{a t}) for every mode."""
-    assert stage.forced is not None
-    modes, drive = stage.modal, 1j * stage.omega
-    turn = np.exp(drive * stage.origin)
-    force = modes.loads * stage.growth[0] * turn
-    forced = drive * stage.forced.amplitudes[:, 0] * turn
-    own = -modes.sigmas + 1j * modes.omegas
-    free = own * (z0[0] + 1j * z0[1])
-
-    def over(a: ComplexArray, rate_a: Any, b: ComplexArray, rate_b: Any) -> Array:
-        return _product(a, rate_a, b, rate_b, stage.duration)
-
-    work = over(force, drive, forced, drive) + over(force, drive, free, own)
-    squares = over(forced, drive, forced, drive) + 2.0 * over(forced, drive, free, own) + over(free, own, free, own)
-    return float(work.sum()), float(2.0 * modes.sigmas @ squares)
+def _drive(stage: Stage) -> _Drive:
+    """Of a stage; powers of time where it turns by less than a radian: the squares of phasors lose a sine's start."""
+    start, end = np.exp(1j * stage.omega * np.array([stage.origin, stage.origin + stage.duration]))
+    loads, angle = stage.modal.loads * start, stage.omega * stage.duration
+    growth = np.append(stage.growth[0], np.trim_zeros(stage.growth[1:], "b"))
+    within = max(SLOW, 0.5 * (len(growth) - 1))
+    rows = np.broadcast_to(growth, (len(loads), len(growth)))
+    if angle >= 1.0:
+        return _Drive(stage.omega, loads, rows, complex(end / start), within)
+    turn = np.cumprod(np.append(1.0, 1j * angle / np.arange(1.0, TURN)))
+    return _Drive(0.0, np.ones_like(loads), multiplied(rows, (loads[:, None] * turn).real).real, 1.0, within)
 
 
-def _product(a: ComplexArray, rate_a: Any, b: ComplexArray, rate_b: Any, duration: float) -> Array:
-    """Integral of Re(a e^{rate_a t}) Re(b e^{rate_b t}) from 0 to the duration, (n,)."""
-    both = a * b * _exponential(rate_a + rate_b, duration)
-    return np.asarray(0.5 * (both + np.conj(a) * b * _exponential(np.conj(rate_a) + rate_b, duration)).real)
+def _pushed(drive: _Drive, unit: float, modes: Modal, which: BoolArray, state: tuple[Array, Array]) -> _Pushed:
+    """Modes that are all slow or all not, from their (q, dq/dt) at the start of a stage of `unit` seconds."""
+    turning, loads, growth = 1j * drive.omega, drive.loads[which], drive.growth[which]
+    powers = forced_powers(modes, drive.omega, growth.astype(complex), unit, drive.within, int(12 + 7 * drive.within))
+    driven = turning * powers
+    driven[:, :-1] += np.arange(1, powers.shape[1]) / unit * powers[:, 1:]
+    z = free_part(modes, state[0] - (loads * powers[:, 0]).real, state[1] - (loads * driven[:, 0]).real)
+    own, highest = -modes.sigmas + 1j * modes.omegas, driven.shape[1] - 1
+    ends = np.asarray(np.array([1.0, 1j]) @ turns(modes, unit), dtype=complex)
+    doubled = weighted_powers(np.array([2.0 * turning * unit]), np.array([drive.turned**2]), 2 * highest)
+    return _Pushed(
+        modes=modes,
+        loads=loads,
+        growth=growth,
+        driven=driven,
+        free=own * (z[0] + 1j * z[1]),
+        z=z,
+        duration=unit,
+        fast=doubled[:, 0],
+        sums=weighted_powers((own + turning) * unit, ends * drive.turned, highest),
+        beats=weighted_powers((own - turning) * unit, ends / drive.turned, highest),
+        ends=ends,
+    )
 
 
-def _exponential(rate: Any, duration: float) -> ComplexArray:
-    """Integral of e^{rate t} from 0 to the duration."""
-    turned = np.asarray(rate * duration, dtype=complex)
-    still = abs(turned) < 1e-9
-    return np.asarray(np.where(still, 1.0 + 0.5 * turned, np.expm1(turned) / np.where(still, 1.0, turned)) * duration)
+def _work(pushed: _Pushed) -> float:
+    """Of the forces, joules: Re(a) Re(b) is half of Re(a b) + Re(a* b)."""
+    growth, load, n = pushed.growth.T, pushed.loads, pushed.growth.shape[1]
+    power = multiplied(pushed.growth, pushed.driven)
+    by_free = load * np.sum(growth * pushed.sums[:n], axis=0) + load.conj() * np.sum(growth * pushed.beats[:n], axis=0)
+    return float(0.5 * pushed.duration * np.sum(_over(pushed, power, power) + (pushed.free * by_free).real))
 
 
-def _rates(stage: Stage, z0: Array, t: Array) -> Array:
-    """dq/dt of all modes at the times t, (len(t), n)."""
-    modes = stage.modal
-    decay = np.exp(-modes.sigmas * t[:, None])
-    c, s = decay * np.cos(modes.omegas * t[:, None]), decay * np.sin(modes.omegas * t[:, None])
-    real, imaginary = z0[0] * c - z0[1] * s, z0[0] * s + z0[1] * c
-    forced = np.array([stage.forced.state(time)[1] for time in t]) if stage.forced else 0.0
-    return np.asarray(-modes.sigmas * real - modes.omegas * imaginary + forced)
+def _loss(pushed: _Pushed) -> float:
+    """Of the modes, joules: 2 sigma times the integral of (dq/dt)^2."""
+    v, load = pushed.driven, pushed.loads
+    mixed = load * np.sum(v.T * pushed.sums, axis=0) + load.conj() * np.sum(v.conj().T * pushed.beats, axis=0)
+    squares = 0.5 * _over(pushed, multiplied(v, v), multiplied(v.conj(), v)) + (pushed.free * mixed).real
+    return float(np.sum(2.0 * pushed.modes.sigmas * pushed.duration * squares + _own_loss(pushed)))
 
 
-def _loads(stage: Stage, t: Array) -> Array:
-    """Generalised forces at the times t, (len(t), n)."""
-    grown = np.polynomial.polynomial.polyval(t / stage.unit_s, stage.growth)
-    turn = grown * np.exp(1j * stage.omega * (t + stage.origin))
-    return np.asarray((turn[:, None] * stage.modal.loads).real)
+def _over(pushed: _Pushed, straight: ComplexArray, crossed: ComplexArray) -> Array:
+    """Real part of load^2 straight_k p^k e^{2 i omega t} + |load|^2 crossed_k p^k, integrated over p, (n,)."""
+    powers = straight.shape[1]
+    turning = pushed.loads**2 * (straight @ pushed.fast[:powers])
+    still = crossed.real @ (1.0 / np.arange(1.0, powers + 1.0))
+    return np.asarray(turning.real + abs(pushed.loads) ** 2 * still)
+
+
+def _own_loss(pushed: _Pushed) -> Array:
+    """Of the free parts alone, (n,), joules: their squares, or where those cancel the energy that is gone."""
+    modes, unit, ends = pushed.modes, pushed.duration, pushed.ends
+    own = np.asarray(2.0 * unit * (-modes.sigmas + 1j * modes.omegas), dtype=complex)
+    turning = weighted_powers(own, ends**2, 0)[0]
+    still = weighted_powers(own.real.astype(complex), ends * ends.conj(), 0)[0].real
+    squares = (pushed.free**2 * turning).real + abs(pushed.free) ** 2 * still
+    last = (pushed.z[0] + 1j * pushed.z[1]) * ends
+    gone = _energies(modes, pushed.z) - _energies(modes, np.array([last.real, last.imag]))
+    return np.where(modes.sigmas > STEEP * modes.omegas, gone, modes.sigmas * unit * squares)
+
+
+def _energies(modes: Modal, z: Array) -> Array:
+    """Of free modes, (n,), joules."""
+    q, rates = state_of(modes, z)
+    return np.asarray(0.5 * (rates**2 + modes.squares * q**2))

@@ -73,33 +73,54 @@ def answer(modes: Modal, omega: float, growth: Array, unit_s: float, origin: flo
     polynomial in time. The powers of a mode that beats slower than it grows would cancel its free part, to no digit
     at all near a resonance: it gets a series.
     """
-    slow = abs(-modes.sigmas + 1j * (modes.omegas - omega)) * unit_s < SLOW * (len(growth) > 1)
-    stiff = np.where(slow, 1.0, modes.squares - omega**2 + 2j * modes.sigmas * omega)
-    first = 2.0 * (modes.sigmas + 1j * omega) / unit_s
-    amplitudes = np.zeros((len(modes.squares), len(growth) + 2), dtype=complex)
-    for d in range(len(growth) - 1, -1, -1):
-        carried = first * (d + 1) * amplitudes[:, d + 1] + (d + 2) * (d + 1) / unit_s**2 * amplitudes[:, d + 2]
-        amplitudes[:, d] = (modes.loads * growth[d] - carried) / stiff
-    amplitudes = amplitudes[:, : len(growth)]
-    if slow.any():
-        amplitudes = np.pad(amplitudes, ((0, 0), (0, SERIES)))
-        amplitudes[slow] = _beating(modes, slow, omega, growth, unit_s)
+    push = modes.loads[:, None] * growth
+    amplitudes = forced_powers(modes, omega, push, unit_s, SLOW * (len(growth) > 1), SERIES)
     return Answer(amplitudes=amplitudes, omega=omega, origin=origin, unit_s=unit_s)
 
 
-def _beating(modes: Modal, slow: BoolArray, omega: float, growth: Array, unit_s: float) -> ComplexArray:
-    """Powers of the envelope a of q = Re(a e^{i omega t}) that starts at zero, (slow modes, len(growth) + SERIES).
+def forced_powers(
+    modes: Modal, omega: float, push: ComplexArray, unit_s: float, within: float, series: int
+) -> ComplexArray:
+    """Q of `answer` under Re(sum_d push_d (t/T)^d e^{i omega t}), (n, degree + 1) both.
 
-    (D - r)(D - s) a = F growth with r = -sigma + i (omega_d - omega), slow, and s = -sigma - i (omega_d + omega):
-    (D - s) b = F growth, which ends with the highest power of the growth where s is fast, then (D - r) a = b.
+    With `series` powers more where a mode beats by less than `within` radians or decays by less nepers, from rest.
     """
-    sigma, damped = modes.sigmas[slow], modes.omegas[slow]
-    r, s = -sigma + 1j * (damped - omega), -sigma - 1j * (damped + omega)
-    push = np.pad(modes.loads[slow, None] * growth, ((0, 0), (0, SERIES)))
+    slow = abs(-modes.sigmas + 1j * (modes.omegas - omega)) * unit_s < within
+    stiff = np.where(slow, 1.0, modes.squares - omega**2 + 2j * modes.sigmas * omega)
+    first = 2.0 * (modes.sigmas + 1j * omega) / unit_s
+    amplitudes = np.pad(np.zeros_like(push), ((0, 0), (0, 2)))
+    for d in range(push.shape[1] - 1, -1, -1):
+        carried = first * (d + 1) * amplitudes[:, d + 1] + (d + 2) * (d + 1) / unit_s**2 * amplitudes[:, d + 2]
+        amplitudes[:, d] = (push[:, d] - carried) / stiff
+    amplitudes = amplitudes[:, : push.shape[1]]
+    if slow.any():
+        amplitudes, push = (np.pad(part, ((0, 0), (0, series))) for part in (amplitudes, push))
+        amplitudes[slow] = _beating(some(modes, slow), omega, push[slow], unit_s, within)
+    return amplitudes
+
+
+def some(modes: Modal, which: BoolArray) -> Modal:
+    """The modes of which that is True."""
+    return Modal(
+        sigmas=modes.sigmas[which],
+        omegas=modes.omegas[which],
+        squares=modes.squares[which],
+        loads=modes.loads[which],
+    )
+
+
+def _beating(modes: Modal, omega: float, push: ComplexArray, unit_s: float, within: float) -> ComplexArray:
+    """Powers of the envelope a of q = Re(a e^{i omega t}) that starts at zero, as many as of `push`, (n, powers).
+
+    (D - r)(D - s) a = push with r = -sigma + i (omega_d - omega), slow, and s = -sigma - i (omega_d + omega):
+    (D - s) b = push, which ends with the highest power of the push where s is fast, then (D - r) a = b.
+    """
+    r, s = -modes.sigmas + 1j * (modes.omegas - omega), -modes.sigmas - 1j * (modes.omegas + omega)
     ended = np.zeros_like(push)
-    for d in range(len(growth) - 1, -1, -1):
-        ended[:, d] = ((d + 1) / unit_s * ended[:, d + 1] - push[:, d]) / s
-    b = np.where((abs(s) * unit_s < SLOW)[:, None], _risen(s, push, unit_s), ended)
+    for d in range(push.shape[1] - 1, -1, -1):
+        carried = (d + 1) / unit_s * ended[:, d + 1] if d + 1 < push.shape[1] else 0.0
+        ended[:, d] = (carried - push[:, d]) / s
+    b = np.where((abs(s) * unit_s < within)[:, None], _risen(s, push, unit_s), ended)
     return _risen(r, b, unit_s)
 
 

@@ -60,7 +60,7 @@ class Ledger(Value, frozen=True, kw_only=True):
     normal_on_beam: float
     """Work of the normal reaction on the beam; 0 under one-way coupling and of a slider without normal inertia."""
     residual: float
-    """What the books miss: quadrature of the power over a step (order 4)."""
+    """What the books miss: with a slider the quadrature of the power over a step (order 4), without one rounding."""
     turned: float = 0.0
     """Work on a slider that follows the surface of the tangent's turning and of gravity along it."""
 
