@@ -81,6 +81,8 @@ class EndState(Value, frozen=True, eq=False, kw_only=True):
     """Of a slider held on the surface, metres; None where it did not push back."""
     climb: float = 0.0
     """Its speed across the beam, m/s."""
+    off: str = ""
+    """What the slider had done that left the surface it ran on, from where it cannot go on; empty otherwise."""
 
 
 class Ride(Value, frozen=True, eq=False, kw_only=True):

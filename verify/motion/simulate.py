@@ -12,13 +12,14 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.time_basis import TimeBasis
-from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field, times_of
+from verify.models.underfoot import ground_at
+from verify.motion.carried import Laid, begin, coupling_on, put_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance
 from verify.motion.margins import margins_of
 from verify.motion.request import STEPS_PER_PERIOD, Driven, Envelope, Modelled, Request, Started, Watched, requested
 from verify.motion.result import EndState, Ledger, Motion, Statistics
-from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
+from verify.motion.surface import Stage, basis_of, free_at, on_ground, stages_from_rest, steady_stage
 from verify.options import Start
 from verify.slider import Slider
 
@@ -84,10 +85,11 @@ def _run(request: Request, began: float, progress: Callable[[float], None], pati
     stages, basis, coupling = _prepare(request)
     if request.slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
+    ground = ground_at(request.beam, put_on(request, request.slider)[0])
     laid = Laid(
         request=request,
         slider=request.slider,
-        stages=stages,
+        stages=[on_ground(stage, ground) for stage in stages],
         basis=basis,
         coupling=coupling,
         began=began,
