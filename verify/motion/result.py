@@ -26,7 +26,7 @@ class Statistics(Value, frozen=True, kw_only=True):
     loop_s: float = 0.0
     """Processor time of a slider's compiled loop, of the one thread that runs it; 0 without one."""
     stopped: str
-    """end, interrupted, left the beam, or diverged; a chain's adds when."""
+    """end, interrupted, left the beam, came to a step (and where), or diverged; a chain's adds when."""
 
     @property
     def finished(self) -> bool:

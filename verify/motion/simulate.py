@@ -62,9 +62,10 @@ def simulate(
     `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half the beam's loss factor
     unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and in the steady
     state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept, (samples, p).
-    Returns what was reached where the run was interrupted or the slider left the beam, and says so. Without `patient`
-    a slider's run longer than is waited for (`patience`) is refused; so is one both ways, from rest and booked
-    (`ledger`), in which the slider gave the beam far more than was put in. Raises InputError.
+    Returns what was reached where the run was interrupted or the slider left the beam or came to a step of its surface,
+    and says so. Without `patient` a slider's run longer than is waited for (`patience`) is refused; so is one both
+    ways, from rest and booked (`ledger`), in which the slider gave the beam far more than was put in. Raises
+    InputError.
     """
     began = perf_counter()
     if slider is not None:
