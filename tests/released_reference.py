@@ -380,12 +380,22 @@ def fitted_reflection(scene, given):
     return float(waves.min() / waves.max())
 
 
+def thickness_at(beam, x):
+    """Of the section that stands at x, as it is written down."""
+    left = 0.0
+    for section in beam.section:
+        left += section.length
+        if x < left:
+            return beam.thickness if section.thickness is None else section.thickness
+    return beam.thickness
+
+
 def axis_ratio(scene, given):
     """Of the ellipse of a surface point: shorter over longer axis of Re((u, w) e^{i omega t}), signed as it turns."""
     beam = replace(scene.beam, loss_factor=given.get("loss_factor", 0.0))
     hertz, forces = scene.drive.frequency_hz, [(f.position, f.amplitude, f.phase_deg) for f in scene.forces]
     w, turn, *_ = field(beam, "euler-bernoulli", hertz, forces, given["x"])
-    across = -beam.thickness / 2 * turn
+    across = -thickness_at(beam, given["x"]) / 2 * turn
     axes = np.array([[across.real, across.imag], [w.real, w.imag]])
     longer, shorter = np.linalg.svd(axes, compute_uv=False)
     return float(shorter / longer * np.sign(np.linalg.det(axes)))

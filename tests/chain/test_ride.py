@@ -102,14 +102,9 @@ def test_what_a_chain_cannot_carry_is_refused(paper_beam, times, changed, words)
         ride(chain, paper_beam, replace(SLIDER, **changed))
 
 
-def test_the_links_edges_and_unlike_thicknesses_are_refused(paper_beam):
-    from verify.section import Section
-
+def test_the_links_edges_are_refused(paper_beam):
     with pytest.raises(InputError, match=r"slider.line = 'raw': a nonlinear chain is touched along its spline"):
         ridden(paper_beam, 1.0, slider=replace(SLIDER, line="raw"), duration=2e-5)
-    stepped = replace(paper_beam, section=(Section(length=0.2), Section(length=0.3, thickness=2e-3)))
-    with pytest.raises(InputError, match=r"beam.section has a thickness of its own"):
-        ridden(stepped, 1.0, duration=2e-5)
 
 
 AS_THE_CHAIN_LIES = [

@@ -12,7 +12,7 @@ from verify.exact import buckling
 from verify.exact import driven as exact_driven
 from verify.exact import harmonic as exact_harmonic
 from verify.exact import modes as exact_modes
-from verify.models import eigen, fields
+from verify.models import eigen, fields, underfoot
 from verify.motion import energy, forcing, free_vibration, surface
 from verify.segments import buckling as chain_buckling
 from verify.segments import carried as chain_carried
@@ -36,6 +36,15 @@ def second_and_further_forces_forgotten(patch):
 def receptances_of_a_thousandth_more(patch):
     true = unit_waves.unit_fields
     patch.setattr(unit_waves, "unit_fields", lambda *given: 1.001 * true(*given))
+
+
+def surfaces_of_the_beams_own_section_everywhere(patch):
+    patch.setattr(underfoot, "standing_at", lambda beam, x: beam)
+
+
+def surfaces_of_the_next_section(patch):
+    true = underfoot.piece_at
+    patch.setattr(underfoot, "piece_at", lambda beam, x: (true(beam, x) + 1) % len(beam.pieces))
 
 
 def displacements_held_at_one_place_alone(patch):
@@ -328,12 +337,16 @@ FAULTS = {
     "stepped-beam": {
         phases_of_the_wrong_sign: gates(
             "exact-deflection exact-slope exact-curvature exact-slow elements-deflection elements-slope "
-            "elements-by-a-ratio links-deflection links-slope raw-joints"
+            "elements-by-a-ratio links-deflection links-slope raw-joints "
+            "surface-first-section surface-second-section"
         ),
         second_and_further_forces_forgotten: gates(
             "exact-deflection exact-slope exact-curvature exact-slow elements-deflection elements-slope "
-            "elements-by-a-ratio links-deflection links-slope raw-joints"
+            "elements-by-a-ratio links-deflection links-slope raw-joints "
+            "surface-first-section surface-second-section"
         ),
+        surfaces_of_the_beams_own_section_everywhere: gates("surface-second-section"),
+        surfaces_of_the_next_section: gates("surface-first-section surface-second-section"),
         receptances_of_a_thousandth_more: gates("exact-receptance"),
         losses_of_bending_twice_as_large: gates("elements-deflection links-deflection raw-joints"),
         ratios_of_a_tenth_more: gates("elements-by-a-ratio"),

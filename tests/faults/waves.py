@@ -40,12 +40,12 @@ def load_on_the_next_node(patch):
 
 
 def mid_line_instead_of_surface(patch):
-    patch.setattr(travelling_wave, "surface_motion", lambda beam, slope: 0.0 * slope)
+    patch.setattr(travelling_wave, "lifted", lambda beam, slope, turn: 0.0 * slope)
 
 
 def lower_surface_for_the_upper(patch):
-    true = travelling_wave.surface_motion
-    patch.setattr(travelling_wave, "surface_motion", lambda beam, slope: -true(beam, slope))
+    true = travelling_wave.lifted
+    patch.setattr(travelling_wave, "lifted", lambda *given: -true(*given))
 
 
 def waves_fitted_with_the_wrong_sign_of_time(patch):

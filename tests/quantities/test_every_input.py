@@ -659,6 +659,12 @@ def lone(asked):
     return uniform(asked) and bare(asked) and not (pulled(asked) or asked.scene["beam"]["foundation"])
 
 
+def ridden_on_a_step(asked):
+    """Whether a slider's lever is that of the first of two sections."""
+    levered = asked.quantity == "slider.displacement" or asked.arguments.get("of") == "friction"
+    return levered and not uniform(asked)
+
+
 def plainly(asked):
     """Whether its section is given by its figures."""
     return asked.scene["beam"]["bending_stiffness"] is not None
@@ -712,7 +718,9 @@ DEAD = [
         "only friction acts on a lever",
         lambda a: a.arguments["of"] != "friction",
     ),
-    Dead("*", "beam.section.*.extreme_fibre", "a surface is read and ridden on the beam's own section"),
+    Dead("*", "beam.section.1.extreme_fibre", "no slider stands and no point is read on the second section"),
+    Dead("*", "beam.section.0.extreme_fibre", "nor on the first", lambda a: not ridden_on_a_step(a)),
+    Dead("slider.displacement", "beam.extreme_fibre", "the section under the slider has its own", ridden_on_a_step),
     Dead("*", "beam.poissons_ratio", "of a shape and its material", plainly),
     Dead("*", "beam.*shape=rectangle", "a rectangle is what is meant where no shape is given"),
     Dead("mode.frequency mode.node_position mode.bracket drive.*", "beam.width", "EI / rho A has no width", lone),

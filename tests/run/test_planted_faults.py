@@ -76,6 +76,7 @@ def test_every_wave_gate_says_its_damping_and_its_window():
         ]
         damping = ", ".join(dampings).replace("e-0", "e-") + " N m s" * ("joint_dashpot" in given) + ", "
         at_a_point = gate.quantity in (*AT_A_PLACE, "wave.receptance") or given.get("of") == "deflection"
+        at_a_point |= gate.quantity == "wave.axis_ratio" and "x" in given
         window = "[{} m, {} m]".format(*given["window"]) if "window" in given else "[L/4, 3L/4]"
         x = given.get("x", 0.25)
         place = ("at L/2" if x == 0.25 else f"at {x} m") if at_a_point else window

@@ -30,6 +30,7 @@ from verify.checks import check_number
 from verify.errors import InputError, near_name, written
 from verify.models.arrays import Array, ComplexArray
 from verify.models.eigen import forced_response
+from verify.models.underfoot import standing_at
 from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.records import Given, Rider
 from verify.motion.result import END, Ride, Statistics
@@ -82,8 +83,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
 
     Raises InputError for times that are not evenly spaced and odd in number; for a slider that is coupled two-way, or
     one of coupling "auto" that the chain would feel (`coupling_on_chain`), which the chain's integrators do not know;
-    for the links' edges as a contact line; for a turned base; and for another beam than the chain's, or one of unlike
-    thicknesses.
+    for the links' edges as a contact line; for a turned base; and for another beam than the chain's.
     """
     from verify.motion import kernels
 
@@ -94,7 +94,8 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
     n_steps, dt = len(times) // 2, 2.0 * float(times[1] - times[0])
     local, along, edges = _surface(chain, start)
     given, kept = Given(local, along, edges - start), np.zeros((n_steps + 1, 4))
-    rider = Rider(fresh_motion(slider.speed), law_of(slider, beam), two_way=None)
+    under = standing_at(beam, start)
+    rider = Rider(fresh_motion(slider.speed), law_of(slider, under), two_way=None)
     ready = perf_counter()
     done = kernels.slide_given(n_steps, dt, given, rider, kept, contact_space())
     wall, kept, ends = perf_counter() - ready, kept[: done + 1], slice(0, 2 * done + 1, 2)
@@ -112,7 +113,7 @@ def ride(chain: ChainMotion | ElasticMotion, beam: Beam, slider: Slider) -> Chai
         friction=slider.mass * kept[:, 2],
         surface_speed=kept[:, 3],
         coupling=coupling,
-        ledger=_ledger(slider, beam.surface_distance, times[ends], kept, local[ends], given.edges),
+        ledger=_ledger(slider, under.surface_distance, times[ends], kept, local[ends], given.edges),
         notes=(coupling.note if coupling else "coupling: one-way; no harmonic load says what the chain would feel",),
         statistics=statistics,
     )
@@ -130,8 +131,6 @@ def check_rideable(system: ChainSystem, beam: Beam, slider: Slider) -> None:
         raise InputError("slider.coupling = 'two-way': a nonlinear chain carries a slider one way, give 'one-way'")
     if slider.line != "spline":
         raise InputError(f"slider.line = {slider.line!r}: a nonlinear chain is touched along its spline, give 'spline'")
-    if any(piece.extreme_fibre != beam.surface_distance for piece in beam.pieces):
-        raise InputError("beam.section has a thickness of its own: a slider rides on a beam of one thickness, give one")
     if system.rotation != Rotation():
         raise InputError("chain.rotation: a slider rides on a chain whose base does not turn, give none")
     supports = straight_chain(system).supports
@@ -174,8 +173,9 @@ def _sized(system: ChainSystem, beam: Beam, slider: Slider, frequency_hz: float)
     joints = with_ends(chain, forced_response(pencil, loads, omega**2, stiffness)).T
     real, imaginary = (contact_line(chain, part) for part in (joints.real, joints.imag))
     slopes = real(x, 1) + 1j * imaginary(x, 1)
-    speed = beam.surface_distance * omega * float(abs(slopes[0]))
-    return coupling_of(slider, beam, frequency_hz, speed, complex(real(x)[1], imaginary(x)[1]), complex(slopes[2]))
+    under = standing_at(beam, x)
+    speed = under.surface_distance * omega * float(abs(slopes[0]))
+    return coupling_of(slider, under, frequency_hz, speed, complex(real(x)[1], imaginary(x)[1]), complex(slopes[2]))
 
 
 def _couple(system: ChainSystem, chain: Chain, x: float) -> Array:

@@ -13,6 +13,7 @@ from verify.errors import InputError, written
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS, check_count
 from verify.models.time_basis import TimeBasis
+from verify.models.underfoot import standing_at
 from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.going_on import check_goes_on
 from verify.motion.margins import margins_of
@@ -39,7 +40,7 @@ from verify.motion.request import MOST_STEPS, Request
 from verify.motion.result import EndState, Ledger, Motion, Statistics
 from verify.motion.sound_books import check_books
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
-from verify.motion.stepping import Sliding, fresh_motion, run_stages, slider_seconds
+from verify.motion.stepping import Sliding, fresh_motion, on_beam, run_stages, slider_seconds
 from verify.motion.surface import Stage
 from verify.motion.turning import couple, modal_turning, turned_by
 from verify.patience import check_work
@@ -52,9 +53,9 @@ if TYPE_CHECKING:
 def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis | None) -> Coupling:
     """How the slider is coupled where it is put on. Raises InputError."""
     x, omega = put_on(request, slider)[0], request.omega
-    slope = abs(stage.drive_shapes(np.array([x]), 1))[:2]
-    speed = request.beam.surface_distance * omega * float(np.hypot(*slope[:, 0]))
-    return coupling_of(slider, request.beam, request.frequency_hz, speed, *yielding(request, x, basis))
+    beam, slope = standing_at(request.beam, x), abs(stage.drive_shapes(np.array([x]), 1))[:2]
+    speed = beam.surface_distance * omega * float(np.hypot(*slope[:, 0]))
+    return coupling_of(slider, beam, request.frequency_hz, speed, *yielding(request, x, basis))
 
 
 def yielding(request: Request, x: float, basis: TimeBasis | None) -> tuple[complex, complex]:
@@ -109,6 +110,8 @@ def put_on(request: Request, slider: Slider) -> tuple[float, float, bool]:
         raise InputError(
             f"continue_from ended with the slider at {before.position!r} m, off the beam: continue one that stays on"
         )
+    if before.off:
+        raise InputError(f"continue_from ended where its slider {before.off}: continue one that stays on its section")
     return before.position, before.speed, before.stuck and slider.law == "coulomb"
 
 
@@ -249,7 +252,8 @@ def _grip(slider: Slider) -> float:
 def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> Sliding:
     """Room for the slider's run from where it starts."""
     start, speed, stuck = put_on(request, slider)
-    rider = Rider(fresh_motion(speed, stuck), law_of(slider, request.beam), coupling.two_way or None)
+    law = law_of(slider, standing_at(request.beam, start))
+    rider = Rider(fresh_motion(speed, stuck), law, coupling.two_way or None)
     samples = sum(stage.n_steps // stage.every for stage in stages)
     sliding = Sliding.fresh(start, samples, request.points, rider, request.accounts and request.start == "rest")
     if request.before is not None and request.before.height is not None:
@@ -261,6 +265,7 @@ def _end(
     request: Request, stages: list[Stage], sliding: Sliding, q: Array, rates: Array, coupling: Coupling
 ) -> EndState:
     height, climb = sliding.held if coupling.pushes_back else (None, 0.0)
+    x = sliding.start + float(sliding.motion[X])
     return EndState(
         beam=request.beam,
         model=request.model,
@@ -268,11 +273,12 @@ def _end(
         time=_reached(stages, sliding.steps),
         q=q,
         rates=rates,
-        position=sliding.start + float(sliding.motion[X]),
+        position=x,
         speed=float(sliding.motion[V]),
         stuck=bool(sliding.motion[STUCK] > 0.0),
         height=height,
         climb=climb,
+        off="" if on_beam(stages[-1], sliding.start, float(sliding.motion[X])) else stages[-1].beyond(x, x),
     )
 
 

@@ -7,6 +7,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.field_docs import Value
+from verify.models.underfoot import standing_at
 from verify.motion.records import Law
 from verify.options import NormalChoice
 from verify.slider import Slider
@@ -19,7 +20,7 @@ FELT = 1e-3
 
 
 def law_of(slider: Slider, beam: Beam) -> Law:
-    """The slider as the compiled loop sees it, on this beam."""
+    """The slider as the compiled loop sees it, on this beam's own section."""
     pressing = slider.normal_force / slider.mass
     static = slider.mu if slider.mu_static is None else slider.mu_static
     return Law(
@@ -118,11 +119,14 @@ def larger(friction_size: float | None, normal_size: float) -> float | None:
 
 def surface_speed(field: "HarmonicField", x: float) -> float:
     """First-order speed amplitude of the surface at x, (h/2) omega |w'|, m/s."""
-    return field.beam.surface_distance * field.omega * float(abs(field.slope([x]))[0])
+    return standing_at(field.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
 def friction_speed(slider: Slider, beam: Beam, omega: float, turning: complex) -> float:
-    """Speed that full friction gives to the surface, m/s: a couple (h/2) mu N turns the beam, the surface h/2 off."""
+    """Speed that full friction gives to the surface, m/s: a couple (h/2) mu N turns the beam, the surface h/2 off.
+
+    h is that of the beam's own section, as in `coupling_of`: give the beam that is `standing_at` the slider.
+    """
     return float(slider.mu * slider.normal_force * beam.surface_distance**2 * omega * abs(turning))
 
 

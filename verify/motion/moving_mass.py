@@ -8,6 +8,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE
 from verify.models.time_basis import TimeBasis
+from verify.models.underfoot import standing_at
 
 if TYPE_CHECKING:
     from verify.motion.surface import Stage
@@ -33,7 +34,7 @@ def weighed_down(basis: TimeBasis, x: float, load: float) -> Array:
 
     Square to the surface, so that it also turns what is under it, by (h/2) w'.
     """
-    half, here = basis.beam.surface_distance, basis.shapes(np.array([x]), 1)[:, 0]
+    half, here = standing_at(basis.beam, x).surface_distance, basis.shapes(np.array([x]), 1)[:, 0]
     still = np.zeros(len(basis.omegas))
     for _ in range(PASSES):
         at = np.array([min(max(x + half * float(still @ here), 0.0), basis.beam.length)])

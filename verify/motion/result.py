@@ -27,7 +27,7 @@ class Statistics(Value, frozen=True, kw_only=True):
     loop_s: float = 0.0
     """Processor time of a slider's compiled loop, of the one thread that runs it; 0 without one."""
     stopped: str
-    """end, interrupted, left the beam, or diverged; a chain's adds when."""
+    """end, interrupted, left the beam, came to a step (and where), or diverged; a chain's adds when."""
 
     @property
     def finished(self) -> bool:
@@ -90,6 +90,8 @@ class EndState(Value, frozen=True, eq=False, kw_only=True):
     """Of a slider held on the surface, metres; None where it did not push back."""
     climb: float = 0.0
     """Its speed across the beam, m/s."""
+    off: str = ""
+    """What the slider had done that left the surface it ran on, from where it cannot go on; empty otherwise."""
 
 
 class Ride(Value, frozen=True, eq=False, kw_only=True):

@@ -12,13 +12,14 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.time_basis import TimeBasis
-from verify.motion.carried import Laid, begin, coupling_on, slide, steady_field, times_of
+from verify.models.underfoot import ground_at
+from verify.motion.carried import Laid, begin, coupling_on, put_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
 from verify.motion.forcing import check_no_resonance
 from verify.motion.margins import margins_of
 from verify.motion.request import STEPS_PER_PERIOD, Driven, Envelope, Modelled, Request, Started, Watched, requested
 from verify.motion.result import EndState, Ledger, Motion, Statistics
-from verify.motion.surface import Stage, basis_of, free_at, stages_from_rest, steady_stage
+from verify.motion.surface import Stage, basis_of, free_at, on_ground, stages_from_rest, steady_stage
 from verify.options import Start
 from verify.slider import Slider
 
@@ -61,9 +62,10 @@ def simulate(
     `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half the beam's loss factor
     unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and in the steady
     state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept, (samples, p).
-    Returns what was reached where the run was interrupted or the slider left the beam, and says so. Without `patient`
-    a slider's run longer than is waited for (`patience`) is refused; so is one both ways, from rest and booked
-    (`ledger`), in which the slider gave the beam far more than was put in. Raises InputError.
+    Returns what was reached where the run was interrupted or the slider left the beam or came to a step of its surface,
+    and says so. Without `patient` a slider's run longer than is waited for (`patience`) is refused; so is one both
+    ways, from rest and booked (`ledger`), in which the slider gave the beam far more than was put in. Raises
+    InputError.
     """
     began = perf_counter()
     if slider is not None:
@@ -84,10 +86,11 @@ def _run(request: Request, began: float, progress: Callable[[float], None], pati
     stages, basis, coupling = _prepare(request)
     if request.slider is None or coupling is None:
         return _closed_form(request, stages, basis, began)
+    ground = ground_at(request.beam, put_on(request, request.slider)[0])
     laid = Laid(
         request=request,
         slider=request.slider,
-        stages=stages,
+        stages=[on_ground(stage, ground) for stage in stages],
         basis=basis,
         coupling=coupling,
         began=began,

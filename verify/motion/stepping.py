@@ -267,4 +267,5 @@ def _run_stage(fed: Feed, around: Window | None, sliding: Sliding, tell: Callabl
             began = perf_counter()
             around = window(stage, s.start, float(motion[records.X]))
             s.set_up_s += perf_counter() - began
-    return "end" if around and on_beam(stage, s.start, float(motion[records.X])) else "left the beam"
+    at = float(motion[records.X])
+    return "end" if around and on_beam(stage, s.start, at) else stage.beyond(s.start + at, s.start + at)

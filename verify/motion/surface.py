@@ -11,7 +11,9 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS, check_count
+from verify.models.places import SLACK
 from verify.models.time_basis import TimeBasis, taylor_table
+from verify.models.underfoot import LEFT_BEAM, Ground
 from verify.motion.forcing import CONSTANT, Answer, Modal, advanced, answer, free_part, modal, state_of, turns
 
 if TYPE_CHECKING:
@@ -46,6 +48,8 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     dt: float
     every: int
     """A sample is kept after so many steps."""
+    ends: tuple[str, str] = (LEFT_BEAM, LEFT_BEAM)
+    """What a slider has done that goes beyond the first edge, and beyond the last."""
 
     def rows(self, x: Array, derivative: int = 0) -> Array:
         """All shapes at x, (rows, len(x))."""
@@ -67,6 +71,10 @@ class Stage(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         degree = 0 if self.forced is None else self.forced.amplitudes.shape[1] - 1
         powers = (t[:, None] / self.unit_s) ** np.arange(degree + 1) * turn[:, None]
         return np.stack([powers.real, -powers.imag], axis=2).reshape(len(t), -1)
+
+    def beyond(self, first: float, last: float) -> str:
+        """What a slider has done of which the points from `first` to `last`, metres, have gone beyond an edge."""
+        return self.ends[0 if self.edges[0] - first > last - self.edges[-1] else 1]
 
     @property
     def answers(self) -> Array:
@@ -210,6 +218,15 @@ def _stage(
         dt=steps.dt,
         every=steps.every,
     )
+
+
+def on_ground(stage: Stage, ground: Ground) -> Stage:
+    """The stage for a slider that stays on a stretch of the beam: its pieces end there."""
+    if ground.ends == stage.ends:  # all of the beam
+        return stage
+    near = SLACK * float(stage.edges[-1])
+    inner = stage.edges[(stage.edges > ground.start + near) & (stage.edges < ground.end - near)]
+    return replace(stage, edges=np.concatenate([[ground.start], inner, [ground.end]]), ends=ground.ends)
 
 
 def to_the_end(edges: Array, beam: Beam) -> Array:

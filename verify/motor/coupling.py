@@ -6,6 +6,7 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.models.time_basis import TimeBasis
+from verify.models.underfoot import standing_at
 from verify.motion.carried import yielding
 from verify.motion.contact import FELT, Coupling, friction_speed
 from verify.motion.request import Request
@@ -21,7 +22,7 @@ def sizes(
 
     `moved` (metres) and `turned` are the drive's amplitudes of deflection and slope under it, `receptance` is the
     beam's there, G(x, x) in m/N, `turning` its slope under a unit couple, rad/(N m). Along, None where the drive does
-    not turn the surface.
+    not turn the surface. The surface is that of the beam's own section: give the beam that is `standing_at` there.
     """
     rub = friction_speed(slider, beam, omega, turning)
     across = slider.normal_force * abs(receptance) / moved if moved else np.inf
@@ -56,6 +57,7 @@ def coupling_of(request: Request, placed: Sequence[Placed], stage: Stage, basis:
 
 def _load_sizes(request: Request, one: Placed, stage: Stage, basis: TimeBasis | None) -> tuple[float, float | None]:
     """What all that presses a slider on moves the surface by, over its own motion: (across, by friction along)."""
-    beam, omega, slider, x = request.beam, request.omega, one.slider, np.array([one.start])
+    beam, omega = standing_at(request.beam, one.start), request.omega
+    slider, x = one.slider, np.array([one.start])
     moved, turned = (float(np.hypot(*stage.drive_shapes(x, d)[:2, 0])) for d in (0, 1))
     return sizes(slider, beam, omega, moved, turned, *yielding(request, one.start, basis))

@@ -6,9 +6,11 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.errors import InputError
+from verify.errors import InputError, written
 from verify.models.arrays import Array, Indices
+from verify.models.places import SLACK
 from verify.models.search import zero_between
+from verify.models.underfoot import ground_at
 from verify.motor import records
 from verify.motor.records import Feet, Hard, Log, Rubbing
 from verify.slider import Foot, Slider
@@ -44,7 +46,7 @@ class Placed(msgspec.Struct, frozen=True):
 
 
 def rubbing_of(slider: Slider, beam: Beam) -> Rubbing:
-    """The law of friction, all sliders'."""
+    """The law of friction, all sliders', on this beam's own section."""
     slope = None if slider.law == "coulomb" else float(slider.slope)
     return Rubbing(slope=slope, half=float(beam.surface_distance))
 
@@ -123,7 +125,8 @@ def _points(slider: Slider, foot: Foot, beyond: float) -> Array:
 
 
 def check_on_beam(slider: Slider, beam: Beam, start: float) -> None:
-    """Raise InputError for feet longer than the beam, or off it where the slider is put."""
+    """Raise InputError for feet longer than the beam, or off it or over a step where the slider is put."""
+    ground, near = ground_at(beam, start), SLACK * beam.length
     for foot in slider.feet:
         if foot.length > beam.length:
             raise InputError(
@@ -134,6 +137,12 @@ def check_on_beam(slider: Slider, beam: Beam, start: float) -> None:
             raise InputError(
                 f"slider.position = {start!r} m puts a foot from {first:.6g} to {last:.6g} m, off the beam: move the "
                 "slider or shorten slider.foot"
+            )
+        if first < ground.start - near or last > ground.end + near:
+            step = ground.start if first < ground.start else ground.end
+            raise InputError(
+                f"slider.position = {start!r} m puts a foot from {first:.6g} to {last:.6g} m, over the step of the "
+                f"surface where beam.section ends at {written(step)} m: move the slider or shorten slider.foot"
             )
 
 

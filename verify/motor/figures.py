@@ -12,6 +12,7 @@ import numpy as np
 from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array
+from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
 from verify.motor.repeated import blocks
 from verify.motor.result import MotorRun
@@ -145,7 +146,7 @@ def crest_speed(case: MotorCase) -> float:
     model, beam = MODELS[case.model], case.beam
     field = model.solve_harmonic(beam, case.forces, case.frequency_hz, case.count)
     x = case.slider.start_on(beam)
-    return beam.surface_distance * field.omega * float(abs(field.slope([x]))[0])
+    return standing_at(beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
 class Timed(Value, frozen=True, eq=False, kw_only=True):

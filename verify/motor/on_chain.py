@@ -15,7 +15,10 @@ from verify.chain.system import ChainSystem, axial_stiffness, build_system, stra
 from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
 from verify.errors import InputError
 from verify.models.arrays import Array
+from verify.models.places import SLACK
+from verify.models.underfoot import LEFT_BEAM
 from verify.motion.request import Request
+from verify.motion.surface import Stage
 from verify.motor import records
 from verify.motor.carry import begin
 from verify.motor.combine import CHAIN
@@ -24,7 +27,7 @@ from verify.motor.outcome import Ended, outcome
 from verify.motor.plan import Plan, lay_out
 from verify.motor.records import GivenSurface
 from verify.motor.result import MotorRun
-from verify.motor.stepping import WHY, Riding, fresh_line, in_chunks
+from verify.motor.stepping import Riding, fresh_line, in_chunks, span_of
 from verify.options import Links
 from verify.segments.reading import contact_line
 
@@ -89,6 +92,7 @@ def _ride(plan: Plan, given: GivenSurface, begun: tuple[float, float], progress:
         np.searchsorted(given.edges[1:-1], riding.feet.points[:, records.OFFSET]), 0, len(given.edges) - 2
     )
     stopped = _run(given, stage.n_steps, stage.dt, riding, progress)
+    stopped = _gone(given, stage, riding) if stopped == LEFT_BEAM else stopped
     state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
     began, ready = begun
     return outcome(0, plan, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
@@ -104,24 +108,32 @@ def _run(given: GivenSurface, n_steps: int, dt: float, riding: Riding, progress:
     def advance(steps: int) -> int:
         return kernels.ride_given(steps, dt, given, riding.feet, riding.rubbing, line, riding.before, riding.log)
 
-    stopped = in_chunks(n_steps, riding, advance, lambda n: progress(n / n_steps))
-    return "left the links that it was put on" if stopped == WHY[records.OFF_BEAM] else stopped
+    return in_chunks(n_steps, riding, advance, lambda n: progress(n / n_steps))
+
+
+def _gone(given: GivenSurface, stage: Stage, riding: Riding) -> str:
+    """What a slider has done that went beyond the links under it: those kept, or the last before a step."""
+    edges, (first, last) = given.edges + riding.start, span_of(riding)
+    end = 0 if edges[0] - first > last - edges[-1] else -1
+    stepped = stage.ends[end] != LEFT_BEAM and abs(edges[end] - stage.edges[end]) < SLACK * stage.edges[-1]
+    return stage.ends[end] if stepped else "left the links that it was put on"
 
 
 def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> GivenSurface:
     """The contact line on the links under all feet and beside them, at every other time kept: in mid-steps.
 
-    Edges are metres from the left end.
+    Edges are metres from the left end. Links beyond a step of the surface are left out.
     """
-    system = moved.system
+    system, ground = moved.system, plan.stages[0].edges
+    near = SLACK * system.length
     ends = [
         one.start + foot.offset + side * 0.5 * foot.length
         for one in plan.placed
         for foot in one.slider.feet
         for side in (-1.0, 1.0)
     ]
-    first = max(_link_at(system, min(ends)) - BESIDE, 0)
-    last = min(_link_at(system, max(ends)) + BESIDE, system.n_links - 1)
+    first = max(_link_at(system, min(ends)) - BESIDE, _link_at(system, ground[0] + near))
+    last = min(_link_at(system, max(ends)) + BESIDE, _link_at(system, ground[-1] - near))
     heights, rises, along = (part[1::2] for part in _moved(moved))
     rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
     local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.models.arrays import Array
+from verify.models.underfoot import standing_at
 from verify.motion.result import Statistics
 from verify.motor import records
+from verify.motor.feet import Placed
 from verify.motor.plan import Plan
 from verify.motor.result import MotorLedger, MotorMargins, MotorRun, MotorState
 from verify.motor.stepping import Riding
@@ -48,7 +50,7 @@ def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
         notes=(*plan.notes, *notes),
         coupling=plan.coupling,
         beam_margins=plan.margins,
-        motor_margins=motor_margins(plan, one.slider),
+        motor_margins=motor_margins(plan, one),
         ledger=ledger(riding, b),
         state=_state(b, float(times[-1]), plan, riding, ended),
         statistics=_statistics(plan, riding, ended),
@@ -131,13 +133,13 @@ def _lost(push: Array, events: Array, times: Array) -> tuple[str, ...]:
     return (f"the slider is off the beam at the end, {times[-1]:.6g} s, and has been since {since:.6g} s",)
 
 
-def motor_margins(plan: Plan, slider: Slider) -> MotorMargins:
+def motor_margins(plan: Plan, one: Placed) -> MotorMargins:
     """What the contact's assumptions leave out."""
-    beam = plan.request.beam
+    beam = standing_at(plan.request.beam, one.start)
     k = float(np.sqrt(plan.request.omega / beam.wave_constant))
     thickness = 2.0 * beam.surface_distance
     return MotorMargins(
-        epsilon=layer_epsilon(slider, k, thickness),
+        epsilon=layer_epsilon(one.slider, k, thickness),
         step=plan.contact_rate * plan.stages[-1].dt,
         sag=plan.sag,
         sag_taken=plan.coupling.two_way,

@@ -8,6 +8,7 @@ import numpy as np
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.time_basis import TimeBasis
+from verify.models.underfoot import check_one_ground, ground_at
 from verify.motion.carried import steady_field
 from verify.motion.contact import Coupling, Margins
 from verify.motion.forcing import check_no_resonance
@@ -15,7 +16,7 @@ from verify.motion.going_on import check_goes_on
 from verify.motion.margins import margins_of
 from verify.motion.request import Request
 from verify.motion.step_size import stepped
-from verify.motion.surface import Stage, basis_of, stages_from_rest, steady_stage
+from verify.motion.surface import Stage, basis_of, on_ground, stages_from_rest, steady_stage
 from verify.motor.coupling import coupling_of, in_words
 from verify.motor.feet import Placed, check_on_beam
 from verify.motor.resting import contact_rate, sag_of, weighed
@@ -56,6 +57,8 @@ def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[Motor
         raise InputError(f"continue_from has {len(before)} runs for {len(placed)} sliders: give one for each")
     for one in placed:
         check_on_beam(one.slider, request.beam, one.start)
+    check_one_ground(request.beam, [one.start for one in placed])
+    ground = ground_at(request.beam, placed[0].start)
     origin, basis = before[0].time if before else 0.0, _basis(request)
     stages = _stages(request, basis, origin)
     coupling = coupling_of(request, placed, stages[-1], basis)
@@ -64,6 +67,7 @@ def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[Motor
         stages = _stages(request, basis, origin)
     rate = max(contact_rate(one, basis if coupling.two_way else None) for one in placed)
     stages = stepped(stages, _step(request, rate, stages[0], coupling.two_way))
+    stages = [on_ground(stage, ground) for stage in stages]
     return Plan(
         request=request,
         placed=placed,

@@ -7,6 +7,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.models.time_basis import TimeBasis
+from verify.models.underfoot import standing_at
 from verify.motion.request import Request
 from verify.motion.surface import Stage, basis_of
 from verify.motor import records
@@ -42,7 +43,8 @@ def weighed(basis: TimeBasis, placed: Sequence[Placed]) -> Array:
 def _places(basis: TimeBasis, placed: Sequence[Placed], feet: Feet) -> tuple[Array, Array]:
     """(places of all points on the beam, how far above its mid-line), (points,) each, metres."""
     p = feet.points
-    lever = basis.beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE]
+    half = standing_at(basis.beam, placed[0].start).surface_distance
+    lever = half * p[:, records.FACE] * p[:, records.IMAGE]
     return placed[0].start + p[:, records.OFFSET], lever
 
 
@@ -100,7 +102,7 @@ def contact_rate(one: Placed, basis: TimeBasis | None) -> float:
     ease = given[:, records.FOOT_INVERSE_MASS] + p[:, records.ARM] ** 2 * given[:, records.FOOT_INVERSE_INERTIA]
     along = np.full(len(ease), 1.0 / one.slider.mass)
     if basis is not None:
-        places, lever = one.start + p[:, records.OFFSET], basis.beam.surface_distance
+        places, lever = one.start + p[:, records.OFFSET], standing_at(basis.beam, one.start).surface_distance
         ease = ease + (basis.shapes(places, 0) ** 2).sum(axis=0)
         along = along + lever**2 * (basis.shapes(places, 1) ** 2).sum(axis=0)
     rates = [np.sqrt(p[:, records.GRIP] @ along)]
@@ -113,7 +115,8 @@ def contact_rate(one: Placed, basis: TimeBasis | None) -> float:
 def levels_of(stage: Stage, z: Array, beam: Beam, placed: Sequence[Placed], feet: Feet) -> Array:
     """The surface under every point at the start, (points,), metres: of the material X = x + face (h/2) w' there."""
     x, p = placed[0].start + feet.points[:, records.OFFSET], feet.points
-    lever, at = beam.surface_distance * p[:, records.FACE] * p[:, records.IMAGE], x
+    half = standing_at(beam, placed[0].start).surface_distance
+    lever, at = half * p[:, records.FACE] * p[:, records.IMAGE], x
     factors = np.concatenate([z[0], stage.drive_factors(np.zeros(1))[0]])
     for _ in range(PASSES):
         at = np.clip(x + lever * (factors @ stage.rows(at, 1)), 0.0, beam.length)

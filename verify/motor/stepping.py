@@ -7,6 +7,7 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.models.arrays import Array
+from verify.models.underfoot import LEFT_BEAM, standing_at
 from verify.motion import records as beam_records
 from verify.motion.forcing import turns
 from verify.motion.records import Drive, Surface
@@ -58,7 +59,7 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         """The same with what is at hand."""
         return cls(
             feet=feet,
-            rubbing=rubbing_of(placed[0].slider, beam),
+            rubbing=rubbing_of(placed[0].slider, standing_at(beam, placed[0].start)),
             log=log,
             before=np.full((len(feet.points), 2), -1.0),
             start=placed[0].start,
@@ -135,10 +136,18 @@ def run_stages(
             stopped = _run_stage(stage, surface, riding, tell)
         except KeyboardInterrupt:
             stopped = "interrupted"
+        stopped = stage.beyond(*span_of(riding)) if stopped == LEFT_BEAM else stopped
         state = stage.state(surface.modes[:2].copy(), int(riding.log.tally[records.STEP]) * stage.dt)
         if stopped != END:
             break
     return stopped, *state
+
+
+def span_of(riding: Riding) -> tuple[float, float]:
+    """The least and the largest place of all points now, metres from the left end."""
+    feet = riding.feet
+    x = riding.start + feet.body[feet.owner, records.X] + feet.points[:, records.OFFSET]
+    return float(x.min()), float(x.max())
 
 
 def _surface(stage: Stage, table: Array, z: Array, start: float) -> Surface:
@@ -224,5 +233,5 @@ def _run_hard(
 
 RIDES_FROM_HERE = 2.0
 """In place of a depth: a hard point is put on the surface with the first step."""
-WHY = {records.OFF_BEAM: "left the beam", records.NOT_FINITE: "diverged", records.GONE: "left the surface for good"}
+WHY = {records.OFF_BEAM: LEFT_BEAM, records.NOT_FINITE: "diverged", records.GONE: "left the surface for good"}
 """Why a run stopped early."""

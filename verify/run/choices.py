@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
+from verify.models.underfoot import standing_at
 from verify.motion.contact import FELT, coupling_of, surface_speed
 from verify.motion.turning import couple, turned_by
 from verify.motion.validity import NONLINEAR, field_size
@@ -44,7 +45,7 @@ def _coupling(slider: "Slider", field: "HarmonicField") -> list[tuple[str, str]]
     yields = complex(unit.deflection([x])[0]), turned_by(turned, x)
     if slider.contact is not None:
         return [_on_feet(slider, field, *yields)]
-    found = coupling_of(slider, field.beam, frequency, surface_speed(field, x), *yields)
+    found = coupling_of(slider, standing_at(field.beam, x), frequency, surface_speed(field, x), *yields)
     why = ", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"
     chosen = [(f"{'two' if found.two_way else 'one'}-way coupling", found.told + why)]
     return chosen + ([("slider that the beam does not carry", found.simplified)] if found.simplified else [])
@@ -56,7 +57,8 @@ def _on_feet(slider: "Slider", field: "HarmonicField", receptance: complex, turn
 
     x = slider.start_on(field.beam)
     moved, turned = float(abs(field.deflection([x])[0])), float(abs(field.slope([x])[0]))
-    found = coupled(slider, *sizes(slider, field.beam, field.omega, moved, turned, receptance, turning))
+    beam = standing_at(field.beam, x)
+    found = coupled(slider, *sizes(slider, beam, field.omega, moved, turned, receptance, turning))
     why = ", as slider.coupling says" if found.forced else f" (felt from {FELT:g} on)"
     return f"slider that may leave the beam, {'two' if found.two_way else 'one'}-way", in_words(found) + why
 

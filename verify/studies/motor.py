@@ -128,6 +128,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
     def check_run(self, asked: Motor, scene: "Scene") -> None:
         """Raise InputError for what does not combine, feet that do not fit, a chain that is not run."""
         from verify.models.places import as_forces
+        from verify.models.underfoot import check_one_ground
         from verify.motor.combine import check_combines
         from verify.motor.feet import check_on_beam
         from verify.quantities.simulated import check_forced
@@ -139,8 +140,10 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         for start, models in starts.items():
             for model in models:
                 check_combines(model, start, scene.slider)
-        for x in (scene.slider.start_on(scene.beam), *(places_from_rest(asked, scene) if asked.from_rest else ())):
+        put = (scene.slider.start_on(scene.beam), *(places_from_rest(asked, scene) if asked.from_rest else ()))
+        for x in put:
             check_on_beam(scene.slider, scene.beam, x)
+        check_one_ground(scene.beam, put)
         as_forces(scene.forces)
         self._check_models(asked, scene)
 
@@ -229,8 +232,10 @@ def case_of(asked: Motor, scene: "Scene", model: str) -> "MotorCase":
 
 def places_from_rest(asked: Motor, scene: "Scene") -> tuple[float, ...]:
     """Over one wavelength about the slider's own place, which is one of them, metres."""
+    from verify.models.underfoot import standing_at
+
     assert scene.drive is not None
     assert scene.slider is not None
-    length = 2.0 * pi / sqrt(2.0 * pi * scene.drive.frequency_hz / scene.beam.wave_constant)
     x, n = scene.slider.start_on(scene.beam), asked.places
+    length = 2.0 * pi / sqrt(2.0 * pi * scene.drive.frequency_hz / standing_at(scene.beam, x).wave_constant)
     return tuple(x + (k - n // 2) / n * length for k in range(n))

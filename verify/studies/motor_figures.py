@@ -6,8 +6,10 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
+from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
 from verify.motor.figures import (
     AtSpeed,
@@ -213,7 +215,7 @@ def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step
     return MotorFound(
         fields=tuple(fields),
         rest=rest,
-        doubts=doubts(fields, scene.slider, _wavenumber(case), 2.0 * scene.beam.surface_distance),
+        doubts=doubts(fields, scene.slider, _wavenumber(case), 2.0 * under(case).surface_distance),
         wavenumber=_wavenumber(case),
         mu=scene.slider.mu,
         drawn=Drawn(histories=histories, period=_picture(case_of(asked, scene, first.model), first), title=first.title),
@@ -226,8 +228,13 @@ def _no_histories() -> dict[str, dict[str, History]]:
 
 
 def _wavenumber(case: MotorCase) -> float:
-    """Of a wave on a beam without losses, 1/m."""
-    return float(np.sqrt(2.0 * np.pi * case.frequency_hz / case.beam.wave_constant))
+    """Of a wave on the section under the slider, without losses, 1/m."""
+    return float(np.sqrt(2.0 * np.pi * case.frequency_hz / under(case).wave_constant))
+
+
+def under(case: MotorCase) -> Beam:
+    """A beam of the section on which the slider is put."""
+    return standing_at(case.beam, case.slider.start_on(case.beam))
 
 
 def _speeds(case: MotorCase, still: AtSpeed, number: int) -> tuple[float, ...]:

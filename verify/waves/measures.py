@@ -16,8 +16,9 @@ from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField, phasor, unit_response
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
-from verify.models.places import real_array
+from verify.models.places import Numbers, real_array
 from verify.models.search import least_over
+from verify.models.underfoot import standing_at, surface_distance_at
 from verify.waves.found import TwoWaves, WaveMeasures
 from verify.waves.medium import Medium
 from verify.waves.window import check_window
@@ -143,7 +144,7 @@ class Seen(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         beam, turn = self.medium.beam, self.medium.turn(self.omega)
 
         def areas(at: Array) -> Array:
-            return signed_area(surface_motion(beam, self.slope(at), turn), self.deflection(at))
+            return signed_area(lifted(beam, self.slope(at), turn), self.deflection(at))
 
         low, high = extremes(areas, self.fine)
         return low, mean_over(areas, self.window, 2 * self.halves[1]), high
@@ -193,7 +194,7 @@ def measures_of(
 def _measures(seen: Seen, x: Array) -> WaveMeasures:
     """All of them, ellipses at x (n,)."""
     beam, turn = seen.medium.beam, seen.medium.turn(seen.omega)
-    ratio, tilt, area = ellipse(surface_motion(beam, seen.slope(x), turn), seen.deflection(x))
+    ratio, tilt, area = ellipse(lifted(beam, seen.slope(x), turn), seen.deflection(x))
     return WaveMeasures(
         window=seen.window,
         waves=seen.waves,
@@ -219,13 +220,26 @@ def mean_axis_ratio(
     turn = medium.turn(omega)
 
     def ratio(at: Array) -> Array:
-        return ellipse(surface_motion(medium.beam, slope(at), turn), deflection(at))[0]
+        return ellipse(lifted(medium.beam, slope(at), turn), deflection(at))[0]
 
     return mean_over(ratio, whole, 2 * halves)
 
 
-def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0) -> ComplexArray:
-    """u_x of the upper surface, metres: -(h/2) times the turn of the section, `turn` of the slope w'."""
+def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0, x: Numbers | None = None) -> ComplexArray:
+    """u_x of the upper surface, metres: -(h/2) times the turn of the section, `turn` of the slope w'.
+
+    h/2 is that of the section that stands at x (metres, of the shape of `slope`); where two meet, the one to the
+    right. Raises InputError without x for a beam whose surface has steps.
+    """
+    if x is not None:
+        return np.asarray(-surface_distance_at(beam, x) * turn * np.asarray(slope))
+    if len({piece.extreme_fibre for piece in beam.pieces}) > 1:
+        raise InputError("x is missing: the surface has steps where beam.section changes, say where the slope is")
+    return lifted(standing_at(beam, 0.0), slope, turn)
+
+
+def lifted(beam: Beam, slope: ComplexArray, turn: float = 1.0) -> ComplexArray:
+    """The same of the beam's own section, which all of a window has."""
     return np.asarray(-beam.surface_distance * turn * np.asarray(slope))
 
 

@@ -9,6 +9,8 @@ from verify.words import as_written
 
 MOST_HALVES = 10_000
 """Half wavelengths of the longest window: its points are held at once."""
+_OF_WAVES = ("bending_stiffness", "mass_per_length", "extreme_fibre")
+"""Of a section: what its waves and the way of its surface are made of."""
 
 
 def _own_section(beam: Beam, start: float, end: float) -> bool:
@@ -16,7 +18,7 @@ def _own_section(beam: Beam, start: float, end: float) -> bool:
     own, slack, left = beam.own, 1e-9 * beam.length, 0.0
     for piece in beam.pieces:
         right = left + piece.length
-        alike = (piece.bending_stiffness, piece.mass_per_length) == (own.bending_stiffness, own.mass_per_length)
+        alike = all(getattr(piece, of) == getattr(own, of) for of in _OF_WAVES)
         if not alike and left < end - slack and right > start + slack:
             return False
         left = right
