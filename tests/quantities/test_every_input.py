@@ -634,7 +634,7 @@ def rides_on_feet(asked):
 
 def held(asked):
     """Whether a motor's slider is held at a speed."""
-    return rides_on_feet(asked) and "periods" not in asked.arguments
+    return rides_on_feet(asked) and "pull" not in asked.arguments
 
 
 def on_points(asked):
@@ -964,6 +964,7 @@ DEAD = [
     ),
     Dead("slider.*", "motion.*", "a motor's beam is steady, its runs have arguments of their own", rides_on_feet),
     Dead("slider.*", "slider.speed slider.pull", "held at another speed, whatever pulls at it", held),
+    Dead("slider.*", "arguments.periods", "as many at most: its means have settled before", held),
     Dead("slider.*", "slider.foot.*.pitches", "a foot of one point does not turn", on_points),
     Dead(
         "slider.*",

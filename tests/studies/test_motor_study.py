@@ -90,7 +90,7 @@ def test_a_free_run_ends_at_the_speed_of_no_load(study):
 @pytest.fixture
 def unsought(monkeypatch):
     """The speed without load is not sought, where no figure of it is asked for."""
-    monkeypatch.setattr(motor_figures, "no_load", lambda case, reach, before: at_speed(case, -0.026, before))
+    monkeypatch.setattr(motor_figures, "no_load", lambda case, reach, *more: at_speed(case, -0.026, *more))
 
 
 INPUTS = {
