@@ -20,7 +20,7 @@ BLOCK = 12
 """Periods between two looks at whether the means have settled."""
 SETTLED = 1e-4
 """Of mu times the normal force: as much as the friction of two blocks may differ where a motion repeats itself."""
-BALANCED = 2e-3
+BALANCED = 3e-3
 """Of what presses on: as much as the normal force of such a block may miss of it."""
 SMALL = 1e-2
 """Of a figure's full scale: a spread that lets the figure stand."""

@@ -206,7 +206,7 @@ def _free_speed(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
         raise InputError(
             f"periods = {a.periods!r} with last = {a.last!r}: the free run has no steady end, its halves differ by "
             f"{spread:.2g} m/s where crests run at {crests:.3g} m/s, and {carried:.3g} N are carried of "
-            f"{case.slider.normal_force:.3g} N: give more of both"
+            f"{case.slider.normal_force:.3g} N: give more of both, or more slider.preload"
         )
     return speed
 
