@@ -8,10 +8,13 @@ from motor_references import bounces
 from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, STRIP, drive
 from msgspec.structs import replace
 
+from verify import load_scene
 from verify.errors import InputError
+from verify.judge.workbench import Workbench
 from verify.motor import figures, settling
 from verify.motor.case import MotorCase
 from verify.motor.figures import at_speed, comes_to_speed, crest_speed, held, no_load
+from verify.quantities.catalogue import QUANTITIES
 from verify.slider import Contact, Foot, Slider
 
 MASS, MU, PRELOAD = 2.3e-3, 0.2, 2.3e-5
@@ -58,7 +61,10 @@ CASES = {
 @pytest.fixture(scope="module")
 def found():
     """At rest and at two fifths of the crests' speed."""
-    return {name: [at_speed(case, v, periods=23_040) for v in (0.0, 0.4 * crest_speed(case))] for name, case in CASES.items()}
+    return {
+        name: [at_speed(case, v, periods=23_040) for v in (0.0, 0.4 * crest_speed(case))]
+        for name, case in CASES.items()
+    }
 
 
 @pytest.mark.parametrize("name", sorted(set(CASES) - {"pressed on by a spring"}))
@@ -174,3 +180,24 @@ def test_a_free_run_that_is_in_flight_at_its_end_has_come_to_no_speed():
     assert not comes_to_speed(run, 20, crest_speed(case))
     still = replace(case, forces=drive(0.4 * GRAVITY / OMEGA**2)[0])
     assert comes_to_speed(still.run(60 * case.period, samples=61), 20, 1e3 * HALF)
+
+
+MEASURED = ("stall_force", "force_speed", "normal_mean", "contact_share", "power", "wear_power", "efficiency")
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_a_figure_of_means_that_have_not_settled_is_refused_with_field_value_and_remedy(name):
+    """Feet of the packaged motor that fly for many periods, and four blocks at most."""
+    scene, quantity = load_scene("preloaded-motor"), QUANTITIES[f"slider.{name}"]
+    speed = {} if name == "stall_force" else {"speed": -0.01}
+    asked = quantity.arguments(model="analytic", preload=0.002, periods=48, **speed)
+    with pytest.raises(InputError, match=r"periods = 48: at .*not settled.*: give more periods, more slider.contact.d"):
+        quantity.evaluate(asked, scene, Workbench(scene.beam))
+
+
+@pytest.mark.parametrize("name", ["free_speed", "start_time"])
+def test_a_free_run_without_a_steady_end_is_refused_with_field_value_and_remedy(name):
+    scene, quantity = load_scene("preloaded-motor"), QUANTITIES[f"slider.{name}"]
+    asked = quantity.arguments(model="analytic", preload=0.002, periods=60, last=20)
+    with pytest.raises(InputError, match=r"periods = 60 with last = 20: the free run has no steady end.* give more"):
+        quantity.evaluate(asked, scene, Workbench(scene.beam))
