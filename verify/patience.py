@@ -26,6 +26,11 @@ def check_work(field: str, value: object, seconds: float, remedy: str) -> None:
     )
 
 
+def waited_for(seconds: float) -> bool:
+    """Whether work that is estimated to take so long is begun without a word. Raises InputError for no such limit."""
+    return seconds <= _limit()
+
+
 @contextmanager
 def patient(seconds: float) -> Iterator[None]:
     """Wait for that much work in the meantime, whatever the environment says."""

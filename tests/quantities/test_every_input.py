@@ -470,7 +470,7 @@ CASES: dict[str, list[Case]] = {
     "slider.free_speed": [
         Case({**STEPPED, "periods": 13, "last": 4}, ON_A_POINT),
         Case({**STEPPED, "steps_per_period": 53, "periods": 13, "last": 4}, CLASPING),
-        Case({"model": "analytic", "steps_per_period": 53, "periods": 13, "last": 4}, BETWEEN),
+        Case({"model": "analytic", "steps_per_period": 53, "periods": 83, "last": 40}, BETWEEN),
     ],
     "slider.start_time": [Case({**STEPPED, "periods": 410, "last": 14, "mass": 0.7}, {**AWAY, **UNDER_WAY})],
     "slider.contact_energy": [
@@ -634,7 +634,7 @@ def rides_on_feet(asked):
 
 def held(asked):
     """Whether a motor's slider is held at a speed."""
-    return rides_on_feet(asked) and "periods" not in asked.arguments
+    return rides_on_feet(asked) and "pull" not in asked.arguments
 
 
 def on_points(asked):
@@ -972,6 +972,7 @@ DEAD = [
     ),
     Dead("slider.*", "motion.*", "a motor's beam is steady, its runs have arguments of their own", rides_on_feet),
     Dead("slider.*", "slider.speed slider.pull", "held at another speed, whatever pulls at it", held),
+    Dead("slider.*", "arguments.periods", "as many at most: its means have settled before", held),
     Dead("slider.*", "slider.foot.*.pitches", "a foot of one point does not turn", on_points),
     Dead(
         "slider.*",

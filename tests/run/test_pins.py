@@ -26,6 +26,8 @@ TIMED = (
     "set_up_ms",
     "run_spread",
     "whole_spread",
+    "share_spread",
+    "power_spread",
     "answer",
     "report",
     "statistics",

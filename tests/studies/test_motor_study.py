@@ -90,7 +90,7 @@ def test_a_free_run_ends_at_the_speed_of_no_load(study):
 @pytest.fixture
 def unsought(monkeypatch):
     """The speed without load is not sought, where no figure of it is asked for."""
-    monkeypatch.setattr(motor_figures, "no_load", lambda case, reach, before: at_speed(case, -0.026, before))
+    monkeypatch.setattr(motor_figures, "no_load", lambda case, reach, *more: at_speed(case, -0.026, *more))
 
 
 INPUTS = {
@@ -370,3 +370,30 @@ def test_a_free_run_that_is_still_on_its_way_is_told_beside_the_speed_that_is_he
     for share, told in ((0.995, "runs at"), (0.95, "at the end of its free run, without force at")):
         free = replace(field.free, speed=share * field.no_load.speed)
         assert told in in_short_of(replace(study, fields=(replace(field, free=free),)))
+
+
+def test_what_has_not_settled_is_told_with_its_spread_and_what_stands_on_it_is_withheld(study):
+    (field,) = study.fields
+    shaky = replace(field.stall, unsettled=("force", "powers"), spread=0.007, periods=11520, window=5760)
+    free = replace(field.free, settled=False)
+    found = replace(study, fields=(replace(field, curve=(shaky, *field.curve[1:]), no_load=None, free=free),))
+    assert "comes to no speed" not in " ".join(study.facts())
+    assert found.in_short().startswith(
+        "The motor does not come to a speed in its free run and bounces so that its force"
+    )
+    facts = " ".join(found.facts())
+    assert "not settled after 11520 periods" in facts
+    assert "+- 7 mN as a mean over the last 5760 of them" in facts
+    assert "which held speed is without force is withheld" in facts
+    assert "withheld, it comes to no speed" in facts
+    overview, speeds, *_ = found.tables()
+    heads = [column.head for column in overview.columns]
+    for head in ("free, cm/s", "stall, mN", "start", "stop", "turn"):
+        assert overview.rows[0][heads.index(head)] is None
+    assert any("means at 1 of 3 held speeds have not settled after 11520 periods" in note for note in overview.notes)
+    assert [column.head for column in speeds.columns][1:4] == ["49 segments, mN", "+-, mN", "power, mW"]
+    assert speeds.rows[0][2:] == (0.007, None, None)
+    assert "+-, mN" not in [column.head for column in study.tables()[1].columns]
+    force = next(chart for chart in found.charts() if chart.id == "motor-force")
+    assert force.lines[-1].y[0] is None
+    assert "Left out where its mean has not settled" in force.caption

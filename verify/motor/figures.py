@@ -1,13 +1,16 @@
 """Figures of a motor: what a slider at a speed is pushed with, where that is nought, how soon it gets there.
 
 A figure at a speed is a mean over whole periods of the drive with the slider held at that speed and at its place, so
-that the motion across can repeat itself; blocks of periods go on until two agree. The free run, which moves along the
-beam and lets the speed swing within a period, is the check on them.
+that the motion across can repeat itself; blocks of periods go on until two agree and carry what presses the slider on.
+One that bounces without a pattern is read over ever longer windows, with how far their means are off. The free run,
+which moves along the beam and lets the speed swing within a period, is the check on them.
 """
 
 from collections.abc import Callable, Sequence
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.field_docs import Value
@@ -16,21 +19,43 @@ from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
 from verify.motor.repeated import blocks
 from verify.motor.result import MotorRun
+from verify.motor.settling import (
+    BALANCED,
+    BLOCK,
+    SETTLED,
+    SMALL,
+    Means,
+    apart,
+    missed,
+    rows,
+    spread_of,
+    told_by_balance,
+)
+from verify.motor.stepping import seconds_of
+from verify.patience import VARIABLE, waited_for
+from verify.slider import Slider
 
-BLOCK = 12
-"""Periods between two looks at whether the means have settled."""
+Reading: TypeAlias = Literal["force", "normal force", "shares", "powers"]
+"""What may settle or not by itself."""
+READINGS: tuple[Reading, ...] = get_args(Reading)
 MOST_BLOCKS = 60
-SETTLED = 1e-4
-"""Of mu times the normal force: as much as the friction of two blocks may differ."""
+PERIODS = 46_080
+"""At most, unless asked for otherwise, that are run until the means settle."""
 REACHED = 1.0 - np.exp(-1.0)
 """Of the no-load speed, at the time constant of starting."""
+ALIKE = 0.05
+"""Of the crests' speed: by so much the halves of a free run's end may differ."""
+CARRIED = 0.1
+"""Of what presses on: by so much the normal force of that end may miss it."""
 LONGEST = 4000
 """Periods in which a slider has to get under way, or to stop."""
 HALVINGS = 40
+UNKNOWN = Means(*6 * (np.inf,))
+"""How far a first block is off."""
 
 
 class AtSpeed(Value, frozen=True, kw_only=True):
-    """A motor whose slider is held at one speed, means over the last block of periods."""
+    """A motor whose slider is held at one speed, means over the last block of periods, or over half of all."""
 
     speed: float
     """m/s along +x."""
@@ -47,9 +72,20 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     rubbed: float
     """Power lost in friction, and stored and lost in what gives way along the surface, W."""
     spread: float
-    """Of the force between the last two blocks, newton: how far it has settled."""
+    """Of the force, newton: between the last two blocks of a motion that repeats itself, otherwise twice the standard
+    error of the mean."""
+    normal_spread: float
+    """Of the normal force likewise, newton; no less than it misses of the balance of momentum across the beam."""
+    share_spread: float
+    """Of the shares, the larger one."""
+    power_spread: float
+    """Of the two powers, the larger one, W."""
     periods: int
     """Until then."""
+    window: int
+    """Periods, the last of these, of which these are means."""
+    unsettled: tuple[Reading, ...]
+    """What has not settled: its spread is more than a hundredth of mu N, of N, of 1, of mu N times the larger speed."""
 
     @property
     def power(self) -> float:
@@ -61,50 +97,122 @@ class AtSpeed(Value, frozen=True, kw_only=True):
         """Power over what the surface gives along the beam; None where the slider drives the surface."""
         return self.power / self.given if self.given > 0.0 and self.power >= 0.0 else None
 
+    def settled(self, *readings: Reading) -> bool:
+        """Whether none of these, or of all, has a spread that is not small."""
+        return not set(readings or READINGS) & set(self.unsettled)
 
-def at_speed(case: MotorCase, speed: float, before: MotorRun | None = None) -> AtSpeed:
+    @property
+    def way(self) -> float:
+        """The way that the force is told to push, +1.0 or -1.0; 0.0 where it is within its spread."""
+        told = abs(self.force) > self.spread or (self.window == BLOCK and not self.unsettled)
+        return float(np.sign(self.force)) if told else 0.0
+
+
+def at_speed(case: MotorCase, speed: float, before: MotorRun | None = None, periods: int = PERIODS) -> AtSpeed:
     """The motor with its slider held at a speed, m/s, at the place where it is put. Raises InputError."""
-    return held(case, speed, before)[0]
+    return held(case, speed, before, periods)[0]
 
 
-def held(case: MotorCase, speed: float, before: MotorRun | None = None) -> tuple[AtSpeed, MotorRun]:
-    """The same with the last block of periods; `before`, a run held at its place too, is settled already."""
-    force, found, run = np.inf, None, _block(case, speed)
-    for block in range(1, MOST_BLOCKS + 1):
-        before = run(before)
-        found = _means(before, speed, abs(float(before.friction[1:].mean()) - force), BLOCK * block)
-        force = found.force
-        if found.spread <= SETTLED * case.slider.mu * max(found.normal_force, case.slider.normal_force):
-            break
-    assert found is not None
-    assert before is not None
-    return found, before
+def held(
+    case: MotorCase, speed: float, before: MotorRun | None = None, periods: int = PERIODS
+) -> tuple[AtSpeed, MotorRun]:
+    """The same with the last run of periods; `before`, a run held at its place too, is settled already.
+
+    Blocks go on until two agree and carry what presses on. A motion that does not repeat itself so runs on in windows,
+    each as long as all before it, until the spread of its means is small: for `periods` at most, and no longer than
+    work is waited for.
+    """
+    found, run = _in_blocks(case, speed, before, min(MOST_BLOCKS, periods // BLOCK))
+    while found.unsettled and 2 * found.periods <= periods and waited_for(next_seconds(run, found.periods)):
+        found, run = _in_window(case, found, run)
+    return found, run
 
 
-def _block(case: MotorCase, speed: float) -> Callable[[MotorRun | None], MotorRun]:
+def next_seconds(run: MotorRun, periods: int) -> float:
+    """An estimate from above of the time that so many periods take, held as in a run of whole periods."""
+    steps = run.statistics.steps * periods // (len(run.times) - 1)
+    return seconds_of(steps, len(run.point_offsets), run.coupling is not None and run.coupling.two_way)
+
+
+def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int) -> tuple[AtSpeed, MotorRun]:
+    """The last of blocks, the first two that agree and carry what presses on; nothing has settled without such two."""
+    block, run, means, spreads, off = _block(case, speed, BLOCK), before, None, UNKNOWN, np.inf
+    for number in range(1, most + 1):
+        last, run = run, _whole(block(run))
+        now = Means(*map(float, rows(run).mean(axis=0)))
+        if means is not None and last is not None:
+            off = missed(case.slider, last.state, run)
+            spreads = apart(now, means, off, told_by_balance(case.slider))
+        means = now
+        found = _found(case, speed, means, spreads, BLOCK * number, BLOCK)
+        presses = max(found.normal_force, case.slider.normal_force)
+        agree = found.spread <= SETTLED * case.slider.mu * presses and off <= BALANCED * presses
+        if agree and not found.unsettled:
+            return found, run
+    assert run is not None
+    spread = max(found.spread, case.slider.mu * found.normal_spread)  # two blocks in flight agree
+    return replace(found, spread=spread, unsettled=READINGS), run
+
+
+def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpeed, MotorRun]:
+    """Means over as many periods more as there were."""
+    run = _whole(_block(case, found.speed, found.periods)(before))
+    each = rows(run)
+    spreads = spread_of(each, missed(case.slider, before.state, run), told_by_balance(case.slider))
+    means = Means(*map(float, each.mean(axis=0)))
+    return _found(case, found.speed, means, spreads, 2 * found.periods, found.periods), run
+
+
+def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | None], MotorRun]:
     """The next block of periods after a run, or the first."""
     if case.start == "steady":
-        block = blocks(case, speed, BLOCK, BLOCK + 1)
+        block = blocks(case, speed, periods, periods + 1)
         return lambda before: block(before.state if before is not None else None)
     return lambda before: case.run(
-        BLOCK * case.period, continue_from=before, held_speed=speed, frozen=True, samples=BLOCK + 1
+        periods * case.period, continue_from=before, held_speed=speed, frozen=True, samples=periods + 1
     )
 
 
-def _means(run: MotorRun, speed: float, spread: float, periods: int) -> AtSpeed:
-    """Of a block of whole periods."""
-    seconds = run.duration
-    return AtSpeed(
+def _whole(run: MotorRun) -> MotorRun:
+    """A run that has reached its end. Raises InputError."""
+    if run.statistics.interrupted:
+        raise KeyboardInterrupt
+    if not run.statistics.finished:
+        raise InputError(
+            f"the slider {run.statistics.stopped} after {run.state.time:.6g} s: give more steps_per_period"
+        )
+    return run
+
+
+def _found(case: MotorCase, speed: float, means: Means, spreads: Means, periods: int, window: int) -> AtSpeed:
+    """Means of the last periods, with how far they have settled."""
+    found = AtSpeed(
         speed=speed,
-        force=float(run.friction[1:].mean()),
-        normal_force=float(run.normal_force[1:].mean()),
-        contact_share=float(run.contact_share[1:].mean()),
-        stuck_share=float(run.stuck_share[1:].mean()),
-        given=float(run.carried[1:].sum()) / seconds,
-        rubbed=float(run.rubbed[1:].sum()) / seconds,
-        spread=spread,
+        **means._asdict(),
+        spread=spreads.force,
+        normal_spread=spreads.normal_force,
+        share_spread=max(spreads.contact_share, spreads.stuck_share),
+        power_spread=max(spreads.given, spreads.rubbed),
         periods=periods,
+        window=window,
+        unsettled=(),
     )
+    return replace(found, unsettled=_unsettled(case, found))
+
+
+def _unsettled(case: MotorCase, found: AtSpeed) -> tuple[Reading, ...]:
+    """What has a spread that is not small against its full scale."""
+    presses = max(found.normal_force, case.slider.normal_force)
+    friction = case.slider.mu * presses
+    wide: dict[Reading, bool] = {
+        "force": found.spread > SMALL * friction,
+        "normal force": found.normal_spread > SMALL * presses,
+        "shares": found.share_spread > SMALL,
+        "powers": found.power_spread > SMALL * max(abs(found.given), abs(found.rubbed)),
+    }
+    if wide["powers"]:  # nothing to speak of where the slider goes with the surface
+        wide["powers"] = found.power_spread > SMALL * friction * (crest_speed(case) + abs(found.speed))
+    return tuple(one for one, is_wide in wide.items() if is_wide)
 
 
 def stall(case: MotorCase) -> AtSpeed:
@@ -117,26 +225,59 @@ def force_speed(case: MotorCase, speeds: Sequence[float]) -> tuple[AtSpeed, ...]
     return tuple(at_speed(case, float(speed)) for speed in speeds)
 
 
-def no_load(case: MotorCase, reach: float | None = None, before: MotorRun | None = None) -> AtSpeed:
+def no_load(
+    case: MotorCase, reach: float | None = None, before: MotorRun | None = None, periods: int = PERIODS
+) -> AtSpeed:
     """The speed at which friction gives nothing on the average, by halving up to `reach` either way (m/s).
 
-    Unless given, `reach` is twice the largest speed of the surface at the slider; `before` as for `held`. Raises
-    InputError where the force has the same sign at both ends.
+    Unless given, `reach` is twice the largest speed of the surface at the slider; `before` and `periods` as for
+    `held`. Where the force is within its spread the search ends. Raises InputError where the force has the same sign
+    at both ends, or has not settled where the search ends.
     """
     wide = 2.0 * crest_speed(case) if reach is None else reach
     low, high = -wide, wide
-    if at_speed(case, low, before).force <= 0.0 or at_speed(case, high, before).force >= 0.0:
-        raise InputError(
-            f"reach = {wide!r} m/s: friction does not change its way up to there, so that no speed without load is "
-            "between: press the slider on more, or give a larger reach"
-        )
-    found = at_speed(case, 0.0, before)
+    for end, way in ((low, 1.0), (high, -1.0)):
+        found = at_speed(case, end, before, periods)
+        if not found.way:
+            raise InputError(not_settled(case, found, ("force",), periods))
+        if found.way != way:
+            raise InputError(
+                f"reach = {wide!r} m/s: friction does not change its way up to there, so that no speed without load "
+                "is between: press the slider on more, or give a larger reach"
+            )
+    found = at_speed(case, 0.0, before, periods)
     for _ in range(HALVINGS):
-        low, high = (found.speed, high) if found.force > 0.0 else (low, found.speed)
-        if found.force == 0.0 or high - low <= 1e-6 * wide:
+        low, high = (found.speed, high) if found.way > 0.0 else (low, found.speed)
+        if not found.way or high - low <= 1e-6 * wide:
             break
-        found = at_speed(case, 0.5 * (low + high), before)
+        found = at_speed(case, 0.5 * (low + high), before, periods)
+    if "force" in found.unsettled:
+        raise InputError(not_settled(case, found, ("force",), periods))
     return found
+
+
+def not_settled(case: MotorCase, found: AtSpeed, readings: Sequence[Reading], periods: int = PERIODS) -> str:
+    """What of these has not settled in at most so many periods, by how much it may be off, and what to do."""
+    slider = case.slider
+    presses = max(found.normal_force, slider.normal_force)
+    told: dict[Reading, str] = {
+        "force": f"mean friction {found.force:.4g} +- {found.spread:.1g} N where mu N = {slider.mu * presses:.4g} N",
+        "normal force": f"mean normal force {found.normal_force:.4g} +- {found.normal_spread:.1g} N",
+        "shares": f"shares of contact and sticking +- {found.share_spread:.1g}",
+        "powers": f"rubbed {found.rubbed:.4g} +- {found.power_spread:.1g} W",
+    }
+    longer = "give more periods" if 2 * found.periods > periods else f"set {VARIABLE} to more seconds, give"
+    said = ", ".join(told[one] for one in readings if one in found.unsettled)
+    return (
+        f"periods = {found.periods!r}: at {found.speed:.6g} m/s the slider bounces and its means have not settled by "
+        f"then, {said}: {longer}, {_loss(slider)} or more slider.preload"
+    )
+
+
+def _loss(slider: Slider) -> str:
+    """What makes a slider bounce less."""
+    hard = slider.contact is not None and slider.contact.hard
+    return "less slider.contact.restitution" if hard else "more slider.contact.damping"
 
 
 def crest_speed(case: MotorCase) -> float:
@@ -211,6 +352,20 @@ def mean_speed(run: MotorRun, last: int) -> tuple[float, float]:
     early = (position[half] - position[0]) / (times[half] - times[0])
     late = (position[-1] - position[half]) / (times[-1] - times[half])
     return float(mean), float(abs(late - early))
+
+
+def comes_to_speed(run: MotorRun, last: int, crests: float) -> bool:
+    """Whether the end of a free run, so many samples, is one: its halves run alike and it carries what presses on.
+
+    `crests` is the first-order speed of the surface, m/s.
+    """
+    slider = run.slider
+    assert slider is not None
+    alike = mean_speed(run, last)[1] <= ALIKE * crests
+    if not told_by_balance(slider):
+        return alike
+    off = abs(float(run.normal_force[-last:].mean()) - slider.normal_force)
+    return alike and off <= CARRIED * slider.normal_force
 
 
 def phase_portrait(run: MotorRun) -> tuple[Array, Array]:

@@ -90,6 +90,7 @@ def _means(riding: Riding, stage: Stage, speed: float) -> AtSpeed:
     """Of the last period, the way of the wave's crests being -x."""
     last, before = riding.log.kept[-1, 0], riding.log.kept[-2, 0]
     seconds = stage.duration / (WARM + 1)
+    spreads = np.abs(last - before)
     return AtSpeed(
         speed=speed,
         force=float(last[records.KEPT_RUB]),
@@ -98,6 +99,11 @@ def _means(riding: Riding, stage: Stage, speed: float) -> AtSpeed:
         stuck_share=float(last[records.KEPT_STICKING]),
         given=float(last[records.KEPT_ALONG]) / seconds,
         rubbed=float(last[records.KEPT_RUBBED]) / seconds,
-        spread=float(abs(last[records.KEPT_RUB] - before[records.KEPT_RUB])),
+        spread=float(spreads[records.KEPT_RUB]),
+        normal_spread=float(spreads[records.KEPT_PUSH]),
+        share_spread=float(spreads[[records.KEPT_TOUCHING, records.KEPT_STICKING]].max()),
+        power_spread=float(spreads[[records.KEPT_ALONG, records.KEPT_RUBBED]].max()) / seconds,
         periods=WARM + 1,
+        window=1,
+        unsettled=(),
     )

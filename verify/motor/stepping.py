@@ -79,8 +79,7 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
 
     def seconds(self, steps: int) -> float:
         """An estimate from above of the time the loop takes."""
-        points = len(self.feet.points)
-        return steps * (1e-6 + 1e-7 * points) * (8.0 if self.two_way else 1.0)
+        return seconds_of(steps, len(self.feet.points), self.two_way)
 
     def set_touch(self, levels: Array) -> None:
         """Depths as the slider is put down on these heights of the surface, (points,)."""
@@ -110,6 +109,11 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         depth = np.maximum(touch[:, records.DEPTH], 0.0)
         np.add.at(found[:, 1], feet.owner, 0.5 * p[:, records.STIFF] * depth**2)
         return found
+
+
+def seconds_of(steps: int, points: int, two_way: bool) -> float:
+    """An estimate from above of the time that steps of so many points take."""
+    return steps * (1e-6 + 1e-7 * points) * (8.0 if two_way else 1.0)
 
 
 def _turned(eases: Array) -> Array:

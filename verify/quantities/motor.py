@@ -17,7 +17,7 @@ from verify.quantities.motion_arguments import check_law
 
 if TYPE_CHECKING:
     from verify.motor.case import MotorCase
-    from verify.motor.figures import AtSpeed
+    from verify.motor.figures import AtSpeed, Reading
     from verify.scenes.scene import Scene
     from verify.slider import Contact, Foot, Slider
 
@@ -54,13 +54,19 @@ class Motor(DriveArguments, frozen=True, kw_only=True):
         check_law(self.law, self.slope)
 
 
-class AtSpeedOf(Motor, frozen=True, kw_only=True):
+class Held(Motor, frozen=True, kw_only=True):
+    """Its slider held still, at its place."""
+
+    periods: Annotated[int, Meta(ge=24, description="of the drive, at most, until the means have settled")] = 46_080
+
+
+class AtSpeedOf(Held, frozen=True, kw_only=True):
     """Its slider held at a speed, at its place."""
 
     speed: Annotated[float, Meta(description="along +x, m/s")] = 0.0
 
 
-class ForceAt(Motor, frozen=True, kw_only=True):
+class ForceAt(Held, frozen=True, kw_only=True):
     """The same at a speed that has to be said."""
 
     speed: Annotated[float, Meta(description="along +x, m/s")]
@@ -151,21 +157,28 @@ def _needs(a: Motor, scene: "Scene") -> tuple[()]:
     return ()
 
 
-def _held(a: "AtSpeedOf | ForceAt | Motor", scene: "Scene", bench: Workbench) -> "AtSpeed":
+def _held(a: Held, scene: "Scene", bench: Workbench) -> "AtSpeed":
     """The motor at the speed that is asked for, solved once."""
     from verify.motor.figures import at_speed
 
     case, speed = motor_case(a, scene), float(getattr(a, "speed", 0.0))
-    key = ("motor", case, speed)
+    key = ("motor", case, speed, a.periods)
     if key not in bench.motors:
-        bench.motors[key] = at_speed(case, speed)
+        bench.motors[key] = at_speed(case, speed, periods=a.periods)
     found: AtSpeed = bench.motors[key]
     return found
 
 
-def _of_held(figure: "Callable[[AtSpeed], float]") -> "Callable[[Any, Scene, Workbench], float]":
-    def evaluate(a: Motor, scene: "Scene", bench: Workbench) -> float:
-        return figure(_held(a, scene, bench))
+def _of_held(figure: "Callable[[AtSpeed], float]", *readings: "Reading") -> "Callable[[Held, Scene, Workbench], float]":
+    """A figure that stands on some readings. Raises InputError where one of them has not settled."""
+
+    def evaluate(a: Held, scene: "Scene", bench: Workbench) -> float:
+        from verify.motor.figures import not_settled
+
+        found = _held(a, scene, bench)
+        if not found.settled(*readings):
+            raise InputError(not_settled(motor_case(a, scene), found, readings, a.periods))
+        return figure(found)
 
     return evaluate
 
@@ -177,16 +190,27 @@ def _efficiency(found: "AtSpeed") -> float:
     return found.efficiency
 
 
-def _no_load(a: Motor, scene: "Scene", bench: Workbench) -> float:
+def _no_load(a: Held, scene: "Scene", bench: Workbench) -> float:
     from verify.motor.figures import no_load
 
-    return no_load(motor_case(a, scene)).speed
+    return no_load(motor_case(a, scene), periods=a.periods).speed
 
 
 def _free_speed(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
-    from verify.motor.figures import mean_speed
+    """Raises InputError where the run has no steady end."""
+    from verify.motor.figures import comes_to_speed, crest_speed, mean_speed
 
-    return mean_speed(_free(a, scene, bench), a.last)[0]
+    run, case = _free(a, scene, bench), motor_case(a, scene)
+    speed, spread = mean_speed(run, a.last)
+    crests = crest_speed(case)
+    if not comes_to_speed(run, a.last, crests):
+        carried = float(run.normal_force[-a.last :].mean())
+        raise InputError(
+            f"periods = {a.periods!r} with last = {a.last!r}: the free run has no steady end, its halves differ by "
+            f"{spread:.2g} m/s where crests run at {crests:.3g} m/s, and {carried:.3g} N are carried of "
+            f"{case.slider.normal_force:.3g} N: give more of both, or more slider.preload"
+        )
+    return speed
 
 
 def _free(a: FreeRun, scene: "Scene", bench: Workbench) -> Any:
@@ -208,10 +232,9 @@ def _free(a: FreeRun, scene: "Scene", bench: Workbench) -> Any:
 
 def _start_time(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
     """Raises InputError where it is not under way by then."""
-    from verify.motor.figures import mean_speed, started_of
+    from verify.motor.figures import started_of
 
-    run = _free(a, scene, bench)
-    found = started_of(run, mean_speed(run, a.last)[0])
+    found = started_of(_free(a, scene, bench), _free_speed(a, scene, bench))
     if found is None:
         raise InputError(f"periods = {a.periods!r}: the slider is not under way by then, give more")
     return found
@@ -227,9 +250,9 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "slider.stall_force",
         "N",
         "Mean friction on a slider that may leave the beam, held still.",
-        Motor,
+        Held,
         "in time",
-        _of_held(lambda found: found.force),
+        _of_held(lambda found: found.force, "force"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -239,7 +262,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "The same at a speed.",
         ForceAt,
         "in time",
-        _of_held(lambda found: found.force),
+        _of_held(lambda found: found.force, "force"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -249,7 +272,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Mean normal force on that slider.",
         AtSpeedOf,
         "in time",
-        _of_held(lambda found: found.normal_force),
+        _of_held(lambda found: found.normal_force, "normal force"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -259,7 +282,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Share of its points and of time that touch.",
         AtSpeedOf,
         "in time",
-        _of_held(lambda found: found.contact_share),
+        _of_held(lambda found: found.contact_share, "shares"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -269,7 +292,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Share of its points and of time that stick.",
         AtSpeedOf,
         "in time",
-        _of_held(lambda found: found.stuck_share),
+        _of_held(lambda found: found.stuck_share, "shares"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -279,7 +302,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "Mean power on that slider at a speed.",
         ForceAt,
         "in time",
-        _of_held(lambda found: found.power),
+        _of_held(lambda found: found.power, "force"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -289,7 +312,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "That power over what the surface gives along the beam.",
         ForceAt,
         "in time",
-        _of_held(_efficiency),
+        _of_held(_efficiency, "force", "powers"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -299,7 +322,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "What friction takes at a speed, and what gives way along the surface.",
         AtSpeedOf,
         "in time",
-        _of_held(lambda found: found.rubbed),
+        _of_held(lambda found: found.rubbed, "powers"),
         needs=_needs,
         kernels=compiled.motor,
     ),
@@ -307,7 +330,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
         "slider.no_load_speed",
         "m/s",
         "Speed along +x at which the mean friction on that slider is nought.",
-        Motor,
+        Held,
         "in time",
         _no_load,
         needs=_needs,

@@ -22,6 +22,7 @@ KINDS: dict[str, tuple[str, Dash]] = {
     "stop": ("drive cut off", "dot"),
     "reversal": ("phases turned round", "dash"),
 }
+UNSETTLED = " Left out where its mean has not settled; the table has it, with how far it may be off."
 SHARES: dict[str, tuple[str, Dash]] = {"contact": ("touching", "solid"), "stuck": ("sticking", "dot")}
 
 
@@ -58,19 +59,26 @@ def _curves(found: "MotorFound", read: "Callable[[AtSpeed], float | None]") -> t
     )
 
 
+def _efficient(at: "AtSpeed") -> float | None:
+    """Per cent; None where the slider drives the surface, or has not settled."""
+    told = at.efficiency is not None and at.settled("force", "powers")
+    return 100.0 * (at.efficiency or 0.0) if told else None
+
+
 def _force(found: "MotorFound") -> Chart:
     limit = 1e3 * found.mu * found.fields[0].stall.normal_force
     speeds = [100.0 * at.speed for at in found.fields[0].curve]
     way = -1.0 if found.fields[0].stall.force < 0.0 else 1.0
     guide = plain_line("mu N", "#8a8f98", speeds, [way * limit] * len(speeds), dash="dash", guide=True)
+    shaky = "" if all(at.settled("force") for one in found.fields for at in one.curve) else UNSETTLED
     return Chart(
         id="motor-force",
         title="Force over speed",
         caption="Friction on the slider along +x, held at each speed and kept at its place, means over periods. "
-        f"Dashed: mu N = {limit:.3g} mN, all points slipping one way.",
+        f"Dashed: mu N = {limit:.3g} mN, all points slipping one way.{shaky}",
         x=Axis("speed, cm/s"),
         y=Axis("force, mN"),
-        lines=(guide, *_curves(found, lambda at: 1e3 * at.force)),
+        lines=(guide, *_curves(found, lambda at: 1e3 * at.force if at.settled("force") else None)),
     )
 
 
@@ -81,7 +89,7 @@ def _power(found: "MotorFound") -> Chart:
         caption="Force times speed: what the motor gives to a load at that speed. Below nought the load drives it.",
         x=Axis("speed, cm/s"),
         y=Axis("power, mW"),
-        lines=_curves(found, lambda at: 1e3 * at.power),
+        lines=_curves(found, lambda at: 1e3 * at.power if at.settled("force") else None),
     )
 
 
@@ -93,7 +101,7 @@ def _efficiency(found: "MotorFound") -> Chart:
         "dashpots take across it, and what the wave loses at its ends, is not in it.",
         x=Axis("speed, cm/s"),
         y=Axis("efficiency, %"),
-        lines=_curves(found, lambda at: None if at.efficiency is None else 100.0 * at.efficiency),
+        lines=_curves(found, _efficient),
     )
 
 

@@ -14,6 +14,7 @@ from verify.motor.case import MotorCase
 from verify.motor.figures import (
     AtSpeed,
     Timed,
+    comes_to_speed,
     crest_speed,
     held,
     mean_speed,
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
     from verify.studies.motor import Motor
 
+HELD_PERIODS = 11_520
+"""At most, at each held speed, until its means settle."""
 LAST = 0.25
 """Of a free run, at its end: of which means are taken."""
 PORTRAIT = (40, 12)
@@ -74,6 +77,8 @@ class FreeRun(msgspec.Struct, frozen=True, kw_only=True):
     """Mean over the last quarter, m/s."""
     spread: float
     """By how much the two halves of that quarter differ, m/s."""
+    settled: bool
+    """Whether that is little of the crests' speed, and the quarter carries what presses the slider on."""
     contact_share: float
     """Of points and time that touch, in that quarter."""
     stuck_share: float
@@ -125,14 +130,15 @@ class FieldFound(msgspec.Struct, frozen=True, kw_only=True):
         return self.curve[0]
 
     @property
-    def most_power(self) -> AtSpeed:
-        """Of the speeds of the curve."""
-        return max(self.curve, key=lambda one: one.power)
+    def most_power(self) -> float | None:
+        """Of the speeds of the curve whose force has settled, W; None of none."""
+        return max((one.power for one in self.curve if one.settled("force")), default=None)
 
     @property
     def best_efficiency(self) -> float | None:
-        """Of those speeds; None where the slider drives the surface at all of them."""
-        return max((one.efficiency for one in self.curve if one.efficiency is not None), default=None)
+        """Of those whose powers have settled too; None where the slider drives the surface at all of them."""
+        told = (one.efficiency for one in self.curve if one.settled("force", "powers"))
+        return max((one for one in told if one is not None), default=None)
 
 
 class Drawn(msgspec.Struct, frozen=True, kw_only=True, eq=False):
@@ -199,9 +205,9 @@ def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step
     for model in asked.linear:
         case = case_of(asked, scene, model)
         progress(f"held speeds on {model}")
-        still, settled = held(case, 0.0)
+        still, settled = held(case, 0.0, periods=HELD_PERIODS)
         speeds = speeds or _speeds(case, still, asked.speeds)
-        curve = (still, *(held(case, speed, settled)[0] for speed in speeds[1:]))
+        curve = (still, *(held(case, speed, settled, HELD_PERIODS)[0] for speed in speeds[1:]))
         free_of_load = _no_load(case, settled)
         progress(f"free runs on {model}")
         found, kept = _field(case, asked, curve, free_of_load)
@@ -245,7 +251,7 @@ def _speeds(case: MotorCase, still: AtSpeed, number: int) -> tuple[float, ...]:
 
 def _no_load(case: MotorCase, settled: MotorRun) -> AtSpeed | None:
     try:
-        return no_load(case, None, settled)
+        return no_load(case, None, settled, HELD_PERIODS)
     except InputError:
         return None
 
@@ -257,7 +263,8 @@ def _field(
     begun = replace(case, start=asked.start, soft_start_periods=asked.soft_start_periods)
     target = free_of_load.speed if free_of_load else 0.0
     under_way = started(begun, target, asked.periods)
-    free, run = _free(under_way), under_way.run
+    crests = crest_speed(case)
+    free, run = _free(under_way, crests), under_way.run
     assert run.coupling is not None
     one_way = not run.coupling.two_way
     whole = free.stopped == "end"
@@ -266,7 +273,7 @@ def _field(
     found = FieldFound(
         model=case.model,
         count=case.count,
-        crest_speed=crest_speed(case),
+        crest_speed=crests,
         curve=curve,
         no_load=free_of_load,
         free=free,
@@ -281,7 +288,7 @@ def _field(
     return found, _histories(begun, under_way, cut_off, turned)
 
 
-def _free(under_way: Timed) -> FreeRun:
+def _free(under_way: Timed, crests: float) -> FreeRun:
     run = under_way.run
     last = max(int(LAST * (len(run.times) - 1)) // 2 * 2, 2)
     speed, spread = mean_speed(run, last)
@@ -289,6 +296,7 @@ def _free(under_way: Timed) -> FreeRun:
     return FreeRun(
         speed=speed,
         spread=spread,
+        settled=comes_to_speed(run, last, crests),
         contact_share=float(run.contact_share[-last:].mean()),
         stuck_share=float(run.stuck_share[-last:].mean()),
         wear_power=float(run.rubbed[-last:].sum()) / seconds,
@@ -362,7 +370,7 @@ def _picture(case: MotorCase, field: FieldFound) -> MotorRun | None:
     middle = 0.5 * (max(ends) + min(ends))
     places = np.clip(np.linspace(middle - 0.5 * span, middle + 0.5 * span, PLACES), 0.0, beam.length)
     speed = field.no_load.speed if field.no_load else 0.0
-    settled = held(case, speed)[1]
+    settled = held(case, speed, periods=HELD_PERIODS)[1]
     return case.run(
         case.period, held_speed=speed, frozen=True, at=places.tolist(), samples=FRAMES + 1, continue_from=settled
     )

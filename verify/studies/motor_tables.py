@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.models.catalogue import MODELS
+from verify.studies.motor_words import unsettled
 from verify.studies.told import Column, Read, Table
 
 if TYPE_CHECKING:
@@ -25,15 +26,15 @@ OVERVIEW: tuple[Read, ...] = (
     (Column("field", left=True), lambda one: one.title),
     (Column("crests, cm/s", ".4f", 100.0, wide=True), lambda one: one.crest_speed),
     (Column("no load, cm/s", "+.4f", 100.0), lambda one: one.no_load.speed if one.no_load else None),
-    (Column("free, cm/s", "+.4f", 100.0), lambda one: one.free.speed),
-    (Column("stall, mN", "+.4f", 1e3), lambda one: one.stall.force),
-    (Column("most power, mW", ".4g", 1e3, wide=True), lambda one: one.most_power.power),
+    (Column("free, cm/s", "+.4f", 100.0), lambda one: one.free.speed if one.free.settled else None),
+    (Column("stall, mN", "+.4f", 1e3), lambda one: one.stall.force if one.stall.settled("force") else None),
+    (Column("most power, mW", ".4g", 1e3, wide=True), lambda one: one.most_power),
     (Column("best efficiency", "bare size"), lambda one: one.best_efficiency),
     (Column("touching", "bare size", wide=True), lambda one: one.free.contact_share),
     (Column("sticking", "bare size", wide=True), lambda one: one.free.stuck_share),
-    (Column("start", "duration"), lambda one: one.start_time),
-    (Column("stop", "duration"), lambda one: one.stop_time),
-    (Column("turn", "duration"), lambda one: one.reversal_time),
+    (Column("start", "duration"), lambda one: one.start_time if one.free.settled else None),
+    (Column("stop", "duration"), lambda one: one.stop_time if one.free.settled else None),
+    (Column("turn", "duration"), lambda one: one.reversal_time if one.free.settled else None),
     (Column("wear, mW", ".4g", 1e3, wide=True), lambda one: one.free.wear_power),
     (Column("dashpots, mW", ".4g", 1e3, wide=True), lambda one: one.free.damped_power),
     (Column("s per s", ".2g", wide=True), lambda one: one.free.run_ms_per_ms),
@@ -81,6 +82,7 @@ def _overview(found: "MotorFound") -> Table:
             "off at once, with its phases turned round at once. Shares are of contact points and of time, in per "
             "cent. Most power and best efficiency are those of the speeds below. Last column: run time over simulated "
             "time of the free run.",
+            *unsettled(found.fields),
         ),
         shown="both",
     )
@@ -88,16 +90,25 @@ def _overview(found: "MotorFound") -> Table:
 
 def _force_speed(found: "MotorFound") -> Table:
     """With power and efficiency."""
+    shaky = any(not at.settled() for one in found.fields for at in one.curve)
+    spread: tuple[Read, ...] = ((Column("+-, mN", ".1g", 1e3), lambda at: at.spread),) if shaky else ()
     return _over_speed(
         [(one.title, one.curve) for one in found.fields],
         lambda title: (
             (Column(f"{title}, mN", "+.4f", 1e3), lambda at: at.force),
-            (Column("power, mW", "+.4g", 1e3, wide=True), lambda at: at.power),
-            (Column("efficiency %", "bare size", wide=True), lambda at: at.efficiency),
+            *spread,
+            (Column("power, mW", "+.4g", 1e3, wide=True), lambda at: at.power if at.settled("force") else None),
+            (
+                Column("efficiency %", "bare size", wide=True),
+                lambda at: at.efficiency if at.settled("force", "powers") else None,
+            ),
         ),
         title="Force over speed",
         before="Friction on the slider along +x at speeds up to that of the crests, the way that it pushes; a dash "
-        "where the slider drives the surface.",
+        "where the slider drives the surface"
+        + (
+            ", or bounces so that its mean has not settled: how far that may be off stands beside it." if shaky else "."
+        ),
     )
 
 

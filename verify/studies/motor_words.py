@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING
 
 from verify.motion.contact import FELT
 from verify.motion.validity import NONLINEAR
+from verify.motor.settling import BLOCK
 from verify.words import seconds_in_words
 
 if TYPE_CHECKING:
+    from verify.motor.figures import AtSpeed
     from verify.slider import Slider
     from verify.studies.motor_figures import FieldFound, MotorFound
 
@@ -27,10 +29,14 @@ def in_short_of(found: "MotorFound") -> str:
     one = found.fields[0]
     speed, held = one.free.speed, one.no_load.speed if one.no_load else one.free.speed
     runs = f"runs at {100 * speed:+.4g} cm/s without load"
-    if abs(held - speed) > SETTLED * abs(held):
+    if not one.free.settled:
+        runs = "does not come to a speed in its free run"
+    elif abs(held - speed) > SETTLED * abs(held):
         runs = (
             f"is at {100 * speed:+.4g} cm/s at the end of its free run, without force at {100 * held:+.4g} cm/s held,"
         )
+    if not one.stall.settled("force"):
+        return f"The motor {runs} and bounces so that its force standing still has not settled, on the {one.title}."
     return f"The motor {runs} and pushes with {1e3 * one.stall.force:+.4g} mN standing still, on the {one.title}."
 
 
@@ -52,7 +58,8 @@ def _of_field(one: "FieldFound") -> Iterator[str]:
     yield f"standing still {where}: {_stall(one)}"
     times = {"start": one.start_time, "stop": one.stop_time, "turning round": one.reversal_time}
     words = ", ".join(f"{name} {seconds_in_words(value)}" for name, value in times.items() if value is not None)
-    yield f"time constants {where}: {words or 'none, the speed is not reached within the run'}"
+    none = "none, the speed is not reached within the run" if free.settled else "withheld, it comes to no speed"
+    yield f"time constants {where}: {words if words and free.settled else none}"
     yield f"one second of motor {where}: {free.run_ms_per_ms:.2g} s of run time"
 
 
@@ -60,7 +67,9 @@ def _two_ways(one: "FieldFound") -> str:
     """Held and free, with what tells them apart."""
     free = f"{100 * one.free.speed:+.5g} cm/s in the free run (its last quarter's halves differ by {_small(one)})"
     if one.no_load is None:
-        return f"{free}; none of the held speeds is without force"
+        if all(at.settled("force") for at in one.curve):
+            return f"{free}; none of the held speeds is without force"
+        return f"{free}; which held speed is without force is withheld, forces have not settled"
     apart = abs(one.no_load.speed - one.free.speed)
     spread = one.free.spread
     meant = (
@@ -76,7 +85,7 @@ def _small(one: "FieldFound") -> str:
 
 
 def _stall(one: "FieldFound") -> str:
-    held = f"{1e3 * one.stall.force:+.5g} mN as a mean over periods (blocks differ by {1e3 * one.stall.spread:.1g} mN)"
+    held = _held_still(one.stall)
     if one.shooting is None:
         return f"{held}; no motion that repeats itself after a period was found"
     apart = abs(one.shooting.force - one.stall.force)
@@ -85,6 +94,36 @@ def _stall(one: "FieldFound") -> str:
         f"{held}, {1e3 * one.shooting.force:+.5g} mN in the motion that repeats itself: {1e3 * apart:.1g} mN apart, "
         f"{said}"
     )
+
+
+def _held_still(at: "AtSpeed") -> str:
+    """The mean, with what it is a mean of and how far it may be off."""
+    force, spread = f"{1e3 * at.force:+.5g} mN", f"{1e3 * at.spread:.1g} mN"
+    if not at.settled("force"):
+        return (
+            f"not settled after {at.periods} periods, {force} +- {spread} as a mean over the last {at.window} of them"
+        )
+    said = f"blocks differ by {spread}" if at.window == BLOCK else f"the last {at.window}, +- {spread}"
+    return f"{force} as a mean over periods ({said})"
+
+
+def unsettled(fields: "Sequence[FieldFound]") -> Iterator[str]:
+    """What bounces so that its means have not settled, and what to do."""
+    for one in fields:
+        loss = f"{'less slider.contact.restitution' if one.margins.epsilon is None else 'more slider.contact.damping'} "
+        loss += "or more slider.preload"
+        shaky = sum(not at.settled() for at in one.curve)
+        if shaky:
+            yield (
+                f"bouncing: on the {one.title} means at {shaky} of {len(one.curve)} held speeds have not settled after "
+                f"{max(at.periods for at in one.curve)} periods; what stands on them is withheld: give {loss}, or ask "
+                "for one figure over more periods (verify measure slider.force_speed)"
+            )
+        if not one.free.settled:
+            yield (
+                f"free run: on the {one.title} its last quarter is no steady end, halves differ by {_small(one)} where "
+                f"crests run at {100 * one.crest_speed:.3g} cm/s: raise motor.periods, or give {loss}"
+            )
 
 
 def _fields_agree(fields: "Sequence[FieldFound]") -> Iterator[str]:
@@ -104,7 +143,7 @@ def doubts(fields: "Sequence[FieldFound]", slider: "Slider", wavenumber: float, 
     """A sentence for every margin that is not small, of the first field unless fields differ in it."""
     one = fields[0]
     margins = one.margins
-    told = [*_of_epsilon(margins.epsilon, slider.mu, wavenumber, thickness)]
+    told = [*unsettled(fields), *_of_epsilon(margins.epsilon, slider.mu, wavenumber, thickness)]
     if not margins.sag_taken and margins.sag > SAGS * one.amplitude:
         told.append(
             f"sag: the net load bends the beam by {1e6 * margins.sag:.3g} um, {margins.sag / one.amplitude:.2g} times "
