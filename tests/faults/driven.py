@@ -177,7 +177,7 @@ def limit_of_reflection_a_hundredth_looser(patch):
 
 
 def sensitivities_of_forces_for_those_of_displacements(patch):
-    patch.setattr(unit_waves, "held_units", lambda units, places, beam, f, x: units(f, x))
+    patch.setattr(unit_waves, "held_units", lambda units, places, beam, f, x: units(places, f, x))
 
 
 def wavenumber_of_the_beam_alone(patch):

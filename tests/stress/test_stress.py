@@ -41,6 +41,7 @@ def light():
         "moved",
         "tableaux",
         "waves",
+        "resonances",
         "choices",
         "rules",
         "felt",

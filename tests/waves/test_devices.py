@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, segment_model
 from verify.device import Device, of_impedance
@@ -220,6 +221,37 @@ def test_a_resonance_of_the_bare_beam_is_none_of_the_beam_with_its_device():
     assert powers(found, found.forces[:2]) == pytest.approx(
         powers(driven(case(frequency_hz=hertz * (1 + 1e-7), devices=ONE), Workbench(STRIP)), FORCES), rel=1e-3
     )
+
+
+TURNING = ({"rotational_dashpot": 1e-5}, {"rotational_dashpot": 2e-3, "rotational": 0.5}, {"rotary_inertia": 1e-6})
+
+
+@pytest.mark.parametrize("beam", [STRIP, CANTILEVER], ids=["pinned", "cantilever"])
+@pytest.mark.parametrize("given", TURNING, ids=" ".join)
+def test_a_device_against_turning_is_right_where_the_bare_beam_resonates(beam, given):
+    devices = [Device(position=0.31, **given)]
+    for mode in (2, 7):
+        for part in (0.0, 1e-12, -3e-9, 1e-7):
+            hertz = analytic_modes.frequency_hz(beam, mode) * (1.0 + part)
+            found = field_with_devices(exact, beam, FORCES, hertz, devices).deflection(X)
+            assert off(found, matched(beam, FORCES, hertz, devices, X)) < 1e-8
+
+
+@pytest.mark.parametrize("beam", [STRIP, CANTILEVER], ids=["pinned", "cantilever"])
+def test_a_resonance_with_a_body_that_turns_and_loses_nothing_is_refused(beam):
+    devices = [Device(position=0.31, rotary_inertia=1e-6)]
+
+    def give(hertz):
+        return 1.0 / matched(beam, FORCES[1:], hertz, devices, [0.63])[0].real
+
+    bare = analytic_modes.frequency_hz(beam, 5)
+    resonance = brentq(give, bare * (1.0 - 2e-3), bare * (1.0 - 3e-5), xtol=1e-13, rtol=1e-15)
+    for part in (0.0, 2e-10):
+        with pytest.raises(DevicesResonanceError, match=r"beam with devices at \[0\.31\] m"):
+            field_with_devices(exact, beam, FORCES, resonance * (1.0 + part), devices)
+    beside = resonance * (1.0 + 3e-9)
+    found = field_with_devices(exact, beam, FORCES, beside, devices).deflection(X)
+    assert off(found, matched(beam, FORCES, beside, devices, X)) < 1e-5
 
 
 def test_a_resonance_with_a_device_that_loses_nothing_is_refused():

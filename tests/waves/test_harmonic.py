@@ -366,9 +366,9 @@ def test_a_resonance_of_the_held_beam_is_refused(titanium_strip, model):
     assert np.isfinite(held(model, damped, resonance).deflection(X)).all()
     assert np.isfinite(held(model, titanium_strip, resonance, "force").deflection(X)).all()
 
-    def units(frequencies, x):
+    def units(acting, frequencies, x):
         module = {"analytic": analytic_modes, "segment": segment_model, "fem": fem_beam}[model]
-        return module.unit_responses(titanium_strip, places, frequencies, x, *given)
+        return module.unit_responses(titanium_strip, acting, frequencies, x, *given)
 
     several = held_units(units, np.array(places), titanium_strip, np.array([resonance, 333.0]), X)
     assert np.isnan(several[0]).all()
@@ -383,10 +383,10 @@ def test_a_map_of_displacements_passes_a_resonance_under_forces(titanium_strip, 
     given, places = () if model == "analytic" else (24,), np.array([0.083, 0.611])
     f = float(module.solve_modes(titanium_strip, 9, *given).frequencies_hz[8])
 
-    def units(frequencies, x):
-        return module.unit_responses(titanium_strip, places, frequencies, x, *given)
+    def units(acting, frequencies, x):
+        return module.unit_responses(titanium_strip, acting, frequencies, x, *given)
 
-    assert np.isnan(units(np.array([f]), X)).all()
+    assert np.isnan(units(places, np.array([f]), X)).all()
     here, *sides = held_units(units, places, titanium_strip, f * np.array([1.0, 1.0 + 1e-6, 1.0 - 1e-6]), X)
     close(here, 0.5 * (sides[0] + sides[1]), 1e-7)
 

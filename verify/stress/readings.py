@@ -1,5 +1,6 @@
 """Readings of modes, fields and waves that no scene takes: derivatives of every model, ellipses seen in time, gaps."""
 
+from functools import partial
 from math import pi, sqrt
 from typing import Any
 
@@ -85,7 +86,7 @@ def gaps_error(share: float) -> float:
 
     at, x = np.array([0.3]), np.array([0.11, 0.55])
     hertz = held_resonance() * np.array([1.0, 1.0 + share, 1.0 - share])
-    found = held_units(lambda f, places: unit_responses(STRIP, at, f, places), at, STRIP, hertz, x)
+    found = held_units(partial(unit_responses, STRIP), at, STRIP, hertz, x)
     return float(np.isfinite(found[0]).any()) + float(not np.isfinite(found[1:]).all())
 
 

@@ -1,6 +1,6 @@
 """Driven waves against their closed forms, and against the states along the beam: what no scene drives."""
 
-from functools import cache
+from functools import cache, partial
 from math import pi, sqrt
 
 import numpy as np
@@ -157,7 +157,7 @@ def imposed_error(hertz: float) -> float:
     sides = (-1e-6, 1e-6) if hertz == _resonance(beam) else (0.0,)
     exact = np.mean([_held(beam, drives, hertz * (1.0 + side)) for side in sides], axis=0)
     field = driven_field(lambda forces, f: solve_harmonic(beam, forces, f), drives, hertz, "displacement")
-    units = held_units(lambda f, x: unit_responses(beam, places, f, x), places, beam, np.array([hertz, 77.0]), PLACES)
+    units = held_units(partial(unit_responses, beam), places, beam, np.array([hertz, 77.0]), PLACES)
     together = units[0].T @ np.array([phasor(drive) for drive in drives])
     return max(float(abs(found - exact).max() / abs(exact).max()) for found in (field.shapes(PLACES, 0), together))
 
@@ -294,7 +294,7 @@ ROWS: tuple[Row, ...] = (
     Floor(
         id="places-held",
         title="Fields under imposed displacements, alone and in a map, at a resonance of the free beam (0) too",
-        why="waves/imposed.py: a small system; at a resonance four fields around it, 1e-9.",
+        why="waves/imposed.py: a small system; the mean of two sides is off by its curvature, 1e-9.",
         along="Hz",
         at=(0.0, 31.0, 433.0),
         promise=1e-7,

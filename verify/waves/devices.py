@@ -1,7 +1,8 @@
 """Any model's harmonic field of a beam with devices on it, from that model's own answers.
 
 Across, a device pulls with its impedance times the speed of its place. What all pull, and what the beam then does
-there, is a small linear system of the beam's answers to a unit force at each place.
+there, is a small linear system of the beam's answers to a unit force at each place, read apart where the beam alone
+resonates (`poles`).
 
 Against turning no model is asked for a couple. A spring kappa there makes w = w_0 - (kappa - kappa_0) theta C_0, where
 C_0 is the answer to a couple beside a spring kappa_0, and theta = theta_0 / (1 + (kappa - kappa_0) G) the turn. So
@@ -13,6 +14,7 @@ what any device does on it, felt as it feels springs, without a reading of its s
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import TypeAlias
 
 import numpy as np
@@ -23,10 +25,11 @@ from verify.beam import Beam, PointForce
 from verify.checks import several
 from verify.device import Device
 from verify.errors import InputError, ResonanceError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, phasor, wavenumber
+from verify.models.arrays import ComplexArray
+from verify.models.fields import RESONANCE, HarmonicField, phasor, unit_response, wavenumber
 from verify.models.places import Forces, as_forces
-from verify.waves.imposed import AROUND, STEP
+from verify.waves.imposed import Solve
+from verify.waves.poles import Conditions, UnsettledError, combined, field_at_pole, is_near, is_resonant, looked_at
 
 
 class DevicesResonanceError(ResonanceError):
@@ -58,54 +61,94 @@ def field_with_devices(
     acting = [*forces, *(_own_force(device) for device in devices if device.amplitude)]
     if not acting:
         raise InputError("forces is empty and no device has an amplitude: give a PointForce, or a device a force")
+
+    def alone(acts: Sequence[PointForce], frequency: float) -> HarmonicField:
+        return _turned(solve, devices, frequency)(beam, acts, frequency)
+
+    across = [device for device in devices if device.impedance(2.0 * np.pi * frequency_hz) != 0.0]
+    if not across and not any(device.turning for device in devices):
+        return alone(acting, frequency_hz)
+    loads = [acting, *([PointForce(position=device.position)] for device in across)]
+
+    def at_pole() -> HarmonicField:
+        return _at_pole(alone, loads, devices, across, frequency_hz)
+
+    try:
+        fields = [alone(load, frequency_hz) for load in loads]
+    except ResonanceError:  # of the beam alone, of which that with devices knows nothing
+        with suppress(UnsettledError):
+            return at_pole()
+        raise
+    places = np.array([device.position for device in across])
+    seen, unit = looked_at(places, beam), unit_response(beam, frequency_hz)
+    read = [field.shapes(seen, 0) for field in fields]
+    newtons = [sum(abs(force.amplitude) for force in load) for load in loads]
+    if is_near(read, newtons, unit, beam, frequency_hz):
+        with suppress(UnsettledError):
+            return at_pole()
+    at = np.array(read)[:, : len(places)]
+    pulls = _pulls(at, places.tolist(), _conditions(across, frequency_hz).take, unit, frequency_hz)
+    found = combined(list(zip([1.0, *pulls], fields, strict=True)))
+    return replace(found, forces=(*fields[0].forces, *_reactions(across, pulls)))
+
+
+def _turned(solve: SolveOn, devices: Sequence[Device], frequency_hz: float) -> SolveOn:
+    """A model's fields with what resists turning at a frequency."""
     omega = 2.0 * np.pi * frequency_hz
     for device in devices:
         if (z := device.turning_impedance(omega)) != 0.0:
             solve = _with_turning(solve, device.position, 1j * omega * z)
-    free = solve(beam, acting, frequency_hz)
-    across = [(device.position, z) for device in devices if (z := device.impedance(omega)) != 0.0]
-    units = [solve(beam, [PointForce(position=place)], frequency_hz) for place, _ in across]
-    pulls = _pulls(free, units, [place for place, _ in across], 1j * omega * np.array([z for _, z in across]))
-    found = combined([(1.0, free), *zip(pulls, units, strict=True)])
-    reactions = [force_of(place, pull) for (place, _), pull in zip(across, pulls, strict=True)]
-    return replace(found, beam=beam, forces=(*free.forces, *reactions))
+    return solve
 
 
-def interpolated(at: Callable[[float], HarmonicField], frequency_hz: float) -> HarmonicField:
-    """A field from four frequencies around, where what it is made of has a pole and it has none. Raises InputError."""
-    parts = [(weight, at(frequency_hz * (1.0 + steps * STEP))) for steps, weight in AROUND]
-    forces = [field.forces for _, field in parts]
-    acting = [
-        force_of(one[0].position, sum(weight * phasor(force) for (weight, _), force in zip(parts, one, strict=True)))
-        for one in zip(*forces, strict=True)
-    ]
-    return replace(combined(parts), frequency_hz=frequency_hz, forces=tuple(acting))
+def _conditions(across: Sequence[Device], frequency_hz: float) -> Conditions:
+    """Of devices that pull with i omega Z for every metre."""
+    omega = 2.0 * np.pi * frequency_hz
+    take = 1j * omega * np.array([device.impedance(omega) for device in across], dtype=complex)
+    return Conditions(np.ones(len(across), dtype=complex), take, np.zeros((len(across), 1), dtype=complex))
 
 
-def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
-    """The weighted sum of fields, else as the first of them."""
+def _at_pole(
+    alone: Solve,
+    loads: Sequence[Sequence[PointForce]],
+    devices: Sequence[Device],
+    across: Sequence[Device],
+    frequency_hz: float,
+) -> HarmonicField:
+    """The same at a resonance of the beam alone, or next to one. Raises DevicesResonanceError, UnsettledError."""
 
-    def shapes(x: Array, derivative: int) -> ComplexArray:
-        return np.asarray(sum(weight * field.shapes(x, derivative) for weight, field in parts))
+    def check(beam: Beam, distance: complex, singular: bool) -> None:
+        if singular or is_resonant(beam, distance):
+            raise _resonant(frequency_hz, [device.position for device in devices]) from None
 
-    return replace(parts[0][1], shapes=shapes)
+    field, pulls = field_at_pole(alone, loads, lambda f: _conditions(across, f), frequency_hz, check)
+    return replace(field, forces=(*loads[0], *_reactions(across, pulls.tolist())))
+
+
+def _reactions(across: Sequence[Device], pulls: Sequence[complex]) -> list[PointForce]:
+    return [force_of(device.position, pull) for device, pull in zip(across, pulls, strict=True)]
+
+
+def _resonant(frequency_hz: float, places: list[float]) -> DevicesResonanceError:
+    return DevicesResonanceError(
+        f"frequency_hz = {frequency_hz!r} is an undamped resonance of the beam with devices at {places} m: "
+        "give a device a dashpot or choose another frequency"
+    )
 
 
 def _pulls(
-    free: HarmonicField, units: Sequence[HarmonicField], places: list[float], turned: ComplexArray
+    read: ComplexArray, places: list[float], turned: ComplexArray, unit: float, frequency_hz: float
 ) -> list[complex]:
-    """Forces of devices on the beam, newton: r = -i omega Z (free + units r), each read at its place."""
-    if not units:
+    """Forces of devices on the beam, newton: r = -i omega Z (free + units r), each read at its place, (1 + n, n)."""
+    if not places:
         return []
-    at = np.array(places)
-    own = np.array([unit.shapes(at, 0) for unit in units]).T
-    matrix = np.eye(len(units)) + turned[:, None] * own
-    if np.linalg.svd(matrix, compute_uv=False)[-1] < RESONANCE * max(abs(matrix).max(), 1.0):
-        raise DevicesResonanceError(
-            f"frequency_hz = {free.frequency_hz!r} is an undamped resonance of the beam with devices at {places} m: "
-            "give a device a dashpot or choose another frequency"
-        )
-    return [complex(pull) for pull in np.linalg.solve(matrix, -turned * free.shapes(at, 0))]
+    free, own = read[0], read[1:].T
+    matrix = np.eye(len(places)) + turned[:, None] * own
+    scaled = matrix / (1.0 + unit * abs(turned))[:, None]
+    least = abs(scaled[0, 0]) if len(places) == 1 else np.linalg.svd(scaled, compute_uv=False)[-1]
+    if least < RESONANCE * max(abs(scaled).max(), 1.0):
+        raise _resonant(frequency_hz, places)
+    return [complex(pull) for pull in np.linalg.solve(matrix, -turned * free)]
 
 
 def _own_force(device: Device) -> PointForce:

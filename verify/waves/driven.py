@@ -82,7 +82,7 @@ def driven(case: DrivenCase, bench: "Workbench") -> HarmonicField:
 
 def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
     """The same with devices on the beam. Raises InputError."""
-    from verify.waves.devices import DevicesResonanceError, field_with_devices, interpolated
+    from verify.waves.devices import field_with_devices
 
     key = (case.model, case.count, case.beam, case.frequency_hz, case.forces, case.settings, case.devices)
     if key in bench.fields:
@@ -93,15 +93,7 @@ def _with_devices(case: DrivenCase, bench: "Workbench") -> HarmonicField:
         bench.n_fields += 1
         return model.solve_harmonic(beam, forces, frequency, case.count, **settings)
 
-    def at(frequency: float) -> HarmonicField:
-        return field_with_devices(solve, case.beam, case.forces, frequency, case.devices)
-
-    try:
-        found = at(case.frequency_hz)
-    except DevicesResonanceError:
-        raise
-    except ResonanceError:  # of the beam alone, of which the field with devices knows nothing
-        found = interpolated(at, case.frequency_hz)
+    found = field_with_devices(solve, case.beam, case.forces, case.frequency_hz, case.devices)
     bench.fields[key] = found
     return found
 

@@ -115,10 +115,14 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         """Deflection at x, (n, n_places, len(x))."""
         places = np.array(self.places)
 
-        def units(f: Array, at: Array) -> ComplexArray:
-            return unit_fields(self.model, self.beam, self.places, f, at, self.count, self.theory)
+        def units(acting: Array, f: Array, at: Array) -> ComplexArray:
+            return unit_fields(self.model, self.beam, tuple(acting.tolist()), f, at, self.count, self.theory)
 
-        return units(frequencies, x) if self.kind == "force" else held_units(units, places, self.beam, frequencies, x)
+        return (
+            units(places, frequencies, x)
+            if self.kind == "force"
+            else held_units(units, places, self.beam, frequencies, x)
+        )
 
 
 def unit_fields(
