@@ -12,7 +12,7 @@ from verify.exact import buckling
 from verify.exact import driven as exact_driven
 from verify.exact import harmonic as exact_harmonic
 from verify.exact import modes as exact_modes
-from verify.models import eigen, fields
+from verify.models import eigen, fields, time_basis
 from verify.motion import energy, forcing, free_vibration, surface
 from verify.segments import buckling as chain_buckling
 from verify.segments import carried as chain_carried
@@ -160,6 +160,27 @@ def shapes_let_go_without_their_speed(patch):
 def shapes_let_go_a_thousandth_higher(patch):
     true = free_vibration._values
     patch.setattr(free_vibration, "_values", lambda *given: 1.001 * true(*given))
+
+
+def bodies_let_go_without_their_turn(patch):
+    patch.setattr(free_vibration, "_slopes", lambda name, given, known: 0.0 * known.turning)
+
+
+def bodies_that_turn_with_the_line_through_the_joints(patch):
+    true = time_basis.TimeBasis.body_turns
+    patch.setattr(time_basis.TimeBasis, "body_turns", lambda basis: true(structs.replace(basis, turns=None)))
+
+
+def rotary_inertia_of_no_share(patch):
+    """What was let go is read off the line alone, and a body's turn is anything."""
+    true = free_vibration._quadrature
+
+    def without(basis, breaks):
+        known = true(basis, breaks)
+        n = len(known.x)
+        return structs.replace(known, turning=known.turning[:0], weights=known.weights[:n], shapes=known.shapes[:, :n])
+
+    patch.setattr(free_vibration, "_quadrature", without)
 
 
 def limit_of_reflection_a_hundredth_looser(patch):
@@ -375,6 +396,12 @@ FAULTS = {
     },
     "instrument-arm": {
         turn_of_a_clamps_spring_taken_for_that_of_its_joint: gates("mended-rayleigh-order mended-timoshenko-order"),
+        bodies_let_go_without_their_turn: gates("thrown-kinetic let-go-elements let-go-segments"),
+        bodies_that_turn_with_the_line_through_the_joints: gates("thrown-kinetic let-go-segments"),
+        rotary_inertia_of_no_share: gates("thrown-kinetic let-go-segments"),
+        shapes_let_go_without_their_speed: gates("thrown-kinetic let-go-elements let-go-segments"),
+        shapes_let_go_a_thousandth_higher: gates("thrown-kinetic let-go-elements let-go-segments"),
+        modes_damped_a_tenth_less: gates("let-go-elements let-go-segments"),
         phases_of_the_wrong_sign: gates(
             "exact-deflection exact-slope exact-curvature exact-slow elements-deflection elements-slope "
             "levers-deflection levers-slope"
