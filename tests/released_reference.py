@@ -282,8 +282,9 @@ def bent_tip(scene, given):
 
 
 def bent_energy(scene, given):
-    theta, springs, _ = bent(scene, given)
-    return float(springs @ theta**2 / 2)
+    """Of the joints, and of the half link from the last one's middle to the tip."""
+    theta, springs, length = bent(scene, given)
+    return float(springs @ theta**2 / 2 + given.get("moment", 0.0) ** 2 * length / (4 * scene.beam.bending_stiffness))
 
 
 # --- Two waves of a pinned beam under two forces or displacements ------------------------------------------------------

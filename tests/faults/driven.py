@@ -132,6 +132,12 @@ def moment_at_the_tip_forgotten(patch):
     patch.setattr(bending, "LinkLoad", lambda **given: true(**{**given, "moment": 0.0}))
 
 
+def half_link_at_the_tip_rigid(patch):
+    """Whose stiffness is read last, behind those of the joints."""
+    true = bending._stiffness_at
+    patch.setattr(bending, "_stiffness_at", lambda beam, x: np.append(true(beam, x)[:-1], np.inf))
+
+
 def modes_damped_a_tenth_less(patch):
     true = forcing.modal
     for module in (forcing, free_vibration, surface):
@@ -284,6 +290,7 @@ FAULTS = {
         ),
         columns_a_hundredth_too_strong: gates("exact-buckling elements-buckling links-buckling"),
         moment_at_the_tip_forgotten: gates("bent-deflection bent-shortening bent-energy"),
+        half_link_at_the_tip_rigid: gates("bent-energy"),
         modes_damped_a_tenth_less: gates(
             "beam-elements beam-segments beam-exact work-in damped kinetic elastic work-at-once damped-at-once "
             "released-elements released-segments released-exact released-kinetic released-elastic"
