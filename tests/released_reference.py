@@ -117,8 +117,42 @@ def cantilever_shapes(beam, modes):
     return shapes, y**2 * np.sqrt(beam.bending_stiffness / beam.mass_per_length) / beam.length**2
 
 
+FINE = (18, 30)
+"""Elements of the arm up to and from its gear box, where links are held against the beam itself."""
+
+
+def shares_with_bodies(scene, given):
+    """(shares v^T M w of straight lines to 1 at their corner, shapes, omegas) of elements with bodies that turn."""
+    beam, place = scene.beam, given["place"]
+    counts = COUNTS[scene.name, "fem", given["count"]] if given["model"] == "fem" else FINE
+    modal = Modal(Elements(beam, equal(beam, counts)))
+    edges = np.union1d(modal.model.nodes, [place])
+    z, weights = np.polynomial.legendre.leggauss(6)
+    half = np.diff(edges)[:, None] / 2
+    x, w = (edges[:-1, None] + half * (1 + z)).ravel(), (half * weights).ravel() * beam.mass_per_length
+    corners, ends = [0, place, beam.length], [0, 1, 0]
+    load = sum(one * np.interp(at, corners, ends) * modal.model.row(at) for one, at in zip(w, x, strict=True))
+    for body in beam.mass:
+        slope = 1 / place if body.position < place else -1 / (beam.length - place)
+        load = load + body.mass * np.interp(body.position, corners, ends) * modal.model.row(body.position)
+        load = load + body.rotary_inertia * slope * modal.model.row(body.position, 1)
+    return load[modal.model.free] @ modal.vectors, modal.shapes, modal.omegas
+
+
 def released(scene, given):
-    """(q, dq/dt, shapes, omegas) at a time: the least mean square of the lines, then every mode for itself."""
+    """(q, dq/dt, shapes, omegas) at a time: the shares of the lines, then every mode for itself."""
+    unit, shapes, omegas = (shares_with_bodies if scene.beam.mass else shares_of_lines)(scene, given)
+    zeta = given.get("modal_damping", 0.0)
+    sigma, turning = zeta * omegas, omegas * np.sqrt(1 - zeta**2)
+    q, v, t = given.get("height", 0.0) * unit, given.get("speed", 0.0) * unit, given["time"]
+    c, s, decay = np.cos(turning * t), np.sin(turning * t), np.exp(-sigma * t)
+    now = decay * (q * c + (v + sigma * q) / turning * s)
+    rate = decay * (v * c - (omegas**2 * q + sigma * v) / turning * s)
+    return now, rate, shapes, omegas
+
+
+def shares_of_lines(scene, given):
+    """(shares of straight lines to 1 at their corner, shapes, omegas): the least mean square, with nothing on a beam."""
     beam, place = scene.beam, given["place"]
     with mp.workdps(40):
         if given["model"] == "analytic":
@@ -135,13 +169,7 @@ def released(scene, given):
         phi = np.array([shapes(one) for one in x]).T
     lines = np.interp(x, [0, place, beam.length], [0, 1, 0])
     unit = np.linalg.solve(phi * w @ phi.T, phi * w @ lines)
-    zeta = given.get("modal_damping", 0.0)
-    sigma, turning = zeta * omegas, omegas * np.sqrt(1 - zeta**2)
-    q, v, t = given.get("height", 0.0) * unit, given.get("speed", 0.0) * unit, given["time"]
-    c, s, decay = np.cos(turning * t), np.sin(turning * t), np.exp(-sigma * t)
-    now = decay * (q * c + (v + sigma * q) / turning * s)
-    rate = decay * (v * c - (omegas**2 * q + sigma * v) / turning * s)
-    return now, rate, shapes, omegas
+    return unit, shapes, omegas
 
 
 def released_deflection(scene, given):
@@ -254,8 +282,9 @@ def bent_tip(scene, given):
 
 
 def bent_energy(scene, given):
-    theta, springs, _ = bent(scene, given)
-    return float(springs @ theta**2 / 2)
+    """Of the joints, and of the half link from the last one's middle to the tip."""
+    theta, springs, length = bent(scene, given)
+    return float(springs @ theta**2 / 2 + given.get("moment", 0.0) ** 2 * length / (4 * scene.beam.bending_stiffness))
 
 
 # --- Two waves of a pinned beam under two forces or displacements ------------------------------------------------------

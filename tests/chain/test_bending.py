@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from chain_reference import elastica_tip
 from msgspec.structs import replace
-from scipy.optimize import minimize
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, minimize
 
 from verify import segment_model
 from verify.attached import PointMass
@@ -62,9 +63,47 @@ def test_a_moment_bends_an_even_circle_and_2_pi_closes_it():
     found = bend(ROD, 12, moment=2 * np.pi * EI / L, wall="half")
     assert np.hypot(*found.tip) < 1e-12 * L
     assert found.curvature == pytest.approx(np.full(13, 2 * np.pi / L), rel=1e-9)
-    assert found.energy == pytest.approx(
-        0.5 * EI * (2 * np.pi / L) ** 2 * L * 11.5 / 12, rel=1e-9
-    )  # half a link is rigid
+    assert found.energy == pytest.approx(0.5 * EI * (2 * np.pi / L) ** 2 * L, rel=1e-9)
+    assert found.turn == pytest.approx(2 * np.pi, rel=1e-9)
+    assert found.angles == pytest.approx(2 * np.pi * (np.arange(12) + 0.5) / 12, rel=1e-9)  # at the links' middles
+
+
+@pytest.mark.parametrize("wall", ["gregory", "half", "third-order"])
+@pytest.mark.parametrize("moment", [0.0, 0.83, -1.7])
+def test_turn_and_energy_tend_to_the_elasticas_with_order_two(wall, moment):
+    load = (0.6 * UNIT, 2.3 * UNIT)
+    turn, energy = elastica_under(*load, moment * EI / L)
+    found = [bend(ROD, n, load, moment=moment * EI / L, wall=wall) for n in (30, 60, 120)]
+    for exact, told in ((turn, [one.turn for one in found]), (energy, [one.energy for one in found])):
+        off = np.array(told) / exact - 1
+        assert abs(off[-1]) < 3e-4
+        assert off[0] / off[1] == pytest.approx(4.0, rel=0.25)
+        assert off[1] / off[2] == pytest.approx(4.0, rel=0.12)
+
+
+@pytest.mark.parametrize("moment", [0.83, -1.7])
+def test_what_load_and_moment_do_is_what_the_rod_takes_up(moment):
+    """To every moment a little more: dE = F . d(tip) + M d(turn), whatever the count."""
+    rod = replace(ROD, section=(Section(length=0.33), Section(length=0.5, thickness=0.0013)))
+    force, step = np.array([0.2, 0.7]) * UNIT, 1e-4 * EI / L
+    below, above = (bend(rod, 9, force, moment=moment * EI / L + side * step) for side in (-1, 1))
+    work = force @ (above.tip - below.tip) + moment * EI / L * (above.turn - below.turn)
+    assert above.energy - below.energy == pytest.approx(work, rel=1e-5)
+
+
+def elastica_under(along, across, moment):
+    """(turn of the tip, energy) of the rod by shooting: EI theta' = M, M' = along sin(theta) - across cos(theta)."""
+
+    def integrated(clamp):
+        def rate(s, state):
+            theta, bent, _ = state
+            return bent / EI, along * np.sin(theta) - across * np.cos(theta), bent**2 / (2 * EI)
+
+        return solve_ivp(rate, (0.0, L), (0.0, clamp, 0.0), method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+
+    size = (abs(across) + abs(along)) * L + abs(moment)
+    clamp = brentq(lambda clamp: integrated(clamp)[1] - moment, moment - 0.1 * size, moment + size, xtol=1e-13)
+    return tuple(integrated(clamp)[[0, 2]])
 
 
 def test_a_small_load_bends_as_the_linear_cantilever_and_stores_half_its_work():

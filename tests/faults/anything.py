@@ -2,6 +2,7 @@
 
 from dataclasses import replace as changed
 
+from faults.driven import rotary_inertia_of_no_share
 from faults.stress import unchecked
 from msgspec.structs import replace
 
@@ -266,6 +267,7 @@ FAULTS = {
         a_leading_law_a_little_larger: {"errors-expected-at-clamps"},
         a_little_more_damping_from_rest: {"beams-driven-in-time", "beams-started-softly"},
         let_go_a_little_fast: {"beams-let-go"},
+        rotary_inertia_of_no_share: {"beams-let-go"},
         every_section_as_the_first: {"modes-to-move-in"},
         cut_off_under_forces_in_phase: {"modes-cut-off"},
         steps_that_miss_a_little_more: {"speed-that-steps-miss"},

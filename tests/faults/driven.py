@@ -12,7 +12,7 @@ from verify.exact import buckling
 from verify.exact import driven as exact_driven
 from verify.exact import harmonic as exact_harmonic
 from verify.exact import modes as exact_modes
-from verify.models import eigen, fields, underfoot
+from verify.models import eigen, fields, time_basis, underfoot
 from verify.motion import energy, forcing, free_vibration, surface
 from verify.segments import buckling as chain_buckling
 from verify.segments import carried as chain_carried
@@ -141,6 +141,12 @@ def moment_at_the_tip_forgotten(patch):
     patch.setattr(bending, "LinkLoad", lambda **given: true(**{**given, "moment": 0.0}))
 
 
+def half_link_at_the_tip_rigid(patch):
+    """Whose stiffness is read last, behind those of the joints."""
+    true = bending._stiffness_at
+    patch.setattr(bending, "_stiffness_at", lambda beam, x: np.append(true(beam, x)[:-1], np.inf))
+
+
 def modes_damped_a_tenth_less(patch):
     true = forcing.modal
     for module in (forcing, free_vibration, surface):
@@ -169,6 +175,27 @@ def shapes_let_go_without_their_speed(patch):
 def shapes_let_go_a_thousandth_higher(patch):
     true = free_vibration._values
     patch.setattr(free_vibration, "_values", lambda *given: 1.001 * true(*given))
+
+
+def bodies_let_go_without_their_turn(patch):
+    patch.setattr(free_vibration, "_slopes", lambda name, given, known: 0.0 * known.turning)
+
+
+def bodies_that_turn_with_the_line_through_the_joints(patch):
+    true = time_basis.TimeBasis.body_turns
+    patch.setattr(time_basis.TimeBasis, "body_turns", lambda basis: true(structs.replace(basis, turns=None)))
+
+
+def rotary_inertia_of_no_share(patch):
+    """What was let go is read off the line alone, and a body's turn is anything."""
+    true = free_vibration._quadrature
+
+    def without(basis, breaks):
+        known = true(basis, breaks)
+        n = len(known.x)
+        return structs.replace(known, turning=known.turning[:0], weights=known.weights[:n], shapes=known.shapes[:, :n])
+
+    patch.setattr(free_vibration, "_quadrature", without)
 
 
 def limit_of_reflection_a_hundredth_looser(patch):
@@ -272,6 +299,7 @@ FAULTS = {
         ),
         columns_a_hundredth_too_strong: gates("exact-buckling elements-buckling links-buckling"),
         moment_at_the_tip_forgotten: gates("bent-deflection bent-shortening bent-energy"),
+        half_link_at_the_tip_rigid: gates("bent-energy"),
         modes_damped_a_tenth_less: gates(
             "beam-elements beam-segments beam-exact work-in damped kinetic elastic work-at-once damped-at-once "
             "released-elements released-segments released-exact released-kinetic released-elastic"
@@ -388,6 +416,12 @@ FAULTS = {
     },
     "instrument-arm": {
         turn_of_a_clamps_spring_taken_for_that_of_its_joint: gates("mended-rayleigh-order mended-timoshenko-order"),
+        bodies_let_go_without_their_turn: gates("thrown-kinetic let-go-elements let-go-segments"),
+        bodies_that_turn_with_the_line_through_the_joints: gates("thrown-kinetic let-go-segments"),
+        rotary_inertia_of_no_share: gates("thrown-kinetic let-go-segments"),
+        shapes_let_go_without_their_speed: gates("thrown-kinetic let-go-elements let-go-segments"),
+        shapes_let_go_a_thousandth_higher: gates("thrown-kinetic let-go-elements let-go-segments"),
+        modes_damped_a_tenth_less: gates("let-go-elements let-go-segments"),
         phases_of_the_wrong_sign: gates(
             "exact-deflection exact-slope exact-curvature exact-slow elements-deflection elements-slope "
             "levers-deflection levers-slope"

@@ -34,7 +34,7 @@ def held(supports):
 def dense_segments(n, line="spline"):
     """The dense basis where the closed form would be taken."""
     chain = build_chain(STRIP, n)
-    omegas, joints, _ = segment_motion._dense(STRIP, chain)
+    omegas, joints, *_ = segment_motion._dense(STRIP, chain)
     shapes = (
         segment_motion._straight(chain, joints)
         if line == "raw"

@@ -28,13 +28,15 @@ class Bent(Value, frozen=True, eq=False, kw_only=True):
     joints: Array
     """(N + 1, 2), metres: (x, y) from the clamp to the tip."""
     angles: Array
-    """(N,), radians: of every link from the straight beam."""
+    """(N,), radians: of every link from the straight beam, as the beam is turned at the link's middle."""
+    turn: float
+    """Radians: of the tip, half a link beyond the last link's middle, which the applied moment bends."""
     moments: Array
     """(N + 1,), N m: carried by every joint, the applied one at the tip."""
     curvature: Array
     """(N + 1,), 1/m: moment over EI there, of the piece on the right where two meet."""
     energy: float
-    """Elastic energy of the joints, joules."""
+    """Elastic energy, joules: of the joints, and of the half link up to the tip under the applied moment."""
 
     @property
     def tip(self) -> Array:
@@ -66,11 +68,12 @@ def bend(
 
     `load` is one number across the straight beam, or a pair (along, across); it keeps its direction as the beam bends.
     A load that follows the tip has no place in the chain's statics. The reference is the elastica (K. E. Bisshopp and
-    D. C. Drucker, Quart. Appl. Math. 3 (1945) 272), approached with order 2 in `count`; under a moment alone and
-    wall = "half" the circle closes exactly. Beyond the buckling load, where a chain has several equilibria, the load
-    grows from nothing, and the equilibrium is the stable one that it leads to. Raises InputError for supports other
-    than clamped and free, what stands on the beam, a push along alone beyond the buckling load, and where no
-    equilibrium is found.
+    D. C. Drucker, Quart. Appl. Math. 3 (1945) 272), approached with order 2 in `count` by tip, turn and energy. A joint
+    stands for the half links on either side; the half link up to the tip has none, and bends under `moment` alone: its
+    part of turn and energy is added. Under a moment alone both are exact, and with wall = "half" the circle closes.
+    Beyond the buckling load, where a chain has several equilibria, the load grows from nothing, and the equilibrium is
+    the stable one that it leads to. Raises InputError for supports other than clamped and free, what stands on the
+    beam, a push along alone beyond the buckling load, and where no equilibrium is found.
     """
     if beam.supports != ("clamped", "free"):
         raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
@@ -93,14 +96,17 @@ def bend(
     turned = led_to(replace(system, loads=(end,)), along, across, float(moment))
     angles, moments = np.cumsum(turned), np.append(system.stiffness * turned, moment)
     steps = system.lengths[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    curvature = moments / _stiffness_at(beam, system.nodes)
+    beyond = 0.5 * float(system.lengths[-1] * curvature[-1])
     return Bent(
         beam=beam,
         count=count,
         joints=np.vstack([np.zeros(2), np.cumsum(steps, axis=0)]),
         angles=angles,
+        turn=float(angles[-1]) + beyond,
         moments=moments,
-        curvature=moments / _stiffness_at(beam, system.nodes),
-        energy=0.5 * float(moments[:-1] @ turned),
+        curvature=curvature,
+        energy=0.5 * (float(moments[:-1] @ turned) + moment * beyond),
     )
 
 

@@ -38,6 +38,14 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
 
     None where no mode is cut off.
     """
+    turns: Callable[[], Array] | None = None
+    """() -> (n, bodies): how far the bodies of `beam.mass` turn; None where they turn as the shapes do there."""
+
+    def body_turns(self) -> Array:
+        """How far the bodies of `beam.mass` turn, (n, bodies), in 1/(sqrt(kg) m)."""
+        if self.turns is not None:
+            return self.turns()
+        return np.asarray(self.shapes(np.array([mass.position for mass in self.beam.mass]), 1))
 
     def deflection(self, x: Numbers) -> Array:
         """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg): (n,) at a number. Raises InputError off the beam."""

@@ -29,6 +29,12 @@ FINE = 3
 POINTS = 30_000_000
 """Shapes at places, or modes at times, held at once."""
 MOST_SAMPLES = 1_000_000
+STEP = 5e-4
+"""Of the beam's length: between the five values that a function's slope is read from, at most."""
+FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
+"""Weights of five values one step apart for the slope at the first: order 4."""
+ON = 1e-9
+"""Of the beam's length: so near to a place a corner is at it."""
 HELD = ("pinned", "clamped")
 """Ends where nothing is deflected."""
 ROUNDED = 1e-6
@@ -65,7 +71,8 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     amplitudes: Array
     """(m,), sqrt(kg) m: every mode's share q of the initial shape, w = sum q phi."""
     unread: float
-    """What the modes leave of the initial shape, rms over rms (mass-weighted); 0 without one."""
+    """What the modes leave of the initial shape, rms over rms (weighted by mass, turns of bodies by their rotary
+    inertia); 0 without one."""
     end: EndState
     """From where `simulate` can go on (`continue_from`)."""
     notes: tuple[str, ...]
@@ -73,13 +80,20 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
 
 
 class _Known(msgspec.Struct, frozen=True, eq=False):
-    """A model's shapes at the points of a quadrature over its beam."""
+    """A model's shapes at the points of a quadrature over its beam, and the turns of bodies with a rotary inertia."""
 
+    length: float
+    """Of the beam, metres."""
     x: Array
+    """(n,), metres."""
+    turning: Array
+    """(b,), metres: where such bodies stand."""
+    marks: Array
+    """Metres, in no order: both ends, and where a beam's shape may bend of a sudden."""
     weights: Array
-    """(n,), kg: of every point."""
+    """(n + b,): kg of every point, kg m^2 of every such body."""
     shapes: Array
-    """(m, n)."""
+    """(m, n + b)."""
 
 
 @as_typed
@@ -102,8 +116,9 @@ def free_vibration(
     `shape` and `velocity` are each a function of x, a pair (x, values) with straight lines between the places, which
     lead from 0 to L, or None for nothing. `shape` may be a mode's number with `amplitude`, its largest deflection in
     metres, positive where it first moves off its left end; a number for `velocity` is refused, and a shape that is not
-    0 where the beam is held. What a model cannot take of a shape is left out in the mass-weighted mean square
-    (`unread`; `notes` say what is missed at a table's own places); from there on every mode is
+    0 where the beam is held. Bodies turn as the shape does where they stand, at a corner by the mean of both sides.
+    What a model cannot take of a shape is left out in the mean square weighted by mass and rotary inertia, which gives
+    every mode its share phi^T M w (`unread`; `notes` say what is missed at a table's own places); then every mode is
     q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
     Vibrations, 1967, ch. 5). Damping is a ratio zeta of every mode, half the beam's loss factor unless given. The exact
     beam keeps `modes` modes, the others all they have. `at` are p places in metres, or one, where `samples` values are
@@ -210,10 +225,11 @@ def _missed(basis: TimeBasis, shape: Shape | None, q: Array) -> tuple[str, ...]:
 
 
 def _shares(known: "_Known", name: str, given: Shape | None) -> tuple[Array, float]:
-    """Every mode's share of a shape, (m,), and what is left of it: the least mass-weighted mean square."""
+    """Every mode's share of a shape, (m,), and what is left of it: the least mean square by mass and inertia."""
     if given is None:
         return np.zeros(len(known.shapes)), 0.0
-    values, weighed = _values(name, given, known.x), known.shapes * known.weights
+    values = np.concatenate([_values(name, given, known.x), _slopes(name, given, known)])
+    weighed = known.shapes * known.weights
     q = np.linalg.solve(weighed @ known.shapes.T, weighed @ values)
     size = float(known.weights @ values**2)
     left = float(known.weights @ (values - q @ known.shapes) ** 2)
@@ -236,6 +252,36 @@ def _values(name: str, given: Shape, x: Array) -> Array:
     return np.broadcast_to(values, x.shape)
 
 
+def _slopes(name: str, given: Shape, known: "_Known") -> Array:
+    """Of what was given where bodies turn with it, (b,): the mean of both sides, as bends and corners lie there."""
+    if not len(known.turning):
+        return np.empty(0)
+    if not callable(given):
+        x, values = given  # type: ignore[misc]
+        return _of_lines(np.asarray(x, dtype=float), np.asarray(values, dtype=float), known.turning)
+    sides = np.array([_one_sided(name, given, known, side) for side in (-1.0, 1.0)])
+    return np.asarray(np.nanmean(sides, axis=0))
+
+
+def _of_lines(x: Array, values: Array, places: Array) -> Array:
+    """Slopes of straight lines between x at places, (b,), at a corner the mean of both."""
+    lines, near = np.diff(values) / np.diff(x), ON * x[-1]
+    sides = [np.searchsorted(x, places + side, side="right") - 1 for side in (-near, near)]
+    return np.asarray(np.mean([lines[np.clip(side, 0, len(lines) - 1)] for side in sides], axis=0))
+
+
+def _one_sided(name: str, given: Shape, known: "_Known", side: float) -> Array:
+    """A function's slopes on one side of the bodies, (b,), from five values each; NaN where no beam is left."""
+    ahead = side * (known.marks - known.turning[:, None])
+    room = np.where(ahead > ON * known.length, ahead, np.inf).min(axis=1)
+    steps, there = np.minimum(STEP * known.length, 0.25 * room), np.isfinite(room)
+    x = known.turning[there, None] + side * steps[there, None] * np.arange(5.0)
+    found = np.full(len(steps), np.nan)
+    if there.any():
+        found[there] = side * (_values(name, given, x.ravel()).reshape(-1, 5) @ FORWARD) / steps[there]
+    return found
+
+
 def _quadrature(basis: TimeBasis, breaks: Array) -> _Known:
     """Gauss's points between the edges of the shapes, the steps of the beam and `breaks`. Raises InputError."""
     beam = basis.beam
@@ -256,7 +302,13 @@ def _quadrature(basis: TimeBasis, breaks: Array) -> _Known:
     places = np.array([mass.position for mass in beam.mass])
     heavy = np.array([mass.mass for mass in beam.mass])
     x = np.concatenate([x, places])
-    return _Known(x, np.concatenate([(half * weights).ravel() * line, heavy]), basis.shapes(x, 0))
+    inertias = np.array([mass.rotary_inertia for mass in beam.mass])
+    shapes, turns = basis.shapes(x, 0), inertias > 0.0
+    if turns.any():
+        shapes = np.hstack([shapes, basis.body_turns()[:, turns]])
+    every = np.concatenate([(half * weights).ravel() * line, heavy, inertias[turns]])
+    marks = np.concatenate([steps, places, [spring.position for spring in beam.spring]])
+    return _Known(beam.length, x, places[turns], marks, every, shapes)
 
 
 def _told(

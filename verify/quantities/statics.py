@@ -88,7 +88,7 @@ STATIC_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "chain.bent_energy",
         "J",
-        "Elastic energy of these links' joints.",
+        "Elastic energy of these links' joints, and of the half link up to the tip under the moment there.",
         BentFar,
         "equilibrium",
         _bent(lambda a, bent: bent.energy),

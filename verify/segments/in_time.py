@@ -1,7 +1,7 @@
 """The free modes of the chain of rigid links for motion in time, closed-form where they have one."""
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import pi
 from typing import Any
 
@@ -18,7 +18,7 @@ from verify.options import LINES, Attachment, Joints, Line, Load, Wall
 from verify.segments.linear import check
 from verify.segments.links import Chain, build_chain, chain_pencil
 from verify.segments.loads import joint_weights
-from verify.segments.reading import corrected_reading, joint_positions, spline_at
+from verify.segments.reading import body_turns, corrected_reading, joint_positions, spline_at
 
 
 @as_typed
@@ -44,7 +44,7 @@ def time_basis(
         raise InputError(f"line = {line!r} is not known: {near_name(line, LINES)}")
     chain = build_chain(beam, n_segments, wall=wall, joints=joints, attachment=attachment)
     uniform = beam.supports == ("pinned", "pinned") and beam.uniform and not beam.section
-    omegas, read, method = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
+    omegas, read, method, turns = _pinned(beam, n_segments) if uniform else _dense(beam, chain)
 
     def loads(position: float) -> Array:
         weights: Any = joint_weights(chain, position, load)
@@ -62,14 +62,16 @@ def time_basis(
         edges=chain.nodes,
         degree=1 if line == "raw" else 3,
         method=method,
+        turns=turns,
     )
 
 
 Read = Callable[[Any], Array]
 """Joint numbers -> deflection of all modes there, (n, len(numbers))."""
+Turns = Callable[[], Array] | None
 
 
-def _pinned(beam: Beam, n: int) -> tuple[Array, Read, str]:
+def _pinned(beam: Beam, n: int) -> tuple[Array, Read, str, Turns]:
     """Equal links between pinned ends: y_j = a sin(n pi j / N), omega = 4 s^2 / sqrt(1 - 2 s^2/3) in link units."""
     mu = pi * np.arange(1, n) / n
     square = np.sin(0.5 * mu) ** 2
@@ -82,7 +84,7 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Read, str]:
     def joints(numbers: Any) -> Array:
         return np.asarray(scale[:, None] * sines[np.outer(np.arange(1, n), np.asarray(numbers, dtype=int)) % (2 * n)])
 
-    return omegas, joints, "closed-form dispersion"
+    return omegas, joints, "closed-form dispersion", None
 
 
 def _mass_share(square: Array) -> Array:
@@ -90,13 +92,15 @@ def _mass_share(square: Array) -> Array:
     return np.asarray(1.0 - 2.0 * square / 3.0)
 
 
-def _dense(beam: Beam, chain: Chain) -> tuple[Array, Read, str]:
+def _dense(beam: Beam, chain: Chain) -> tuple[Array, Read, str, Turns]:
     pencil = chain_pencil(chain)
     check_dense(pencil, "motion in time")
     values, vectors = modal_basis(pencil)
-    raw = joint_positions(chain, vectors) / np.sqrt(beam.mass_per_length * chain.unit)
+    vectors = vectors / np.sqrt(beam.mass_per_length * chain.unit)
+    raw = joint_positions(chain, vectors)
     omegas = np.sqrt(values) * beam.wave_constant / chain.unit**2
-    return omegas, lambda numbers: np.asarray(raw[:, numbers]), "dense eigenvalues"
+    turns = partial(body_turns, chain, len(beam.mass), vectors) if beam.mass else None
+    return omegas, lambda numbers: np.asarray(raw[:, numbers]), "dense eigenvalues", turns
 
 
 def _straight(chain: Chain, joints: Read) -> Callable[[Array, int], Array]:

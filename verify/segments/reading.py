@@ -47,6 +47,23 @@ def link_slopes(chain: Chain, free: Any) -> Any:
     return turns(chain, free).T / chain.unit
 
 
+def body_turns(chain: Chain, n_bodies: int, free: Array) -> Array:
+    """Turns of the first bodies, as the chain's masses feel them, of the unknowns (n, k), (k, n_bodies), radians.
+
+    One with a rotary inertia beyond an end's joint turns by itself.
+    """
+    from verify.segments.crowded import felt_together
+    from verify.segments.loaded import end_turns
+
+    places = [body.position for body in chain.bodies]
+    felt = felt_together(chain, places, chain.attachment)[1][:n_bodies]
+    found, beyond = felt @ link_slopes(chain, free).T, end_turns(chain, free) / chain.unit
+    for end, inertia in enumerate(chain.end_inertias):
+        if inertia:
+            found[np.isclose(places[:n_bodies], chain.nodes[-end], rtol=0.0, atol=1e-9 * chain.unit)] = beyond[end]
+    return np.asarray(found.T)
+
+
 def link_middles(chain: Chain, free: Any) -> Any:
     """Positions of the links' middles, (k, N)."""
     from verify.segments.loaded import middles

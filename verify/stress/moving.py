@@ -135,13 +135,14 @@ def released_error(number: float) -> float:
     weight = weight * line[np.clip(np.searchsorted(starts, x), 0, len(line) - 1)]
     x = np.append(x, [mass.position for mass in own.beam.mass])
     weight = np.append(weight, [mass.mass for mass in own.beam.mass])
-    rows = np.array([own.row(float(at), 0) for at in x])[:, own.free]
-    fitted, basis = rows.T @ (weight[:, None] * rows), np.zeros((2, len(own.mass)))
-    for state, given in zip(basis, (heights, speeds), strict=True):
-        state[own.free] = np.linalg.solve(fitted, rows.T @ (weight * np.interp(x, corners, given)))
-    q, rates = basis @ own.mass @ vectors
-    left = np.interp(x, corners, heights) - rows @ basis[0][own.free]
-    unread = sqrt(float(weight @ left**2) / float(weight @ np.interp(x, corners, heights) ** 2))
+    bodies = [mass for mass in own.beam.mass if mass.rotary_inertia]
+    turns = np.array([mass.position for mass in bodies])
+    weight = np.append(weight, [mass.rotary_inertia for mass in bodies])
+    rows = np.array([own.row(float(at), 0) for at in x] + [own.row(float(at), 1) for at in turns])
+    drawn = np.array([_drawn(corners, given, x, turns) for given in (heights, speeds)])
+    q, rates = (drawn * weight) @ rows @ vectors  # v^T M w: modes are orthogonal by all that has inertia
+    left = drawn[0] - rows @ (vectors @ q)
+    unread = sqrt(float(weight @ left**2) / float(weight @ drawn[0] ** 2))
     damped, sigma = omegas * sqrt(1.0 - RATIO**2), RATIO * omegas
     t = found.times[:, None]
     c, s, fall = np.cos(damped * t), np.sin(damped * t) / damped, np.exp(-sigma * t)
@@ -152,6 +153,12 @@ def released_error(number: float) -> float:
     pairs += [(found.kinetic, 0.5 * (speed**2).sum(axis=1)), (found.elastic, 0.5 * now**2 @ omegas**2)]
     pairs += [(found.frequencies_hz, omegas / (2.0 * pi)), (abs(found.amplitudes), abs(q))]
     return max(abs(found.unread / unread - 1.0), *(_off(a, b) for a, b in pairs))
+
+
+def _drawn(corners: Array, given: Array, x: Array, turns: Array) -> Array:
+    """Straight lines at x, and their slopes where bodies turn, none of them at a corner."""
+    slopes = (np.diff(given) / np.diff(corners))[np.clip(np.searchsorted(corners, turns) - 1, 0, len(given) - 2)]
+    return np.append(np.interp(x, corners, given), slopes)
 
 
 STEPPED = replace(PLAIN, section=SECTIONS, mass=(replace(MASSES[0], rotary_inertia=0.0), MASSES[1]))
@@ -211,9 +218,9 @@ ROWS: tuple[Row, ...] = (
     ),
     _row(
         id="beams-let-go",
-        title="Both let go from straight lines with a speed: motion, energies, shares of modes and what is left",
-        why="motion/free_vibration.py: the best fit in the mean square, then every mode exactly.",
-        at=NUMBERS,
+        title="Three, one with a body at its end, let go from lines with a speed: motion, energies, shares and rest",
+        why="motion/free_vibration.py: shares v^T M w with the turns of bodies in M, then every mode exactly.",
+        at=(0.0, 1.0, 5.0),
         error=released_error,
     ),
     Floor(
