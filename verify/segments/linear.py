@@ -232,6 +232,7 @@ def solve_harmonic(
         frequency_hz=frequency_hz,
         forces=tuple(forces),
         shapes=_field_shapes(chain, free, reading),
+        turned=_field_turns(chain, free, reading),
     )
 
 
@@ -295,6 +296,24 @@ def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[A
     """The field between the joints; free is (n, 1) complex."""
     every = swept_shapes(chain, free, reading)
     return lambda x, derivative: every(x, derivative)[0]
+
+
+def _field_turns(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray] | None:
+    """The section's turns; free is (n, 1) complex."""
+    every = swept_turns(chain, free, reading)
+    return None if every is None else lambda x, derivative: every(x, derivative)[0]
+
+
+def swept_turns(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray] | None:
+    """Turns of the section of the unknowns (n, k) complex: (x, derivative) -> (k, len(x)); None where nothing slips."""
+    if chain.slips is None:
+        return None
+    if reading == "links":
+        shapes = swept_shapes(chain, free, reading)
+        return lambda x, derivative: shapes(x, derivative + 1)
+    from verify.segments.turned import section_turns
+
+    return section_turns(chain, free, reading == "corrected")
 
 
 def swept_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:

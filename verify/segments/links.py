@@ -73,6 +73,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(N + 1,), what they would be inside: of the length of beam that each stands for."""
     joint_inertias: Array | None = None
     """(N + 1,), taken off the links' thickness inertia where a tensioned joint bends; None: nothing."""
+    weights: Array | None = None
+    """(N + 1,), compliances of the joints that slip over what they would be inside (`walls`); None: nothing slips."""
     slip_masses: Array | None = None
     """(N + 1,), taken off the links' mass where a tensioned joint slips; None: nothing."""
     eased: Array | None = None

@@ -23,8 +23,8 @@ from verify.beam import Beam, PointForce
 from verify.checks import several
 from verify.device import Device
 from verify.errors import InputError, ResonanceError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, phasor, wavenumber
+from verify.models.arrays import ComplexArray
+from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, wavenumber
 from verify.models.places import Forces, as_forces
 from verify.waves.imposed import AROUND, STEP
 
@@ -80,15 +80,6 @@ def interpolated(at: Callable[[float], HarmonicField], frequency_hz: float) -> H
         for one in zip(*forces, strict=True)
     ]
     return replace(combined(parts), frequency_hz=frequency_hz, forces=tuple(acting))
-
-
-def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
-    """The weighted sum of fields, else as the first of them."""
-
-    def shapes(x: Array, derivative: int) -> ComplexArray:
-        return np.asarray(sum(weight * field.shapes(x, derivative) for weight, field in parts))
-
-    return replace(parts[0][1], shapes=shapes)
 
 
 def _pulls(

@@ -8,11 +8,12 @@ singularity, which is interpolated from four frequencies around it.
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, phasor, unit_response
+from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response
 
 Solve = Callable[[Sequence[PointForce], float], HarmonicField]
 Units = Callable[[Array, Array], ComplexArray]
@@ -71,11 +72,6 @@ def _combined(
     parts: Sequence[tuple[complex, HarmonicField]], drives: Sequence[PointForce], frequency_hz: float
 ) -> HarmonicField:
     """The weighted sum of fields; its forces are those that act in it."""
-    first = parts[0][1]
-
-    def shapes(x: Array, derivative: int) -> ComplexArray:
-        return np.asarray(sum(weight * field.shapes(x, derivative) for weight, field in parts))
-
     acting = [
         sum(weight * phasor(force) for weight, field in parts for force in field.forces if force.position == place)
         for place in (drive.position for drive in drives)
@@ -84,15 +80,7 @@ def _combined(
         PointForce(position=drive.position, amplitude=float(abs(f)), phase_deg=float(np.rad2deg(np.angle(f))))
         for drive, f in zip(drives, acting, strict=True)
     )
-    return HarmonicField(
-        model=first.model,
-        count=first.count,
-        beam=first.beam,
-        frequency_hz=frequency_hz,
-        forces=forces,
-        shapes=shapes,
-        theory=first.theory,
-    )
+    return replace(combined(parts), frequency_hz=frequency_hz, forces=forces)
 
 
 def _least(receptance: ComplexArray) -> Array:
