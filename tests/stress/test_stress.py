@@ -41,6 +41,7 @@ def light():
         "moved",
         "tableaux",
         "waves",
+        "sheared",
         "choices",
         "rules",
         "felt",

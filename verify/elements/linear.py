@@ -84,6 +84,7 @@ def check_asked(beam: Beam, n_modes: int, n_elements: int, grading: float, theor
     check_size(free, n_modes, elastic, FIELD, n_elements)
 
 
+@as_typed
 def buckling_load(beam: Beam, n_elements: int, *, grading: float = 1.0) -> float:
     """The compression at which `n_elements` elements buckle first, newton, whatever the beam's own axial force.
 

@@ -122,12 +122,8 @@ def check(
     attachment: str = "reciprocal",
 ) -> None:
     """Raise InputError, before anything large is allocated, where `solve_modes` would refuse."""
-    words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
-    for field, word, known in words:
-        if word not in known:
-            raise InputError(f"{field} = {word!r} is not known: {near_name(word, known)}")
+    check_set_up(n_segments, wall, joints, attachment)
     check_whole("n_modes", n_modes, 1)
-    check_whole(FIELD, n_segments, 2)  # a single link does not bend
     if wall == "welded" and (beam.added or grading != 1.0 or theory != "euler-bernoulli"):
         raise InputError(
             "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
@@ -145,6 +141,15 @@ def check(
         from verify.segments.buckling import check_loaded
 
         check_loaded(beam, n_segments, wall, joints, grading, attachment)
+
+
+def check_set_up(n_segments: int, wall: str, joints: str, attachment: str) -> None:
+    """Raise InputError for a number of links that is none, a single link, which does not bend, or an unknown word."""
+    words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
+    for field, word, known in words:
+        if word not in known:
+            raise InputError(f"{field} = {word!r} is not known: {near_name(str(word), known)}")
+    check_whole(FIELD, n_segments, 2)
 
 
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
