@@ -21,11 +21,8 @@ from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 from verify.models.theory import check_theory
 from verify.options import (
-    ATTACHMENTS,
-    JOINTS,
     LOADS,
     READINGS,
-    WALLS,
     Attachment,
     Joints,
     Load,
@@ -33,7 +30,7 @@ from verify.options import (
     Theory,
     Wall,
 )
-from verify.segments.links import Chain, build_chain, chain_pencil, elastic_ends, free_joints
+from verify.segments.links import FIELD, Chain, build_chain, chain_pencil, check_set_up, elastic_ends, free_joints
 from verify.segments.loads import joint_weights
 from verify.segments.reading import (
     joint_curvatures,
@@ -45,7 +42,6 @@ from verify.segments.reading import (
     spline_at,
 )
 
-FIELD = "n_segments"
 _FEWEST_MENDED = 6
 """Links of which mended joints that slip leave a positive mass, whatever stands at the ends."""
 
@@ -143,15 +139,6 @@ def check(
         check_loaded(beam, n_segments, wall, joints, grading, attachment)
 
 
-def check_set_up(n_segments: int, wall: str, joints: str, attachment: str) -> None:
-    """Raise InputError for a number of links that is none, a single link, which does not bend, or an unknown word."""
-    words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
-    for field, word, known in words:
-        if word not in known:
-            raise InputError(f"{field} = {word!r} is not known: {near_name(str(word), known)}")
-    check_whole(FIELD, n_segments, 2)
-
-
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / chain.unit**2
     vectors = pairs.vectors * (_sign(chain, pairs.vectors) / sqrt(beam.mass_per_length * chain.unit))
@@ -229,6 +216,7 @@ def solve_harmonic(
         solve = partial(solve_modes, **settings)
         refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments, free)
         free = free[:, :1]
+    turned = swept_turns(chain, free, reading)
     return HarmonicField(
         theory=theory,
         model="segment",
@@ -237,7 +225,7 @@ def solve_harmonic(
         frequency_hz=frequency_hz,
         forces=tuple(forces),
         shapes=_field_shapes(chain, free, reading),
-        turned=_field_turns(chain, free, reading),
+        turned=None if turned is None else lambda x, derivative: turned(x, derivative)[0],
     )
 
 
@@ -301,12 +289,6 @@ def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[A
     """The field between the joints; free is (n, 1) complex."""
     every = swept_shapes(chain, free, reading)
     return lambda x, derivative: every(x, derivative)[0]
-
-
-def _field_turns(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray] | None:
-    """The section's turns; free is (n, 1) complex."""
-    every = swept_turns(chain, free, reading)
-    return None if every is None else lambda x, derivative: every(x, derivative)[0]
 
 
 def swept_turns(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray] | None:
