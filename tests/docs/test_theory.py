@@ -4,10 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
+from scipy.linalg import eigh
 
 from verify import analytic_modes, fem_beam, load_scene, segment_model
+from verify.elements.mesh import build_elements
+from verify.elements.pencil import element_pencil
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.run.runner import workbench_for
+from verify.segments.links import build_chain, chain_pencil
 from verify.waves.absorber import beam_impedance, reflection
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -106,3 +111,63 @@ def test_lengths_and_heights_of_the_papers_wave():
 def test_a_strip_that_cannot_curve_across_its_width_is_so_much_stiffer():
     assert "a strip that stays straight across gains 5.9 %" in LIMITS
     assert 100 * (1 / np.sqrt(1 - BEAM.poissons_ratio**2) - 1) == pytest.approx(5.9, abs=0.05)
+
+
+ENDS = ("pinned", "clamped", "guided", "free")
+PAIRS = [pair for i, one in enumerate(ENDS) for pair in ((one, other) for other in ENDS[i:])]
+COUNTS = (1, 2, 3, 4, 5, 8, 9, 13, 40)
+
+
+def highest(pencil):
+    """The square root of the largest eigenvalue of the assembled matrices: of parts of length 1."""
+    strain = np.asarray(pencil.strain(np.eye(pencil.n)))
+    mass = pencil.mass_matrix()
+    stiffness = strain.T @ (pencil.stiffness[:, None] * strain)
+    return np.sqrt(eigh(stiffness, mass.toarray() if hasattr(mass, "toarray") else mass, eigvals_only=True)[-1])
+
+
+@pytest.mark.parametrize("supports", PAIRS, ids="-".join)
+def test_the_highest_frequency_of_links_is_at_most_root_48_and_that_between_guided_ends(supports):
+    assert r"is at most $\sqrt{48}$ for a uniform chain of equal links, between any supports" in THEORY
+    assert "guided at both ends it is just that, elsewhere less" in THEORY
+    beam = replace(BEAM, supports=supports)
+    walls = ("gregory", "half", "welded", "third-order", "five-joint") if "clamped" in supports else ("gregory",)
+    for wall in walls:
+        found = [highest(chain_pencil(build_chain(beam, count, wall=wall))) for count in COUNTS[1:]]
+        if supports == ("guided", "guided"):
+            assert found == pytest.approx([np.sqrt(48.0)] * len(found), rel=1e-9)
+        else:
+            assert max(found) < 0.99999 * np.sqrt(48.0)
+
+
+@pytest.mark.parametrize("supports", PAIRS, ids="-".join)
+def test_the_highest_frequency_of_elements_is_bounded_where_no_end_is_free_and_by_one_element_everywhere(supports):
+    assert (
+        r"at most $\sqrt{2520} = 50.2$ where no end is free (pinned at both ends just that, elsewhere less)" in THEORY
+    )
+    assert r"What holds for any number, between any supports, is $\sqrt{8400} = 91.7$ of one free element" in THEORY
+    counts = [count for count in COUNTS if supports != ("clamped", "clamped") or count > 1]
+    beam = replace(BEAM, supports=supports)
+    found = np.array([highest(element_pencil(build_elements(beam, count))) for count in counts])
+    assert (found < np.sqrt(8400.0) * (1.0 + 1e-9)).all()
+    if supports == ("pinned", "pinned"):
+        assert found == pytest.approx(np.full(len(found), np.sqrt(2520.0)), rel=1e-9)
+    elif "free" not in supports:
+        assert (found < 0.99999 * np.sqrt(2520.0)).all()
+
+
+@pytest.mark.parametrize("other", ENDS)
+def test_a_free_end_takes_the_highest_frequency_of_elements_to_59_88_from_below_or_above(other):
+    assert "A free end takes it to 59.88 as elements grow in number" in THEORY
+    assert "(70.1, 62.3, 60.6 with 1, 2, 3 elements) and where both are free (91.7, 70.1, 64.6)" in THEORY
+    assert "so that 60 holds there from 5 and from 9 elements on" in THEORY
+    beam = replace(BEAM, supports=(other, "free"))
+    found = [highest(element_pencil(build_elements(beam, count))) for count in range(1, 12)]
+    least = {"pinned": 5, "free": 9}.get(other, 1)
+    assert [count for count, value in enumerate(found, 1) if value < 60.0] == list(range(least, 12))
+    rising = other in ("clamped", "guided")
+    assert (np.diff(found) > 0.0).all() if rising else (np.diff(found) < 0.0).all()
+    first = {"pinned": [70.1, 62.3, 60.6], "free": [91.7, 70.1, 64.6]}
+    if not rising:
+        assert [round(float(value), 1) for value in found[:3]] == first[other]
+    assert highest(element_pencil(build_elements(beam, 40))) == pytest.approx(59.88, abs=0.005)

@@ -15,9 +15,11 @@ from verify.exact import modes as exact_modes
 from verify.judge import extended_precision, sizing
 from verify.models import sweeps
 from verify.models.catalogue import MODELS
+from verify.models.fields import HarmonicField
 from verify.motion import free_vibration, simulate, step_size
+from verify.segments import turned
 from verify.stress import anything, refused_runs
-from verify.waves import imposed, lumped, operating_point
+from verify.waves import driven, imposed, lumped, operating_point
 from verify.waves.found import TwoWaves
 from verify.waves.medium import Medium
 
@@ -129,6 +131,28 @@ def every_wave_forwards(patch):
 
 def power_by_bending_alone(patch):
     patch.setattr(Medium, "beside_shear", lambda medium, omega: 0.0)
+
+
+def turns_of_running_waves(patch):
+    """Of every section that shears, near forces and ends too."""
+    true = HarmonicField.turns
+
+    def turns(field, x, derivative):
+        if field.theory != "timoshenko":
+            return true(field, x, derivative)
+        return Medium(field.beam, field.theory).turn(field.omega) * field.shapes(x, derivative + 1)
+
+    patch.setattr(HarmonicField, "turns", turns)
+
+
+def links_turned_at_walls(patch):
+    """As the corrections of a wall's joints turn them."""
+    patch.setattr(turned, "_smoothed", lambda chain, free: 0.0)
+
+
+def losses_of_bending_alone(patch):
+    true = driven._lost
+    patch.setattr(driven, "_lost", lambda field, *given: true(replace(field, theory="rayleigh"), *given))
 
 
 def devices_that_turn_freely(patch):
@@ -257,6 +281,9 @@ FAULTS = {
         waves_that_run_the_other_way: {"waves-of-two-modes", "local-waves"},
         every_wave_forwards: {"which-way"},
         power_by_bending_alone: {"power-by-every-theory"},
+        turns_of_running_waves: {"turns-of-exact-beam", "turns-of-elements"},
+        links_turned_at_walls: {"turns-of-segments"},
+        losses_of_bending_alone: {"power-lost-by-shear"},
         devices_that_turn_freely: {"devices-in-states"},
         displacements_in_phase: {"places-held"},
         phases_a_little_early: {"fastest-crests"},

@@ -42,6 +42,7 @@ def light():
         "tableaux",
         "waves",
         "resonances",
+        "sheared",
         "choices",
         "rules",
         "felt",

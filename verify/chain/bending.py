@@ -80,9 +80,7 @@ def bend(
     if beam.tension:
         raise InputError(f"beam.tension = {beam.tension!r} N: bend takes it as load = (along, across), leave it out")
     if joints == "tensioned":
-        raise InputError(
-            "joints = 'tensioned' are of a beam.tension, bend has none: give 'series' or 'printed'"
-        )
+        raise InputError("joints = 'tensioned' are of a beam.tension, bend has none: give 'series' or 'printed'")
     check_whole("count", count, 2)
     force = in_a_row("load", load, "newton")
     if force.shape not in ((1,), (2,)):

@@ -84,6 +84,7 @@ def check_asked(beam: Beam, n_modes: int, n_elements: int, grading: float, theor
     check_size(free, n_modes, elastic, FIELD, n_elements)
 
 
+@as_typed
 def buckling_load(beam: Beam, n_elements: int, *, grading: float = 1.0) -> float:
     """The compression at which `n_elements` elements buckle first, newton, whatever the beam's own axial force.
 
@@ -165,7 +166,7 @@ def solve_harmonic(
     if undamped:
         near = partial(modes_around, theory=theory, grading=grading)
         refuse_near_resonance("fem", beam, pencil, omega2, frequency_hz, near, n_elements, free)
-    every = swept_shapes(elements, free[:, :1])
+    every, turned = swept_shapes(elements, free[:, :1]), swept_turns(elements, free[:, :1])
 
     return HarmonicField(
         theory=theory,
@@ -175,6 +176,7 @@ def solve_harmonic(
         frequency_hz=frequency_hz,
         forces=tuple(forces),
         shapes=lambda x, derivative: every(x, derivative)[0],
+        turned=None if turned is None else lambda x, derivative: turned(x, derivative)[0],
     )
 
 
@@ -187,6 +189,19 @@ def swept_shapes(elements: Elements, free: ComplexArray) -> Callable[[Array, int
         return values / unit**derivative
 
     return shapes
+
+
+def swept_turns(elements: Elements, free: ComplexArray) -> Callable[[Array, int], ComplexArray] | None:
+    """Likewise the turns of sections that shear; None of elements in which nothing does."""
+    if elements.theory != "timoshenko":
+        return None
+    nodal, basis, unit = elements.all_values(free), elements.basis, elements.parts.unit
+
+    def turns(x: Array, derivative: int) -> ComplexArray:
+        values: ComplexArray = basis.read_turn(nodal, x / unit, derivative)
+        return values / unit ** (derivative + 1)
+
+    return turns
 
 
 def force_loads(elements: Elements, forces: Sequence[PointForce]) -> ComplexArray:

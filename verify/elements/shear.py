@@ -17,6 +17,7 @@ from skfem.element.element import Element
 from skfem.refdom import RefLine
 
 from verify.elements.element import _MIDDLE, Line, LineBasis, cubics
+from verify.elements.mesh import weighed
 from verify.models.arrays import Array, Indices
 
 
@@ -34,6 +35,8 @@ def sheared(xi: Array, derivative: int = 0) -> tuple[Array, Array]:
 
 def turned(xi: Array, derivative: int = 0) -> Array:
     """Turn psi on [0, 1] of a unit of g_0, or a derivative; g_1 has none."""
+    if derivative > 1:
+        return np.full_like(xi, 12.0 if derivative == 2 else 0.0)
     return 6.0 * xi * (xi - 1.0) if derivative == 0 else 12 * xi - 6.0
 
 
@@ -70,11 +73,17 @@ class ShearBasis(LineBasis):
         g0, g1 = sheared(xi, derivative)
         return self.element_dofs[:, cells], [w0 * lift, s0 * turn, w1 * lift, s1 * turn, g0 * turn, g1 * turn]
 
-    def turn_weights(self, x: Array) -> tuple[Indices, list[Array]]:
-        """Likewise of the turn psi at x."""
-        cells, xi, lift, turn = self._beneath(x, 1)
-        w0, s0, w1, s1 = cubics(xi, 1)
-        return self.element_dofs[:, cells], [w0 * lift, s0 * turn, w1 * lift, s1 * turn, turned(xi), 0.0 * xi]
+    def turn_weights(self, x: Array, derivative: int = 0) -> tuple[Indices, list[Array]]:
+        """Likewise of the turn psi at x or a derivative of it."""
+        cells, xi, lift, turn = self._beneath(x, derivative + 1)
+        w0, s0, w1, s1 = cubics(xi, derivative + 1)
+        own = turned(xi, derivative) * self._stretches[1][cells] ** derivative
+        return self.element_dofs[:, cells], [w0 * lift, s0 * turn, w1 * lift, s1 * turn, own, 0.0 * xi]
+
+    def read_turn(self, nodal: Any, x: Array, derivative: int = 0) -> Any:
+        """The turns or a derivative at x (in the mesh's coordinate), (k, len(x)); nodal is (k, 4N + 2)."""
+        dofs, weights = self.turn_weights(x, derivative)
+        return weighed((nodal.take(each, axis=1) for each in dofs), weights)
 
 
 def shear_basis(nodes: Array) -> ShearBasis:

@@ -13,6 +13,7 @@ from verify.elements.linear import (
     force_loads,
     modes_around,
     swept_shapes,
+    swept_turns,
 )
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import damped_stiffness, element_pencil
@@ -71,6 +72,7 @@ def sweep_harmonic(
         frequencies_hz=frequencies,
         forces=forces,
         shapes=swept_shapes(elements, free),
+        turned=swept_turns(elements, free),
     )
 
 

@@ -6,6 +6,7 @@ foundation or axial force, which lose nothing.
 
 from collections.abc import Callable, Sequence
 from math import pi, sqrt
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,15 +14,18 @@ from verify.beam import Beam, PointForce
 from verify.exact.buckling import check_stable
 from verify.exact.lineup import Lineup, line_up, place_of
 from verify.exact.roots import general_frequency_hz, trials
-from verify.exact.spans import Spans, solver, spans_of
+from verify.exact.spans import TURN, Spans, solver, spans_of
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE, check_drive, phasor, refuse_resonance
+
+Read: TypeAlias = Callable[[Array, int], ComplexArray]
+"""(x, derivative of any order) -> (len(x),) complex, SI."""
 
 
 def general_field(
     beam: Beam, forces: Sequence[PointForce], frequency_hz: float, theory: str
-) -> Callable[[Array, int], ComplexArray]:
-    """The field, (x, derivative of any order) -> (len(x),) complex, SI. Raises InputError, for resonances too."""
+) -> tuple[Read, Read | None]:
+    """The field and, where the theory has one of its own, the turn. Raises InputError, for resonances too."""
     check_drive(beam, forces, frequency_hz)
     places = tuple(force.position for force in forces)
     spans, states = _under_unit_forces(beam, places, frequency_hz, theory)
@@ -30,7 +34,10 @@ def general_field(
     def shapes(x: Array, derivative: int) -> ComplexArray:
         return _read(beam, spans, states @ amplitudes[:, None], x, derivative)[:, 0]
 
-    return shapes
+    def turned(x: Array, derivative: int) -> ComplexArray:
+        return _read(beam, spans, states @ amplitudes[:, None], x, derivative, TURN)[:, 0]
+
+    return shapes, turned if theory == "timoshenko" else None
 
 
 def general_responses(
@@ -69,8 +76,9 @@ def _refuse_resonance(beam: Beam, line: Lineup, beta_length: float, frequency_hz
         refuse_resonance("analytic", frequency_hz, mode, general_frequency_hz(beam, mode, theory))
 
 
-def _read(beam: Beam, spans: Spans, states: ComplexArray, x: Array, derivative: int) -> ComplexArray:
-    """Deflections or derivatives, (len(x), n), SI."""
+def _read(beam: Beam, spans: Spans, states: ComplexArray, x: Array, derivative: int, of: int = 0) -> ComplexArray:
+    """Deflections, turns or derivatives, (len(x), n), SI."""
     xi = np.minimum(np.asarray(x, dtype=float) / beam.length, 1.0)
     span, here = spans.states(states, xi)
-    return np.asarray(spans.derivative(span, here, derivative) / beam.length**derivative, dtype=complex)
+    found = spans.derivative(span, here, derivative, of)
+    return np.asarray(found / beam.length ** (derivative + of), dtype=complex)

@@ -38,11 +38,18 @@ def solve_harmonic(beam: Beam, forces: Forces, frequency_hz: float, theory: str 
     if theory != "euler-bernoulli" or not beam.uniform:
         from verify.exact.driven import general_field
 
-        shapes = general_field(beam, forces, frequency_hz, theory)
+        shapes, turned = general_field(beam, forces, frequency_hz, theory)
     else:
-        shapes = _closed_form(beam, forces, frequency_hz)
+        shapes, turned = _closed_form(beam, forces, frequency_hz), None
     return HarmonicField(
-        theory=theory, model="analytic", count=None, beam=beam, frequency_hz=frequency_hz, forces=forces, shapes=shapes
+        theory=theory,
+        model="analytic",
+        count=None,
+        beam=beam,
+        frequency_hz=frequency_hz,
+        forces=forces,
+        shapes=shapes,
+        turned=turned,
     )
 
 

@@ -19,6 +19,8 @@ from verify.models.arrays import Array, ComplexArray, Indices
 
 Carried = TypeVar("Carried", Array, ComplexArray)
 
+TURN = 1
+"""Which of w, psi, M, V the turn is."""
 _REACH = 1.5
 """Wavenumber times length of a span, at most."""
 _TERMS = 26
@@ -64,12 +66,15 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         found = carried(rates, distances, units)
         return np.asarray(found.reshape(len(counts), len(fractions), 4, 4)[self.stretch])
 
-    def derivative(self, span: Indices, states: ComplexArray, order: int) -> ComplexArray:
-        """A derivative of the deflection by x / L, (len(x), k), of any order, from states of the same places."""
+    def derivative(self, span: Indices, states: ComplexArray, order: int, of: int = 0) -> ComplexArray:
+        """A derivative of the deflection by x / L, (len(x), k), of any order, from states of the same places.
+
+        Likewise of another entry `of` the state: 1 is the turn.
+        """
         rates = self.rates[self.stretch[span]]
         for _ in range(order):
             states = np.asarray(rates @ states)
-        return np.asarray(states[:, 0])
+        return np.asarray(states[:, of] * self.sizes[of] if of else states[:, 0])
 
 
 def carried(rates: Carried, distances: Array, states: Carried) -> Carried:

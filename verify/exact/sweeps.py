@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from math import pi
+from typing import TypeAlias
 
 import numpy as np
 
@@ -12,9 +13,12 @@ from verify.exact.closed_forms import wavenumber_length
 from verify.exact.harmonic import check_off_resonance, resonant, solve_harmonic, uniform_shapes
 from verify.exact.modes import check_n_modes, exact_frequency_hz
 from verify.models.arrays import Array, ComplexArray
+from verify.models.fields import HarmonicField
 from verify.models.places import Forces, Numbers, as_forces, as_typed
-from verify.models.sweeps import FIELD, HarmonicSweep, check_held, of_each, swept_frequencies
+from verify.models.sweeps import FIELD, HarmonicSweep, check_held, of_each, one_by_one, swept_frequencies
 
+_Swept: TypeAlias = Callable[[Array, int], ComplexArray]
+"""(x, derivative) -> (n, len(x))."""
 EULER = "euler-bernoulli"
 UNKNOWNS = 8
 """Complex numbers that a frequency's field is made of."""
@@ -29,6 +33,7 @@ def sweep_harmonic(beam: Beam, forces: Forces, frequencies_hz: Numbers, theory: 
     """
     forces = as_forces(forces)
     frequencies = swept_frequencies(beam, forces, frequencies_hz, UNKNOWNS * (len(forces) + 1))
+    shapes, turned = _shapes(beam, forces, frequencies, theory)
     return HarmonicSweep(
         theory=theory,
         model="analytic",
@@ -36,27 +41,26 @@ def sweep_harmonic(beam: Beam, forces: Forces, frequencies_hz: Numbers, theory: 
         beam=beam,
         frequencies_hz=frequencies,
         forces=forces,
-        shapes=_shapes(beam, forces, frequencies, theory),
+        shapes=shapes,
+        turned=turned,
     )
 
 
 def _shapes(
     beam: Beam, forces: tuple[PointForce, ...], frequencies: Array, theory: str
-) -> Callable[[Array, int], ComplexArray]:
-    """(x, derivative) -> (n, len(x)): of a uniform beam at once, of others one by one."""
+) -> tuple[_Swept, _Swept | None]:
+    """Deflections, and turns where they are none of their slopes: of a uniform beam at once, of others one by one."""
     if theory == EULER and beam.uniform:
         _refuse_resonances(beam, frequencies)
-        return uniform_shapes(beam, forces, frequencies)
-    each = [_one(beam, forces, float(frequency), i, theory) for i, frequency in enumerate(frequencies)]
-    return lambda x, derivative: np.array([shapes(x, derivative) for shapes in each])
+        return uniform_shapes(beam, forces, frequencies), None
+    swept = one_by_one([_one(beam, forces, float(frequency), i, theory) for i, frequency in enumerate(frequencies)])
+    return swept.shapes, swept.turned
 
 
-def _one(
-    beam: Beam, forces: tuple[PointForce, ...], frequency: float, index: int, theory: str
-) -> Callable[[Array, int], ComplexArray]:
+def _one(beam: Beam, forces: tuple[PointForce, ...], frequency: float, index: int, theory: str) -> HarmonicField:
     """One of them as `solve_harmonic` has it; its refusal says which."""
     try:
-        return solve_harmonic(beam, forces, frequency, theory).shapes
+        return solve_harmonic(beam, forces, frequency, theory)
     except InputError as error:
         raise type(error)(str(error).replace("frequency_hz = ", f"{FIELD}[{index}] = ", 1)) from None
 

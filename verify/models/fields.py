@@ -1,9 +1,10 @@
 """What every model's `solve_harmonic` returns, and what it refuses."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import sqrt
 
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.errors import InputError, ResonanceError
@@ -34,6 +35,8 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
     """(x, derivative) -> (len(x),) complex, metres per metre^derivative."""
     theory: str = "euler-bernoulli"
     """Of the beam."""
+    turned: Callable[[Array, int], ComplexArray] | None = None
+    """(x, derivative) -> (len(x),) complex: turn psi of the section where shear sets it apart from the slope w'."""
 
     @property
     def omega(self) -> float:
@@ -55,6 +58,24 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
     def slope(self, x: Numbers) -> ComplexArray:
         """Complex slope at x (metres), of the shape of x, radians. Raises InputError off the beam."""
         return as_asked(self.shapes(self._on_beam(x), 1), x)
+
+    def turn(self, x: Numbers) -> ComplexArray:
+        """Complex turn of the section at x (metres), of the shape of x, radians: the slope where nothing shears.
+
+        Raises InputError off the beam, and for a Timoshenko field of a model that gives none.
+        """
+        return as_asked(self.turns(self._on_beam(x), 0), x)
+
+    def turns(self, x: Array, derivative: int) -> ComplexArray:
+        """That or a derivative of it at x (n,), (n,), radians per metre^derivative. Raises InputError likewise."""
+        if self.turned is not None:
+            return self.turned(x, derivative)
+        if self.theory == "timoshenko":
+            raise InputError(
+                f"theory = 'timoshenko': fields of model = {self.model!r} tell no turn of the section (turned), with "
+                "which a surface moves: ask for a deflection or a slope, or choose another model"
+            )
+        return self.shapes(x, derivative + 1)
 
     def _on_beam(self, x: Numbers) -> Array:
         return places("x", x, self.beam.length).ravel()
@@ -87,6 +108,19 @@ def _running(beam: Beam, omega: float, theory: str) -> complex:
     square = (-b + np.sqrt(b * b + 4.0 * a * c + 0j)) / (2.0 * a)
     k = complex(np.sqrt(square))
     return k if k.imag <= 0.0 else k.conjugate()
+
+
+def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
+    """The weighted sum of fields, else as the first of them."""
+
+    def shapes(x: Array, derivative: int) -> ComplexArray:
+        return np.asarray(sum(weight * field.shapes(x, derivative) for weight, field in parts))
+
+    def turned(x: Array, derivative: int) -> ComplexArray:
+        return np.asarray(sum(weight * field.turns(x, derivative) for weight, field in parts))
+
+    first = parts[0][1]
+    return replace(first, shapes=shapes, turned=None if first.turned is None else turned)
 
 
 def unit_response(beam: Beam, frequency_hz: float) -> float:

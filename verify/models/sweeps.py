@@ -52,6 +52,8 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
     """(x, derivative) -> (n_frequencies, len(x)) complex, metres per metre^derivative."""
     theory: str = "euler-bernoulli"
     """Of the beam."""
+    turned: Callable[[Array, int], ComplexArray] | None = None
+    """(x, derivative) -> (n_frequencies, len(x)) complex: turn psi of the section where it is not the slope w'."""
 
     def __len__(self) -> int:
         return len(self.frequencies_hz)
@@ -73,6 +75,7 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
         """The field at one of the frequencies, counted from 0. Raises InputError for one that is not there."""
         if not -len(self) <= index < len(self):
             raise InputError(f"index = {index!r}: the sweep has {len(self)} frequencies, counted from 0")
+        turned = self.turned
         return HarmonicField(
             model=self.model,
             count=self.count,
@@ -81,6 +84,7 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
             forces=self.forces,
             shapes=lambda x, derivative: self.shapes(x, derivative)[index],
             theory=self.theory,
+            turned=None if turned is None else lambda x, derivative: turned(x, derivative)[index],
         )
 
 
@@ -95,7 +99,15 @@ def one_by_one(fields: Sequence[HarmonicField]) -> HarmonicSweep:
         forces=first.forces,
         shapes=lambda x, derivative: np.array([field.shapes(x, derivative) for field in fields]),
         theory=first.theory,
+        turned=_turned(fields),
     )
+
+
+def _turned(fields: Sequence[HarmonicField]) -> Callable[[Array, int], ComplexArray] | None:
+    """The turns of fields one after another, where they have any of their own."""
+    if fields[0].turned is None:
+        return None
+    return lambda x, derivative: np.array([field.turns(x, derivative) for field in fields])
 
 
 def swept_frequencies(beam: Beam, forces: Forces, frequencies_hz: Numbers, unknowns: int) -> Array:

@@ -62,14 +62,10 @@ def _curvature(a: At, scene: "Scene", bench: Workbench) -> complex:
 def _axis_ratio(a: AxisRatio, scene: "Scene", bench: Workbench) -> float:
     if a.x is None:
         return _figure("mean_axis_ratio")(a, scene, bench)
-    from verify.models.underfoot import standing_at
-    from verify.waves.measures import ellipse, lifted
-    from verify.waves.medium import Medium
+    from verify.waves.measures import ellipse, surface_motion
 
     field = field_of(a, scene, bench)
-    under = standing_at(field.beam, a.x)
-    turn = Medium(under, field.theory).turn(field.omega)
-    return float(ellipse(lifted(under, field.slope(a.x), turn), field.deflection(a.x))[0][0])
+    return float(ellipse(surface_motion(field.beam, field.turn(a.x), x=a.x), field.deflection(a.x))[0][0])
 
 
 def _power_imbalance(a: Power, scene: "Scene", bench: Workbench) -> float:

@@ -8,14 +8,16 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.compression import buckling_ratio
+from verify.models.places import as_typed
 from verify.options import Attachment, Joints, Wall
-from verify.segments.links import build_chain, chain_pencil
+from verify.segments.links import build_chain, chain_pencil, check_set_up
 
 _PASSES = 60
 _SETTLED = 1e-13
 """Relative, of a load that the joints follow."""
 
 
+@as_typed
 def buckling_load(
     beam: Beam,
     n_segments: int,
@@ -28,8 +30,10 @@ def buckling_load(
     """The compression, N, at which the chain buckles first, whatever the beam's own axial force.
 
     Pinned ends: (4 EI/l^2) sin^2(pi/(2N)), -mu^2/12, of joints in series; order 4 of tensioned ones, which stiffen as
-    the force grows. 0 where nothing keeps the chain from turning.
+    the force grows. 0 where nothing keeps the chain from turning. Raises InputError for settings that are not known and
+    a single link, which does not bend.
     """
+    check_set_up(n_segments, wall, joints, attachment)
     force, least = beam.bending_stiffness / beam.length**2, 1.0
     for _ in range(_PASSES):
         least = _least(replace(beam, tension=-force), n_segments, wall, joints, grading, attachment)

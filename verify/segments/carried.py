@@ -36,7 +36,7 @@ def carried(
     chain = _added(beam, chain, tension, attachment, elastic)
     if any(elastic):
         chain = replace(chain, edges=reading_factors(elastic, chain.n_segments, wall))
-    return _slipping(beam, chain, wall) if theory == "timoshenko" else chain
+    return replace(_slipping(beam, chain, wall), weights=factors) if theory == "timoshenko" else chain
 
 
 def _ratio(series: Array, compliances: Array) -> Array:

@@ -21,11 +21,8 @@ from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
 from verify.models.theory import check_theory
 from verify.options import (
-    ATTACHMENTS,
-    JOINTS,
     LOADS,
     READINGS,
-    WALLS,
     Attachment,
     Joints,
     Load,
@@ -33,7 +30,7 @@ from verify.options import (
     Theory,
     Wall,
 )
-from verify.segments.links import Chain, build_chain, chain_pencil, elastic_ends, free_joints
+from verify.segments.links import FIELD, Chain, build_chain, chain_pencil, check_set_up, elastic_ends, free_joints
 from verify.segments.loads import joint_weights
 from verify.segments.reading import (
     joint_curvatures,
@@ -45,7 +42,6 @@ from verify.segments.reading import (
     spline_at,
 )
 
-FIELD = "n_segments"
 _FEWEST_MENDED = 6
 """Links of which mended joints that slip leave a positive mass, whatever stands at the ends."""
 
@@ -122,12 +118,8 @@ def check(
     attachment: str = "reciprocal",
 ) -> None:
     """Raise InputError, before anything large is allocated, where `solve_modes` would refuse."""
-    words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
-    for field, word, known in words:
-        if word not in known:
-            raise InputError(f"{field} = {word!r} is not known: {near_name(word, known)}")
+    check_set_up(n_segments, wall, joints, attachment)
     check_whole("n_modes", n_modes, 1)
-    check_whole(FIELD, n_segments, 2)  # a single link does not bend
     if wall == "welded" and (beam.added or grading != 1.0 or theory != "euler-bernoulli"):
         raise InputError(
             "wall = 'welded' is for uniform beams of equal segments with nothing on them: choose another wall"
@@ -224,6 +216,7 @@ def solve_harmonic(
         solve = partial(solve_modes, **settings)
         refuse_near_resonance("segment", beam, pencil, omega2, frequency_hz, solve, n_segments, free)
         free = free[:, :1]
+    turned = swept_turns(chain, free, reading)
     return HarmonicField(
         theory=theory,
         model="segment",
@@ -232,6 +225,7 @@ def solve_harmonic(
         frequency_hz=frequency_hz,
         forces=tuple(forces),
         shapes=_field_shapes(chain, free, reading),
+        turned=None if turned is None else lambda x, derivative: turned(x, derivative)[0],
     )
 
 
@@ -295,6 +289,18 @@ def _field_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[A
     """The field between the joints; free is (n, 1) complex."""
     every = swept_shapes(chain, free, reading)
     return lambda x, derivative: every(x, derivative)[0]
+
+
+def swept_turns(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray] | None:
+    """Turns of the section of the unknowns (n, k) complex: (x, derivative) -> (k, len(x)); None where nothing slips."""
+    if chain.slips is None:
+        return None
+    if reading == "links":
+        shapes = swept_shapes(chain, free, reading)
+        return lambda x, derivative: shapes(x, derivative + 1)
+    from verify.segments.turned import section_turns
+
+    return section_turns(chain, free, reading == "corrected")
 
 
 def swept_shapes(chain: Chain, free: ComplexArray, reading: str) -> Callable[[Array, int], ComplexArray]:

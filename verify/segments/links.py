@@ -13,11 +13,15 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.checks import check_whole
+from verify.errors import InputError, near_name
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
-from verify.options import Attachment, Joints, Theory, Wall
+from verify.options import ATTACHMENTS, JOINTS, WALLS, Attachment, Joints, Theory, Wall
 from verify.segments.walls import wall_factors, welded_halves
+
+FIELD = "n_segments"
 
 
 class Body(msgspec.Struct, frozen=True, kw_only=True):
@@ -73,6 +77,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(N + 1,), what they would be inside: of the length of beam that each stands for."""
     joint_inertias: Array | None = None
     """(N + 1,), taken off the links' thickness inertia where a tensioned joint bends; None: nothing."""
+    weights: Array | None = None
+    """(N + 1,), compliances of the joints that slip over what they would be inside (`walls`); None: nothing slips."""
     slip_masses: Array | None = None
     """(N + 1,), taken off the links' mass where a tensioned joint slips; None: nothing."""
     eased: Array | None = None
@@ -137,6 +143,15 @@ def printed_compliance(parts: Parts) -> Array:
 def link_inertia(mass: Any, length: Any) -> Any:
     """M l^2 / 12: a uniform thin link about its middle."""
     return mass * length**2 / 12.0
+
+
+def check_set_up(n_segments: int, wall: str, joints: str, attachment: str) -> None:
+    """Raise InputError for a number of links that is none, a single link, which does not bend, or an unknown word."""
+    words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
+    for field, word, known in words:
+        if word not in known:
+            raise InputError(f"{field} = {word!r} is not known: {near_name(str(word), known)}")
+    check_whole(FIELD, n_segments, 2)
 
 
 def build_chain(

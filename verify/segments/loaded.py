@@ -186,7 +186,7 @@ def angles(chain: Chain, free: Any) -> Any:
     return np.diff(np.concatenate([left, turns(chain, free), right]), axis=0)
 
 
-def _spans(chain: Chain) -> Array:
+def spans(chain: Chain) -> Array:
     """Length that each joint stands for, (N + 1,), the whole link's at an end."""
     return np.concatenate([chain.lengths[:1], 0.5 * (chain.lengths[1:] + chain.lengths[:-1]), chain.lengths[-1:]])
 
@@ -213,7 +213,7 @@ def _shear(chain: Chain, free: Array) -> Array:
     there = _slipping(chain)
     assert chain.softness is not None
     found[there] *= (chain.softness[there] / chain.slips[there])[:, None]
-    return np.asarray(found / _spans(chain)[:, None])
+    return np.asarray(found / spans(chain)[:, None])
 
 
 def corrections(chain: Chain, free: Array) -> Array:
@@ -223,7 +223,7 @@ def corrections(chain: Chain, free: Array) -> Array:
     squares[1:] += chain.lengths**2
     squares[[0, -1]] *= 2.0
     squares[[0, -1]] *= [not held for held in chain.held]
-    bent = angles(chain, free) / _spans(chain)[:, None]
+    bent = angles(chain, free) / spans(chain)[:, None]
     bent[[0, -1]] *= [[2.0 * (support == "guided")] for support in chain.supports]
     return np.asarray((squares[:, None] / 24.0 * (bent - _shear_change(chain, free))).T)
 

@@ -31,6 +31,7 @@ from verify.segments.linear import (
     settings_of,
     solve_modes,
     swept_shapes,
+    swept_turns,
 )
 from verify.segments.links import Chain, build_chain, chain_pencil
 from verify.segments.stacks import chain_stack, layout
@@ -84,6 +85,7 @@ def sweep_harmonic(
         frequencies_hz=frequencies,
         forces=forces,
         shapes=swept_shapes(chain, free, reading),
+        turned=swept_turns(chain, free, reading),
     )
 
 

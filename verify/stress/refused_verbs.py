@@ -111,7 +111,11 @@ def of_models() -> Iterator[Case]:
     yield Case("n_segments = 0", based("segment", 0), based("segment", 2))
     yield Case("n_elements = 0", based("fem", 0), based("fem", 2))
     yield Case("modes = 0", based("analytic", None, 0), based("analytic", None, 1))
-    yield Case("count = 0: a beam of 1", partial(MODELS["segment"].buckling_load, STRIP, 0))
+    buckled: Callable[..., float] = MODELS["segment"].buckling_load
+    for given in (0, 1, "20"):
+        yield Case(f"n_segments = {given!r}: ", partial(buckled, STRIP, given))
+    for setting in ("wall", "joints", "attachment"):
+        yield Case(f"{setting} = 'rw' is not", partial(buckled, STRIP, 9, **{setting: "rw"}))
     yield Case("n_elements = 0", partial(MODELS["fem"].buckling_load, STRIP, 0))
     yield Case("load = 'levr'", swept("segment", 9, load="levr"), swept("segment", 9, load="lever"))
     yield Case("reading = 'rw'", swept("segment", 9, reading="rw"), swept("segment", 9, reading="raw"))

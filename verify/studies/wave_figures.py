@@ -337,7 +337,7 @@ def _ellipses(beam: Beam, field: "HarmonicField") -> tuple[Ellipse, ...]:
     """Thirteen surface points evenly over the middle half of the beam."""
     places = np.linspace(0.25, 0.75, 13) * beam.length
     turn = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 49))
-    across, up = lifted(beam, field.slope(places)), field.deflection(places)
+    across, up = lifted(beam, field.turn(places)), field.deflection(places)
     return tuple(
         Ellipse(x=float(x), across=tuple((u * turn).real.tolist()), up=tuple((w * turn).real.tolist()))
         for x, u, w in zip(places, across, up, strict=True)

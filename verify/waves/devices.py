@@ -26,10 +26,10 @@ from verify.checks import several
 from verify.device import Device
 from verify.errors import InputError, ResonanceError
 from verify.models.arrays import ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, phasor, unit_response, wavenumber
+from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response, wavenumber
 from verify.models.places import Forces, as_forces
 from verify.waves.imposed import Solve
-from verify.waves.poles import Conditions, UnsettledError, combined, field_at_pole, is_near, is_resonant, looked_at
+from verify.waves.poles import Conditions, UnsettledError, field_at_pole, is_near, is_resonant, looked_at
 
 
 class DevicesResonanceError(ResonanceError):

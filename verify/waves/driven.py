@@ -135,7 +135,7 @@ def operation(field: HarmonicField, window: Window | None = None) -> Operation:
     return Operation(
         frequency_hz=field.frequency_hz,
         standing_wave_ratio=waves.standing_wave_ratio,
-        axis_ratio=mean_axis_ratio(medium, field.omega, window, field.deflection, field.slope, waves),
+        axis_ratio=mean_axis_ratio(field.beam, window, field.deflection, field.turn, waves),
         crest_speed=float(crest_speed(medium, field.omega, waves.wavenumber, waves.forward, waves.backward)),
     )
 
@@ -170,10 +170,21 @@ def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
     edges = distinct(np.concatenate([np.linspace(0.0, middle, cells), [f.position for f in left]]))
     half = 0.5 * np.diff(edges)
     x = (edges[:-1, None] + half[:, None] * (points + 1.0)).ravel()
-    bending = abs(field.shapes(x, 2)) ** 2
-    loss = 0.5 * field.omega * field.beam.loss_factor * field.beam.bending_stiffness
-    lost = loss * float(bending @ (half[:, None] * weights).ravel())
+    lost = _lost(field, x, (half[:, None] * weights).ravel())
     return float((given - lost - wave.energy_flux) / wave.energy_flux)
+
+
+def _lost(field: HarmonicField, x: Array, weights: Array) -> float:
+    """Power that the loss factor takes over a quadrature, (n,) both, watt: of bending, EI |psi'|^2, and of shear.
+
+    kappa G A |w' - psi|^2: all models have E (1 + i eta) in both.
+    """
+    beam = field.beam
+    loss, shear = 0.5 * field.omega * beam.loss_factor, beam.own.shear_stiffness
+    lost = loss * beam.bending_stiffness * float(abs(field.turns(x, 1)) ** 2 @ weights)
+    if field.theory == "timoshenko" and shear is not None:
+        lost += loss * shear * float(abs(field.shapes(x, 1) - field.turns(x, 0)) ** 2 @ weights)
+    return lost
 
 
 def best_frequency(case: DrivenCase, span: float, window: Window | None, bench: "Workbench") -> float:

@@ -14,14 +14,13 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, phasor, unit_response
+from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response
 from verify.waves.poles import (
     STEP,
     Check,
     Conditions,
     UnsettledError,
     around,
-    combined,
     field_at_pole,
     is_near,
     is_resonant,

@@ -1,6 +1,7 @@
 """A field in, wave measures and surface ellipses out.
 
-Conventions: e^{+i omega t}; a wave towards +x is e^{-ikx}. A surface point moves by u_x = -(h/2) w', u_y = w;
+Conventions: e^{+i omega t}; a wave towards +x is e^{-ikx}. A surface point moves by u_x = -(h/2) psi, u_y = w, with
+the turn psi of its section, which is w' where nothing shears;
 its ellipse has the signed area S3 = 2 Im(conj(u_x) u_y) (times pi/2), negative for a wave towards +x, whose
 surface points turn counter-clockwise and move backwards at the crest.
 """
@@ -68,7 +69,7 @@ def _seen(field: HarmonicField, window: tuple[float, float], wave_number: comple
         window=(float(window[0]), float(window[1])),
         fine=x if len(x) > parts else np.linspace(*window, int(parts) + 1),
         deflection=field.deflection,
-        slope=field.slope,
+        turn=field.turn,
         waves=waves,
     )
 
@@ -116,7 +117,8 @@ class Seen(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     fine: Array
     """(m,), close enough to tell the hills of the field apart."""
     deflection: Along
-    slope: Along
+    turn: Along
+    """Of the section."""
     waves: TwoWaves
 
     @property
@@ -137,14 +139,14 @@ class Seen(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     def mean_axis_ratio(self) -> float:
         """Over the same."""
-        return mean_axis_ratio(self.medium, self.omega, self.window, self.deflection, self.slope, self.waves)
+        return mean_axis_ratio(self.medium.beam, self.window, self.deflection, self.turn, self.waves)
 
     def signed_area_range(self) -> tuple[float, float, float]:
         """Least, mean and largest."""
-        beam, turn = self.medium.beam, self.medium.turn(self.omega)
+        beam = self.medium.beam
 
         def areas(at: Array) -> Array:
-            return signed_area(lifted(beam, self.slope(at), turn), self.deflection(at))
+            return signed_area(lifted(beam, self.turn(at)), self.deflection(at))
 
         low, high = extremes(areas, self.fine)
         return low, mean_over(areas, self.window, 2 * self.halves[1]), high
@@ -180,21 +182,21 @@ FIGURES: dict[str, Callable[[Seen], float]] = {
 
 
 def measures_of(
-    medium: Medium, omega: float, x: Array, fine: Array, deflection: Along, slope: Along, waves: TwoWaves
+    medium: Medium, omega: float, x: Array, fine: Array, deflection: Along, turn: Along, waves: TwoWaves
 ) -> WaveMeasures:
     """The measures of a field known at any place of the window: means and extremes do not depend on points.
 
     x (n,): where ellipses are given; fine (m,): as `Seen` has it.
     """
     window = float(x[0]), float(x[-1])
-    seen = Seen(medium=medium, omega=omega, window=window, fine=fine, deflection=deflection, slope=slope, waves=waves)
+    seen = Seen(medium=medium, omega=omega, window=window, fine=fine, deflection=deflection, turn=turn, waves=waves)
     return _measures(seen, x)
 
 
 def _measures(seen: Seen, x: Array) -> WaveMeasures:
     """All of them, ellipses at x (n,)."""
     beam, turn = seen.medium.beam, seen.medium.turn(seen.omega)
-    ratio, tilt, area = ellipse(lifted(beam, seen.slope(x), turn), seen.deflection(x))
+    ratio, tilt, area = ellipse(lifted(beam, seen.turn(x)), seen.deflection(x))
     return WaveMeasures(
         window=seen.window,
         waves=seen.waves,
@@ -206,30 +208,28 @@ def _measures(seen: Seen, x: Array) -> WaveMeasures:
         tilt_deg=tilt,
         signed_area=area,
         signed_area_range=seen.signed_area_range(),
-        ideal_axis_ratio=seen.waves.wavenumber.real * beam.surface_distance * turn,
+        ideal_axis_ratio=float(np.real(seen.waves.wavenumber * turn)) * beam.surface_distance,
         crest_speed=seen.crest_speed(),
         energy_flux=seen.energy_flux(),
     )
 
 
-def mean_axis_ratio(
-    medium: Medium, omega: float, window: tuple[float, float], deflection: Along, slope: Along, waves: TwoWaves
-) -> float:
+def mean_axis_ratio(beam: Beam, window: tuple[float, float], deflection: Along, turn: Along, waves: TwoWaves) -> float:
     """The mean of `axis_ratio` over the whole half wavelengths of a window."""
     whole, halves = whole_halves(window, waves.wavenumber.real)
-    turn = medium.turn(omega)
 
     def ratio(at: Array) -> Array:
-        return ellipse(lifted(medium.beam, slope(at), turn), deflection(at))[0]
+        return ellipse(lifted(beam, turn(at)), deflection(at))[0]
 
     return mean_over(ratio, whole, 2 * halves)
 
 
 def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0, x: Numbers | None = None) -> ComplexArray:
-    """u_x of the upper surface, metres: -(h/2) times the turn of the section, `turn` of the slope w'.
+    """u_x of the upper surface, metres: -(h/2) times the turn of the section.
 
-    h/2 is that of the section that stands at x (metres, of the shape of `slope`); where two meet, the one to the
-    right. Raises InputError without x for a beam whose surface has steps.
+    `slope` is that turn (`HarmonicField.turn`), w' where nothing shears; or w' itself of a running wave, with `turn`
+    the part of it that the section turns by. h/2 is that of the section that stands at x (metres, of the shape of
+    `slope`); where two meet, the one to the right. Raises InputError without x for a beam whose surface has steps.
     """
     if x is not None:
         return np.asarray(-surface_distance_at(beam, x) * turn * np.asarray(slope))
@@ -266,8 +266,8 @@ def signed_area(across: ComplexArray, up: ComplexArray) -> Array:
 def crest_speed(medium: Medium, omega: Any, k: Any, forward: Any, backward: Any) -> Any:
     """Speed of the surface at the crests, m/s; works on arrays of amplitudes alike."""
     plus, minus = abs(forward) ** 2, abs(backward) ** 2
-    lever = medium.beam.surface_distance * medium.turn(omega)
-    return -omega * lever * np.real(k) * (plus - minus) / np.sqrt(plus + minus)
+    turning = np.real(k * medium.turn(omega))
+    return -omega * medium.beam.surface_distance * turning * (plus - minus) / np.sqrt(plus + minus)
 
 
 def energy_flux(medium: Medium, omega: Any, k: Any, forward: Any, backward: Any) -> Any:

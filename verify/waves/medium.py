@@ -17,7 +17,8 @@ class Medium(msgspec.Struct, frozen=True):
     def turn(self, omega: Any) -> Any:
         """The turn of the section over the slope of the line in a running wave: 1 where nothing shears.
 
-        kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921).
+        kappa G A (w'' - psi') + (rho A omega^2 - k_f) w = 0 with w'' = -k^2 w (Timoshenko, Phil. Mag. 41, 1921);
+        complex where the beam has losses.
         """
         shear = self.beam.own.shear_stiffness
         if self.theory != "timoshenko" or shear is None:
@@ -25,8 +26,10 @@ class Medium(msgspec.Struct, frozen=True):
         from verify.models.fields import wavenumber
 
         hertz = np.asarray(omega) / (2.0 * np.pi)
-        k2 = np.vectorize(lambda f: (wavenumber(self.beam, float(f), self.theory) ** 2).real)(hertz)
-        return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / (shear * k2)
+        k2 = np.vectorize(lambda f: wavenumber(self.beam, float(f), self.theory) ** 2)(hertz)
+        loss = self.beam.loss_factor
+        held = shear * (1.0 + 1j * loss) * k2 if loss else shear * k2.real
+        return 1.0 - (self.beam.mass_per_length * omega**2 - self.beam.foundation) / held
 
     def beside_shear(self, omega: Any) -> Any:
         """What axial force and rotary inertia add to EI psi'' in the force across, times the slope, newton."""

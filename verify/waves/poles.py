@@ -23,7 +23,7 @@ from msgspec.structs import replace
 from verify.beam import Beam, PointForce
 from verify.errors import ResonanceError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.fields import RESONANCE, HarmonicField, unit_response
+from verify.models.fields import RESONANCE, HarmonicField, combined, unit_response
 
 STEP = 1e-5
 """Relative distance of the frequencies that an interpolation or a derivative takes."""
@@ -206,12 +206,3 @@ def field_at_pole(
     found = shares(answers, conditions, beam, frequency_hz, check)
     parts = zip(found.of_answers[:, :, 0].ravel().tolist(), [field for row in fields for field in row], strict=True)
     return replace(combined(list(parts)), frequency_hz=frequency_hz), found.forces[:, 0]
-
-
-def combined(parts: Sequence[tuple[complex, HarmonicField]]) -> HarmonicField:
-    """The weighted sum of fields, else as the first of them."""
-
-    def shapes(x: Array, derivative: int) -> ComplexArray:
-        return np.asarray(sum(weight * field.shapes(x, derivative) for weight, field in parts))
-
-    return replace(parts[0][1], shapes=shapes)

@@ -1,0 +1,186 @@
+"""The section's own turn by Timoshenko's theory, and what follows it: surfaces, and what bending and shear lose."""
+
+import numpy as np
+import pytest
+import states_reference
+from msgspec.structs import replace
+
+from verify import Beam, PointForce, analytic_modes, fem_beam, load_scene, segment_model
+from verify.attached import PointMass, PointSpring
+from verify.device import Device
+from verify.errors import InputError
+from verify.judge.workbench import Workbench
+from verify.models.catalogue import MODELS
+from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
+from verify.waves.devices import field_with_devices
+from verify.waves.driven import measures, power_imbalance
+from verify.waves.imposed import driven_field
+from verify.waves.medium import Medium
+
+BAR = Beam(
+    length=0.2,
+    width=0.02,
+    thickness=0.018,
+    youngs_modulus=114e9,
+    density=4430.0,
+    poissons_ratio=0.33,
+    loss_factor=0.01,
+    supports=("free", "clamped"),
+)
+SOLVERS = {"analytic": (analytic_modes, ()), "fem": (fem_beam, (120,)), "segment": (segment_model, (400,))}
+FORCE = (PointForce(position=0.045),)
+EVERYWHERE = np.linspace(0.0, 0.2, 61)
+
+
+def solve(model, beam, forces=FORCE, hertz=23000.0, theory="timoshenko", **settings):
+    module, count = SOLVERS[model]
+    return module.solve_harmonic(beam, forces, hertz, *count, theory=theory, **settings)
+
+
+@pytest.mark.parametrize("supports", [("free", "clamped"), ("pinned", "guided"), ("guided", "free")], ids="-".join)
+def test_every_model_turns_as_the_states_along_the_beam_do(supports):
+    beam = replace(BAR, supports=supports, mass=(PointMass(position=0.13, mass=0.02, rotary_inertia=3e-6),))
+    places = [0.003, 0.043, 0.11, 0.187]
+    exact = np.array([states_reference.response(beam, "timoshenko", 23000.0, 0.045, x)[1] for x in places])
+    for model, within in (("analytic", 1e-11), ("fem", 2e-3), ("segment", 2e-3)):
+        assert abs(solve(model, beam).turn(places) - exact).max() < within * abs(exact).max()
+
+
+def test_what_is_clamped_keeps_its_section_upright_while_its_line_slopes():
+    for model in SOLVERS:
+        field = solve(model, BAR)
+        size = abs(field.turn(EVERYWHERE)).max()
+        assert abs(field.turn(0.2)) < 1e-12 * size
+    field = solve("analytic", BAR)
+    assert abs(field.slope(0.2)) > 0.1 * size
+
+
+def test_shear_balances_what_the_bar_between_two_places_is_driven_with():
+    """(kappa G A (w' - psi))' = -rho A omega^2 w over a stretch without forces, with the loss in kappa G A."""
+    field = solve("analytic", BAR)
+    stiffness = BAR.own.shear_stiffness * (1.0 + 0.01j)
+    ends = [stiffness * (field.slope(x) - field.turn(x)) for x in (0.06, 0.16)]
+    points, weights = np.polynomial.legendre.leggauss(40)
+    swung = 0.05 * weights @ field.deflection(0.11 + 0.05 * points)
+    assert ends[1] - ends[0] == pytest.approx(-BAR.mass_per_length * field.omega**2 * swung, rel=1e-11)
+
+
+def test_the_turn_of_links_has_order_two_next_to_a_clamped_wall():
+    beam, near = replace(BAR, supports=("clamped", "clamped")), 0.2 - np.array([0.0003, 0.0011, 0.0024])
+    true = solve("analytic", beam).turn(near)
+    off = [
+        abs(segment_model.solve_harmonic(beam, FORCE, 23000.0, n, theory="timoshenko").turn(near) - true).max()
+        for n in (200, 400)
+    ]
+    assert off[1] < 0.3 * off[0]
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"spring": (PointSpring(position=0.0, rotational=3e4),), "supports": ("pinned", "free")},
+        {"mass": (PointMass(position=0.0, mass=0.02, rotary_inertia=2e-6),), "supports": ("free", "pinned")},
+        {
+            "mass": (PointMass(position=0.2, rotary_inertia=2e-6),),
+            "spring": (PointSpring(position=0.2, rotational=3e4),),
+            "supports": ("guided", "pinned"),
+        },
+    ],
+    ids=["spring", "body", "body on a spring"],
+)
+def test_an_end_that_turns_against_something_turns_as_far_in_links(more):
+    beam = replace(BAR, **more)
+    true, found = (solve(model, beam, hertz=9000.0).turn(EVERYWHERE) for model in ("analytic", "segment"))
+    assert abs(found - true).max() < 5e-4 * abs(true).max()
+
+
+@pytest.mark.parametrize("model", SOLVERS)
+def test_the_turn_has_the_derivative_that_it_is_told_with(model):
+    field, x, h = solve(model, BAR), np.array([0.0123, 0.0917, 0.1533]), 1e-6
+    steep = (field.turns(x + h, 0) - field.turns(x - h, 0)) / (2.0 * h)
+    assert abs(field.turns(x, 1) - steep).max() < 1e-6 * abs(steep).max()
+
+
+@pytest.mark.parametrize("theory", ["euler-bernoulli", "rayleigh"])
+@pytest.mark.parametrize("model", SOLVERS)
+def test_what_does_not_shear_turns_as_its_line_slopes(model, theory):
+    field = solve(model, BAR, theory=theory)
+    assert (field.turn(EVERYWHERE) == field.slope(EVERYWHERE)).all()
+
+
+@pytest.mark.parametrize("model", SOLVERS)
+def test_sweeps_devices_and_imposed_motion_keep_the_turn(model):
+    module, count = SOLVERS[model]
+    alone = solve(model, BAR)
+    turn = alone.turn(EVERYWHERE)
+    size = abs(turn).max()
+    sweep = module.sweep_harmonic(BAR, FORCE, [21000.0, 23000.0], *count, theory="timoshenko")
+    assert abs(sweep.field(1).turn(EVERYWHERE) - turn).max() < 1e-9 * size
+
+    def given(beam, forces, hertz):
+        return solve(model, beam, forces, hertz)
+
+    idle = field_with_devices(given, BAR, FORCE, 23000.0, Device(position=0.1, mass=1e-12))
+    assert abs(idle.turn(EVERYWHERE) - turn).max() < 1e-6 * size
+    lift = alone.deflection([0.045])[0]
+    drive = [PointForce(position=0.045, amplitude=float(abs(lift)), phase_deg=float(np.rad2deg(np.angle(lift))))]
+    held = driven_field(lambda forces, hertz: solve(model, BAR, forces, hertz), drive, 23000.0, "displacement")
+    assert abs(held.turn(EVERYWHERE) - turn).max() < 1e-9 * size
+
+
+def test_a_pure_wave_turns_its_sections_as_the_medium_says_with_losses_too():
+    """Far from the force on a long bar with an end that swallows nothing in time: e^{-ikx} times what is left of it."""
+    beam = replace(BAR, length=3.0, loss_factor=0.08, supports=("pinned", "pinned"))
+    field = solve("analytic", beam, (PointForce(position=0.1),), 30000.0)
+    turn = Medium(beam, "timoshenko").turn(field.omega)
+    assert field.turn(1.0) / field.slope(1.0) == pytest.approx(turn, rel=1e-5)
+    assert abs(turn.imag) > 1e-3
+
+
+@pytest.mark.parametrize(("model", "within"), [("analytic", 1e-7), ("fem", 1e-3)])
+@pytest.mark.parametrize("loss_factor", [0.005, 0.03])
+def test_forces_give_what_bending_and_shear_lose_and_waves_carry(model, within, loss_factor):
+    beam = replace(BAR, length=0.9, loss_factor=loss_factor, supports=("pinned", "clamped"))
+    forces = (PointForce(position=0.04, amplitude=3.0), PointForce(position=0.86, amplitude=2.0, phase_deg=60.0))
+    count = {"analytic": (), "fem": (450,)}[model]
+    field = SOLVERS[model][0].solve_harmonic(beam, forces, 47000.0, *count, theory="timoshenko")
+    assert abs(power_imbalance(field, measures(field, None))) < within
+
+
+@pytest.mark.parametrize("x", [0.001, 0.03, 0.1, 0.195])
+def test_a_surface_point_near_forces_and_ends_moves_as_its_section_turns(x):
+    paper = load_scene("paper-wave")
+    forces = (PointForce(position=0.02), PointForce(position=0.17, phase_deg=90.0))
+    given = tuple(
+        replace(one, position=at, measured_from="left") for one, at in zip(paper.drive.force, (0.02, 0.17), strict=True)
+    )
+    assert [(f.amplitude, f.phase_deg) for f in paper.drive.force] == [(1.0, 0.0), (1.0, 90.0)]
+    scene = replace(paper, beam=BAR, drive=replace(paper.drive, frequency_hz=30000.0, force=given))
+    lifts, turns = np.array(
+        [states_reference.response(BAR, "timoshenko", 30000.0, force.position, x) for force in forces]
+    ).T
+    up, across = lifts @ [1.0, 1j], -0.009 * (turns @ [1.0, 1j])
+    area = 2.0 * (np.conj(across) * up).imag / (abs(across) ** 2 + abs(up) ** 2)
+    exact = np.tan(0.5 * np.arcsin(area))
+    ratio = QUANTITIES["wave.axis_ratio"]
+    for given, within in (({"model": "analytic"}, 1e-10), ({"model": "fem", "count": 100}, 1e-3)):
+        asked = arguments_of(ratio, given | {"theory": "timoshenko", "x": x})
+        assert evaluate(ratio, asked, scene, Workbench(BAR)) == pytest.approx(exact, rel=within)
+
+
+class Untold(type(MODELS["analytic"])):
+    """The exact beam, that does not say how its sections turn."""
+
+    name, title = "untold", "Untold"
+
+    def solve_harmonic(self, beam, forces, frequency_hz, count, **settings):
+        field = super().solve_harmonic(beam, forces, frequency_hz, count, **settings)
+        return replace(field, model="untold", turned=None)
+
+
+def test_a_timoshenko_field_without_a_turn_has_deflections_and_no_surface():
+    field = Untold().solve_harmonic(BAR, FORCE, 23000.0, None, theory="timoshenko")
+    assert abs(field.deflection(0.1)) > 0.0
+    with pytest.raises(InputError, match="fields of model = 'untold' tell no turn of the section"):
+        field.turn(0.1)
+    assert Untold().solve_harmonic(BAR, FORCE, 23000.0, None).turn(0.1)
