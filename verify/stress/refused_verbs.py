@@ -274,7 +274,6 @@ def of_chains() -> Iterator[Case]:
     yield Case("time = 1 s in steps of 1e-05 s", ridden(duration=1.0))
     yield Case("segments = 1", ridden(count=1))
     yield Case("slider.line = 'raw'", ridden(replace(SLIDER, line="raw")))
-    yield Case("beam.section has a thickness", ridden(beam=STEPPED))
     yield Case("time = 0.001 s takes about", kicked)
     yield Case("chain.dashpots up to 0.001", seen(1e-3), seen(0.0))
 
