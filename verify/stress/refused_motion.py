@@ -78,7 +78,7 @@ ROWS: tuple[Row, ...] = (
         Case("envelope", run(**growing(0.0, 1.0)), run(**growing(0.01, 0.0, 1.0))),
         Case("envelope", run(**growing(0.01))),
         Case("envelope", run(**growing(0.01, nan))),
-        Case("count = 6 and this run of model = 'segment', count = 7: give both the same", going_on(7)),
+        Case("continue_from is of model = 'segment', count = 6 and this run of", going_on(7)),
         Case("steps_per_period = 0", run(steps_per_period=0), run(steps_per_period=1)),
         Case("step = 0.0", run(step=0.0), run(step=1e-5)),
         Case("step = 1e-12", run(step=1e-12)),
