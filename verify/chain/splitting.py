@@ -266,6 +266,7 @@ def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kick
         drives=basis.drives,
         shares=np.ascontiguousarray(basis.shares[:, chosen]),
         tilt=basis.tilt,
+        loose=flatten(basis.system, ledger=False)._replace(tip=records.FREE),
         start=np.zeros((m, 2)),
         steady=np.zeros((m, 2)),
         trial=np.zeros((m, 2)),
@@ -288,7 +289,7 @@ class _Modal:
         self.begin = _free(basis, start)
         self.flat, self.work = flatten(basis.system, ledger=False), workspace(basis.system)
         self.kept = np.zeros((len(samples), 2, len(chosen)))
-        self.clock, self.counts = np.array([start.time, step]), np.zeros(5, dtype=np.int64)
+        self.clock, self.counts = np.array([start.time, step, 0.0]), np.zeros(5, dtype=np.int64)
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.kept[:at_start], self.counts[3] = (self.begin + steady)[chosen].T, at_start
         self.free = np.ascontiguousarray(self.begin[chosen])
@@ -327,6 +328,7 @@ class _Modal:
             wall_s=took[1],
             stopped=stopped,
             started=started,
+            furthest=float(self.clock[2]),
         )
         return ChainMotion(
             system=basis.system,

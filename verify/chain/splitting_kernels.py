@@ -2,11 +2,17 @@
 
 import numpy as np
 
-from verify.chain.kernels import accelerate, torn
+from verify.chain.held_kernels import SETTLED
+from verify.chain.kernels import accelerate, furthest, torn
 from verify.chain.records import DIVERGED, DONE, HALF, RUNNING, Flat, Modal
-from verify.chain.recursion_kernels import direction
+from verify.chain.recursion_kernels import direction, solve
 from verify.models.arrays import Array, Indices
 from verify.models.kernels import lean, part
+
+FAR = 0.1
+"""Share by which the last mode's hold on the tip may change before the roller is closed afresh."""
+NEWTON_STEPS = 20
+"""Of closing afresh; three or four do where the links stand near the line."""
 
 
 @part(fastmath={"contract"})
@@ -58,16 +64,71 @@ def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
 
 
 @part(fastmath={"contract"})
-def _close(f: Flat, tilt: float, free: Array, work: Array) -> None:
-    """One chord step of the roller's closure along the last mode, which turns the tip off its line by `tilt`."""
-    gap, speed = 0.0, 0.0
+def _close(f: Flat, d: Modal, free: Array, work: Array) -> bool:
+    """Bring the roller back to its line; whether it came there.
+
+    A chord step along the last mode, which turns the tip off its line by `d.tilt` at rest, as long as it still does;
+    afresh from where the links stand once they have turned further.
+    """
+    gap, speed, turn, lever, last = 0.0, 0.0, 0.0, 0.0, free.shape[0] - 1
     for i in range(f.links.shape[0]):
         c, s = direction(work[i, 2])
+        turn += d.modes[last, i]
         gap += 2.0 * f.links[i, HALF] * s
         speed += 2.0 * f.links[i, HALF] * c * work[i, 3]
-    last = free.shape[0] - 1
-    free[last, 0] -= gap / tilt
-    free[last, 1] -= speed / tilt
+        lever += 2.0 * f.links[i, HALF] * c * turn
+    if not abs(lever - d.tilt) < FAR * abs(d.tilt):
+        _find_way(d, work)
+        return _land(d, free, work)
+    free[last, 0] -= gap / d.tilt
+    free[last, 1] -= speed / d.tilt
+    return True
+
+
+@part(fastmath={"contract"})
+def _find_way(d: Modal, work: Array) -> None:
+    """How a force of the roller moves the links as they stand: the way back to its line that works on nothing else.
+
+    The share in it of each mode goes into `d.force`, the turn of each link into `d.vectors[0]`.
+    """
+    n, relative, way = d.rest.size, d.vectors[2], d.vectors[0]
+    for i in range(n):
+        work[i, 15] = work[i, 3]
+        work[i, 3], work[i, 4], work[i, 5], work[i, 6] = 0.0, 0.0, 0.0, 0.0
+    work[n - 1, 5], work[n - 1, 4] = direction(work[n - 1, 2])
+    work[n - 1, 6] = d.loose.links[n - 1, HALF] * work[n - 1, 5]
+    solve(d.loose, 0.0, work)
+    before = 0.0
+    for i in range(n):
+        work[i, 3], relative[i], way[i] = work[i, 15], work[i, 12] - before, 0.0
+        before = work[i, 12]
+    _reduce(d.duals, relative, d.force)
+    for j in range(d.force.size):
+        turn = 0.0
+        for i in range(n):
+            turn += d.modes[j, i]
+            way[i] += d.force[j] * turn
+
+
+@part(fastmath={"contract"})
+def _land(d: Modal, free: Array, work: Array) -> bool:
+    """Newton's method along the way found, and rates that stay on the line; whether it came there."""
+    went, way, links = 0.0, d.vectors[0], d.loose.links
+    for _ in range(NEWTON_STEPS):
+        gap, speed, lever, longest = 0.0, 0.0, 0.0, 0.0
+        for i in range(way.size):
+            c, s = direction(work[i, 2] - went * way[i])
+            gap += 2.0 * links[i, HALF] * s
+            speed += 2.0 * links[i, HALF] * c * work[i, 3]
+            lever += 2.0 * links[i, HALF] * c * way[i]
+            longest = abs(way[i]) if abs(way[i]) > longest else longest
+        went += gap / lever
+        if abs(gap / lever) * longest < SETTLED:
+            for j in range(free.shape[0]):
+                free[j, 0] -= went * d.force[j]
+                free[j, 1] -= speed / lever * d.force[j]
+            return True
+    return False
 
 
 @part(fastmath={"contract"})
@@ -162,8 +223,9 @@ def march_modal(
             _rotate(d.flows[k], free)
             t += d.shares_of_step[k] * h
             _kick(f, d, t, d.kicks[k] * h, free, work)
-            if d.tilt != 0.0:
-                _close(f, d.tilt, free, work)
+            if d.tilt != 0.0 and not _close(f, d, free, work):
+                return DIVERGED
+            clock[2] = furthest(clock[2], work, d.rest.size)
         _rotate(d.flows[d.kicks.size], free)
         if torn(d.vectors[1], h):
             return DIVERGED
