@@ -7,6 +7,10 @@ Robutel, Celest. Mech. Dyn. Astron. 80 (2001) 39) errors are of order 4 times th
 square. With all modes a step costs O(N^2), with m of them O(N m). Modes left out move as the linear chain's; what they
 add to the axial inertia is lost, a part (up to a quarter was seen) of the nonlinear part of the motion. The kicks
 are explicit: where the nonlinearity is not small in a step the motion diverges, is stopped and says so.
+
+The roller's closure is one chord step along the last mode after each kick while links have turned little; once they
+have not, Newton's method at the end of each step, along the way in which the roller's force moves the links as they
+stand. A chain that cannot be brought back to the line is stopped likewise.
 """
 
 from collections.abc import Sequence
