@@ -1,6 +1,7 @@
 """The contact code of the linear beams on the nonlinear chain."""
 
 import dataclasses
+from functools import partial
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -12,6 +13,7 @@ from msgspec.structs import replace
 
 from verify import segment_model
 from verify.beam import PointForce
+from verify.chain import far
 from verify.chain.dynamics import at_rest, linearise
 from verify.chain.problems import contact_line_error
 from verify.chain.ride import _of_rigid, _surface, check_rideable, coupling_on_chain, half_steps, ride, ride_from_rest
@@ -220,6 +222,18 @@ def test_a_slider_that_the_chain_would_feel_is_refused_before_the_chain_moves(pa
     slider = replace(replace(SLIDER, coupling="auto"), **changed)
     with pytest.raises(InputError, match=words):
         ride_from_rest(paper_beam, forces(1.0), 4276.0, slider, 25, 1e-4, step=STEP)
+
+
+def test_a_slider_is_told_of_no_motion_that_another_tolerance_does_not_confirm(paper_beam, monkeypatch):
+    """Bounds of here make it far, and unknown: links of this beam turn far under tens of kilonewtons alone."""
+    monkeypatch.setattr(far, "FAR", 1e-6)
+    run = partial(ride_from_rest, paper_beam, forces(30.0), 4276.0, SLIDER, 9, 1e-4, step=STEP, tolerance=1e-7)
+    assert run().statistics.finished
+    monkeypatch.setattr(far, "KNOWN", 1e-12)
+    with pytest.raises(
+        InputError, match=r"tolerance = 1e-07 leaves the motion unknown .*, and with tolerance = 1e-06 "
+    ):
+        run()
 
 
 def test_a_chain_that_no_load_drives_has_no_size_to_go_by(paper_beam):

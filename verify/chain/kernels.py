@@ -105,6 +105,15 @@ def torn(rates: Array, h: float) -> bool:
     return not fine
 
 
+@part()
+def furthest(before: float, work: Array, n: int) -> float:
+    """The largest of a number and the turns of n links from the straight chain, which stand in column 2, radians."""
+    for i in range(n):
+        turn = abs(work[i, 2])
+        before = turn if turn > before else before
+    return before
+
+
 @part(fastmath={"contract"})
 def _propose(error: float, order: float, h: float) -> float:
     """The next step after one with this error over its tolerance."""
@@ -149,6 +158,7 @@ def march(f: Flat, m: March, budget: int, work: Array) -> int:
                 continue
         m.counts[0] += 1
         m.clock[0] = t + h
+        m.scale[5] = furthest(m.scale[5], work, n)
         _keep_samples(m, t, h)
         for i in range(m.y.size):
             m.y[i], m.k[0, i] = m.new[i], m.k[last, i]

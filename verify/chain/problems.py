@@ -8,6 +8,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.chain.dynamics import at_rest, linearise, positions, project
+from verify.chain.far import refuse_unknown
 from verify.chain.result import ChainMotion
 from verify.chain.splitting import modal_basis, simulate_linear, simulate_modal
 from verify.chain.statics import solve_static
@@ -263,7 +264,8 @@ def transient(
     """The chain from rest under harmonic forces A cos(2 pi f t + phase) on its links.
 
     `method` is "adaptive" with a tolerance (default 1e-9), "rk4" or "modal" (two kicks) with a step, or "linear" for
-    the exact linear flow, which takes neither and whose links have no inertia along x in any case. Raises InputError.
+    the exact linear flow, which takes neither and whose links have no inertia along x in any case. Raises InputError,
+    also for a far motion that a second run with another step or tolerance does not confirm (`chain.far`).
     """
     _check_settings(method, step, tolerance)
     if method in ("linear", "modal"):
@@ -272,16 +274,29 @@ def transient(
     system = build_system(beam, n_segments, forces, frequency_hz, axial_inertia=axial_inertia)
     start = at_rest(system)
     if method == "linear":
-        motion = simulate_linear(modal_basis(system), start, times)
-    elif method == "modal":
-        assert step is not None
-        motion = simulate_modal(modal_basis(system), start, times, step=step, most=most)
-    elif method == "rk4":
-        motion = simulate(system, start, times, method="rk4", step=step, ledger=False, most=most, progress=progress)
-    else:
-        motion = simulate(system, start, times, tolerance=tolerance or 1e-9, ledger=False, most=most, progress=progress)
+        return simulate_linear(modal_basis(system), start, times)
+    run = _nonlinear(system, start, times, method)
+    given = (tolerance or 1e-9) if step is None else step
+    motion = run(given, most, progress)
     _finished(motion)
+    refuse_unknown(motion, method, given, lambda other: run(other, 2.0 * most, unheard))
     return motion
+
+
+def _nonlinear(
+    system: ChainSystem, start: ChainState, times: Sequence[float], method: str
+) -> Callable[[float, float, Progress], ChainMotion]:
+    """(step or tolerance, most, progress) -> the motion by a method, without a ledger."""
+    if method == "modal":
+        basis = modal_basis(system)
+        return lambda step, most, progress: simulate_modal(basis, start, times, step=step, most=most)
+    if method == "rk4":
+        return lambda step, most, progress: simulate(
+            system, start, times, method="rk4", step=step, ledger=False, most=most, progress=progress
+        )
+    return lambda tolerance, most, progress: simulate(
+        system, start, times, tolerance=tolerance, ledger=False, most=most, progress=progress
+    )
 
 
 def contact_line_error(

@@ -69,7 +69,7 @@ class March(NamedTuple):
     kept: Array
     """(n, 2N + 2)."""
     scale: Array
-    """(5,): relative tolerance, absolute ones of angles and rates, the largest means of both so far."""
+    """(6,): relative tolerance, absolute ones of angles and rates, largest so far: means of both, turn of a link."""
     pivots: Indices
     """(n_held,), dependent angles."""
 
@@ -99,6 +99,8 @@ class Modal(NamedTuple):
     """(n_loads, m), steady amplitudes."""
     tilt: float
     """Metres: how far the last mode moves the tip off the roller's line; 0 without a roller."""
+    loose: Flat
+    """The chain without its roller."""
     start: Array
     """(m, 2)."""
     steady: Array

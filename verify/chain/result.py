@@ -25,6 +25,8 @@ class ChainStatistics(Statistics, frozen=True, kw_only=True):
     """'consistent', or how far the start had to be moved onto the held points."""
     pivot_changes: int = 0
     """How often other angles were chosen to depend on the held points."""
+    furthest: float = 0.0
+    """Largest turn of a link from the straight chain at the end of a step, radians; 0 where no step was taken."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,6 +48,8 @@ class MovedChain:
 class ChainMotion(MovedChain):
     """States of a chain at the times kept, and its energy ledger."""
 
+    statistics: ChainStatistics
+    """What it cost, how it started and ended, how far links turned."""
     angles: Array
     """(n, N), relative, radians."""
     rates: Array

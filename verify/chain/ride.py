@@ -6,6 +6,7 @@ the chain, and the surface moves along with them.
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from time import perf_counter
 
 import msgspec
@@ -13,6 +14,7 @@ import numpy as np
 
 from verify.beam import Beam, PointForce
 from verify.chain.dynamics import at_rest
+from verify.chain.far import refuse_unknown
 from verify.chain.result import ChainMotion
 from verify.chain.stepping import simulate
 from verify.chain.stretching import ElasticMotion, simulate_elastic
@@ -229,11 +231,13 @@ def ride_from_rest(
     check_kept(len(times), n_segments, f"time = {written(duration)} s in steps of {step:.3g} s")
     check_rideable(system, beam, slider)
     coupling_on_chain(system, beam, slider)
-    moved: ChainMotion | ElasticMotion = (
-        simulate_elastic(system, axial_stiffness(beam, n_segments), times, most=most)
-        if links == "stretching"
-        else simulate(system, at_rest(system), times, tolerance=tolerance, ledger=False, most=most, progress=progress)
-    )
+    moved: ChainMotion | ElasticMotion
+    if links == "stretching":
+        moved = simulate_elastic(system, axial_stiffness(beam, n_segments), times, most=most)
+    else:
+        run = partial(simulate, system, at_rest(system), times, ledger=False, most=most)
+        moved = run(tolerance=tolerance, progress=progress)
+        refuse_unknown(moved, "adaptive", tolerance, lambda other: run(tolerance=other))
     check_moved(moved)
     found = ride(moved, beam, slider)
     if not found.statistics.finished:

@@ -7,6 +7,10 @@ Robutel, Celest. Mech. Dyn. Astron. 80 (2001) 39) errors are of order 4 times th
 square. With all modes a step costs O(N^2), with m of them O(N m). Modes left out move as the linear chain's; what they
 add to the axial inertia is lost, a part (up to a quarter was seen) of the nonlinear part of the motion. The kicks
 are explicit: where the nonlinearity is not small in a step the motion diverges, is stopped and says so.
+
+The roller's closure is one chord step along the last mode after each kick while links have turned little; once they
+have not, Newton's method at the end of each step, along the way in which the roller's force moves the links as they
+stand. A chain that cannot be brought back to the line is stopped likewise.
 """
 
 from collections.abc import Sequence
@@ -266,6 +270,7 @@ def _flattened(basis: ModalBasis, chosen: Any, samples: Array, step: float, kick
         drives=basis.drives,
         shares=np.ascontiguousarray(basis.shares[:, chosen]),
         tilt=basis.tilt,
+        loose=flatten(basis.system, ledger=False)._replace(tip=records.FREE),
         start=np.zeros((m, 2)),
         steady=np.zeros((m, 2)),
         trial=np.zeros((m, 2)),
@@ -288,7 +293,7 @@ class _Modal:
         self.begin = _free(basis, start)
         self.flat, self.work = flatten(basis.system, ledger=False), workspace(basis.system)
         self.kept = np.zeros((len(samples), 2, len(chosen)))
-        self.clock, self.counts = np.array([start.time, step]), np.zeros(5, dtype=np.int64)
+        self.clock, self.counts = np.array([start.time, step, 0.0]), np.zeros(5, dtype=np.int64)
         at_start = int(np.searchsorted(samples, start.time, side="right"))
         self.kept[:at_start], self.counts[3] = (self.begin + steady)[chosen].T, at_start
         self.free = np.ascontiguousarray(self.begin[chosen])
@@ -327,6 +332,7 @@ class _Modal:
             wall_s=took[1],
             stopped=stopped,
             started=started,
+            furthest=float(self.clock[2]),
         )
         return ChainMotion(
             system=basis.system,

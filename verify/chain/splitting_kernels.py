@@ -2,11 +2,17 @@
 
 import numpy as np
 
-from verify.chain.kernels import accelerate, torn
+from verify.chain.held_kernels import SETTLED, place
+from verify.chain.kernels import accelerate, furthest, torn
 from verify.chain.records import DIVERGED, DONE, HALF, RUNNING, Flat, Modal
-from verify.chain.recursion_kernels import direction
+from verify.chain.recursion_kernels import cosines, direction, solve
 from verify.models.arrays import Array, Indices
 from verify.models.kernels import lean, part
+
+FAR = 0.1
+"""Share by which the last mode's hold on the tip may change before the roller is closed afresh."""
+NEWTON_STEPS = 20
+"""Of closing afresh; three or four do where the links stand near the line."""
 
 
 @part(fastmath={"contract"})
@@ -58,16 +64,86 @@ def forced(t: float, drives: Array, shares: Array, out: Array) -> None:
 
 
 @part(fastmath={"contract"})
-def _close(f: Flat, tilt: float, free: Array, work: Array) -> None:
-    """One chord step of the roller's closure along the last mode, which turns the tip off its line by `tilt`."""
-    gap, speed = 0.0, 0.0
+def _close(f: Flat, d: Modal, free: Array, work: Array) -> bool:
+    """One chord step of the roller's closure along the last mode, which turns the tip off its line by `d.tilt` at rest.
+
+    Whether it still does so where the links stand, to a share of `FAR`.
+    """
+    gap, speed, turn, lever, last = 0.0, 0.0, 0.0, 0.0, free.shape[0] - 1
     for i in range(f.links.shape[0]):
         c, s = direction(work[i, 2])
+        turn += d.modes[last, i]
         gap += 2.0 * f.links[i, HALF] * s
         speed += 2.0 * f.links[i, HALF] * c * work[i, 3]
-    last = free.shape[0] - 1
-    free[last, 0] -= gap / tilt
-    free[last, 1] -= speed / tilt
+        lever += 2.0 * f.links[i, HALF] * c * turn
+    free[last, 0] -= gap / d.tilt
+    free[last, 1] -= speed / d.tilt
+    return bool(abs(lever - d.tilt) < FAR * abs(d.tilt))
+
+
+@part(fastmath={"contract"})
+def _settle(d: Modal, t: float, afresh: bool, free: Array, work: Array) -> bool:
+    """Bring the chain at the end of a step onto the roller's line; whether it came there.
+
+    The way is `afresh` that of the roller's force as the links stand, which works on no motion along the line; or the
+    last mode, which takes back what its own chord steps have left.
+    """
+    forced(t, d.drives, d.shares, d.steady)
+    for j in range(free.shape[0]):
+        d.trial[j, 0], d.trial[j, 1] = free[j, 0] + d.steady[j, 0], free[j, 1] + d.steady[j, 1]
+        d.force[j] = 0.0
+    d.force[free.shape[0] - 1] = 1.0
+    _expand(d.modes, d.trial, d.rest, d.vectors[0], d.vectors[1])
+    place(d.loose, t, d.vectors[0], d.vectors[1], work)
+    if afresh:
+        cosines(d.vectors[0], work)
+        _find_way(d, work)
+    for i in range(d.rest.size):
+        d.vectors[0, i] = 0.0
+    for j in range(free.shape[0]):
+        turn = 0.0
+        for i in range(d.rest.size):
+            turn += d.modes[j, i]
+            d.vectors[0, i] += d.force[j] * turn
+    return _land(d, free, work)
+
+
+@part(fastmath={"contract"})
+def _find_way(d: Modal, work: Array) -> None:
+    """How a force of the roller moves the links as they stand: its share in each mode into `d.force`."""
+    n, relative = d.rest.size, d.vectors[2]
+    for i in range(n):
+        work[i, 17] = work[i, 3]
+        work[i, 3], work[i, 4], work[i, 5], work[i, 6] = 0.0, 0.0, 0.0, 0.0
+    work[n - 1, 5], work[n - 1, 4] = direction(work[n - 1, 2])
+    work[n - 1, 6] = d.loose.links[n - 1, HALF] * work[n - 1, 5]
+    solve(d.loose, 0.0, work)
+    before = 0.0
+    for i in range(n):
+        work[i, 3], relative[i] = work[i, 17], work[i, 12] - before
+        before = work[i, 12]
+    _reduce(d.duals, relative, d.force)
+
+
+@part(fastmath={"contract"})
+def _land(d: Modal, free: Array, work: Array) -> bool:
+    """Newton's method along a way, which turns the links by `d.vectors[0]`, and rates that stay on the line."""
+    went, way, links = 0.0, d.vectors[0], d.loose.links
+    for _ in range(NEWTON_STEPS):
+        gap, speed, lever, longest = 0.0, 0.0, 0.0, 0.0
+        for i in range(way.size):
+            c, s = direction(work[i, 2] - went * way[i])
+            gap += 2.0 * links[i, HALF] * s
+            speed += 2.0 * links[i, HALF] * c * work[i, 3]
+            lever += 2.0 * links[i, HALF] * c * way[i]
+            longest = abs(way[i]) if abs(way[i]) > longest else longest
+        went += gap / lever
+        if abs(gap / lever) * longest < SETTLED:
+            for j in range(free.shape[0]):
+                free[j, 0] -= went * d.force[j]
+                free[j, 1] -= speed / lever * d.force[j]
+            return True
+    return False
 
 
 @part(fastmath={"contract"})
@@ -149,22 +225,28 @@ def march_modal(
 ) -> int:
     """Exact linear flow of the modes and nonlinear kicks in turn, a fixed step; modal states are kept.
 
-    A step is flow 0, kick 0, flow 1, ..., the last flow.
+    A step is flow 0, kick 0, flow 1, ..., the last flow. `counts[4]` says whether links have turned too far for the
+    chord steps between them: the roller is closed afresh at the end of each step from then on.
     """
     h = clock[1]
     for _ in range(budget):
         if counts[3] >= samples.size:
             return DONE
-        t = clock[0]
+        t, far, near = clock[0], counts[4] > 0, counts[4] == 0
         for j in range(free.shape[0]):
             d.start[j, 0], d.start[j, 1] = free[j, 0], free[j, 1]
         for k in range(d.kicks.size):
             _rotate(d.flows[k], free)
             t += d.shares_of_step[k] * h
             _kick(f, d, t, d.kicks[k] * h, free, work)
-            if d.tilt != 0.0:
-                _close(f, d.tilt, free, work)
+            if d.tilt != 0.0 and not far:
+                near = _close(f, d, free, work) and near
+            clock[2] = furthest(clock[2], work, d.rest.size)
         _rotate(d.flows[d.kicks.size], free)
+        if far or not near:
+            if not _settle(d, clock[0] + h, far, free, work):
+                return DIVERGED
+            counts[4] = 1
         if torn(d.vectors[1], h):
             return DIVERGED
         counts[0] += 1

@@ -164,7 +164,7 @@ class _Run:
             kept=np.zeros((len(samples), size)),
             clock=np.array([start.time, first, 0.0 if dependent else PIVOT_LOSS]),
             counts=np.zeros(5, dtype=np.int64),
-            scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0]),
+            scale=np.array([tolerance, floor, floor * max(fastest, 1.0), 0.0, 0.0, 0.0]),
             pivots=choose_pivots(rows) if dependent is None else np.array([d - 1 for d in dependent], dtype=np.int64),
         )
         n, y, first_rates = system.n_links, self.m.y, self.m.k[0]
@@ -228,6 +228,7 @@ class _Run:
                 stopped=stopped,
                 started=started,
                 pivot_changes=changes,
+                furthest=float(self.m.scale[5]),
             ),
         )
 

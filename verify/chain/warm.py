@@ -96,6 +96,7 @@ def _modal() -> Modal:
         drives=flat,
         shares=flat,
         tilt=0.0,
+        loose=_flat(),
         start=flat,
         steady=flat,
         trial=flat,
