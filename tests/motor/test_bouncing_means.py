@@ -201,3 +201,13 @@ def test_a_free_run_without_a_steady_end_is_refused_with_field_value_and_remedy(
     asked = quantity.arguments(model="analytic", preload=0.002, periods=60, last=20)
     with pytest.raises(InputError, match=r"periods = 60 with last = 20: the free run has no steady end.* give more"):
         quantity.evaluate(asked, scene, Workbench(scene.beam))
+
+
+@pytest.mark.parametrize(("given", "pushed"), [({"mass": 1.0}, "0.97 of mu N"), ({"mass": 10.0}, "1 of mu N")])
+def test_a_slider_that_friction_still_speeds_up_has_no_free_speed(given, pushed):
+    """Its halves run nearly alike beside the crests; friction takes seconds to bring it to their speed."""
+    scene = load_scene("preloaded-motor")
+    for name in ("free_speed", "start_time"):
+        quantity = QUANTITIES[f"slider.{name}"]
+        with pytest.raises(InputError, match=rf"no steady end.*{pushed} push it on"):
+            quantity.evaluate(quantity.arguments(model="analytic", **given), scene, Workbench(scene.beam))

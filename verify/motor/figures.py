@@ -45,6 +45,8 @@ REACHED = 1.0 - np.exp(-1.0)
 """Of the no-load speed, at the time constant of starting."""
 ALIKE = 0.05
 """Of the crests' speed: by so much the halves of a free run's end may differ."""
+PUSHED = 0.01
+"""Of mu N: so much may still push a free slider along at its end."""
 CARRIED = 0.1
 """Of what presses on: by so much the normal force of that end may miss it."""
 LONGEST = 4000
@@ -354,14 +356,22 @@ def mean_speed(run: MotorRun, last: int) -> tuple[float, float]:
     return float(mean), float(abs(late - early))
 
 
-def comes_to_speed(run: MotorRun, last: int, crests: float) -> bool:
-    """Whether the end of a free run, so many samples, is one: its halves run alike and it carries what presses on.
+def pushed_on(run: MotorRun, last: int) -> float:
+    """What pushes a free slider along in the mean of its last so many samples, over mu N: its momentum tells."""
+    slider = run.slider
+    assert slider is not None
+    seconds = float(run.times[-1] - run.times[-1 - last // 2])
+    return float(slider.mass * mean_speed(run, last)[1] / seconds / (slider.mu * slider.normal_force))
 
-    `crests` is the first-order speed of the surface, m/s.
+
+def comes_to_speed(run: MotorRun, last: int, crests: float) -> bool:
+    """Whether the end of a free run, so many samples, is one: nothing pushes it on and it carries what presses on.
+
+    `crests` is the first-order speed of the surface, m/s, beside which its halves run alike.
     """
     slider = run.slider
     assert slider is not None
-    alike = mean_speed(run, last)[1] <= ALIKE * crests
+    alike = mean_speed(run, last)[1] <= ALIKE * crests and pushed_on(run, last) <= PUSHED
     if not told_by_balance(slider):
         return alike
     off = abs(float(run.normal_force[-last:].mean()) - slider.normal_force)

@@ -198,7 +198,7 @@ def _no_load(a: Held, scene: "Scene", bench: Workbench) -> float:
 
 def _free_speed(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
     """Raises InputError where the run has no steady end."""
-    from verify.motor.figures import comes_to_speed, crest_speed, mean_speed
+    from verify.motor.figures import comes_to_speed, crest_speed, mean_speed, pushed_on
 
     run, case = _free(a, scene, bench), motor_case(a, scene)
     speed, spread = mean_speed(run, a.last)
@@ -207,8 +207,9 @@ def _free_speed(a: UnderWay, scene: "Scene", bench: Workbench) -> float:
         carried = float(run.normal_force[-a.last :].mean())
         raise InputError(
             f"periods = {a.periods!r} with last = {a.last!r}: the free run has no steady end, its halves differ by "
-            f"{spread:.2g} m/s where crests run at {crests:.3g} m/s, and {carried:.3g} N are carried of "
-            f"{case.slider.normal_force:.3g} N: give more of both, or more slider.preload"
+            f"{spread:.2g} m/s where crests run at {crests:.3g} m/s, {pushed_on(run, a.last):.2g} of mu N push it on, "
+            f"and {carried:.3g} N are carried of {case.slider.normal_force:.3g} N: give more of both, or more "
+            "slider.preload"
         )
     return speed
 
@@ -349,7 +350,7 @@ MOTOR_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "slider.start_time",
         "s",
-        "Until 1 - 1/e of that speed is reached from rest.",
+        "Until 1 - 1/e of the way from its first speed to that one is made.",
         UnderWay,
         "in time",
         _start_time,
