@@ -592,7 +592,13 @@ def calls_of(tree, name):
     return [n for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == name]
 
 
-PATIENCE = {"check_work": None, "patient": {"stress.sizes"}, "own_limit": {"commands.stress"}}
+PATIENCE = {
+    "check_work": None,
+    "patient": {"stress.sizes"},
+    "own_limit": {"commands.stress"},
+    "waited_for": {"motor.figures"},
+    "VARIABLE": {"motor.figures"},
+}
 """What is taken of `patience`, by whom where few may: its refusals; a `with` in which minutes are waited for, which the
 stress table opens around whole solves; and the seconds that the environment says, the cap of that table's command."""
 
@@ -600,7 +606,9 @@ stress table opens around whole solves; and the seconds that the environment say
 def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
     """Nothing comes out of `patience` but a refusal: every call of it stands alone, and a wait binds no name.
 
-    What `own_limit` gives goes to a command alone, and no model stands on a command or on the stress table.
+    What `own_limit` gives goes to a command alone, and no model stands on a command or on the stress table. Means of a
+    motor that have not settled are read over longer windows while that is `waited_for`, and refused or told with their
+    spread where it is not: it stands in the head of that loop alone.
     """
     assert imported("patience", set()) == {"patience", "errors"}
     takers = set()
@@ -619,6 +627,8 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
             )
         alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
         assert all(call in alone for call in calls_of(tree, "check_work")), path.stem
+        heads = [call for node in ast.walk(tree) if isinstance(node, ast.While) for call in ast.walk(node.test)]
+        assert all(call in heads for call in calls_of(tree, "waited_for")) or path.stem == "patience", path.stem
         unbound = [
             item.context_expr
             for node in ast.walk(tree)

@@ -18,7 +18,7 @@ from verify.segments import buckling as chain_buckling
 from verify.segments import carried as chain_carried
 from verify.segments import linear as segment_model
 from verify.segments import walls as chain_walls
-from verify.waves import imposed, operating_point, series, unit_waves
+from verify.waves import imposed, measures, operating_point, poles, series, unit_waves
 
 
 def phases_of_the_wrong_sign(patch):
@@ -39,7 +39,7 @@ def receptances_of_a_thousandth_more(patch):
 
 
 def surfaces_of_the_beams_own_section_everywhere(patch):
-    patch.setattr(underfoot, "standing_at", lambda beam, x: beam)
+    patch.setattr(measures, "surface_distance_at", lambda beam, x: np.full(np.shape(x), beam.surface_distance))
 
 
 def surfaces_of_the_next_section(patch):
@@ -48,8 +48,9 @@ def surfaces_of_the_next_section(patch):
 
 
 def displacements_held_at_one_place_alone(patch):
-    true = imposed._held_field
-    patch.setattr(imposed, "_held_field", lambda solve, drives, frequency: true(solve, drives[:1], frequency))
+    true = fields.combined
+    for module in (imposed, poles):
+        patch.setattr(module, "combined", lambda parts: true(parts[:1]))
 
 
 def losses_of_bending_twice_as_large(patch):
