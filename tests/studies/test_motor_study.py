@@ -397,3 +397,7 @@ def test_what_has_not_settled_is_told_with_its_spread_and_what_stands_on_it_is_w
     force = next(chart for chart in found.charts() if chart.id == "motor-force")
     assert force.lines[-1].y[0] is None
     assert "Left out where its mean has not settled" in force.caption
+    shaken = replace(field, curve=tuple(replace(at, unsettled=("force", "powers")) for at in field.curve))
+    withheld = {chart.id for chart in replace(study, fields=(shaken,)).charts()}
+    assert not withheld & {"motor-force", "motor-power", "motor-efficiency"}
+    assert "motor-portrait" in withheld

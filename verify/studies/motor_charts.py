@@ -27,12 +27,10 @@ SHARES: dict[str, tuple[str, Dash]] = {"contact": ("touching", "solid"), "stuck"
 
 
 def motor_charts(found: "MotorFound") -> tuple[Chart, ...]:
-    """The contact line first, then what it does."""
+    """The contact line first, then what it does; no curve over speed where no mean has settled."""
     return (
         *motor_movie(found),
-        _force(found),
-        _power(found),
-        _efficiency(found),
+        *(chart for chart in (_force(found), _power(found), _efficiency(found)) if not chart.empty),
         _portrait(found),
         _over_time(found, "motor-shares", SHARES),
         _over_time(found, "motor-way", KINDS),
