@@ -5,7 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
+from verify.beam import PointMass
 from verify.cli import status_of
 from verify.elements.linear import solve_modes as elements
 from verify.errors import InputError
@@ -126,7 +128,7 @@ def test_points_that_a_wrong_unit_takes_off_the_chart_are_said_to_be():
 @pytest.mark.parametrize("said", [True, False], ids=["size said", "size unknown"])
 def test_a_soft_clamp_is_found_beneath_a_coarse_chain(count, said):
     found = of_list(links(count, clamp=40.0), count if said else None)
-    assert kinds(found) == ["clamp"]
+    assert kinds(found) == ["clamp", "twin"]
     assert cause(found)["clamp"]["k_r_L_over_EI"] == pytest.approx(40.0, rel=2e-3)
     assert cause(found)["clamp"]["k_r"] == pytest.approx(40.0 * BEAM.bending_stiffness / BEAM.length, rel=2e-3)
     assert (found.found.best.candidate.wall, found.found.best.count) == ("half", count)
@@ -137,7 +139,7 @@ def test_a_soft_clamp_is_found_beneath_a_coarse_chain(count, said):
 @pytest.mark.parametrize("count", [200, None])
 def test_a_soft_clamp_of_a_fine_mesh_is_no_modulus(stiffness, count):
     found = of_list(fine(stiffness), count, within=0.02)
-    assert kinds(found) == ["clamp"]
+    assert kinds(found) == ["clamp", "twin"]
     assert cause(found)["clamp"]["k_r_L_over_EI"] == pytest.approx(stiffness, rel=2e-3)
     assert "E is" not in found.answer
     assert "do not show how the beam was divided" in found.answer
@@ -173,7 +175,7 @@ def test_a_wall_joint_twice_as_stiff_is_known(count):
 def test_a_clamp_that_hardly_gives_is_told_beside_a_modulus_and_neither_is_claimed():
     """To first order both lower every mode of a cantilever alike: the square of its tip is 4 in all of them."""
     found = of_list(fine(2000.0), 200)
-    assert kinds(found) == ["causes"]
+    assert kinds(found) == ["causes", "twin"]
     assert "neither is claimed: (a) " in found.answer
     assert {one["kind"] for one in found.plain()["causes"]} == {"clamp", "scale"}
     assert not found.plain()["best"]["identified"]
@@ -245,3 +247,21 @@ def test_a_wrong_mass_at_the_tip_of_a_lumped_cantilever_is_not_called_a_wrong_wa
 
 def test_a_lumped_cantilever_that_is_right_has_no_twin():
     assert "twin" not in kinds(of_list(lumped(23, 2.0, 0.5, 10), 23, 9))
+
+
+@pytest.mark.parametrize("share", [0.031, 0.1019, 0.57])
+@pytest.mark.parametrize("end", ["left", "right"])
+def test_a_mass_at_the_free_end_is_not_called_a_soft_clamp_alone(share, end):
+    """Moments of the one are deflections of the other, turned round: rho A L / kappa does what kappa EI/L does."""
+    own = {"left": scene(), "right": scene('beam.supports=["free","clamped"]')}[end]
+    beam, tip = own.beam, {"left": own.beam.length, "right": 0.0}[end]
+    heavy = replace(beam, mass=(PointMass(position=tip, mass=share * beam.mass_per_length * beam.length),))
+    soft = softened(beam, clamp_of(beam, (end,), share))
+    listed = [exact_frequency_hz(heavy, mode) for mode in range(1, 7)]
+    assert listed == pytest.approx([exact_frequency_hz(soft, mode) for mode in range(1, 7)], rel=1e-12)
+    rounding = np.full(6, 1e-12)
+    asked = Listed(frequencies_hz=np.array(listed), numbers=None, rounding=rounding, source="list", unit="Hz")
+    found = compared(own, Asked(), asked, None, None)
+    told = " ".join(found.answer.split())
+    mass = heavy.mass[0].mass
+    assert f"rigid one with {share:.4g} rho A L ({mass:.4g} kg) at the free end: look at both" in told
