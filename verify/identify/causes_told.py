@@ -65,7 +65,9 @@ def _words(found: Identified) -> str:
     kind, best = kind_of(found), found.best
     unit = UNITS.get(found.reading.factor or 1.0, "")
     said = [f"the frequencies are {unit}"] if unit else []
-    said += [best.clamp.words] if best.clamp is not None else []
+    if best.clamp is not None:
+        near = f"nearest comes a clamp that gives: {best.clamp.words}, and {left(best)} is left"
+        said += [best.clamp.words if found.explained else near]
     if kind == "scale":
         return _scale_words(best)
     return "; ".join(said) or ("nothing is off" if found.reading == PLAIN else "modes are missing or too many")
