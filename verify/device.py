@@ -1,6 +1,8 @@
 """A device on a driven beam: spring, mass and dashpot against deflection and turning, and a force of its own. Data."""
 
-from verify.beam import Beam
+from collections.abc import Sequence
+
+from verify.beam import Beam, PointForce
 from verify.checks import check_number, settle
 from verify.errors import InputError
 from verify.field_docs import Value
@@ -93,6 +95,17 @@ class Device(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                         f"device.position = {self.position!r} m stands on a {support} support, where nothing {moves} "
                         f"and device.{name} = {getattr(self, name)!r} does nothing: move it, or leave that out"
                     )
+
+
+def check_moved(forces: Sequence[PointForce], beam: Beam) -> None:
+    """Raise InputError for a driving force that a support takes up whole."""
+    for end, support in zip((0.0, beam.length), beam.supports, strict=True):
+        for force in forces:
+            if abs(force.position - end) <= 1e-9 * beam.length and support in HELD:
+                raise InputError(
+                    f"drive.force.position = {force.position!r} m stands on a {support} support, where nothing moves "
+                    "across and a force does nothing: move it, or leave it out"
+                )
 
 
 def of_impedance(position: float, impedance: complex, omega: float, *, turning: bool = False) -> Device:

@@ -98,8 +98,6 @@ def test_friction_alone_is_rubbed_off_from_a_slider_that_follows(coupling):
     for mu, books in zip((1e-7, 3e-7), runs, strict=True):
         force = mu * (3.0 + 0.02 * 9.81)
         assert books.rubbed == pytest.approx(force * way, rel=0.02)
-        own = -books.rubbed - books.contact_on_beam
-        assert books.slider == pytest.approx(books.turned + own, rel=1e-9, abs=1e-12 * abs(books.turned))
         assert abs(books.turned) > 0.1 * books.rubbed
 
 

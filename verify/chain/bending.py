@@ -75,21 +75,13 @@ def bend(
     the stable one that it leads to. Raises InputError for supports other than clamped and free, what stands on the
     beam, a push along alone beyond the buckling load, and where no equilibrium is found.
     """
-    if beam.supports != ("clamped", "free"):
-        raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
-    if beam.tension:
-        raise InputError(f"beam.tension = {beam.tension!r} N: bend takes it as load = (along, across), leave it out")
-    if joints == "tensioned":
-        raise InputError("joints = 'tensioned' are of a beam.tension, bend has none: give 'series' or 'printed'")
+    _check_cantilever(beam, joints)
     check_whole("count", count, 2)
-    force = in_a_row("load", load, "newton")
-    if force.shape not in ((1,), (2,)):
-        raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")
+    along, across = _along_and_across(load)
     check_number("moment", moment, "N m")
     check_links(count, 2, STATIC_LINKS, "an equilibrium takes a time in proportion to its links")
     check(beam, 1, count, wall=wall, joints=joints)
     system = build_system(structs.replace(beam, loss_factor=0.0), count, wall=wall, joints=joints)
-    along, across = (float(part) for part in (force if len(force) == 2 else (0.0, force[0])))
     end = LinkLoad(link=count, at=float(system.lengths[-1]), force=(along, across), moment=float(moment))
     turned = led_to(replace(system, loads=(end,)), along, across, float(moment))
     angles, moments = np.cumsum(turned), np.append(system.stiffness * turned, moment)
@@ -106,6 +98,24 @@ def bend(
         curvature=curvature,
         energy=0.5 * (float(moments[:-1] @ turned) + moment * beyond),
     )
+
+
+def _check_cantilever(beam: Beam, joints: Joints) -> None:
+    """Raise InputError for a beam and joints that are not bent."""
+    if beam.supports != ("clamped", "free"):
+        raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
+    if beam.tension:
+        raise InputError(f"beam.tension = {beam.tension!r} N: bend takes it as load = (along, across), leave it out")
+    if joints == "tensioned":
+        raise InputError("joints = 'tensioned' are of a beam.tension, bend has none: give 'series' or 'printed'")
+
+
+def _along_and_across(load: Numbers) -> tuple[float, float]:
+    """The parts of a load, newton. Raises InputError."""
+    force = in_a_row("load", load, "newton")
+    if force.shape not in ((1,), (2,)):
+        raise InputError(f"load = {shown(load)}: give one number across the beam, or two, along and across (newton)")
+    return (float(force[0]), float(force[1])) if len(force) == 2 else (0.0, float(force[0]))
 
 
 def _stiffness_at(beam: Beam, x: Array) -> Array:

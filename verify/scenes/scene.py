@@ -1,6 +1,6 @@
 """A scene file read, checked, and turned into values: what exists, and what is asked of it."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias, cast
@@ -10,7 +10,7 @@ from msgspec import Meta
 
 from verify.beam import Beam, PointForce, check_frequency
 from verify.checks import Relative, check_number
-from verify.device import HELD, Device
+from verify.device import Device, check_moved
 from verify.errors import InputError, near_name, raise_all, shown
 from verify.files import exists
 from verify.motion.starting import soft_start
@@ -52,17 +52,6 @@ class SceneForce(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
             )
         x = self.position if self.measured_from == "left" else beam.length - self.position
         return PointForce(position=x, amplitude=self.amplitude, phase_deg=self.phase_deg)
-
-
-def check_moved(forces: Sequence[PointForce], beam: Beam) -> None:
-    """Raise InputError for a force that a support takes up whole."""
-    for end, support in zip((0.0, beam.length), beam.supports, strict=True):
-        for force in forces:
-            if abs(force.position - end) <= 1e-9 * beam.length and support in HELD:
-                raise InputError(
-                    f"drive.force.position = {force.position!r} m stands on a {support} support, where nothing moves "
-                    "across and a force does nothing: move it, or leave it out"
-                )
 
 
 class SceneDevice(Device, frozen=True, kw_only=True, forbid_unknown_fields=True):
