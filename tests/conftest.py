@@ -5,6 +5,7 @@ import sys
 
 import packaged
 import pytest
+from hypothesis import HealthCheck, settings
 
 from verify.beam import Beam
 
@@ -18,6 +19,8 @@ for library in (
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # a thousand command lines would each read all sources anew
 
+settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("any machine")  # how long drawing takes is the machine's own affair
 
 KEEPERS = ("verify.elements.linear", "verify.segments.linear", "verify.exact.")
 """Modules that keep what they solved for the next who asks: a fault planted below would not be seen."""

@@ -24,6 +24,16 @@ def figure(name, scene=CHAIN, **arguments):
     return evaluate(found, arguments_of(found, arguments), scene, workbench_for(scene))
 
 
+def test_a_thousand_times_slower_beam_departs_in_a_thousand_times_the_time():
+    """Nothing but the time scale differs: E, force and the frequency's square are a millionth."""
+    slow = 1e-3
+    beam = replace(CHAIN.beam, youngs_modulus=CHAIN.beam.youngs_modulus * slow**2)
+    drive = replace(CHAIN.drive, frequency_hz=CHAIN.drive.frequency_hz * slow)
+    scene = replace(CHAIN, beam=beam, drive=drive, axial_inertia=None)
+    found = figure("axial_departure", scene, segments=7, force=6.0 * slow**2, time=4e-4 / slow)
+    assert found == pytest.approx(figure("axial_departure", segments=7, force=6.0, time=4e-4), rel=1e-6)
+
+
 ASKED = {
     "turning_frequency": {"mode": 2, "speed": 7.0},
     "cantilever_tip": {"load": 1.7},

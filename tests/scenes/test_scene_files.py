@@ -149,6 +149,13 @@ def test_a_byte_order_mark_is_no_part_of_a_scene(tmp_path):
     assert load_scene(path).name == "s"
 
 
+def test_a_key_that_is_set_twice_is_told_with_both_values(tmp_path):
+    text = 'name = "s"' + BEAM + GATE
+    with pytest.raises(InputError, match=r"^beam\.length is set to 0\.4 and to 0\.7: set it once$"):
+        scene_of(tmp_path, text, "beam.length=0.4", "beam.width=0.013", " beam.length = 0.7")
+    assert scene_of(tmp_path, text, "beam.length=0.4", "beam.width=0.013").beam.length == 0.4
+
+
 @pytest.mark.parametrize("overrides", ["beam.length=0.4", 3, (3,), None, {"beam.length": 0.4}])
 def test_overrides_that_are_no_list_of_words_are_one_sentence(overrides):
     with pytest.raises(InputError, match="give a list of 'key=value' words"):

@@ -425,6 +425,8 @@ def test_two_sizes_show_no_order():
     work = rows(GOOD, GOOD)
     two = replace(work, rows=tuple(row for row in work.rows if row.count < 80))
     assert "2 sizes show no order" in at_equal_error(two).why
+    one = replace(work, rows=tuple(row for row in work.rows if row.count < 40))
+    assert "one size shows no order" in at_equal_error(one).why
 
 
 def test_a_step_load_seen_too_coarsely_is_not_compared_and_a_soft_start_is():

@@ -107,6 +107,11 @@ def observed(a: Point, b: Point, floor: float) -> float | None:
     return log(a.error / b.error) / log(a.size / b.size)
 
 
+def too_few(n_sizes: int) -> str:
+    """Why fewer sizes than `LEAST` say nothing."""
+    return "one size shows no order" if n_sizes == 1 else f"{n_sizes} sizes show no order"
+
+
 def converging(points: Sequence[Point], orders: tuple[float, float], floor: float) -> Stretch | Unearned:
     """The stretch, up to the finest error above `floor`, whose observed orders lie within ASTRAY of the known ones.
 
@@ -116,7 +121,7 @@ def converging(points: Sequence[Point], orders: tuple[float, float], floor: floa
     known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:g} to {orders[1]:g}"
     above = [p for p in points if floor < abs(p.error) < NO_ANSWER]
     if len(points) < LEAST:
-        return Unearned(f"{len(points)} sizes show no order", "give three or more")
+        return Unearned(too_few(len(points)), "give three or more")
     if len(above) < LEAST:
         low, high = min(abs(p.error) for p in points), max(abs(p.error) for p in points)
         if low > floor:

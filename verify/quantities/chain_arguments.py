@@ -91,7 +91,7 @@ class Departing(Chained, frozen=True, kw_only=True):
     """A nonlinear chain beside the linear one, driven from rest."""
 
     force: Annotated[float, Meta(gt=0, description="N, of every force of the scene's drive")]
-    time: Annotated[float, Meta(gt=0, lt=0.1, description="s after the forces set in")] = 1e-3
+    time: Annotated[float, Meta(gt=0, description="s after the forces set in")] = 1e-3
     inertia: Annotated[
         options.Inertia,
         Meta(description="transverse: rigid links without inertia along x; elastic: links that stretch by EA / l"),

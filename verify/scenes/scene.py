@@ -363,7 +363,7 @@ def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict
     if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
         raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
     data = read_toml(scene_path(str(name_or_path)))
-    wrong: list[str] = []
+    wrong = _twice(overrides)
     for assignment in overrides:
         try:
             override(data, assignment, _meant)
@@ -372,6 +372,15 @@ def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict
     raise_all(wrong, MOST)
     _forget_references(data, overrides)
     return data
+
+
+def _twice(overrides: Iterable[str]) -> list[str]:
+    """A sentence for every key that is set more than once."""
+    values: dict[str, list[str]] = {}
+    for text in overrides:
+        key, _, value = text.partition("=")
+        values.setdefault(key.strip(), []).append(value.strip())
+    return [f"{key} is set to {' and to '.join(each)}: set it once" for key, each in values.items() if len(each) > 1]
 
 
 def _forget_references(data: dict[str, Any], overrides: Iterable[str]) -> None:

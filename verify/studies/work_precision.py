@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.compare import check_reference, relative_error
-from verify.judge.crossing import ABOVE_FLOOR, ASTRAY, at_error
+from verify.judge.crossing import ABOVE_FLOOR, ASTRAY, at_error, too_few
 from verify.models.catalogue import bounding, discrete
 from verify.motion.stepping import slider_seconds
 from verify.patience import check_work
@@ -320,7 +320,7 @@ def at_equal_error(work: Work) -> Comparison | NotCompared:
 def _unfit(name: str, line: list[WorkRow], work: Work) -> NotCompared | None:
     """Why the errors of one model do not fall at their order; None where they do."""
     if len(line) < 3:
-        return NotCompared(why=f"{len(line)} sizes show no order", remedy="give three counts or more")
+        return NotCompared(why=too_few(len(line)), remedy="give three counts or more")
     if not all(row.run_ms_per_ms and row.set_up_ms for row in line):
         return NotCompared(why=f"a time of {name} is below the resolution of the clock", remedy="give larger counts")
     low, high = min(row.error for row in line), max(row.error for row in line)
