@@ -126,9 +126,22 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
         vectors = _svd_vectors(pencil, n_modes)
     else:
         vectors, strains = _sparse_vectors(pencil, n_modes)
+    if strains is None:
+        vectors = _elastic(pencil, vectors)
     if is_heavy(pencil):
         vectors, strains = homed(pencil, vectors), None
     return _in_order(pencil, vectors, method_name(pencil.n, n_modes, inverted), strains)
+
+
+def _elastic(pencil: FactoredPencil, vectors: Array) -> Array:
+    """Vectors (n, k) without what LAPACK leaves in them of rigid motions: it weighs and has no energy.
+
+    In the lowest mode of parts that are unlike that is as much as the rounding of the highest over it.
+    """
+    inertia = pencil.mass_matrix() @ pencil.rigid
+    if not inertia.size:
+        return vectors
+    return np.asarray(vectors - pencil.rigid @ np.linalg.solve(pencil.rigid.T @ inertia, inertia.T @ vectors))
 
 
 def _in_order(pencil: FactoredPencil, vectors: Array, method: str, strains: Array | None = None) -> Eigenpairs:
