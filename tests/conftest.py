@@ -22,7 +22,7 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # a thousand command lines woul
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("any machine")  # how long drawing takes is the machine's own affair
 
-KEEPERS = ("verify.elements.linear", "verify.segments.linear", "verify.exact.")
+KEEPERS = ("verify.elements.linear", "verify.segments.linear", "verify.exact.", "verify.motor.repeated")
 """Modules that keep what they solved for the next who asks: a fault planted below would not be seen."""
 
 

@@ -1,6 +1,7 @@
 """Blocks of whole periods of a steady motor held at a speed and at its place, laid out once and run again and again."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from time import perf_counter
 
 from msgspec.structs import replace
@@ -11,7 +12,7 @@ from verify.motor.carry import carry_out
 from verify.motor.case import MotorCase
 from verify.motor.combine import check_combines
 from verify.motor.feet import Placed
-from verify.motor.plan import lay_out
+from verify.motor.plan import Plan, lay_out
 from verify.motor.result import MotorRun, MotorState
 
 Block = Callable[[MotorState | None], MotorRun]
@@ -26,14 +27,7 @@ def blocks(case: MotorCase, speed: float, periods: int, samples: int) -> Block:
     if case.start != "steady":
         raise InputError(f"start = {case.start!r}: what repeats itself stands on a steady beam, give start = 'steady'")
     check_combines(case.model, case.start, case.slider)
-    request = requested(
-        Driven(case.beam, case.forces, case.frequency_hz, periods * case.period),
-        Modelled(case.model, case.count, case.modes, case.modal_damping),
-        Started(case.start, 0.0, (), None),
-        Watched((), samples, None, case.steps_per_period, False),
-        case.slider,
-    )
-    plan = lay_out(request, (Placed(case.slider, case.slider.start_on(case.beam), speed, True),), ())
+    plan = replace(_laid_out(case, periods, samples), placed=(_held(case, speed),))
 
     def run(before: MotorState | None) -> MotorRun:
         if before is None:
@@ -43,3 +37,20 @@ def blocks(case: MotorCase, speed: float, periods: int, samples: int) -> Block:
         return carry_out(again, (state,), perf_counter(), lambda part: None, True)[0]
 
     return run
+
+
+def _held(case: MotorCase, speed: float) -> Placed:
+    return Placed(case.slider, case.slider.start_on(case.beam), speed, True)
+
+
+@lru_cache(maxsize=4)
+def _laid_out(case: MotorCase, periods: int, samples: int) -> Plan:
+    """The plan of a block, whatever the speed that the slider is held at."""
+    request = requested(
+        Driven(case.beam, case.forces, case.frequency_hz, periods * case.period),
+        Modelled(case.model, case.count, case.modes, case.modal_damping),
+        Started(case.start, 0.0, (), None),
+        Watched((), samples, None, case.steps_per_period, False),
+        case.slider,
+    )
+    return lay_out(request, (_held(case, 0.0),), ())
