@@ -107,3 +107,8 @@ def told(scene):
 
 def html_of(scene):
     return ran(scene).html
+
+
+def last_of_each(*assignments):
+    """'key=value' words, of every key the last: a small scene and what a test has of its own instead."""
+    return tuple({text.partition("=")[0]: text for text in assignments}.values())

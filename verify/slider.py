@@ -1,6 +1,8 @@
 """The slider as a scene or a script states it. Data, no numerics."""
 
-from typing import get_args
+from typing import Any, get_args
+
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.checks import check_kind, check_number, check_whole, settle
@@ -9,6 +11,10 @@ from verify.field_docs import Value
 from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 
 GRAVITY = 9.81
+STEEPNESS = 1e4
+"""K of Eq. (3), s/m, unless given."""
+OF_ONE_LAW: dict[Law, str] = {"tanh": "slope", "coulomb": "mu_static"}
+"""Fields that only one law of friction has."""
 _WORDS = {"law": Law, "coupling": CouplingChoice, "line": Line, "kinematics": Kinematics, "normal": NormalChoice}
 
 
@@ -133,8 +139,8 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """m_s, kg."""
     mu: float
     """Coefficient of (kinetic) friction."""
-    slope: float = 1e4
-    """K of Eq. (3), s/m."""
+    slope: float | None = None
+    """K of Eq. (3), s/m, of law = 'tanh' alone; 1e4 unless given."""
     law: Law = "tanh"
     """Friction: tanh is Eq. (3), which never sticks; coulomb sticks."""
     mu_static: float | None = None
@@ -179,7 +185,13 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 raise InputError(f"slider.{name} = {word!r} is not known: {near_name(str(word), known)}")
         check_number("slider.mass", self.mass, "kg", above=0)
         check_number("slider.mu", self.mu, "coefficient of friction", above=0)
-        check_number("slider.slope", self.slope, "s/m", above=0)
+        if self.slope is not None:
+            check_number("slider.slope", self.slope, "s/m", above=0)
+            if self.law == "coulomb":
+                raise InputError(
+                    f"slider.slope = {self.slope!r} is K of Eq. (3), law = 'tanh': law = 'coulomb' has none, "
+                    "leave it out"
+                )
         check_number("slider.speed", self.speed, "m/s")
         check_number("slider.gravity", self.gravity, "m/s^2", at_least=0)
         check_number("slider.preload", self.preload, "newton", at_least=0)
@@ -241,6 +253,11 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return self.foot or (Foot(),)
 
     @property
+    def steepness(self) -> float | None:
+        """K of Eq. (3), s/m: `slope`, or what it is unless given; None of Coulomb's law."""
+        return None if self.law == "coulomb" else STEEPNESS if self.slope is None else self.slope
+
+    @property
     def normal_force(self) -> float:
         """N, newton."""
         return self.mass * self.gravity + self.preload
@@ -253,3 +270,10 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 f"slider.position = {x!r} lies off the beam: give a position between 0 and {beam.length!r} m"
             )
         return x
+
+
+def changed(slider: Slider, **given: Any) -> Slider:
+    """A slider with other values; another law leaves what only the first has behind. Raises InputError."""
+    if given.get("law", slider.law) != slider.law:
+        given = {OF_ONE_LAW[slider.law]: None} | given
+    return replace(slider, **given)

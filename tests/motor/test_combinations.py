@@ -19,7 +19,7 @@ def slider(friction, normal, shape, coupling):
     return Slider(
         mass=0.003,
         mu=0.23,
-        slope=90.0,
+        slope=90.0 if friction == "tanh" else None,
         law=friction,
         preload=0.05,
         position=0.171,

@@ -171,7 +171,7 @@ def test_a_hard_point_that_stays_on_sticks_and_slips_as_dop853_says(law, slope):
         mass=MASS,
         mu=mu,
         law=law,
-        slope=slope or 1.0,
+        slope=slope,
         gravity=0.0,
         preload=load,
         coupling="one-way",

@@ -960,12 +960,6 @@ DEAD = [
     Dead("slider.* chain.slider_*", "slider.kinematics", "given instead", given("kinematics")),
     Dead(
         "slider.* chain.slider_*",
-        "slider.slope arguments.slope",
-        "Coulomb's law has none",
-        lambda a: a.scene["slider"]["law"] == "coulomb",
-    ),
-    Dead(
-        "slider.* chain.slider_*",
         "motion.steps_per_period",
         "given instead",
         lambda a: any(a.arguments.get(k) for k in ("step", "steps")),
@@ -1247,7 +1241,13 @@ def put(data, path, value):
         other = whole["beam"]["section"][path[2] - 1]
         other["length"] -= value - here["length"]
     here[path[-1]] = value
-    return whole
+    return lawful(whole) if path == ("slider", "law") else whole
+
+
+def lawful(scene):
+    """Without the slope of Eq. (3) where Coulomb's law takes its place."""
+    slider = scene.get("slider") or {}
+    return {**scene, "slider": {**slider, "slope": None}} if slider.get("law") == "coulomb" else scene
 
 
 def joined(base, change):
@@ -1256,7 +1256,7 @@ def joined(base, change):
 
 def asked_of(name, case):
     """A case with everything stated, defaults and all."""
-    scene = plain(checked(joined(BASE, case.scene), scene_type()))
+    scene = plain(checked(lawful(joined(BASE, case.scene)), scene_type()))
     return Asked(name, plain(arguments_of(QUANTITIES[name], case.arguments)), scene)
 
 

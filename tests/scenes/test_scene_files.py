@@ -7,11 +7,13 @@ import string
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from verify import load_scene
 from verify.errors import InputError
 from verify.scenes.scene import STARTER, packaged_scenes
 from verify.scenes.toml import literal, split_assignment
+from verify.slider import changed
 
 BEAM = """
 [beam]
@@ -327,3 +329,22 @@ def test_relative_errors_do_not_depend_on_size_or_material(length, width, thickn
         if mode < count:
             errors = [Workbench(b).frequency_error(model, count, mode) for b in (beam, other)]
             assert math.isclose(*errors, rel_tol=0, abs_tol=1e-13)
+
+
+RIDDEN = "\n[slider]\nmass = 0.0031\nmu = 0.17\nslope = 310.0\n"
+
+
+def test_another_law_of_friction_leaves_behind_what_only_the_first_has(tmp_path):
+    """K is of Eq. (3) alone, a static coefficient of Coulomb's law alone: beside the other they did nothing."""
+    text = 'name = "s"' + BEAM + GATE + RIDDEN
+    sticks = scene_of(tmp_path, text, "slider.law=coulomb").slider
+    assert (sticks.slope, sticks.steepness, sticks.mu) == (None, None, 0.17)
+    creeps = scene_of(tmp_path, text, "slider.slope=470").slider
+    assert creeps.steepness == 470.0
+    assert changed(creeps, law="coulomb", mu=0.19, mu_static=0.23) == replace(sticks, mu=0.19, mu_static=0.23)
+    assert changed(replace(sticks, mu_static=0.23), law="tanh") == replace(sticks, law="tanh")
+    assert replace(sticks, law="tanh").steepness == 1e4
+    with pytest.raises(InputError, match=r"slider.slope = 470 is K of Eq. \(3\), .* has none, leave it out$"):
+        scene_of(tmp_path, text, "slider.law=coulomb", "slider.slope=470")
+    with pytest.raises(InputError, match=r"slider.slope = 310.0 is K of Eq. \(3\)"):
+        scene_of(tmp_path, text + 'law = "coulomb"\n')

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from packaged import last_of_each
 
 from verify import load_scene, run_scene
 from verify.chain.departure import chain_deflection, departure, departure_of, driven_chain, linear_chain, rms
@@ -29,7 +30,7 @@ SMALL = (
 
 
 def small(*more):
-    return load_scene("chain", (*SMALL, *more))
+    return load_scene("chain", last_of_each(*SMALL, *more))
 
 
 def studied(scene, **more):
@@ -184,7 +185,7 @@ def test_a_run_carries_the_study_in_plain_data_and_counts_its_motions():
 
 
 def test_the_terminal_names_linear_and_nonlinear(capsys):
-    words = ["gate=[]", *SMALL, "axial_inertia.forces=[2.0, 30.0]"]
+    words = last_of_each("gate=[]", *SMALL, "axial_inertia.forces=[2.0, 30.0]")
     assert status_of(["run", "chain", "--no-report", *(w for word in words for w in ("--set", word))]) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert "2 N: linear" in said

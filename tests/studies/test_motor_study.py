@@ -6,6 +6,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from packaged import last_of_each
 
 from verify import load_scene, run_scene
 from verify.errors import InputError
@@ -39,7 +40,7 @@ CHAINED = (
 
 
 def small(*more):
-    return load_scene("preloaded-motor", (*SMALL, *more))
+    return load_scene("preloaded-motor", last_of_each(*SMALL, *more))
 
 
 def studied(scene):

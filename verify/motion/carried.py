@@ -246,7 +246,9 @@ def _sticking_note(stages: list[Stage], rate: float, dt: float) -> tuple[str, ..
 
 def _grip(slider: Slider) -> float:
     """K mu N / m, how fast friction takes the slider to the surface's speed, 1/s; endless for Coulomb's law."""
-    return float("inf") if slider.law == "coulomb" else slider.slope * slider.mu * slider.normal_force / slider.mass
+    return (
+        float("inf") if slider.steepness is None else slider.steepness * slider.mu * slider.normal_force / slider.mass
+    )
 
 
 def _fresh(request: Request, slider: Slider, stages: list[Stage], coupling: Coupling) -> Sliding:

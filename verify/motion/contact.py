@@ -26,7 +26,7 @@ def law_of(slider: Slider, beam: Beam) -> Law:
     return Law(
         kinetic=float(slider.mu * pressing),
         static=float(static * pressing) if slider.law == "coulomb" else None,
-        slope=None if slider.law == "coulomb" else float(slider.slope),
+        slope=slider.steepness,
         mass=float(slider.mass),
         half=float(beam.surface_distance),
         gravity=float(slider.gravity),

@@ -85,8 +85,8 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     """Amplitudes, newton."""
     law: str
     mu: float
-    slope: float
-    """K, s/m; without effect in Coulomb's law."""
+    slope: float | None
+    """K, s/m; None of Coulomb's law, which has none."""
     position: float
     """Where it starts, metres."""
     model: str

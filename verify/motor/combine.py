@@ -20,8 +20,8 @@ def check_together(model: str, start: str, sliders: Sequence[Slider]) -> None:
     kinds = {any(foot.mirrored for foot in slider.feet) for slider in sliders}
     if len(kinds) > 1 and sliders[0].coupling != "one-way":
         raise InputError("sliders: some are between two beams and some on one, which feels them: give all the same")
-    for name in ("law", "slope", "coupling"):
-        found = {getattr(slider, name) for slider in sliders}
+    for name, own in (("law", "law"), ("slope", "steepness"), ("coupling", "coupling")):
+        found = {getattr(slider, own) for slider in sliders}
         if len(found) > 1:
             raise InputError(f"slider.{name} differs among sliders on one beam, {sorted(found)!r}: give all the same")
     if len(sliders) > 1 and any(slider.contact and slider.contact.hard for slider in sliders):

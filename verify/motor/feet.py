@@ -47,8 +47,7 @@ class Placed(msgspec.Struct, frozen=True):
 
 def rubbing_of(slider: Slider, beam: Beam) -> Rubbing:
     """The law of friction, all sliders', on this beam's own section."""
-    slope = None if slider.law == "coulomb" else float(slider.slope)
-    return Rubbing(slope=slope, half=float(beam.surface_distance))
+    return Rubbing(slope=slider.steepness, half=float(beam.surface_distance))
 
 
 def hard_of(slider: Slider) -> Hard | None:

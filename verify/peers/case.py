@@ -104,10 +104,11 @@ def sled_of(beam: Beam, slider: Slider) -> Sled:
     for field, takes in (("law", "tanh"), ("kinematics", "tangential"), ("coupling", "one-way")):
         if (word := getattr(slider, field)) != takes:
             raise InputError(f"slider.{field} = {word!r}: the peers' slider has {takes!r} alone, give that")
+    assert slider.steepness is not None
     return Sled(
         mass=slider.mass,
         friction=slider.mu * slider.normal_force,
-        slope=slider.slope,
+        slope=slider.steepness,
         half_thickness=beam.surface_distance,
         start=slider.start_on(beam),
         speed=slider.speed,

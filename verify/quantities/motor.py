@@ -14,6 +14,7 @@ from verify.quantities import compiled
 from verify.quantities.cases import drive_forces, drive_frequency
 from verify.quantities.kind import WHAT_EXISTS, DriveArguments, MovingModel, Quantity, Size, check_count
 from verify.quantities.motion_arguments import check_law
+from verify.slider import changed
 
 if TYPE_CHECKING:
     from verify.motor.case import MotorCase
@@ -112,7 +113,7 @@ def slider_on_feet(a: Motor, scene: "Scene") -> "Slider":
     standing = _given({"points": a.points, "length": a.foot_length})
     feet = tuple(replace(foot, **standing) for foot in scene.slider.feet) if standing else scene.slider.foot
     _check_length(a.foot_length, contact, feet)
-    return replace(scene.slider, contact=contact, foot=feet, **_given(own))
+    return changed(scene.slider, contact=contact, foot=feet, **_given(own))
 
 
 def _check_length(length: float | None, contact: "Contact", feet: "tuple[Foot, ...]") -> None:

@@ -23,7 +23,7 @@ from verify.quantities.motion_arguments import (
     SliderOrder,
     Steady,
 )
-from verify.slider import Slider
+from verify.slider import Slider, changed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,7 +58,7 @@ def slider_of(a: Arguments, scene: "Scene") -> Slider:
         raise InputError("the scene has no slider: add [slider] with mass and mu")
     scene.slider.check_stays()
     given = asdict(a)
-    return replace(scene.slider, **{own: given[name] for name, own in _OWN.items() if given.get(name) is not None})
+    return changed(scene.slider, **{own: given[name] for name, own in _OWN.items() if given.get(name) is not None})
 
 
 def motion_case(a: InTime, scene: "Scene") -> MotionCase:

@@ -21,7 +21,7 @@ from verify.scenes.given import as_meant, type_at_key
 from verify.scenes.problems import MOST, problems
 from verify.scenes.sections import ON_WHAT_EXISTS, SECTIONS
 from verify.scenes.toml import override, read_toml
-from verify.slider import Slider
+from verify.slider import OF_ONE_LAW, Slider
 
 PACKAGED = Path(__file__).parent
 STARTER = PACKAGED / "starter.toml"
@@ -371,7 +371,17 @@ def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict
             wrong += error.sentences
     raise_all(wrong, MOST)
     _forget_references(data, overrides)
+    _forget_other_law(data, overrides)
     return data
+
+
+def _forget_other_law(data: dict[str, Any], overrides: Iterable[str]) -> None:
+    """Leave out, in place, what a slider has of another law than the one that was set, unless it was set as well."""
+    keys, slider = {text.partition("=")[0].strip() for text in overrides}, data.get("slider")
+    if "slider.law" in keys and isinstance(slider, dict):
+        for law, name in OF_ONE_LAW.items():
+            if slider["law"] != law and f"slider.{name}" not in keys:
+                slider.pop(name, None)
 
 
 def _twice(overrides: Iterable[str]) -> list[str]:

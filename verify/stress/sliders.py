@@ -16,7 +16,7 @@ from verify.beam import Beam, PointForce
 from verify.models.arrays import Array
 from verify.models.compiling import Call
 from verify.motion.result import Motion
-from verify.slider import Slider
+from verify.slider import Slider, changed
 from verify.stress.dense import CUBICS, Elements
 from verify.stress.kind import Floor, Row
 
@@ -40,11 +40,11 @@ RUNS: tuple[Slider, ...] = (
     replace(START, kinematics="following"),
     replace(START, coupling="two-way", normal="massless"),
     replace(START, coupling="two-way", kinematics="following"),
-    replace(START, coupling="two-way", law="coulomb", speed=-5.3),
-    replace(START, law="coulomb", mu_static=0.5, speed=5.9),
-    replace(START, coupling="two-way", normal="massless", law="coulomb", mu=70.0, speed=0.0),
-    replace(START, coupling="two-way", normal="massless", law="coulomb", mu=0.2, speed=0.05, position=0.027),
-    replace(
+    changed(START, coupling="two-way", law="coulomb", speed=-5.3),
+    changed(START, law="coulomb", mu_static=0.5, speed=5.9),
+    changed(START, coupling="two-way", normal="massless", law="coulomb", mu=70.0, speed=0.0),
+    changed(START, coupling="two-way", normal="massless", law="coulomb", mu=0.2, speed=0.05, position=0.027),
+    changed(
         START, coupling="two-way", normal="massless", law="coulomb", mu=0.2, mu_static=0.45, speed=0.05, position=0.027
     ),
 )
@@ -113,7 +113,7 @@ class Ridden:
     def friction(self, y: Array, seen: Seen) -> float:
         """On the slider, newton, where it slides."""
         slider, slip = self.slider, self.slip(y, seen)
-        share = tanh(slider.slope * slip) if slider.law == "tanh" else copysign(1.0, slip)
+        share = copysign(1.0, slip) if slider.steepness is None else tanh(slider.steepness * slip)
         return -slider.mu * slider.normal_force * share
 
     def ahead(self, y: Array, seen: Seen) -> float:

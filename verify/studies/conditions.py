@@ -29,7 +29,7 @@ def condition_of(scene: "Scene", model: str, count: int | None) -> Condition:
         forces=tuple(force.amplitude for force in scene.forces),
         law=slider.law,
         mu=slider.mu,
-        slope=slider.slope,
+        slope=slider.steepness,
         position=slider.start_on(scene.beam),
         model=model,
         count=count,

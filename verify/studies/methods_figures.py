@@ -311,7 +311,7 @@ def _rides(
         rides.append(Ride(off_hz=off, device=speeds["device"], forces=speeds["forces"]))
     slider = scene.slider
     assert slider is not None
-    law = f"K = {slider.slope:g} s/m" if slider.law == "tanh" else "Coulomb"
+    law = "Coulomb" if slider.steepness is None else f"K = {slider.steepness:g} s/m"
     kind = f"always on the surface, one-way, {slider.kinematics} kinematics"
     if slider.contact is not None:
         kind = f"free to leave the surface, one-way, pressed on with {slider.normal_force:.4g} N"

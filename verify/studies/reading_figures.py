@@ -195,7 +195,7 @@ def searched_of(scene: "Scene", asked: ReadingsAsk) -> dict[str, tuple[float | s
         "positions": slider.start_on(scene.beam),
         "forces": None,
         "mu": slider.mu,
-        "slope": slider.slope,
+        "slope": slider.steepness,
     }
     return {name: tuple(getattr(asked, name)) or (() if own[name] is None else (own[name],)) for name in LISTS}  # type: ignore[misc]
 
