@@ -344,7 +344,7 @@ def test_another_law_of_friction_leaves_behind_what_only_the_first_has(tmp_path)
     assert changed(creeps, law="coulomb", mu=0.19, mu_static=0.23) == replace(sticks, mu=0.19, mu_static=0.23)
     assert changed(replace(sticks, mu_static=0.23), law="tanh") == replace(sticks, law="tanh")
     assert replace(sticks, law="tanh").steepness == 1e4
-    with pytest.raises(InputError, match=r"slider.slope = 470 is K of Eq. \(3\), .* has none, leave it out$"):
+    with pytest.raises(InputError, match=r"slider.slope = 470.0 is K of Eq. \(3\), .* has none, leave it out$"):
         scene_of(tmp_path, text, "slider.law=coulomb", "slider.slope=470")
     with pytest.raises(InputError, match=r"slider.slope = 310.0 is K of Eq. \(3\)"):
         scene_of(tmp_path, text + 'law = "coulomb"\n')
