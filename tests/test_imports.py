@@ -9,9 +9,11 @@ import re
 import secrets
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
+from sources import calls_of, nodes_of, paths, tree_of
 
 import verify
 from verify.asleep import randbits
@@ -63,15 +65,20 @@ def room_of(name):
     return first if rest or (PACKAGE / first).is_dir() else hall
 
 
+def for_typing(path):
+    """Nodes of a file that stand in its `if TYPE_CHECKING`, by their ids."""
+    heads = [n for n in nodes_of(path) if isinstance(n, ast.If) and getattr(n.test, "id", "") == "TYPE_CHECKING"]
+    return {id(node) for head in heads for body in head.body for node in ast.walk(body)}
+
+
+@cache
 def imports_of(path, *, typing_too=False):
     """Dotted names below verify that a file imports anywhere, but for typing alone."""
-    tree = ast.parse(path.read_text("utf-8"))
-    if not typing_too:
-        for node in ast.walk(tree):
-            if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
-                node.body = []
+    left = set() if typing_too else for_typing(path)
     found = set()
-    for node in ast.walk(tree):
+    for node in nodes_of(path):
+        if id(node) in left:
+            continue
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "verify":
             under = node.module.partition(".")[2]
             found |= {f"{under}.{a.name}".strip(".") for a in node.names} if is_package(under) else {under}
@@ -153,11 +160,8 @@ def test_what_steps_a_slider_is_loaded_where_something_steps():
     for name, path in modules():
         if name.endswith("kernels"):
             continue
-        tree = ast.parse(path.read_text("utf-8"))
-        tree.body = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
-        at_the_top = {f"{node.module}.{a.name}" for node in tree.body for a in node.names} | {
-            node.module for node in tree.body
-        }
+        lines = [node for node in tree_of(path).body if isinstance(node, ast.ImportFrom)]
+        at_the_top = {f"{node.module}.{a.name}" for node in lines for a in node.names} | {n.module for n in lines}
         assert name in slow or not at_the_top & {f"verify.{one}" for one in slow}, name
 
 
@@ -167,11 +171,8 @@ def test_scikit_fem_is_imported_by_the_finite_elements_alone():
 
 
 def test_nothing_below_the_command_line_prints():
-    for path in PACKAGE.rglob("*.py"):
-        calls = {
-            getattr(n.func, "id", "") for n in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(n, ast.Call)
-        }
-        assert "print" not in calls, path.name
+    for path in paths():
+        assert not calls_of(path, "print"), path.name
 
 
 def loaded_by(*words):

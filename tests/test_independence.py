@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 from scipy.optimize import brentq
+from sources import PACKAGE, calls_of, nodes_of, paths
 from stepped_reference import written_out
 
 import verify
@@ -581,15 +582,18 @@ def imported(module, found):
     path = Path(verify.__file__).parent / f"{module.replace('.', '/')}.py"
     if module not in found and path.exists():
         found.add(module)
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for node in ast.walk(tree):
+        for node in nodes_of(path):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("verify."):
                 imported(node.module.removeprefix("verify."), found)
     return found
 
 
-def calls_of(tree, name):
-    return [n for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == name]
+def in_use(path, name):
+    """Calls of a check of which something comes: they do not stand alone."""
+    if not (calls := calls_of(path, name)):
+        return []
+    alone = {id(node.value) for node in nodes_of(path) if isinstance(node, ast.Expr)}
+    return [call for call in calls if id(call) not in alone]
 
 
 PATIENCE = {
@@ -612,11 +616,10 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
     """
     assert imported("patience", set()) == {"patience", "errors"}
     takers = set()
-    for path in Path(verify.__file__).parent.rglob("*.py"):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for node in ast.walk(tree):
+    for path in paths():
+        for node in nodes_of(path):
             if isinstance(node, ast.ImportFrom) and node.module == "verify.patience":
-                taker = ".".join(path.relative_to(Path(verify.__file__).parent).with_suffix("").parts)
+                taker = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
                 for alias in node.names:
                     assert alias.asname is None, taker
                     assert alias.name in PATIENCE, taker
@@ -625,18 +628,17 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
             assert not (isinstance(node, ast.Import) and any(a.name == "verify.patience" for a in node.names)), (
                 path.stem
             )
-        alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
-        assert all(call in alone for call in calls_of(tree, "check_work")), path.stem
-        heads = [call for node in ast.walk(tree) if isinstance(node, ast.While) for call in ast.walk(node.test)]
-        assert all(call in heads for call in calls_of(tree, "waited_for")) or path.stem == "patience", path.stem
+        assert not in_use(path, "check_work"), path.stem
+        heads = [call for node in nodes_of(path) if isinstance(node, ast.While) for call in ast.walk(node.test)]
+        assert all(call in heads for call in calls_of(path, "waited_for")) or path.stem == "patience", path.stem
         unbound = [
             item.context_expr
-            for node in ast.walk(tree)
+            for node in nodes_of(path)
             if isinstance(node, ast.With)
             for item in node.items
             if item.optional_vars is None
         ]
-        assert all(call in unbound for call in calls_of(tree, "patient")), path.stem
+        assert all(call in unbound for call in calls_of(path, "patient")), path.stem
     assert takers >= {"models.eigen", "stress.sizes", "commands.stress"}
     faces = ("exact.modes", "exact.in_time", "elements.linear", "elements.in_time", "segments.linear")
     behind = set().union(*(imported(face, set()) for face in (*faces, "segments.in_time")))
@@ -645,24 +647,20 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
 
 def test_numbers_are_checked_and_nothing_comes_of_it_but_a_refusal():
     assert imported("checks", set()) == {"checks", "errors"}
-    for path in Path(verify.__file__).parent.rglob("*.py"):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
+    for path in paths():
         for name in ("check_number", "check_whole"):
-            assert all(call in alone for call in calls_of(tree, name)), path.stem
+            assert not in_use(path, name), path.stem
 
 
 def test_a_theory_is_checked_and_nothing_comes_of_it_but_a_refusal():
     """What a theory is, every model has of its own: of the shared module one name is taken, and calls stand alone."""
     takers = set()
-    for path in Path(verify.__file__).parent.rglob("*.py"):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for node in ast.walk(tree):
+    for path in paths():
+        for node in nodes_of(path):
             if isinstance(node, ast.ImportFrom) and node.module == "verify.models.theory":
                 assert [(alias.name, alias.asname) for alias in node.names] == [("check_theory", None)], path.stem
                 takers.add(path.parent.name)
-        alone = [node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)]
-        assert all(call in alone for call in calls_of(tree, "check_theory")), path.stem
+        assert not in_use(path, "check_theory"), path.stem
     assert takers == {"exact", "elements", "segments", "judge"}
 
 

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from sources import nodes_of
 
 import verify
 
@@ -28,15 +29,14 @@ def words_of_the_report():
     package = Path(verify.__file__).parent
     shown = [*(package / "report").glob("*.py"), *(package / "studies").glob("*.py"), package / "words.py"]
     for path in (path for path in shown if path.name not in EXAMPLES):
-        tree = ast.parse(path.read_text("utf-8"))
         specs = {
             id(part)
-            for node in ast.walk(tree)
+            for node in nodes_of(path)
             if isinstance(node, ast.FormattedValue) and node.format_spec
             for part in ast.walk(node.format_spec)
         }
-        docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-        for node in ast.walk(tree):
+        docstrings = {id(node.value) for node in nodes_of(path) if isinstance(node, ast.Expr)}
+        for node in nodes_of(path):
             if not (isinstance(node, ast.Constant) and isinstance(node.value, str)) or id(node) in specs | docstrings:
                 continue
             if "<" not in node.value and '="' not in node.value and re.search("[a-z]{2}", node.value):  # no picture

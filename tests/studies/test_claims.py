@@ -3,12 +3,11 @@
 import ast
 import json
 import re
-from pathlib import Path
 
 import pytest
 from msgspec.structs import replace
+from sources import PACKAGE, nodes_of, paths
 
-import verify
 from verify import load_scene, run_scene
 from verify.cli import status_of
 from verify.errors import InputError
@@ -227,19 +226,17 @@ def test_a_longer_motion_of_the_paper_s_slider_runs_to_its_end(duration, capsys)
 
 def test_no_printed_word_of_the_code_names_a_paper():
     """Docstrings may cite an equation; what is printed of somebody's motor may not."""
-    root = Path(verify.__file__).parent
-    for path in root.rglob("*.py"):
-        tree = ast.parse(path.read_text("utf-8"))
+    for path in paths():
         docs = {
             id(node.value)
-            for node in ast.walk(tree)
+            for node in nodes_of(path)
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
         }
-        for node in ast.walk(tree):
+        for node in nodes_of(path):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docs:
                 words = node.value.replace("paper-slider", "").replace("_bgcolor", "")
                 assert "paper" not in words.lower() or words == "paper", f"{path.name}: {node.value!r}"
-    template = (root / "report" / "page.html.j2").read_text("utf-8").replace("paper_bgcolor", "")
+    template = (PACKAGE / "report" / "page.html.j2").read_text("utf-8").replace("paper_bgcolor", "")
     assert "paper" not in template.lower()
 
 
