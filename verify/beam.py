@@ -168,6 +168,11 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Whether it has one section and nothing on it: what closed forms are of."""
         return not self.added
 
+    @property
+    def lossless(self) -> tuple[str, ...]:
+        """What resists beside its own bending and shear, and has no loss, by the names of the fields."""
+        return tuple(name for name in self.added if name in ("spring", "tension", "foundation"))
+
     def check_added(self, who: str, takes: tuple[str, ...] = (), instead: str = "ask for something else") -> None:
         """Raise InputError for what `who` does not take: whatever is added beside `takes`."""
         for name in self.added:
