@@ -22,10 +22,10 @@ from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name, resonance_distance
-from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor
+from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
+from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.theory import check_theory
 from verify.options import Theory
 
@@ -251,10 +251,9 @@ def unit_responses(
 
     All modes of the mesh are solved once and summed exactly for every frequency; where a loss factor couples them,
     beside what has no loss, and under Timoshenko's theory, every frequency is solved. NaN at the frequencies of
-    undamped resonances. Raises InputError for meshes beyond the dense size.
+    undamped resonances. Raises InputError, also for meshes beyond the dense size.
     """
-    positions, x = in_a_row("positions", positions), in_a_row("x", x)
-    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
+    positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     check_asked(beam, 1, n_elements, 1.0, theory)
     elements, pencil = driven(beam, n_elements, 1.0, theory)
     basis, unit = elements.basis, elements.parts.unit
@@ -262,7 +261,7 @@ def unit_responses(
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4
     if (beam.loss_factor and beam.lossless) or theory == "timoshenko":
         found = [_one_by_one(elements, pencil, weights, value, x) for value in omega2]
-        return np.array(found) * (unit**3 / beam.bending_stiffness)
+        return np.array(found).reshape(len(omega2), len(positions), len(x)) * (unit**3 / beam.bending_stiffness)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
     shapes: Array = interpolate(basis, elements.all_values(modes), x / unit)
     return np.asarray(receptance @ shapes) * (unit**3 / beam.bending_stiffness)

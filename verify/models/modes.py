@@ -76,7 +76,7 @@ class Modes(Value, frozen=True, eq=False, kw_only=True):
         return len(self.frequencies_hz)
 
     def deflection(self, x: Numbers) -> Array:
-        """Mass-normalised deflection at x (metres), (n_modes, *shape of x), in 1/sqrt(kg): (n_modes,) at a number.
+        """Mass-normalised deflection at x (metres), (n_modes, *shape of x), in 1/sqrt(kg); a number is a row of one.
 
         Raises InputError.
         """

@@ -43,8 +43,11 @@ def as_typed(verb: Callable[Given, Found]) -> Callable[Given, Found]:
 
 
 def in_a_row(field: str, value: object, unit: str = "SI") -> Array:
-    """Numbers in a row, (n,); one alone is a row of one. Raises InputError for what is no real number."""
-    return np.atleast_1d(real_array(field, value, unit))
+    """Numbers in a row, (n,); one alone is a row of one. Raises InputError for rows of rows and what is no number."""
+    found = np.atleast_1d(real_array(field, value, unit))
+    if found.ndim > 1:
+        raise InputError(f"{field} has the shape {found.shape}: give a number, or numbers in one row ({unit})")
+    return found
 
 
 def real_array(field: str, value: object, unit: str) -> Array:

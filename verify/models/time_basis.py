@@ -48,7 +48,7 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
         return np.asarray(self.shapes(np.array([mass.position for mass in self.beam.mass]), 1))
 
     def deflection(self, x: Numbers) -> Array:
-        """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg): (n,) at a number. Raises InputError off the beam."""
+        """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg); a number is a row of one. Raises InputError off it."""
         return as_asked(self.shapes(places("x", x, self.beam.length).ravel(), 0), x)
 
 

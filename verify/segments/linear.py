@@ -15,10 +15,10 @@ from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
 from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name
-from verify.models.fields import HarmonicField, check_drive, phasor
+from verify.models.fields import HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
+from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.theory import check_theory
 from verify.options import (
     LOADS,
@@ -349,10 +349,10 @@ def unit_responses(
 
     All modes of the chain are solved once and summed exactly for every frequency; every frequency is solved where
     there is a loss factor and the beam carries anything, or its joints slip. Load and reading are the defaults of
-    `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError for chains beyond the dense size.
+    `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError, also for chains beyond the
+    dense size.
     """
-    positions, x = in_a_row("positions", positions), in_a_row("x", x)
-    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
+    positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     settings = settings_of("gregory", joints, 1.0, theory, attachment)
     check(beam, 1, n_segments, **settings)
     chain, pencil = driven(beam, n_segments, settings)
@@ -365,7 +365,7 @@ def unit_responses(
         stiffness = damped(beam, chain, pencil, 0.0)
         found = [forced_response(pencil, weights, float(square), stiffness) for square in omega2]
         read = [_read_at(chain, free.real, x) + 1j * _read_at(chain, free.imag, x) for free in found]
-        return np.asarray(np.array(read, dtype=complex) * scale)
+        return np.asarray(np.array(read, dtype=complex).reshape(len(omega2), len(positions), len(x)) * scale)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
     return np.asarray(receptance @ _read_at(chain, modes, x)) * scale
 
