@@ -61,6 +61,26 @@ def test_a_number_for_x_is_a_row_of_one_and_a_list_gives_what_its_array_gives(mo
         assert read([]).shape == (*rows, 0)
 
 
+@pytest.mark.parametrize("derivative", [-1, 1.5, True, "1", None])
+@pytest.mark.parametrize(
+    "beam", [STRIP, replace(STRIP, mass=(PointMass(position=0.2, mass=0.1),))], ids=["bare", "mass"]
+)
+@pytest.mark.parametrize("model", MODELS)
+def test_what_is_no_derivative_is_refused_by_every_line_of_every_model(model, beam, derivative):
+    """Minus one was a number, one and a half not one, and true a slope."""
+    face, count = MODELS[model]
+    thick = face.solve_harmonic(beam, FORCE, HERTZ, *count, theory="timoshenko")
+    field = face.solve_harmonic(beam, FORCE, HERTZ, *count)
+    sweep = face.sweep_harmonic(beam, FORCE, [300.0, HERTZ], *count)
+    lines = [face.solve_modes(beam, 3, *count).shapes, face.time_basis(beam, *(count or (9,))).shapes]
+    lines += [field.shapes, field.turns, thick.turned, thick.turns, sweep.shapes, sweep.field(0).shapes]
+    for line in lines:
+        refused(
+            lambda line=line: line(np.array([0.1]), derivative), "derivative = ", "give a whole number of at least 0"
+        )
+        assert np.array_equal(line(np.array([0.1]), np.int64(1)), line(np.array([0.1]), 1))
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_whole_numbers_are_places_too(model):
     assert np.array_equal(field_of(model).deflection(0), field_of(model).deflection(0.0))

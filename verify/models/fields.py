@@ -7,10 +7,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce, check_frequency
+from verify.checks import check_whole
 from verify.errors import InputError, ResonanceError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
-from verify.models.places import Forces, Numbers, as_asked, as_forces, in_a_row, places
+from verify.models.places import Forces, Numbers, as_asked, as_forces, in_a_row, keep_lines, places
 
 LARGEST_SLOPE = 1e100
 """Of a beam under a force, F L^2 / EI."""
@@ -37,6 +38,9 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
     """Of the beam."""
     turned: Callable[[Array, int], ComplexArray] | None = None
     """(x, derivative) -> (len(x),) complex: turn psi of the section where shear sets it apart from the slope w'."""
+
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes", "turned")
 
     @property
     def omega(self) -> float:
@@ -68,6 +72,7 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
 
     def turns(self, x: Array, derivative: int) -> ComplexArray:
         """That or a derivative of it at x (n,), (n,), radians per metre^derivative. Raises InputError likewise."""
+        check_whole("derivative", derivative, 0)
         if self.turned is not None:
             return self.turned(x, derivative)
         if self.theory == "timoshenko":

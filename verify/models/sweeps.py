@@ -18,7 +18,7 @@ from verify.models.driven_pencil import check_couples, check_dense, receptance_b
 from verify.models.eigen import distance_answered, forced_response, lowest, probe
 from verify.models.fields import RESONANCE, HarmonicField, check_forces, check_frequencies
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
-from verify.models.places import Forces, Numbers, as_asked, places, real_array
+from verify.models.places import Forces, Numbers, as_asked, keep_lines, places, real_array
 from verify.models.stacks import PencilStack, carried_along, lowest_of_each
 
 MOST_VALUES = 50_000_000
@@ -54,6 +54,9 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
     """Of the beam."""
     turned: Callable[[Array, int], ComplexArray] | None = None
     """(x, derivative) -> (n_frequencies, len(x)) complex: turn psi of the section where it is not the slope w'."""
+
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes", "turned")
 
     def __len__(self) -> int:
         return len(self.frequencies_hz)

@@ -9,7 +9,7 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
-from verify.models.places import Numbers, as_asked, places
+from verify.models.places import Numbers, as_asked, keep_lines, places
 
 
 class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
@@ -40,6 +40,9 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
     """
     turns: Callable[[], Array] | None = None
     """() -> (n, bodies): how far the bodies of `beam.mass` turn; None where they turn as the shapes do there."""
+
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes")
 
     def body_turns(self) -> Array:
         """How far the bodies of `beam.mass` turn, (n, bodies), in 1/(sqrt(kg) m)."""
