@@ -56,7 +56,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         settle(self, "beam", section=Section, mass=PointMass, spring=PointSpring)
         check_number("beam.length", self.length, "metres", above=0)
         self.check_sizes("beam")
-        check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, below=0.5000001)
+        check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, at_most=0.5)
         check_number("beam.loss_factor", self.loss_factor, "0 means undamped", at_least=0, below=10)
         check_number("beam.tension", self.tension, "newton, negative is compression")
         check_number("beam.foundation", self.foundation, "N/m^2, 0 means none", at_least=0)

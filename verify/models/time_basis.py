@@ -73,6 +73,6 @@ def check_held(beam: Beam) -> None:
     """Raise InputError for supports that let the beam drift away as a whole."""
     if beam.rigid_motions:
         raise InputError(
-            f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), which a driven beam "
-            "would drift off in: clamp an end, or pin both"
+            f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), in which a beam that "
+            "is driven or let go may drift off: clamp an end, or pin both"
         )

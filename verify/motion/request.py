@@ -10,7 +10,7 @@ from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown, written
 from verify.models.arrays import Array
-from verify.models.catalogue import MODELS
+from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.division import part_counts
 from verify.models.fields import check_drive
 from verify.models.places import Numbers, in_a_row
@@ -88,9 +88,11 @@ class Modelled(msgspec.Struct, frozen=True, eq=False):
 
     model: str
     count: int | None
-    modes: int
+    modes: int | None
+    """That the exact beam keeps; None is `otherwise`."""
     damping: float | None
     """Ratio of every mode; None is half the beam's loss factor."""
+    otherwise: int = EXACT_MODES
 
 
 class Started(msgspec.Struct, frozen=True, eq=False):
@@ -131,7 +133,7 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
         frequency_hz=hertz,
         model=modelled.model,
         count=modelled.count,
-        modes=modelled.modes,
+        modes=kept_modes(modelled.model, modelled.modes, modelled.otherwise),
         start=started.start,
         damping=zeta,
         slider=slider,

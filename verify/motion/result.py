@@ -100,7 +100,7 @@ class Ride(Value, frozen=True, eq=False, kw_only=True):
     """What a slider did on a surface in motion, of a linear beam or of a nonlinear chain."""
 
     times: Array
-    """(n,), seconds."""
+    """(n,), seconds; evenly while the forces grow and after, with another interval."""
     slider: Slider | None
     """As it was asked for; None where nothing lay on the beam."""
     start: float | None

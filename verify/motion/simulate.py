@@ -40,7 +40,7 @@ def simulate(
     *,
     model: str = "segment",
     count: int | None = None,
-    modes: int = 400,
+    modes: int | None = None,
     start: Start = "rest",
     soft_start_periods: float = 0.0,
     envelope: Envelope = (),
@@ -62,15 +62,16 @@ def simulate(
     in each the forces have the part c0 + c1 p + c2 p^2 + ... of what is given, p = t/seconds from 0 to 1 within that
     piece, and all of it afterwards; [(0.02, [0, 1])] grows straight over 20 ms. Modes advance exactly by any step;
     `step` is the slider's alone: unless given it is at most a `steps_per_period`-th of the drive's period and follows
-    what the start excites (`step_size`). The exact beam keeps `modes` modes from rest and none in its steady state.
-    Damping is a ratio of every mode, half the beam's loss factor unless given. A slider that pushes back lies on the
-    beam from the start: its weight bends it, and in the steady state its mass is part of it. `at` are p places in
-    metres, or one, where the deflection is kept, (n, p), at n = `samples` times, or as many as part all stretches of
-    growth where those are more. `continue_from` is a run from the same `start`, or with start = 'rest' a beam let go.
-    Returns what was reached where the run was interrupted or the slider left the beam or came to a step of its surface,
-    and says so. Without `patient` a slider's run longer than is waited for (`patience`) is refused; so is one both
-    ways, from rest and booked (`ledger`), in which the slider gave the beam far more than was put in. Raises
-    InputError.
+    what the start excites (`step_size`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
+    given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode, half the
+    beam's loss factor unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and
+    in the steady state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept,
+    (n, p), at n = `samples` times, or as many as part all stretches of growth where those are more. They stand evenly
+    on each stretch, not over all of them (`times`). `continue_from` is a run from the same `start`, or with start =
+    'rest' a beam let go. Returns what was reached where the run was interrupted or the slider left the beam or came to
+    a step of its surface, and says so. Without `patient` a slider's run longer than is waited for (`patience`) is
+    refused; so is one both ways, from rest and booked (`ledger`), in which the slider gave the beam far more than was
+    put in. Raises InputError.
     """
     began = perf_counter()
     if slider is not None:

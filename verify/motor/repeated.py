@@ -13,6 +13,7 @@ from verify.motor.combine import check_combines
 from verify.motor.feet import Placed
 from verify.motor.plan import lay_out
 from verify.motor.result import MotorRun, MotorState
+from verify.motor.run import MODES
 
 Block = Callable[[MotorState | None], MotorRun]
 """From the state at its end the run of the next; None: from where the slider is put down."""
@@ -28,7 +29,7 @@ def blocks(case: MotorCase, speed: float, periods: int, samples: int) -> Block:
     check_combines(case.model, case.start, case.slider)
     request = requested(
         Driven(case.beam, case.forces, case.frequency_hz, periods * case.period),
-        Modelled(case.model, case.count, case.modes, case.modal_damping),
+        Modelled(case.model, case.count, case.modes, case.modal_damping, MODES),
         Started(case.start, 0.0, (), None),
         Watched((), samples, None, case.steps_per_period, False),
         case.slider,
