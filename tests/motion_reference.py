@@ -19,16 +19,16 @@ def grown(t, soft_s):
     return p * p * (3.0 - 2.0 * p)
 
 
-def linear_motion(mass, stiffness, damping, loads, times, soft_s=0.0, y0=None):
+def linear_motion(mass, stiffness, damping, loads, times, soft_s=0.0, y0=None, growth=None):
     """M q'' + C q' + K q = sum of load F cos(omega t + phase), (len(times), n) by DOP853; loads is (n_forces, n)."""
     n, omega = len(mass), 2 * np.pi * FREQUENCY
-    inverse = np.linalg.inv(mass)
+    inverse, part = np.linalg.inv(mass), growth or (lambda t: grown(t, soft_s))
 
     def rates(t, y):
         push = sum(
             f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in zip(FORCES, loads, strict=True)
         )
-        return np.concatenate([y[n:], inverse @ (grown(t, soft_s) * push - damping @ y[n:] - stiffness @ y[:n])])
+        return np.concatenate([y[n:], inverse @ (part(t) * push - damping @ y[n:] - stiffness @ y[:n])])
 
     start = np.zeros(2 * n) if y0 is None else y0
     found = solve_ivp(rates, (0, times[-1]), start, method="DOP853", rtol=1e-11, atol=1e-16, t_eval=times)

@@ -262,3 +262,12 @@ def test_supports_in_a_row_of_numpys_are_those_of_a_pair():
     for wrong in (np.array([["clamped", "free"]]), np.array(["clamped"]), np.array("clamped")):
         with pytest.raises(InputError, match="give two, for the left and the right end"):
             Beam(**sizes, supports=wrong)
+
+
+def test_poissons_ratio_is_at_most_a_half():
+    """That of rubber, whose volume stays as it is."""
+    sizes = {"length": 0.7, "width": 0.02, "thickness": 0.013, "youngs_modulus": 2e6, "density": 1100.0}
+    assert Beam(**sizes, poissons_ratio=0.5).shear_coefficient > 0.0
+    for wrong in (0.50000001, -1.0):
+        with pytest.raises(InputError, match=r"poissons_ratio = .*: give a finite number above -1 and of at most 0\.5"):
+            Beam(**sizes, poissons_ratio=wrong)

@@ -56,7 +56,7 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
         settle(self, "beam", section=Section, mass=PointMass, spring=PointSpring)
         check_number("beam.length", self.length, "metres", above=0)
         self.check_sizes("beam")
-        check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, below=0.5000001)
+        check_number("beam.poissons_ratio", self.poissons_ratio, "dimensionless", above=-1, at_most=0.5)
         check_number("beam.loss_factor", self.loss_factor, "0 means undamped", at_least=0, below=10)
         check_number("beam.tension", self.tension, "newton, negative is compression")
         check_number("beam.foundation", self.foundation, "N/m^2, 0 means none", at_least=0)
@@ -167,6 +167,11 @@ class Beam(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def uniform(self) -> bool:
         """Whether it has one section and nothing on it: what closed forms are of."""
         return not self.added
+
+    @property
+    def lossless(self) -> tuple[str, ...]:
+        """What resists beside its own bending and shear, and has no loss, by the names of the fields."""
+        return tuple(name for name in self.added if name in ("spring", "tension", "foundation"))
 
     def check_added(self, who: str, takes: tuple[str, ...] = (), instead: str = "ask for something else") -> None:
         """Raise InputError for what `who` does not take: whatever is added beside `takes`."""

@@ -73,14 +73,21 @@ def _slots(kind: type) -> tuple[tuple[str, Any], ...]:
 
 
 def check_number(
-    field: str, value: object, unit: str, *, above: float = -inf, below: float = inf, at_least: float = -inf
+    field: str,
+    value: object,
+    unit: str,
+    *,
+    above: float = -inf,
+    below: float = inf,
+    at_least: float = -inf,
+    at_most: float = inf,
 ) -> None:
-    """Raise InputError unless `value` is a finite number, at least `at_least`, strictly between `above` and `below`."""
+    """Raise InputError unless `value` is a finite number from `at_least` to `at_most`, above `above`, below `below`."""
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if number and -LARGEST <= value <= LARGEST and above < value < below and value >= at_least:  # type: ignore[operator]
+    if number and -LARGEST <= value <= LARGEST and above < value < below and at_least <= value <= at_most:  # type: ignore[operator]
         return
     limits = [f"above {above:g}"] * (above > -inf) + [f"of at least {at_least:g}"] * (at_least > -inf)
-    limits += [f"below {below:g}"] * (below < inf)
+    limits += [f"below {below:g}"] * (below < inf) + [f"of at most {at_most:g}"] * (at_most < inf)
     wanted = " ".join(["a finite number", " and ".join(limits)]).strip()
     raise InputError(f"{field} = {shown(value)}: give {wanted} ({unit})")
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from verify import Beam, PointForce, PointMass, analytic_modes, fem_beam, segment_model, travelling_wave
 from verify.errors import InputError
@@ -135,5 +136,19 @@ def test_a_device_on_a_support_is_refused_and_so_is_a_beam_that_is_not_uniform()
         matched_impedance(stepped, 3000.0, 0.02)
     with pytest.raises(InputError, match=r"position = 0\.0 m stands on a clamped support"):
         beam_impedance(STRIP, 3000.0, 0.0, "clamped", turning=True)
-    with pytest.raises(InputError, match="stands on a pinned support"):
-        matched_device(STRIP, 3000.0, 0.9)
+
+
+@pytest.mark.parametrize(
+    ("supports", "turning", "place"),
+    [
+        (("free", "pinned"), False, 0.9),
+        (("pinned", "free"), False, 0.0),
+        (("free", "clamped"), True, 0.9),
+        (("free", "guided"), True, 0.9),
+    ],
+)
+def test_a_matched_device_on_a_support_is_refused_where_it_was_asked_for(supports, turning, place):
+    """At the right end it was told by its distance from there, 0.0 m."""
+    end = supports[place > 0.0]
+    with pytest.raises(InputError, match=rf"^position = {place!r} m stands on a {end} support, .*: move it$"):
+        matched_device(replace(STRIP, supports=supports), 3000.0, place, turning=turning)

@@ -17,6 +17,7 @@ from verify.field_docs import Value, fields_of
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0, loss_factor=0.01)
 FORCE = PointForce(position=0.083, amplitude=1.7, phase_deg=23.0)
 HERTZ = 411.0
+COUNTS = {"segment": "segments", "fem": "elements"}
 MODELS = {"analytic": (analytic_modes, ()), "segment": (segment_model, (37,)), "fem": (fem_beam, (37,))}
 
 
@@ -45,7 +46,10 @@ def refused(asked, *said):
 @pytest.mark.parametrize("model", MODELS)
 def test_a_number_for_x_is_a_row_of_one_and_a_list_gives_what_its_array_gives(model):
     modes, field, x = modes_of(model), field_of(model), np.array([0.111, 0.3, 0.52])
-    for read, rows in ((modes.deflection, (3,)), (modes.slope, (3,)), (field.deflection, ()), (field.slope, ())):
+    face, count = MODELS[model]
+    sweep = face.sweep_harmonic(STRIP, FORCE, [300.0, HERTZ], *count)
+    reads = [(modes.deflection, (3,)), (modes.slope, (3,)), (field.deflection, ()), (field.slope, ()), (field.turn, ())]
+    for read, rows in (*reads, (sweep.deflection, (2,)), (sweep.slope, (2,))):
         values = read(x)
         assert values.shape == (*rows, 3)
         assert np.array_equal(read([0.111, 0.3, 0.52]), values)
@@ -55,6 +59,26 @@ def test_a_number_for_x_is_a_row_of_one_and_a_list_gives_what_its_array_gives(mo
             assert np.array_equal(read(number), values[..., 1:2])
         assert np.array_equal(read(x.reshape(3, 1)), values[..., None])
         assert read([]).shape == (*rows, 0)
+
+
+@pytest.mark.parametrize("derivative", [-1, 1.5, True, "1", None])
+@pytest.mark.parametrize(
+    "beam", [STRIP, replace(STRIP, mass=(PointMass(position=0.2, mass=0.1),))], ids=["bare", "mass"]
+)
+@pytest.mark.parametrize("model", MODELS)
+def test_what_is_no_derivative_is_refused_by_every_line_of_every_model(model, beam, derivative):
+    """Minus one was a number, one and a half not one, and true a slope."""
+    face, count = MODELS[model]
+    thick = face.solve_harmonic(beam, FORCE, HERTZ, *count, theory="timoshenko")
+    field = face.solve_harmonic(beam, FORCE, HERTZ, *count)
+    sweep = face.sweep_harmonic(beam, FORCE, [300.0, HERTZ], *count)
+    lines = [face.solve_modes(beam, 3, *count).shapes, face.time_basis(beam, *(count or (9,))).shapes]
+    lines += [field.shapes, field.turns, thick.turned, thick.turns, sweep.shapes, sweep.field(0).shapes]
+    for line in lines:
+        refused(
+            lambda line=line: line(np.array([0.1]), derivative), "derivative = ", "give a whole number of at least 0"
+        )
+        assert np.array_equal(line(np.array([0.1]), np.int64(1)), line(np.array([0.1]), 1))
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -105,6 +129,47 @@ def test_unit_responses_take_numbers_and_lists_and_keep_three_axes(model):
     one = face.unit_responses(STRIP, 0.42, 411.0, 0.6, *count)
     assert one.shape == (1, 1, 1)
     assert one[0, 0, 0] == pytest.approx(whole[1, 1, 1], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "beam", [STRIP, replace(STRIP, mass=(PointMass(position=0.2, mass=0.1),))], ids=["bare", "mass"]
+)
+@pytest.mark.parametrize("model", MODELS)
+def test_unit_responses_to_nothing_are_empty_along_their_axis(model, beam):
+    face, count = MODELS[model]
+    given = {"positions": [0.1, 0.42], "frequencies_hz": [300.0, 411.0, 500.0], "x": [0.2, 0.3, 0.5, 0.6]}
+    for axis, name in enumerate(("frequencies_hz", "positions", "x")):
+        shape = [3, 2, 4]
+        shape[axis] = 0
+        found = face.unit_responses(beam, **(given | {name: []}), **({f"n_{COUNTS[model]}": count[0]} if count else {}))
+        assert found.shape == tuple(shape)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"positions": [[0.1, 0.42]]}, "positions has the shape (1, 2)"),
+        ({"x": [[0.2], [0.6]]}, "x has the shape (2, 1)"),
+        ({"frequencies_hz": [[300.0, 411.0]]}, "frequencies_hz has the shape (1, 2)"),
+        ({"positions": [0.1, 0.7301]}, "positions = 0.7301 lies off the beam"),
+        ({"positions": -0.1}, "positions = -0.1 lies off the beam"),
+        ({"x": [0.2, -1e-3]}, "x = -0.001 lies off the beam"),
+        ({"x": np.nan}, "x = nan lies off the beam"),
+        ({"frequencies_hz": [300.0, -411.0]}, "frequencies_hz[1] = -411.0"),
+        ({"frequencies_hz": [300.0, 411.0, np.nan]}, "frequencies_hz[2] = nan"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+@pytest.mark.parametrize(
+    "beam", [STRIP, replace(STRIP, mass=(PointMass(position=0.2, mass=0.1),))], ids=["bare", "mass"]
+)
+@pytest.mark.parametrize("model", MODELS)
+def test_unit_responses_that_cannot_be_are_refused_by_every_model_alike(model, beam, wrong, said):
+    """A place off the beam was read as if there were a beam, a frequency below zero as one above."""
+    face, count = MODELS[model]
+    given = {"positions": [0.1, 0.42], "frequencies_hz": [300.0, 411.0], "x": [0.2, 0.6]} | wrong
+    size = {f"n_{COUNTS[model]}": count[0]} if count else {}
+    refused(lambda: face.unit_responses(beam, **given, **size), said, "give ")
 
 
 def test_an_exact_shape_is_read_at_a_number_a_list_and_a_table():
@@ -227,6 +292,18 @@ def test_simulate_takes_a_force_alone_a_place_alone_and_numpys_scalars():
     assert np.array_equal(short.deflection, whole.deflection)
     refused(lambda: verify.simulate(STRIP, FORCE, 411.0, 2e-3, count=17, at="middle"), "at = 'middle'")
     refused(lambda: verify.simulate(STRIP, 1.0, 411.0, 2e-3, count=17), "forces has 1.0")
+
+
+@pytest.mark.parametrize("at", [[[0.3, 0.2]], [[]], np.zeros((0, 2))], ids=["a table", "no rows", "no columns"])
+@pytest.mark.parametrize("model", MODELS)
+def test_places_of_a_motion_stand_in_one_row(model, at):
+    size = {"model": model, "count": MODELS[model][1][0] if MODELS[model][1] else None, "at": at, "samples": 3}
+    for asked in (
+        lambda: verify.simulate(STRIP, FORCE, 411.0, 2e-3, **size),
+        lambda: verify.simulate(STRIP, FORCE, 411.0, 2e-3, start="steady", **size),
+        lambda: verify.free_vibration(STRIP, 1, 2e-3, amplitude=1e-3, **size),
+    ):
+        refused(asked, f"at has the shape {np.shape(at)}: give a number, or numbers in one row (metres)")
 
 
 # -------------------------------------------------------------------------------------------------- what is exported

@@ -66,6 +66,33 @@ def test_shapes_are_orthonormal_and_meet_their_ends(titanium_strip, supports):
 
 
 @pytest.mark.parametrize("supports", PAIRS, ids="-".join)
+@pytest.mark.parametrize("mode", [1, 3, 8])
+def test_four_derivatives_more_are_the_fourth_power_of_the_wavenumber(titanium_strip, supports, mode):
+    """EI times the fourth derivative is rho A omega^2 w, of every derivative; the oscillating part alone turns its sign twice on the way."""
+    beam = replace(titanium_strip, supports=supports)
+    x = np.array([0.0, 0.0613, 0.3001, 0.5, 0.7207])
+    fourth = beam.mass_per_length / beam.bending_stiffness
+    fourth *= (2 * np.pi * closed_forms.frequency_hz(beam, mode)) ** 2
+    for order in range(9):
+        lower, higher = (analytic_modes.mode_shape(beam, mode, x, order + more) for more in (0, 4))
+        assert higher == pytest.approx(fourth * lower, abs=2e-9 * abs(fourth * lower).max())
+        together = analytic_modes.solve_modes(beam, mode).shapes(x, order + 4)[-1]
+        assert np.array_equal(together, higher)
+
+
+@pytest.mark.parametrize("x", [-0.001, [0.2, 0.7301], np.nan])
+def test_a_shape_is_not_read_off_its_beam(titanium_strip, x):
+    for beam in (
+        titanium_strip,
+        replace(titanium_strip, section=(Section(length=0.3, thickness=0.002), Section(length=0.43))),
+    ):
+        with pytest.raises(InputError, match=r"lies off the beam: give positions between 0 and 0\.73 m"):
+            analytic_modes.mode_shape(beam, 2, x)
+        with pytest.raises(InputError, match=r"lies off the beam: give positions between 0 and 0\.73 m"):
+            analytic_modes.mode_shapes(beam, 2, x, 1)
+
+
+@pytest.mark.parametrize("supports", PAIRS, ids="-".join)
 def test_each_derivative_is_the_slope_of_the_one_before(titanium_strip, supports):
     beam = replace(titanium_strip, supports=supports)
     points, weights = np.polynomial.legendre.leggauss(20)

@@ -6,15 +6,20 @@ from msgspec.structs import replace
 from scipy.linalg import eigh
 from scipy.sparse import diags_array
 
-from verify.beam import Beam
+from verify.attached import PointMass, PointSpring
+from verify.beam import Beam, PointForce
 from verify.elements import linear as fem_beam
+from verify.elements import sweeps as fem_sweeps
 from verify.elements.mesh import build_elements
-from verify.elements.pencil import element_pencil
+from verify.elements.pencil import damped_stiffness, element_pencil
 from verify.errors import InputError
+from verify.exact.modes import solve_modes as exact_modes
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import distance_answered, forced_response, resonance_distance
 from verify.models.pencil import on_diagonals
+from verify.section import Section
 from verify.segments import linear as segment_model
+from verify.segments import sweeps as segment_sweeps
 from verify.segments.links import build_chain, chain_pencil
 
 STRIP = Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
@@ -177,3 +182,120 @@ def test_diagonals_lie_where_scipy_lays_them(values, shape):
     known = diags_array(list(values.values()), offsets=list(values), shape=shape, dtype=found.dtype)
     assert found.shape == known.shape
     assert np.array_equal(found.toarray(), known.toarray())
+
+
+L = 0.8
+CARRIER = Beam(
+    length=L,
+    width=0.02,
+    thickness=0.04,
+    youngs_modulus=70e9,
+    density=2700.0,
+    supports=("clamped", "free"),
+    loss_factor=0.05,
+)
+BODY, TIP = PointMass(position=0.33, mass=0.5), PointMass(position=L, mass=0.3, rotary_inertia=2e-3)
+CARRIED = {
+    "nothing": {},
+    "a mass": {"mass": (BODY,)},
+    "bodies that turn, inside and at an end": {"mass": (replace(BODY, rotary_inertia=1e-3), TIP)},
+    "a step": {"section": (Section(length=0.3), Section(length=0.5, thickness=0.03))},
+    "a body beyond a pin": {"supports": ("clamped", "pinned"), "mass": (replace(TIP, mass=0.0),)},
+}
+HELD = {
+    "a spring": {"spring": (PointSpring(position=0.33, stiffness=4e4),)},
+    "a spring against turning, at an end": {
+        "supports": ("pinned", "free"),
+        "spring": (PointSpring(position=0.0, rotational=3e3),),
+    },
+    "that with a body": {
+        "supports": ("pinned", "free"),
+        "mass": (replace(TIP, position=0.0, mass=0.0),),
+        "spring": (PointSpring(position=0.0, rotational=3e3),),
+    },
+    "axial force": {"tension": 900.0},
+    "ground": {"foundation": 5e4},
+}
+SETTINGS = [
+    {},
+    {"theory": "rayleigh", "joints": "tensioned"},
+    {"theory": "timoshenko"},
+    {"theory": "timoshenko", "joints": "tensioned"},
+    {"attachment": "lever", "theory": "timoshenko"},
+]
+
+
+def lossy(model, beam, n, settings):
+    """(pencil, D with the beam's loss), as the model's driven verbs make them."""
+    if model == "fem":
+        elements, pencil = fem_beam.driven(beam, n, 1.0, settings.get("theory", "euler-bernoulli"))
+        return pencil, damped_stiffness(elements, pencil)
+    given = {"wall": "gregory", "joints": "series", "grading": 1.0, "theory": "euler-bernoulli"}
+    chain, pencil = segment_model.driven(beam, n, given | {"attachment": "reciprocal"} | settings)
+    return pencil, segment_model.damped(beam, chain, pencil, 0.0)
+
+
+@pytest.mark.parametrize("what", [*CARRIED, *HELD])
+@pytest.mark.parametrize("settings", SETTINGS, ids=str)
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_everything_that_resists_has_one_loss_but_for_springs_axial_force_and_ground(what, settings, model):
+    """One factor 1 + i eta on all of D leaves the modes as they are; that is what `lossless` says without any model."""
+    beam = replace(CARRIER, **(CARRIED | HELD)[what])
+    if beam.tension:  # there is more than one theory of a thick beam under axial force
+        settings = {name: value for name, value in settings.items() if name != "theory"}
+    pencil, damped = lossy(model, beam, 20, settings)
+    alike = np.allclose(damped / pencil.stiffness, 1.0 + 0.05j, rtol=1e-13, atol=0.0)
+    assert alike == (not beam.lossless) == (what in CARRIED)
+
+
+@pytest.mark.parametrize("what", CARRIED)
+@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_a_loss_and_a_ratio_together_are_the_system_solved_directly(what, theory, model):
+    """(B^T D B + i omega C - omega^2 M) w = F with the model's own lossy D, and C = M Phi diag(2 zeta omega_n) Phi^T M."""
+    module = {"segment": segment_model, "fem": fem_beam}[model]
+    beam, zeta, hertz, x = replace(CARRIER, **CARRIED[what]), 0.03, 83.0, np.array([0.07, 0.33, 0.61])
+    pencil, d = lossy(model, beam, 20, {"theory": theory})
+    unit = beam.length / 20
+    omega2 = (2 * np.pi * hertz / beam.wave_constant) ** 2 * unit**4
+    strain, (stiffness, mass) = pencil.strain(np.eye(pencil.n)), matrices(pencil)
+    values, shapes = eigh(stiffness, mass)
+    damping = mass @ shapes @ np.diag(2 * zeta * np.sqrt(values)) @ shapes.T @ mass
+    alone = strain.T @ (d[:, None] * strain) - omega2 * mass
+    loads = loads_of(pencil.n)
+    expected = np.linalg.solve(alone + 1j * np.sqrt(omega2) * damping, loads)
+    found = damped_response(pencil, loads, omega2, d, zeta)
+    assert found == pytest.approx(expected, rel=1e-7, abs=1e-8 * abs(expected).max())
+    field = module.solve_harmonic(beam, PointForce(position=0.2), hertz, 20, modal_damping=zeta, theory=theory)
+    without = module.solve_harmonic(beam, PointForce(position=0.2), hertz, 20, theory=theory)
+    assert abs(field.deflection(x) - without.deflection(x)).max() > 0.02 * abs(without.deflection(x)).max()
+
+
+@pytest.mark.parametrize("what", CARRIED)
+@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
+def test_both_models_take_a_loss_beside_a_ratio_and_agree(what, theory):
+    """Also with the exact beam's modes, each damped by its own 2 zeta omega_n omega and omega_n^2 eta, 40 of them."""
+    beam, force, x = replace(CARRIER, **CARRIED[what]), PointForce(position=0.2, amplitude=1.7), np.array([0.33, 0.61])
+    modes = exact_modes(beam, 40, theory=theory)
+    own, omega = 2 * np.pi * modes.frequencies_hz, 2 * np.pi * 83.0
+    shares = 1.7 * modes.deflection(0.2)[:, 0] / (own**2 * (1 + 0.05j) - omega**2 + 2j * 0.03 * own * omega)
+    summed = shares @ modes.deflection(x)
+    sweeps = {"segment": segment_sweeps, "fem": fem_sweeps}
+    for model, module in {"segment": segment_model, "fem": fem_beam}.items():
+        field = module.solve_harmonic(beam, force, 83.0, 80, modal_damping=0.03, theory=theory)
+        assert field.deflection(x) == pytest.approx(summed, rel=1e-3)
+        sweep = sweeps[model].sweep_harmonic(beam, force, [80.0, 83.0], 80, modal_damping=0.03, theory=theory)
+        assert sweep.deflection(x)[1] == pytest.approx(field.deflection(x), rel=1e-12)
+
+
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_a_loss_beside_a_ratio_is_refused_by_the_names_of_what_loses_nothing(model):
+    beam = replace(CARRIER, mass=(BODY,), tension=900.0, foundation=5e4)
+    said = r"loss_factor = 0\.05 and modal_damping = 0\.03 together .* beside beam\.tension and beam\.foundation, "
+    module = {"segment": segment_model, "fem": fem_beam}[model]
+    sweeps = {"segment": segment_sweeps, "fem": fem_sweeps}[model]
+    with pytest.raises(InputError, match=said):
+        module.solve_harmonic(beam, PointForce(position=0.2), 83.0, 20, modal_damping=0.03)
+    with pytest.raises(InputError, match=said):
+        sweeps.sweep_harmonic(beam, PointForce(position=0.2), [83.0], 20, modal_damping=0.03)
+    assert module.solve_harmonic(replace(beam, loss_factor=0.0), PointForce(position=0.2), 83.0, 20, modal_damping=0.03)

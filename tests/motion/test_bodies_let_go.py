@@ -32,7 +32,8 @@ def tip_body(inertia=1.7e-3, supports=("clamped", "free")):
 
 
 def let_go(beam, shape=None, model="segment", count=None, time=1e-9, **asked):
-    asked = {"model": model, "count": count or PARTS[model], "modes": 40, "samples": 2} | asked
+    size = {"modes": 40} if model == "analytic" else {"count": count or PARTS[model]}
+    asked = {"model": model, "samples": 2} | size | asked
     return free_vibration(beam, shape, time, **asked)
 
 

@@ -12,10 +12,13 @@ from msgspec.structs import replace
 from verify.beam import PointMass
 from verify.errors import InputError, ResonanceError
 from verify.motion.forcing import SMOOTH_STEP, Modal, advanced, answer, free_part, state_of, turns
+from verify.motion.free_vibration import free_vibration
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of, cut
+from verify.motor.run import run_motor
 from verify.segments.links import build_chain
 from verify.segments.loads import joint_weights
+from verify.slider import Contact, Slider
 
 frequencies = st.floats(30.0, 9e4)
 ratios = st.floats(0.0, 0.4)
@@ -143,6 +146,60 @@ def test_motion_from_rest_is_that_of_the_assembled_matrices_by_dop853(model, sof
     assert found.statistics.steps == 0
 
 
+PIECES = ((0.7e-3, [0.0, 0.4, 0.6]), (0.5e-3, [1.0, 0.0, -0.3]), (0.4e-3, [0.7, 0.2]))
+"""They end at 0.9, from where the forces jump to all of them."""
+
+
+def part_of(pieces, t):
+    """Of the forces at t, by the pieces (seconds, coefficients) as `simulate` tells them: p = t/seconds in each."""
+    for seconds, coefficients in pieces:
+        if t < seconds:
+            return sum(c * (t / seconds) ** d for d, c in enumerate(coefficients))
+        t -= seconds
+    return 1.0
+
+
+@pytest.mark.parametrize("model", ["segment", "fem"])
+def test_an_envelope_is_polynomials_of_the_time_within_each_piece_over_its_length(model):
+    n = 6
+    mass, stiffness, loads, reading = matrices(model, n)
+    nodes = np.arange(1, n) * STRIP.length / n
+    found = simulate(STRIP, FORCES, FREQUENCY, 2.9e-3, model=model, count=n, at=nodes, envelope=PIECES, samples=59)
+    free = linear_motion(mass, stiffness, 0.0 * mass, loads, found.times, growth=lambda t: part_of(PIECES, t))
+    expected = free @ reading.T
+    assert found.deflection == pytest.approx(expected, abs=2e-7 * abs(expected).max())
+    assert "forces grow over 0.0016 s to 0.9 times what is given, and jump to that" in found.notes
+
+
+def test_an_envelope_of_the_smooth_step_is_a_soft_start():
+    asked = {"count": 9, "at": [0.171], "samples": 30}
+    soft = simulate(STRIP, FORCES, FREQUENCY, 2e-3, soft_start_periods=1.7, **asked)
+    pieces = simulate(STRIP, FORCES, FREQUENCY, 2e-3, envelope=[(1.7 / FREQUENCY, [0, 0, 3, -2])], **asked)
+    assert np.array_equal(pieces.deflection, soft.deflection)
+    assert pieces.notes == soft.notes
+    assert any(note.startswith("forces grow over") and "jump" not in note for note in soft.notes)
+
+
+@pytest.mark.parametrize(
+    ("n_pieces", "seconds", "samples", "kept"),
+    [
+        (8, 1e-4, 5, 10),  # a start, eight ends and that of the run
+        (8, 1e-4, 10, 10),
+        (8, 1e-4, 11, 11),
+        (9, 1.5e-4, 11, 11),  # of which each has one and a half times its share
+        (2, 1e-3, 2, 3),  # which fill the run
+        (1, 1e-3, 41, 41),
+    ],
+)
+def test_as_many_times_are_kept_as_are_asked_for_or_one_for_each_stretch(n_pieces, seconds, samples, kept):
+    pieces = [(seconds, [0.3, 0.7])] * n_pieces
+    found = simulate(STRIP, FORCES, FREQUENCY, 2e-3, count=5, at=[0.1], envelope=pieces, samples=samples)
+    assert found.deflection.shape == (kept, 1)
+    assert (found.times[0], found.times[-1]) == pytest.approx((0.0, 2e-3), rel=1e-12)
+    ends = seconds * np.arange(1, n_pieces + 1)
+    assert all(abs(found.times - end).min() < 1e-12 for end in ends)
+
+
 def matrices(model, n):
     """(M, K, loads, reading at the inner nodes) in SI, from element matrices written here, pinned ends."""
     length, ei, line = STRIP.length / n, STRIP.bending_stiffness, STRIP.mass_per_length
@@ -223,7 +280,8 @@ def test_a_run_that_continues_another_is_one_long_run(first, second, zeta):
 def test_damped_motion_from_rest_ends_in_the_steady_state(model):
     """After forty time constants of the first mode; the exact beam's far modes follow at once."""
     count = None if model == "analytic" else 24
-    asked = {"model": model, "count": count, "modal_damping": 0.05, "modes": 60, "at": [0.171], "ledger": False}
+    asked = {"model": model, "count": count, "modal_damping": 0.05, "at": [0.171], "ledger": False}
+    asked |= {} if count else {"modes": 60}
     begun = simulate(STRIP, FORCES, FREQUENCY, 8.0, samples=2, **asked)
     late = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, continue_from=begun, samples=50, **asked)
     exact = simulate(STRIP, FORCES, FREQUENCY, 2 / FREQUENCY, start="steady", samples=50, **asked)
@@ -331,3 +389,46 @@ def test_a_run_goes_on_with_other_losses_and_not_from_a_steady_beam():
     exact = simulate(STRIP, FORCES, FREQUENCY, 1e-3, model="analytic", modes=30)
     with pytest.raises(InputError, match="continue_from has 30 modes and this run 31: give both the same modes"):
         simulate(STRIP, FORCES, FREQUENCY, 1e-3, model="analytic", modes=31, continue_from=exact)
+
+
+ON_BEAM = Slider(mass=2e-2, mu=0.2, position=0.17, coupling="two-way")
+ASKED = {"count": 9, "at": [0.1, 0.33], "samples": 5, "ledger": False}
+
+
+@pytest.mark.parametrize("slider", [None, ON_BEAM], ids=["bare", "with a slider"])
+def test_a_steady_run_does_not_go_on_from_one_whose_modes_have_the_forces_in_them(slider):
+    """The deflection jumped to 3.5 times what it was: the steady field stood beside modes that held it already."""
+    lossy = replace(STRIP, loss_factor=0.05)
+    begun = simulate(lossy, FORCES, FREQUENCY, 1e-3, slider=slider, **ASKED)
+    for put in (None, ON_BEAM):
+        with pytest.raises(InputError, match="would be there twice: give start = 'rest', which goes on from where"):
+            simulate(lossy, FORCES, FREQUENCY, 1e-3, start="steady", slider=put, continue_from=begun, **ASKED)
+    went = simulate(lossy, FORCES, FREQUENCY, 1e-3, slider=ON_BEAM, continue_from=begun, **ASKED)
+    assert went.deflection[0] == pytest.approx(begun.deflection[-1], rel=1e-12)
+
+
+def test_modes_beside_a_steady_field_go_on_beside_it_alone():
+    lossy = replace(STRIP, loss_factor=0.05)
+    begun = simulate(lossy, FORCES, FREQUENCY, 1e-3, start="steady", slider=ON_BEAM, **ASKED)
+    with pytest.raises(InputError, match="start = 'rest': continue_from is a run with start = 'steady', whose modes"):
+        simulate(lossy, FORCES, FREQUENCY, 1e-3, continue_from=begun, **ASKED)
+    with pytest.raises(InputError, match=r"no free modes where no slider pushes back, .* coupling = 'two-way'"):
+        simulate(lossy, FORCES, FREQUENCY, 1e-3, start="steady", continue_from=begun, **ASKED)
+    went = simulate(lossy, FORCES, FREQUENCY, 1e-3, start="steady", slider=ON_BEAM, continue_from=begun, **ASKED)
+    assert went.deflection[0] == pytest.approx(begun.deflection[-1], rel=1e-12)
+
+
+def test_a_beam_let_go_does_not_go_on_beside_a_steady_field():
+    begun = free_vibration(STRIP, 2, 1e-3, amplitude=1e-4, count=9)
+    with pytest.raises(InputError, match="give start = 'rest'"):
+        simulate(STRIP, FORCES, FREQUENCY, 1e-3, start="steady", slider=ON_BEAM, continue_from=begun, **ASKED)
+
+
+@pytest.mark.parametrize(("first", "then"), [("rest", "steady"), ("steady", "rest")])
+def test_a_motor_goes_on_from_its_own_start(first, then):
+    motor = replace(ON_BEAM, contact=Contact(stiffness=4e5))
+    lossy = replace(STRIP, loss_factor=0.05)
+    begun = run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=motor, count=9, start=first, samples=3)
+    with pytest.raises(InputError, match=f"start = '{then}': continue_from is (no |a )run with start = 'steady'"):
+        run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=motor, count=9, start=then, samples=3, continue_from=begun)
+    run_motor(lossy, FORCES, FREQUENCY, 1e-3, slider=motor, count=9, start=first, samples=3, continue_from=begun)

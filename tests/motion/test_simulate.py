@@ -14,6 +14,8 @@ from verify.motion.records import SLIPS
 from verify.motion.simulate import simulate
 from verify.slider import Slider
 
+LITERAL = str.maketrans({sign: "\\" + sign for sign in "()[]"})
+"""Of what a message is matched by: brackets are what they are."""
 LIGHT = Slider(mass=1.3e-3, mu=0.21, slope=120.0, position=0.17, coupling="one-way")
 
 
@@ -144,6 +146,8 @@ def test_a_slider_at_rest_on_a_beam_at_rest_sticks_from_the_start():
         ({"count": None}, "count is missing"),
         ({"count": 2.5}, "n_segments = 2.5"),
         ({"count": 11, "model": "analytic"}, "count = 11 is for models of parts"),
+        ({"modes": 5}, "modes = 5 is for model = analytic: segment keeps all it has, leave it out"),
+        ({"modes": 5, "model": "fem", "start": "steady"}, "modes = 5 is for model = analytic: fem keeps all it has"),
         ({"model": "segmnt"}, "model = 'segmnt'"),
         ({"start": "soft"}, "start = 'soft'"),
         ({"samples": 1}, "samples = 1"),
@@ -159,7 +163,16 @@ def test_a_slider_at_rest_on_a_beam_at_rest_sticks_from_the_start():
         ({"soft_start_periods": 3.0}, "the forces grow over .* s: lower soft_start_periods, or lengthen the duration"),
         ({"envelope": [(3e-2, [0.0, 1.0])]}, "grow over 0.03 s of duration = .* s: shorten envelope, or lengthen"),
         ({"soft_start_periods": np.nan}, "soft_start_periods = nan"),
-        ({"soft_start_periods": 1.0, "start": "steady"}, "moves already"),
+        ({"soft_start_periods": 1.0, "start": "steady"}, "soft_start_periods = 1.0 with start = 'steady': a beam that"),
+        (
+            {"envelope": [(1e-4, [0, 1])], "start": "steady"},
+            "envelope = [(0.0001, [0, 1])] with start = 'steady': a beam that moves already has no start, leave it out",
+        ),
+        (
+            {"envelope": [(1e-4, [0, 1])], "soft_start_periods": 2},
+            "soft_start_periods = 2 and envelope = [(0.0001, [0, 1])]: give one of the two",
+        ),
+        ({"envelope": np.array([[1e-4, 1.0]])}, "give pieces (seconds, coefficients)"),
         ({"envelope": [(1e-4, [0.0, np.nan])]}, "envelope: give pieces"),
         ({"envelope": [(-1e-4, [0.0, 1.0])]}, "envelope: give pieces"),
         ({"count": None, "start": "steady"}, "count is missing"),
@@ -173,7 +186,7 @@ def test_a_slider_at_rest_on_a_beam_at_rest_sticks_from_the_start():
     ids=str,
 )
 def test_bad_input_is_refused_in_one_sentence(asked, message):
-    with pytest.raises(InputError, match=message.replace("(", r"\(")) as found:
+    with pytest.raises(InputError, match=message.translate(LITERAL)) as found:
         slid(**asked)
     assert "\n" not in str(found.value)
 

@@ -176,7 +176,7 @@ def test_exchanged_forces_mirror_the_slider(model, count, coupling):
     mirrored = tuple(replace(f, position=STRIP.length - f.position) for f in FORCES)
     slider = replace(HEAVY, coupling=coupling, kinematics="following", speed=0.003)
     other = replace(slider, position=STRIP.length - 0.19, speed=-0.003)
-    asked = {"model": model, "count": count, "modes": 30, "soft_start_periods": 2.0, "samples": 51}
+    asked = {"model": model, "count": count, "modes": None if count else 30, "soft_start_periods": 2.0, "samples": 51}
     one, two = (
         simulate(STRIP, forces, FREQUENCY, DURATION, slider=s, **asked)
         for forces, s in ((FORCES, slider), (mirrored, other))
@@ -344,7 +344,7 @@ def test_a_steady_beam_that_feels_its_slider_changes_little_under_a_light_one(mo
             start="steady",
             slider=slider,
             modal_damping=1e-3,
-            modes=60,
+            modes=None if count else 60,
         )
         ways.append(m.displacement)
     assert 1e-6 < abs(ways[1] / ways[0] - 1) < 5 * m.coupling.relative_size

@@ -16,18 +16,16 @@ from verify.elements.pencil import (
     damped_stiffness,
     element_pencil,
     mesh_buckling_load,
-    own_strains,
     uneven,
 )
-from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
-from verify.models.driven_pencil import damped_response, modal_receptance, probed, refuse_near_resonance
+from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name, resonance_distance
-from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor
+from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
+from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.theory import check_theory
 from verify.options import Theory
 
@@ -156,9 +154,9 @@ def solve_harmonic(
     forces = as_forces(forces)
     check_asked(beam, 1, n_elements, grading, theory)
     check_drive(beam, forces, frequency_hz)
+    check_damping(beam, modal_damping)
     elements, pencil = driven(beam, n_elements, grading, theory)
     unit = elements.parts.unit
-    check_dampings(elements, pencil, modal_damping)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * unit**4
     loads, undamped = force_loads(elements, forces), not (beam.loss_factor or modal_damping)
     stiffness, asked = damped_stiffness(elements, pencil), probed(pencil, loads) if undamped else loads
@@ -227,14 +225,10 @@ def _made(beam: Beam, n_elements: int, grading: float, theory: Theory) -> tuple[
 _kept = lru_cache(maxsize=16)(_made)
 
 
-def check_dampings(elements: Elements, pencil: FactoredPencil, modal_damping: float) -> None:
+def check_damping(beam: Beam, modal_damping: float) -> None:
     """Raise InputError for a modal ratio that is none, or beside a loss factor where the two couple the modes."""
     check_number("modal_damping", modal_damping, "0 means none", at_least=0, below=1)
-    if modal_damping and elements.beam.loss_factor and len(pencil.stiffness) > own_strains(elements):
-        raise InputError(
-            f"beam.loss_factor = {elements.beam.loss_factor!r} and modal_damping = {modal_damping!r} together: "
-            "springs, tension and foundation have no loss and couple the modes, give one of the two"
-        )
+    check_dampings(beam, modal_damping)
 
 
 def modes_around(beam: Beam, n_modes: int, n_elements: int, *, grading: float, theory: Theory) -> Modes:
@@ -257,19 +251,17 @@ def unit_responses(
 
     All modes of the mesh are solved once and summed exactly for every frequency; where a loss factor couples them,
     beside what has no loss, and under Timoshenko's theory, every frequency is solved. NaN at the frequencies of
-    undamped resonances. Raises InputError for meshes beyond the dense size.
+    undamped resonances. Raises InputError, also for meshes beyond the dense size.
     """
-    positions, x = in_a_row("positions", positions), in_a_row("x", x)
-    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
+    positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     check_asked(beam, 1, n_elements, 1.0, theory)
     elements, pencil = driven(beam, n_elements, 1.0, theory)
     basis, unit = elements.basis, elements.parts.unit
     weights = point_loads(basis, positions / unit)[:, elements.free].T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * unit**4
-    coupled = beam.loss_factor and len(pencil.stiffness) > own_strains(elements)
-    if coupled or theory == "timoshenko":
+    if (beam.loss_factor and beam.lossless) or theory == "timoshenko":
         found = [_one_by_one(elements, pencil, weights, value, x) for value in omega2]
-        return np.array(found) * (unit**3 / beam.bending_stiffness)
+        return np.array(found).reshape(len(omega2), len(positions), len(x)) * (unit**3 / beam.bending_stiffness)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
     shapes: Array = interpolate(basis, elements.all_values(modes), x / unit)
     return np.asarray(receptance @ shapes) * (unit**3 / beam.bending_stiffness)

@@ -8,7 +8,7 @@ from verify.beam import Beam
 from verify.checks import check_whole, several
 from verify.elements.linear import (
     check_asked,
-    check_dampings,
+    check_damping,
     driven,
     force_loads,
     modes_around,
@@ -53,8 +53,8 @@ def sweep_harmonic(
     forces = as_forces(forces)
     check_asked(beam, 1, n_elements, grading, theory)
     frequencies = swept_frequencies(beam, forces, frequencies_hz, 2 * n_elements)
+    check_damping(beam, modal_damping)
     elements, pencil = driven(beam, n_elements, grading, theory)
-    check_dampings(elements, pencil, modal_damping)
     omega2 = (2.0 * pi * frequencies / beam.wave_constant) ** 2 * elements.parts.unit**4
     undamped = not (beam.loss_factor or modal_damping)
 

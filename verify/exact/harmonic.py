@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_frequency
+from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
 from verify.models.arrays import Array, BoolArray, ComplexArray, Indices
@@ -19,10 +19,11 @@ from verify.models.fields import (
     check_forces,
     phasor,
     refuse_resonance,
+    unit_drives,
     wavenumber,
 )
 from verify.models.ordered import distinct
-from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
+from verify.models.places import Forces, Numbers, as_forces, as_typed
 
 
 @as_typed
@@ -308,11 +309,12 @@ def unit_responses(
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
-    NaN at the frequencies of undamped resonances.
+    NaN at the frequencies of undamped resonances. Raises InputError.
     """
-    positions, x = in_a_row("positions", positions), in_a_row("x", x)
-    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
+    positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
+    if not responses.size:
+        return responses
     if theory != "euler-bernoulli" or not beam.uniform:
         from verify.exact.driven import general_responses
 
@@ -322,8 +324,6 @@ def unit_responses(
         return responses
     forces = [PointForce(position=float(position)) for position in positions]
     check_forces(beam, forces)
-    for frequency in frequencies_hz:
-        check_frequency("frequency_hz", float(frequency), beam)
     steady = np.full(len(frequencies_hz), True)
     steady[resonant(beam, frequencies_hz)] = False
     for j, force in enumerate(forces):

@@ -14,7 +14,7 @@ from verify.exact.harmonic import solve_harmonic, unit_responses
 from verify.exact.roots import general_frequency_hz, modes_below
 from verify.models.arrays import Array
 from verify.models.modes import Modes
-from verify.models.places import Numbers, as_typed, real_array
+from verify.models.places import Numbers, as_typed, places
 from verify.models.theory import check_theory
 from verify.options import THEORIES
 from verify.patience import check_work
@@ -87,7 +87,7 @@ def check_n_modes(beam: Beam, n_modes: int, theory: str, n_beams: int = 1) -> No
 
 
 def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
-    """Mass-normalised shape of one exact mode or its derivative (0 to 3) at x, SI; a number x is a row of one.
+    """Mass-normalised shape of one exact mode or a derivative of any order at x, SI; a number x is a row of one.
 
     x in metres. Positive where the beam first moves off its left end. Of everything that has mass: point masses and
     rotary inertia too. By Timoshenko's theory the deflection, and the slope of its line, not the section's turn.
@@ -103,7 +103,7 @@ def mode_shapes(beam: Beam, n_modes: int, x: Numbers, derivative: int = 0, theor
 
 
 def _shapes(beam: Beam, modes: Sequence[int], x: Numbers, derivative: int, theory: str) -> Array:
-    at = np.atleast_1d(real_array("x", x, "metres"))
+    at = np.atleast_1d(places("x", x, beam.length))
     check_whole("derivative", derivative, 0)
     if theory != "euler-bernoulli" or not beam.uniform:
         return _general(beam, modes, at.ravel(), derivative, theory).reshape(len(modes), *at.shape)
@@ -163,7 +163,7 @@ def _unit_shapes(supports: tuple[str, str], modes: Sequence[int], xi: Array, eta
     cosine, sine = _quarter_turns(turns, remainder, xi)
     # derivative k of c cos + s sin + a e^{-y xi} + b e^{-y eta}, each divided by y^k
     turned = [c * cosine + s * sine, s * cosine - c * sine]
-    waves = turned[derivative % 2] * (1.0 if derivative < 2 else -1.0)
+    waves = turned[derivative % 2] * (1.0 if derivative % 4 < 2 else -1.0)
     decay = a * (-1.0) ** derivative * np.exp(-y * xi) + b * np.exp(-y * eta)
     return np.asarray((waves + decay) * y**derivative)
 

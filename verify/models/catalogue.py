@@ -41,6 +41,10 @@ def bounding() -> tuple[Model, Model]:
     return sides["below"], sides["above"]
 
 
+EXACT_MODES = 400
+"""That the exact beam keeps in time unless told otherwise."""
+
+
 def check_count(name: str, count: int | None, field: str = "model") -> None:
     """Raise InputError for a model of parts without their number, or one that has none with one."""
     sized = MODELS.named(name, field).sized
@@ -48,3 +52,13 @@ def check_count(name: str, count: int | None, field: str = "model") -> None:
         raise InputError(f"count is missing: give the number of segments or elements for model = {name}")
     if not sized and count is not None:
         raise InputError(f"count = {count!r} is for models of parts: {name} has none, leave it out")
+
+
+def kept_modes(name: str, modes: int | None, otherwise: int) -> int:
+    """How many modes a model without parts keeps in time, `otherwise` unless given.
+
+    Raises InputError where they are given to a model of parts, which keeps all that it has.
+    """
+    if modes is not None and MODELS.named(name).sized:
+        raise InputError(f"modes = {modes!r} is for model = analytic: {name} keeps all it has, leave it out")
+    return otherwise if modes is None else modes

@@ -57,6 +57,19 @@ def modal_receptance(
     return vectors, shares
 
 
+def check_dampings(beam: Beam, modal_damping: float) -> None:
+    """Raise InputError for a ratio of every mode beside a loss factor where the two couple the modes.
+
+    They do not where all that resists is the beam's own (1 + i eta) K, whatever it carries: masses do not resist.
+    """
+    if modal_damping and beam.loss_factor and beam.lossless:
+        raise InputError(
+            f"beam.loss_factor = {beam.loss_factor!r} and modal_damping = {modal_damping!r} together couple the modes "
+            f"beside {' and '.join(f'beam.{name}' for name in beam.lossless)}, where nothing is lost: give one of the "
+            "two"
+        )
+
+
 def check_couples(factors: ComplexArray) -> None:
     """Raise InputError where dashpots, by their share (..., m) in every stiffness, couple modes of one ratio."""
     if (np.ptp(factors.imag, axis=-1) > 1e-9 * abs(factors).max(axis=-1)).any():

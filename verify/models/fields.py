@@ -7,10 +7,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce, check_frequency
+from verify.checks import check_whole
 from verify.errors import InputError, ResonanceError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
-from verify.models.places import Forces, Numbers, as_asked, as_forces, places
+from verify.models.places import Forces, Numbers, as_asked, as_forces, in_a_row, keep_lines, places
 
 LARGEST_SLOPE = 1e100
 """Of a beam under a force, F L^2 / EI."""
@@ -38,6 +39,9 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
     turned: Callable[[Array, int], ComplexArray] | None = None
     """(x, derivative) -> (len(x),) complex: turn psi of the section where shear sets it apart from the slope w'."""
 
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes", "turned")
+
     @property
     def omega(self) -> float:
         """2 pi f, rad/s."""
@@ -49,18 +53,18 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
         return wavenumber(self.beam, self.frequency_hz, self.theory)
 
     def deflection(self, x: Numbers) -> ComplexArray:
-        """Complex deflection at x (metres), of the shape of x, metres: one number at a number.
+        """Complex deflection at x (metres), of the shape of x, metres; a number is a row of one.
 
         Raises InputError off the beam.
         """
         return as_asked(self.shapes(self._on_beam(x), 0), x)
 
     def slope(self, x: Numbers) -> ComplexArray:
-        """Complex slope at x (metres), of the shape of x, radians. Raises InputError off the beam."""
+        """Complex slope at x (metres), of the shape of `deflection`, radians. Raises InputError off the beam."""
         return as_asked(self.shapes(self._on_beam(x), 1), x)
 
     def turn(self, x: Numbers) -> ComplexArray:
-        """Complex turn of the section at x (metres), of the shape of x, radians: the slope where nothing shears.
+        """Complex turn of the section at x (metres), of the shape of `deflection`, radians: w' where nothing shears.
 
         Raises InputError off the beam, and for a Timoshenko field of a model that gives none.
         """
@@ -68,6 +72,7 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
 
     def turns(self, x: Array, derivative: int) -> ComplexArray:
         """That or a derivative of it at x (n,), (n,), radians per metre^derivative. Raises InputError likewise."""
+        check_whole("derivative", derivative, 0)
         if self.turned is not None:
             return self.turned(x, derivative)
         if self.theory == "timoshenko":
@@ -136,6 +141,25 @@ def check_drive(beam: Beam, forces: Forces, frequency_hz: float) -> None:
     """
     check_frequency("frequency_hz", frequency_hz, beam)
     check_forces(beam, forces)
+
+
+def check_frequencies(field: str, found: Array, beam: Beam) -> None:
+    """Raise InputError, by index, where one of many frequencies (n,) is none that a beam is driven at."""
+    for index in (int(np.argmin(found)), int(np.argmax(found))) if len(found) else ():  # a NaN is both
+        check_frequency(f"{field}[{index}]", float(found[index]), beam)
+
+
+def unit_drives(beam: Beam, positions: Numbers, frequencies_hz: Numbers, x: Numbers) -> tuple[Array, Array, Array]:
+    """What `unit_responses` of every model is asked for, each in a row: where forces stand, at which hertz, where read.
+
+    Raises InputError for rows of rows, places off the beam and frequencies that are none.
+    """
+    rows = [in_a_row(name, given, "metres") for name, given in (("positions", positions), ("x", x))]
+    for name, row in zip(("positions", "x"), rows, strict=True):
+        places(name, row, beam.length)
+    frequencies = in_a_row("frequencies_hz", frequencies_hz, "hertz")
+    check_frequencies("frequencies_hz", frequencies, beam)
+    return np.clip(rows[0], 0.0, beam.length), frequencies, rows[1]
 
 
 def check_forces(beam: Beam, forces: Forces) -> None:

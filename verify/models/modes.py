@@ -6,7 +6,7 @@ import msgspec
 
 from verify.field_docs import Value
 from verify.models.arrays import Array
-from verify.models.places import Numbers, as_asked, places
+from verify.models.places import Numbers, as_asked, keep_lines, places
 
 
 class Modes(Value, frozen=True, eq=False, kw_only=True):
@@ -40,6 +40,9 @@ class Modes(Value, frozen=True, eq=False, kw_only=True):
     """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg))."""
     method: str = "closed form"
     """How the eigenvalues were found."""
+
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes")
 
     @classmethod
     def of_shapes(
@@ -76,7 +79,7 @@ class Modes(Value, frozen=True, eq=False, kw_only=True):
         return len(self.frequencies_hz)
 
     def deflection(self, x: Numbers) -> Array:
-        """Mass-normalised deflection at x (metres), (n_modes, *shape of x), in 1/sqrt(kg): (n_modes,) at a number.
+        """Mass-normalised deflection at x (metres), (n_modes, *shape of x), in 1/sqrt(kg); a number is a row of one.
 
         Raises InputError.
         """

@@ -4,10 +4,11 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import Any, ParamSpec, TypeAlias, TypeVar
 
+import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_kind, plain, several
+from verify.checks import check_kind, check_whole, plain, several
 from verify.errors import InputError, shown
 from verify.models.arrays import Array
 
@@ -43,8 +44,11 @@ def as_typed(verb: Callable[Given, Found]) -> Callable[Given, Found]:
 
 
 def in_a_row(field: str, value: object, unit: str = "SI") -> Array:
-    """Numbers in a row, (n,); one alone is a row of one. Raises InputError for what is no real number."""
-    return np.atleast_1d(real_array(field, value, unit))
+    """Numbers in a row, (n,); one alone is a row of one. Raises InputError for rows of rows and what is no number."""
+    found = np.atleast_1d(real_array(field, value, unit))
+    if found.ndim > 1:
+        raise InputError(f"{field} has the shape {found.shape}: give a number, or numbers in one row ({unit})")
+    return found
 
 
 def real_array(field: str, value: object, unit: str) -> Array:
@@ -71,6 +75,28 @@ def as_asked(found: Values, x: Numbers) -> Values:
     """What was read at x in a row, (..., n), in the arrangement of x, (..., *shape of x): a number is a row of one."""
     shape = np.shape(x)
     return found if len(shape) < 2 else found.reshape(found.shape[:-1] + shape)
+
+
+class Line:
+    """A line along a beam as who knows it gives it, (x, derivative) -> its values; what is no derivative is refused."""
+
+    __slots__ = ("given",)
+
+    def __init__(self, given: Callable[[Array, int], Any]) -> None:
+        self.given = given
+
+    def __call__(self, x: Array, derivative: int) -> Any:
+        """The derivative at x. Raises InputError where it is no whole number of at least 0."""
+        check_whole("derivative", derivative, 0)
+        return self.given(x, derivative)
+
+
+def keep_lines(value: msgspec.Struct, *fields: str) -> None:
+    """Make the lines that a frozen value holds, where it holds any, such that refuse what is no derivative."""
+    for field in fields:
+        line = getattr(value, field)
+        if line is not None and not isinstance(line, Line):
+            msgspec.structs.force_setattr(value, field, Line(line))
 
 
 def as_forces(forces: Forces) -> tuple[PointForce, ...]:

@@ -10,15 +10,15 @@ from typing import TypeVar
 import msgspec
 import numpy as np
 
-from verify.beam import Beam, PointForce, check_frequency
+from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
 from verify.models.eigen import distance_answered, forced_response, lowest, probe
-from verify.models.fields import RESONANCE, HarmonicField, check_forces
+from verify.models.fields import RESONANCE, HarmonicField, check_forces, check_frequencies
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
-from verify.models.places import Forces, Numbers, in_a_row, places
+from verify.models.places import Forces, Numbers, as_asked, keep_lines, places, real_array
 from verify.models.stacks import PencilStack, carried_along, lowest_of_each
 
 MOST_VALUES = 50_000_000
@@ -55,11 +55,17 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
     turned: Callable[[Array, int], ComplexArray] | None = None
     """(x, derivative) -> (n_frequencies, len(x)) complex: turn psi of the section where it is not the slope w'."""
 
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes", "turned")
+
     def __len__(self) -> int:
         return len(self.frequencies_hz)
 
     def deflection(self, x: Numbers) -> ComplexArray:
-        """Complex deflection at x (metres), (n_frequencies, *shape of x), metres. Raises InputError off the beam."""
+        """Complex deflection at x (metres), (n_frequencies, *shape of x), metres; a number is a row of one.
+
+        Raises InputError off the beam.
+        """
         return self._read(x, 0)
 
     def slope(self, x: Numbers) -> ComplexArray:
@@ -69,7 +75,7 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
     def _read(self, x: Numbers, derivative: int) -> ComplexArray:
         at = places("x", x, self.beam.length)
         check_held(len(self), at.size, "x")
-        return self.shapes(at.ravel(), derivative).reshape(len(self), *at.shape)
+        return as_asked(self.shapes(at.ravel(), derivative), x)
 
     def field(self, index: int) -> HarmonicField:
         """The field at one of the frequencies, counted from 0. Raises InputError for one that is not there."""
@@ -112,13 +118,12 @@ def _turned(fields: Sequence[HarmonicField]) -> Callable[[Array, int], ComplexAr
 
 def swept_frequencies(beam: Beam, forces: Forces, frequencies_hz: Numbers, unknowns: int) -> Array:
     """The frequencies in a row, (n,). Raises InputError as `check_drive` does, by index, and for too many."""
-    found = in_a_row(FIELD, frequencies_hz, "hertz").ravel()
+    found = real_array(FIELD, frequencies_hz, "hertz").ravel()
     if not found.size:
         raise InputError(f"{FIELD} is empty: give at least one frequency in hertz")
     check_held(len(found), unknowns, FIELD)
     check_forces(beam, forces)
-    for index in (int(np.argmin(found)), int(np.argmax(found))):  # a NaN is both
-        check_frequency(f"{FIELD}[{index}]", float(found[index]), beam)
+    check_frequencies(FIELD, found, beam)
     return found
 
 

@@ -9,7 +9,7 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.field_docs import Value
 from verify.models.arrays import Array, ComplexArray
-from verify.models.places import Numbers, as_asked, places
+from verify.models.places import Numbers, as_asked, keep_lines, places
 
 
 class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
@@ -41,6 +41,9 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
     turns: Callable[[], Array] | None = None
     """() -> (n, bodies): how far the bodies of `beam.mass` turn; None where they turn as the shapes do there."""
 
+    def __post_init__(self) -> None:
+        keep_lines(self, "shapes")
+
     def body_turns(self) -> Array:
         """How far the bodies of `beam.mass` turn, (n, bodies), in 1/(sqrt(kg) m)."""
         if self.turns is not None:
@@ -48,7 +51,7 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
         return np.asarray(self.shapes(np.array([mass.position for mass in self.beam.mass]), 1))
 
     def deflection(self, x: Numbers) -> Array:
-        """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg): (n,) at a number. Raises InputError off the beam."""
+        """Shapes at x (metres), (n, *shape of x), in 1/sqrt(kg); a number is a row of one. Raises InputError off it."""
         return as_asked(self.shapes(places("x", x, self.beam.length).ravel(), 0), x)
 
 
@@ -70,6 +73,6 @@ def check_held(beam: Beam) -> None:
     """Raise InputError for supports that let the beam drift away as a whole."""
     if beam.rigid_motions:
         raise InputError(
-            f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), which a driven beam "
-            "would drift off in: clamp an end, or pin both"
+            f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), in which a beam that "
+            "is driven or let go may drift off: clamp an end, or pin both"
         )

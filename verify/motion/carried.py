@@ -89,7 +89,7 @@ def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Cou
     """
     n = len(stage.modal.squares)
     if request.before is not None:
-        check_goes_on(request.before, request.beam, request.model, request.count, n)
+        check_goes_on(request.before, request.beam, request.model, request.count, n, request.start)
         return stage.start(request.before.q, request.before.rates)
     q, rates = np.zeros(n), np.zeros(n)
     if basis and request.slider and coupling and coupling.pushes_back:
@@ -275,6 +275,7 @@ def _end(
         time=_reached(stages, sliding.steps),
         q=q,
         rates=rates,
+        steady=request.start == "steady",
         position=x,
         speed=float(sliding.motion[V]),
         stuck=bool(sliding.motion[STUCK] > 0.0),

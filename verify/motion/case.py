@@ -23,7 +23,8 @@ class MotionCase(msgspec.Struct, frozen=True, kw_only=True):
     """Seconds."""
     model: str
     count: int | None
-    modes: int
+    modes: int | None
+    """That the exact beam keeps; None is as many as it does unless told."""
     start: Start
     soft_start_periods: float
     modal_damping: float | None

@@ -107,9 +107,12 @@ class Margins(Value, frozen=True, kw_only=True):
     nonlinearity: float
     """(kL)^2 <theta^2>: the axial inertia of a roller-ended chain that linear theory leaves out."""
     model_form: float | None
-    """Frequency of Timoshenko's theory against Euler-Bernoulli's at the mode nearest the drive, less 1."""
+    """Frequency of Timoshenko's theory against Euler-Bernoulli's at the mode nearest the drive, less 1.
+
+    None unless the beam is uniform, pinned at both ends and carries nothing: there it has a closed form."""
     discretisation: float | None
-    """Leading error of the discrete frequency at that mode; None for the exact beam."""
+    """Leading error of the discrete frequency at that mode; None for the exact beam, and for a beam that is stepped or
+    carries anything: no law is known there."""
 
 
 def larger(friction_size: float | None, normal_size: float) -> float | None:

@@ -12,7 +12,7 @@ from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown
 from verify.field_docs import Value
 from verify.models.arrays import Array
-from verify.models.catalogue import MODELS
+from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.intervals import extremes
 from verify.models.places import Numbers, as_typed, in_a_row, real_array
 from verify.models.time_basis import TimeBasis
@@ -106,7 +106,7 @@ def free_vibration(
     velocity: Shape | None = None,
     model: str = "segment",
     count: int | None = None,
-    modes: int = 400,
+    modes: int | None = None,
     modal_damping: float | None = None,
     at: Numbers = (),
     samples: int = 201,
@@ -121,8 +121,10 @@ def free_vibration(
     every mode its share phi^T M w (`unread`; `notes` say what is missed at a table's own places); then every mode is
     q = Re(z e^{(-zeta + i sqrt(1 - zeta^2)) omega t}), exact at any time (L. Meirovitch, Analytical Methods in
     Vibrations, 1967, ch. 5). Damping is a ratio zeta of every mode, half the beam's loss factor unless given. The exact
-    beam keeps `modes` modes, the others all they have. `at` are p places in metres, or one, where `samples` values are
-    kept from 0 to `duration`. No slider rides here: let `simulate` go on with one (`continue_from`). Raises InputError.
+    beam keeps `modes` modes, 400 unless given, the others all they have. `at` are p places in metres, or one, where
+    `samples` values are kept from 0 to `duration`. A beam that supports and springs leave free to move as a whole is
+    refused, as its shape may have a part in that. No slider rides here: let `simulate` go on with one
+    (`continue_from`). Raises InputError.
     """
     zeta = 0.5 * beam.loss_factor if modal_damping is None else modal_damping
     check_number("duration", duration, "seconds", above=0)
@@ -134,7 +136,7 @@ def free_vibration(
     if not np.all((points >= 0.0) & (points <= beam.length)):
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     MODELS.named(model)
-    basis = basis_of(beam, model, count, modes)
+    basis = basis_of(beam, model, count, kept_modes(model, modes, EXACT_MODES))
     q, rates, unread = _start(basis, shape, amplitude, velocity)
     found = _told(basis, zeta, points, np.linspace(0.0, duration, samples), q, rates, unread)
     return msgspec.structs.replace(found, notes=(*found.notes, *_missed(basis, shape, q)))

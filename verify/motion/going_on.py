@@ -12,12 +12,11 @@ if TYPE_CHECKING:
     from verify.motor.result import MotorState
 
 
-def check_goes_on(before: "EndState | MotorState", beam: Beam, model: str, count: int | None, n: int) -> None:
+def check_goes_on(
+    before: "EndState | MotorState", beam: Beam, model: str, count: int | None, n: int, start: str
+) -> None:
     """Raise InputError where the n modes of a run are not those of the run before; losses and forces may differ."""
-    if not len(before.q):
-        raise InputError(
-            "continue_from is a run with start = 'steady', which has no free modes: go on from one with start = 'rest'"
-        )
+    _check_same_start(before, start)
     if (before.model, before.count) != (model, count):
         raise InputError(
             f"continue_from is of model = {before.model!r}, count = {before.count!r} and this run of "
@@ -25,5 +24,28 @@ def check_goes_on(before: "EndState | MotorState", beam: Beam, model: str, count
         )
     if replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
         raise InputError("continue_from is of another beam: give the one it was run with, but for loss_factor")
+    if not n:
+        raise InputError(
+            "start = 'steady' has no free modes where no slider pushes back, and those of continue_from would be lost: "
+            "put one on with coupling = 'two-way'"
+        )
     if len(before.q) != n:
         raise InputError(f"continue_from has {len(before.q)} modes and this run {n}: give both the same modes")
+
+
+def _check_same_start(before: "EndState | MotorState", start: str) -> None:
+    """Raise InputError where modes that hold all of a motion would stand beside a steady field, or the other way."""
+    if not len(before.q):
+        raise InputError(
+            "continue_from is a run with start = 'steady', which has no free modes: go on from one with start = 'rest'"
+        )
+    if start == "steady" and not before.steady:
+        raise InputError(
+            "start = 'steady': continue_from is no run with start = 'steady', and what the forces did in it would be "
+            "there twice: give start = 'rest', which goes on from where that run ended"
+        )
+    if start != "steady" and before.steady:
+        raise InputError(
+            f"start = {start!r}: continue_from is a run with start = 'steady', whose modes move beside a steady field: "
+            "give start = 'steady', or go on from a run with start = 'rest'"
+        )

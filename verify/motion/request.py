@@ -10,7 +10,8 @@ from verify.beam import Beam, PointForce
 from verify.checks import check_number, check_whole
 from verify.errors import InputError, shown, written
 from verify.models.arrays import Array
-from verify.models.catalogue import MODELS
+from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
+from verify.models.division import part_counts
 from verify.models.fields import check_drive
 from verify.models.places import Numbers, in_a_row
 from verify.motion.forcing import CONSTANT, SMOOTH_STEP
@@ -28,7 +29,7 @@ COARSEST = 0.25
 MOST_STEPS = 2e9
 MOST_SAMPLES = 10_000_000
 Envelope = Sequence[tuple[float, Sequence[float]]]
-"""Pieces (seconds, coefficients of powers of t / seconds) of the forces' amplitude."""
+"""Pieces (seconds, coefficients of ascending powers of t / seconds, 0 to 1 within each) of the forces' amplitude."""
 
 
 class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -87,9 +88,11 @@ class Modelled(msgspec.Struct, frozen=True, eq=False):
 
     model: str
     count: int | None
-    modes: int
+    modes: int | None
+    """That the exact beam keeps; None is `otherwise`."""
     damping: float | None
     """Ratio of every mode; None is half the beam's loss factor."""
+    otherwise: int = EXACT_MODES
 
 
 class Started(msgspec.Struct, frozen=True, eq=False):
@@ -130,7 +133,7 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
         frequency_hz=hertz,
         model=modelled.model,
         count=modelled.count,
-        modes=modelled.modes,
+        modes=kept_modes(modelled.model, modelled.modes, modelled.otherwise),
         start=started.start,
         damping=zeta,
         slider=slider,
@@ -177,10 +180,13 @@ def _check_start(model: str, started: Started) -> None:
         raise InputError(f"continue_from = {shown(before)}: give a Motion or a FreeVibration")
     if start not in ("rest", "steady"):
         raise InputError(f"start = {start!r} is not known: known are rest, steady")
-    if (soft or envelope) and (start == "steady" or before):
-        raise InputError(f"soft_start_periods = {soft!r}: a beam that moves already has no start, leave it out")
-    if soft and envelope:
-        raise InputError(f"soft_start_periods = {soft!r} and an envelope: give one of the two")
+    grows = not (isinstance(envelope, tuple | list) and not envelope)
+    if (soft or grows) and (start == "steady" or before):
+        given = f"soft_start_periods = {soft!r}" if soft else f"envelope = {shown(envelope)}"
+        moves = "start = 'steady'" if start == "steady" else "continue_from"
+        raise InputError(f"{given} with {moves}: a beam that moves already has no start, leave it out")
+    if soft and grows:
+        raise InputError(f"soft_start_periods = {soft!r} and envelope = {shown(envelope)}: give one of the two")
 
 
 def _longest(
@@ -214,7 +220,10 @@ def _check_growth(duration: float, grown: Sequence[tuple[float, Array]]) -> None
 
 
 def laid_out(duration: float, grown: Sequence[tuple[float, Array]], longest: float, samples: int) -> tuple[Growth, ...]:
-    """Steps of every piece of the envelope and of the constant forces after it, samples shared by length."""
+    """Steps of every piece of the envelope and of the constant forces after it, samples shared by length.
+
+    As many samples as are asked for, or one for each stretch where those are more.
+    """
     lengths = [seconds for seconds, _ in grown]
     if any(not 0.0 < s < np.inf for s in lengths) or any(not len(c) or not np.all(np.isfinite(c)) for _, c in grown):
         raise InputError(
@@ -224,5 +233,7 @@ def laid_out(duration: float, grown: Sequence[tuple[float, Array]], longest: flo
     rest = duration - sum(lengths)
     pieces = list(grown) + ([(rest, CONSTANT)] if rest > 1e-12 * duration else [])
     shares = [max(round(samples * seconds / duration), 1) for seconds, _ in pieces]
-    shares[-1] = max(samples - sum(shares[:-1]), 1)
+    shares[-1] = samples - sum(shares[:-1])
+    if shares[-1] < 1:
+        shares = part_counts([seconds for seconds, _ in pieces], max(samples, len(pieces)))
     return tuple(Growth(cut(seconds, longest, share), c) for (seconds, c), share in zip(pieces, shares, strict=True))

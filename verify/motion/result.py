@@ -80,6 +80,8 @@ class EndState(Value, frozen=True, eq=False, kw_only=True):
     """(n,), all of every mode's motion, its forced part included; empty for a steady beam."""
     rates: Array
     """(n,), dq/dt."""
+    steady: bool = False
+    """Whether the run had start = 'steady': `q` is then what moves beside the steady field."""
     position: float | None = None
     """Of the slider, metres; None where there was none."""
     speed: float = 0.0
@@ -98,7 +100,7 @@ class Ride(Value, frozen=True, eq=False, kw_only=True):
     """What a slider did on a surface in motion, of a linear beam or of a nonlinear chain."""
 
     times: Array
-    """(n,), seconds."""
+    """(n,), seconds; evenly while the forces grow and after, with another interval."""
     slider: Slider | None
     """As it was asked for; None where nothing lay on the beam."""
     start: float | None

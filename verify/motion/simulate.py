@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration
 
 CLOSED_FORM_ROWS = 2000
+ROUNDED = 1e-9
+"""Of the forces: so far off all of them a growth may end by rounding."""
 
 
 @as_typed
@@ -38,7 +40,7 @@ def simulate(
     *,
     model: str = "segment",
     count: int | None = None,
-    modes: int = 400,
+    modes: int | None = None,
     start: Start = "rest",
     soft_start_periods: float = 0.0,
     envelope: Envelope = (),
@@ -56,16 +58,20 @@ def simulate(
     """A driven beam from rest or in its steady state for `duration` seconds, with a slider or without.
 
     Forces are amplitude cos(omega t + phase): from rest cos(0) = 1 is a step load, which `soft_start_periods`
-    spreads as 3 p^2 - 2 p^3; any other growth is an `envelope` of polynomial pieces, after which the amplitudes are
-    those given. Modes advance exactly by any step; `step` is the slider's alone: unless given it is at most a
-    `steps_per_period`-th of the drive's period and follows what the start excites (`step_size`). The exact beam keeps
-    `modes` modes from rest and none in its steady state. Damping is a ratio of every mode, half the beam's loss factor
-    unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and in the steady
-    state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept, (samples, p).
-    Returns what was reached where the run was interrupted or the slider left the beam or came to a step of its surface,
-    and says so. Without `patient` a slider's run longer than is waited for (`patience`) is refused; so is one both
-    ways, from rest and booked (`ledger`), in which the slider gave the beam far more than was put in. Raises
-    InputError.
+    spreads as 3 p^2 - 2 p^3. Any other growth is an `envelope` of pieces (seconds, coefficients), one after another:
+    in each the forces have the part c0 + c1 p + c2 p^2 + ... of what is given, p = t/seconds from 0 to 1 within that
+    piece, and all of it afterwards; [(0.02, [0, 1])] grows straight over 20 ms. Modes advance exactly by any step;
+    `step` is the slider's alone: unless given it is at most a `steps_per_period`-th of the drive's period and follows
+    what the start excites (`step_size`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
+    given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode, half the
+    beam's loss factor unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and
+    in the steady state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept,
+    (n, p), at n = `samples` times, or as many as part all stretches of growth where those are more. They stand evenly
+    on each stretch, not over all of them (`times`). `continue_from` is a run from the same `start`, or with start =
+    'rest' a beam let go. Returns what was reached where the run was interrupted or the slider left the beam or came to
+    a step of its surface, and says so. Without `patient` a slider's run longer than is waited for (`patience`) is
+    refused; so is one both ways, from rest and booked (`ledger`), in which the slider gave the beam far more than was
+    put in. Raises InputError.
     """
     began = perf_counter()
     if slider is not None:
@@ -125,7 +131,9 @@ def _notes(request: Request, basis: TimeBasis | None) -> tuple[str, ...]:
     notes += _damping_notes(request, basis)
     if len(request.pieces) > 1:
         grown = sum(piece.steps.n * piece.steps.dt for piece in request.pieces[:-1])
-        notes.append(f"forces grow over {grown:.6g} s")
+        reached = float(np.sum(request.pieces[-2].coefficients))
+        jump = "" if abs(reached - 1.0) < ROUNDED else f" to {reached:.6g} times what is given, and jump to that"
+        notes.append(f"forces grow over {grown:.6g} s{jump}")
     return tuple(notes)
 
 
@@ -186,6 +194,7 @@ def _closed_form(request: Request, stages: list[Stage], basis: TimeBasis | None,
             time=float(times[-1]),
             q=state[0],
             rates=state[1],
+            steady=request.start == "steady",
         ),
     )
 

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.motor.result import MotorRun
-from verify.motor.run import MODES, STEPS_PER_PERIOD, run_motor
+from verify.motor.run import STEPS_PER_PERIOD, run_motor
 from verify.options import Links, Start
 from verify.slider import Slider
 
@@ -22,7 +22,7 @@ class MotorCase(msgspec.Struct, frozen=True, kw_only=True):
     slider: Slider
     model: str = "segment"
     count: int | None = 49
-    modes: int = MODES
+    modes: int | None = None
     start: Start = "steady"
     soft_start_periods: float = 0.0
     modal_damping: float | None = None

@@ -94,6 +94,7 @@ def _state(b: int, time: float, plan: Plan, riding: Riding, ended: Ended) -> Mot
         time=time,
         q=ended.q,
         rates=ended.rates,
+        steady=plan.request.start == "steady",
         travelled=float(feet.body[b, records.X]),
         speed=float(feet.body[b, records.V]),
         feet=feet.state[feet.keeper == b].copy(),

@@ -91,7 +91,7 @@ def _at_start(
     if not before:
         return (weighed(basis, placed) if basis else np.zeros(n)), np.zeros(n)
     if n or len(before[0].q):
-        check_goes_on(before[0], request.beam, request.model, request.count, n)
+        check_goes_on(before[0], request.beam, request.model, request.count, n, request.start)
     return before[0].q, before[0].rates
 
 

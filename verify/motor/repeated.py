@@ -14,6 +14,7 @@ from verify.motor.combine import check_combines
 from verify.motor.feet import Placed
 from verify.motor.plan import Plan, lay_out
 from verify.motor.result import MotorRun, MotorState
+from verify.motor.run import MODES
 
 Block = Callable[[MotorState | None], MotorRun]
 """From the state at its end the run of the next; None: from where the slider is put down."""
@@ -48,7 +49,7 @@ def _laid_out(case: MotorCase, periods: int, samples: int) -> Plan:
     """The plan of a block, whatever the speed that the slider is held at."""
     request = requested(
         Driven(case.beam, case.forces, case.frequency_hz, periods * case.period),
-        Modelled(case.model, case.count, case.modes, case.modal_damping),
+        Modelled(case.model, case.count, case.modes, case.modal_damping, MODES),
         Started(case.start, 0.0, (), None),
         Watched((), samples, None, case.steps_per_period, False),
         case.slider,

@@ -66,6 +66,8 @@ class MotorState(Value, frozen=True, eq=False, kw_only=True):
     """(n,), all of every free mode's motion; empty for a steady beam."""
     rates: Array
     """(n,), dq/dt."""
+    steady: bool
+    """Whether the run had start = 'steady': `q` is then what moves beside the steady field."""
     travelled: float
     """Metres from where the slider was put."""
     speed: float

@@ -47,7 +47,7 @@ def run_motor(
     slider: Slider,
     model: str = "segment",
     count: int | None = None,
-    modes: int = MODES,
+    modes: int | None = None,
     start: Start = "steady",
     soft_start_periods: float = 0.0,
     modal_damping: float | None = None,
@@ -64,16 +64,18 @@ def run_motor(
 ) -> MotorRun:
     """A slider with `slider.contact` on a driven beam, steady or from rest, for `duration` seconds.
 
-    `model` = 'chain' is the nonlinear chain of `count` links, rigid or stretching, from rest and undamped. The slider
-    is put down level where its springs carry what presses it on, at rest across the beam. `held_speed` (m/s) keeps its
-    speed whatever friction does, `frozen` its place whatever its speed, so that its motion is periodic. Steps are a
-    `steps_per_period`-th of the drive's period, or shorter where the contact is stiff, unless `step` is given; forces
-    act in mid-step, of second order, coupled two-way on the modes. Otherwise as `simulate`. Raises InputError.
+    `model` = 'chain' is the nonlinear chain of `count` links, rigid or stretching, from rest and undamped; the exact
+    beam keeps `modes` modes, 80 unless given. The slider is put down level where its springs carry what presses it on,
+    at rest across the beam. `held_speed` (m/s) keeps its speed whatever friction does, `frozen` its place whatever its
+    speed, so that its motion is periodic. Steps are a `steps_per_period`-th of the drive's period, or shorter where the
+    contact is stiff, unless `step` is given; forces act in mid-step, of second order, coupled two-way on the modes.
+    Otherwise as `simulate`. Raises InputError.
     """
     check_kind("slider", slider, Slider)
     if continue_from is not None:
         check_kind("continue_from", continue_from, MotorRun)
-    driven, by = Driven(beam, as_forces(forces), frequency_hz, duration), Modelled(model, count, modes, modal_damping)
+    driven = Driven(beam, as_forces(forces), frequency_hz, duration)
+    by = Modelled(model, count, modes, modal_damping, MODES)
     watched = Watched(at, samples, step, steps_per_period, False)
     asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
     return _run(asked, [(slider, held_speed, frozen)], [] if continue_from is None else [continue_from.state])[0]
@@ -89,7 +91,7 @@ def run_motors(
     sliders: Sequence[Slider],
     model: str = "segment",
     count: int | None = None,
-    modes: int = MODES,
+    modes: int | None = None,
     start: Start = "steady",
     soft_start_periods: float = 0.0,
     modal_damping: float | None = None,
@@ -109,7 +111,8 @@ def run_motors(
     They rub by one law of one slope and are coupled alike; `held_speed` and `frozen` are of all, or one for each.
     Otherwise as `run_motor`. Raises InputError.
     """
-    driven, by = Driven(beam, as_forces(forces), frequency_hz, duration), Modelled(model, count, modes, modal_damping)
+    driven = Driven(beam, as_forces(forces), frequency_hz, duration)
+    by = Modelled(model, count, modes, modal_damping, MODES)
     watched = Watched(at, samples, step, steps_per_period, False)
     asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
     put, before = several("sliders", sliders, Slider), several("continue_from", continue_from, MotorRun)

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 SAMPLES = 32
 """Of a motion that waves are measured of, in each period."""
-EXACT_MODES = 400
-"""Of the exact beam, unless asked for otherwise."""
 
 
 class Shaken(Chained, frozen=True, kw_only=True):
@@ -131,7 +129,7 @@ def _let_go(a: Released, scene: "Scene", at: tuple[float, ...]) -> "FreeVibratio
         velocity=lines[1] if a.speed else None,
         model=a.model,
         count=a.count,
-        modes=a.modes or EXACT_MODES,
+        modes=a.modes,
         modal_damping=a.modal_damping,
         at=at,
         samples=2,

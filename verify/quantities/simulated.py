@@ -7,7 +7,7 @@ from msgspec.structs import asdict, replace
 
 from verify.beam import PointForce
 from verify.errors import InputError, written
-from verify.models.catalogue import MODELS
+from verify.models.catalogue import EXACT_MODES, MODELS
 from verify.motion.case import MotionCase
 from verify.motion.request import STEPS_PER_PERIOD
 from verify.motion.result import Motion
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
 
-MODES = 400
+MODES = EXACT_MODES
 """Of the exact beam from rest, unless asked for otherwise."""
 _OWN = {
     "mu": "mu",
@@ -80,7 +80,7 @@ def motion_case(a: InTime, scene: "Scene") -> MotionCase:
         duration=time,
         model=a.model,
         count=a.count,
-        modes=a.modes or MODES,
+        modes=a.modes,
         start=start,
         soft_start_periods=soft,
         modal_damping=a.modal_damping if a.modal_damping is not None else (motion.modal_damping if motion else None),

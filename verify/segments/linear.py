@@ -13,12 +13,12 @@ from verify.checks import check_number, check_whole
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
-from verify.models.driven_pencil import damped_response, modal_receptance, probed, refuse_near_resonance
+from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
 from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name
-from verify.models.fields import HarmonicField, check_drive, phasor
+from verify.models.fields import HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
-from verify.models.places import Forces, Numbers, as_forces, as_typed, in_a_row
+from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.theory import check_theory
 from verify.options import (
     LOADS,
@@ -198,7 +198,8 @@ def solve_harmonic(
     themselves: straight, its slope the link's, the mean of both at a joint. Damping: the beam's loss factor;
     `modal_damping` zeta of every mode (equivalent near a resonance: eta = 2 zeta); `joint_dashpot` c in N m s
     at every joint (eta = omega c / k); springs, ground and axial force have no loss. Raises InputError; an undamped
-    resonance of the chain is refused.
+    resonance of the chain is refused, and a loss factor with `modal_damping` where there are springs, axial force or
+    ground: the modes would couple.
     """
     forces = as_forces(forces)
     settings = settings_of(wall, joints, grading, theory, attachment)
@@ -207,7 +208,7 @@ def solve_harmonic(
     check_settings(load, reading, modal_damping, joint_dashpot)
     chain, pencil = driven(beam, n_segments, settings)
     omega2 = (2.0 * pi * frequency_hz / beam.wave_constant) ** 2 * chain.unit**4
-    check_dampings(beam, chain, modal_damping)
+    check_dampings(beam, modal_damping)
     loads = force_loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
     stiffness = damped(beam, chain, pencil, 2.0 * pi * frequency_hz * joint_dashpot)
     undamped = not (beam.loss_factor or modal_damping or joint_dashpot)
@@ -227,15 +228,6 @@ def solve_harmonic(
         shapes=_field_shapes(chain, free, reading),
         turned=None if turned is None else lambda x, derivative: turned(x, derivative)[0],
     )
-
-
-def check_dampings(beam: Beam, chain: Chain, modal_damping: float) -> None:
-    """Raise InputError for a loss factor beside a modal ratio where something on the beam has no loss."""
-    if modal_damping and beam.loss_factor and not chain.plain:
-        raise InputError(
-            f"beam.loss_factor = {beam.loss_factor!r} and modal_damping = {modal_damping!r} together: springs, ground "
-            "and axial force have no loss, which couples the modes, give one of the two"
-        )
 
 
 KEPT = 4000
@@ -355,12 +347,12 @@ def unit_responses(
 ) -> ComplexArray:
     """Deflection at x under a unit force at each position, (n_frequencies, n_positions, len(x)) complex, m/N.
 
-    All modes of the chain are solved once and summed exactly for every frequency. Load and reading are the
-    defaults of `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError for chains
-    beyond the dense size.
+    All modes of the chain are solved once and summed exactly for every frequency; every frequency is solved where
+    there is a loss factor and the beam carries anything, or its joints slip. Load and reading are the defaults of
+    `solve_harmonic`. NaN at the frequencies of undamped resonances. Raises InputError, also for chains beyond the
+    dense size.
     """
-    positions, x = in_a_row("positions", positions), in_a_row("x", x)
-    frequencies_hz = in_a_row("frequencies_hz", frequencies_hz)
+    positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     settings = settings_of("gregory", joints, 1.0, theory, attachment)
     check(beam, 1, n_segments, **settings)
     chain, pencil = driven(beam, n_segments, settings)
@@ -369,11 +361,11 @@ def unit_responses(
     weights[: len(loads[0]) if loads else 0] = np.array(loads).T
     omega2 = (2.0 * pi * frequencies_hz / beam.wave_constant) ** 2 * chain.unit**4
     scale = chain.unit**3 / beam.bending_stiffness
-    if beam.loss_factor and not chain.plain:  # what has no loss couples the modes
+    if beam.loss_factor and not chain.plain:  # what has no loss would couple the modes
         stiffness = damped(beam, chain, pencil, 0.0)
         found = [forced_response(pencil, weights, float(square), stiffness) for square in omega2]
         read = [_read_at(chain, free.real, x) + 1j * _read_at(chain, free.imag, x) for free in found]
-        return np.asarray(np.array(read, dtype=complex) * scale)
+        return np.asarray(np.array(read, dtype=complex).reshape(len(omega2), len(positions), len(x)) * scale)
     modes, receptance = modal_receptance(pencil, weights, omega2, beam.loss_factor)
     return np.asarray(receptance @ _read_at(chain, modes, x)) * scale
 

@@ -9,7 +9,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.checks import check_whole, several
 from verify.models.arrays import Array, ComplexArray
-from verify.models.driven_pencil import name_resonance
+from verify.models.driven_pencil import check_dampings, name_resonance
 from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import (
@@ -23,7 +23,6 @@ from verify.models.sweeps import (
 from verify.options import Attachment, Joints, Load, Reading, Theory, Wall
 from verify.segments.linear import (
     check,
-    check_dampings,
     check_settings,
     damped,
     driven,
@@ -65,6 +64,7 @@ def sweep_harmonic(
     check(beam, 1, n_segments, **settings)
     frequencies = swept_frequencies(beam, forces, frequencies_hz, 2 * n_segments)
     check_settings(load, reading, modal_damping, joint_dashpot)
+    check_dampings(beam, modal_damping)
     chain, pencil = driven(beam, n_segments, settings)
     omega2 = (2.0 * pi * frequencies / beam.wave_constant) ** 2 * chain.unit**4
     undamped = not (beam.loss_factor or modal_damping or joint_dashpot)
@@ -73,7 +73,6 @@ def sweep_harmonic(
         solve = partial(solve_modes, **settings)
         name_resonance("segment", beam, pencil, float(frequencies[index]), solve, n_segments, f"{FIELD}[{index}]")
 
-    check_dampings(beam, chain, modal_damping)
     loads = force_loads(chain, forces, load, pencil.n) * (chain.unit**3 / beam.bending_stiffness)
     stiffness = _damped(beam, chain, pencil, frequencies, joint_dashpot)
     free = swept_response(pencil, loads, omega2, stiffness, modal_damping, refuse if undamped else None)

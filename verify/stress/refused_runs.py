@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
@@ -124,7 +125,8 @@ def two(backward: complex) -> TwoWaves:
 
 def moved(model: str, count: int | None, hertz: float, **more: object) -> Ask:
     """The strip in time."""
-    return lambda: simulate(STRIP, FORCES[:1], hertz, 0.01, model=model, count=count, modes=5, **more)  # type: ignore[arg-type]
+    asked: dict[str, Any] = {"model": model, "count": count, "modes": None if count else 5, **more}
+    return lambda: simulate(STRIP, FORCES[:1], hertz, 0.01, **asked)
 
 
 def segment_hertz(number: int) -> float:

@@ -56,7 +56,7 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
             duration=asked.duration,
             model="segment",
             count=asked.count,
-            modes=1,
+            modes=None,
             start=asked.start,
             soft_start_periods=asked.soft_start,
             modal_damping=asked.modal_damping,

@@ -23,16 +23,24 @@ _WAYS = np.array([1j, 1.0])
 
 
 def beam_impedance(
-    beam: Beam, frequency_hz: float, distance: float, support: str = "pinned", *, turning: bool = False
+    beam: Beam,
+    frequency_hz: float,
+    distance: float,
+    support: str = "pinned",
+    *,
+    turning: bool = False,
+    position: float | None = None,
 ) -> complex:
     """Force over velocity that a half-infinite beam asks for at `distance` (metres) from an end on a support, kg/s.
 
     With `turning` couple over speed of turning, N m s. The answer of an endless beam, -(i e^{-ikr} + e^{-kr})/(4 EI
     k^3) to a force and its derivative by the place to a couple, and both waves that the end sends back. Raises
-    InputError on a support where nothing moves, and for a beam that is not uniform.
+    InputError on a support where nothing moves, told by `position` where that is another, and for a beam that is not
+    uniform.
     """
     check_number("position", distance, "metres from the end", at_least=0)
-    idle = f"position = {distance!r} m stands on a {support} support, where a device does nothing: move it"
+    told = distance if position is None else position
+    idle = f"position = {told!r} m stands on a {support} support, where a device does nothing: move it"
     if distance == 0.0 and support in _IDLE[turning]:
         raise InputError(idle)
     if not beam.uniform:
@@ -79,5 +87,6 @@ def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning:
     check_number("position", position, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
     right = position > 0.5 * beam.length
     distance = max(beam.length - position, 0.0) if right else position
-    matched = matched_impedance(beam, frequency_hz, distance, beam.supports[right], turning=turning)
-    return of_impedance(position, matched, 2.0 * np.pi * frequency_hz, turning=turning)
+    support = beam.supports[right]
+    own = beam_impedance(beam, frequency_hz, distance, support, turning=turning, position=position)
+    return of_impedance(position, own.conjugate(), 2.0 * np.pi * frequency_hz, turning=turning)

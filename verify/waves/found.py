@@ -62,11 +62,12 @@ class WaveMeasures(Value, frozen=True, eq=False, kw_only=True):
     (1 - Gamma) / (1 + Gamma) for two waves.
     """
     mean_axis_ratio: float
-    """Of `axis_ratio` over the same whole half wavelengths: there k h/2 for any two waves as kh goes to 0."""
+    """Of `axis_ratio` over the same whole half wavelengths: there `ideal_axis_ratio` for any two waves as
+    kh goes to 0."""
     x: Array
     """(n,), metres: where the surface quantities are given, 24 points for each half wavelength of the exact beam."""
     axis_ratio: Array
-    """(n,), signed ratio of the ellipse's axes, tan chi; k h/2 for a pure wave, negative towards +x."""
+    """(n,), signed ratio of the ellipse's axes, tan chi; `ideal_axis_ratio` of a pure wave, negative towards +x."""
     tilt_deg: Array
     """(n,), angle of the long axis from x, degrees."""
     signed_area: Array
@@ -74,9 +75,10 @@ class WaveMeasures(Value, frozen=True, eq=False, kw_only=True):
     signed_area_range: tuple[float, float, float]
     """Least, mean and largest over the window, not over the points."""
     ideal_axis_ratio: float
-    """k h / 2."""
+    """k h/2, by Timoshenko's theory times psi/w' of a running wave: what `axis_ratio` is of a pure one."""
     crest_speed: float
-    """Of the surface at the crests, m/s along +x: -omega (h/2) k (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2)."""
+    """Of the surface at the crests, m/s along +x: -omega r (|A+|^2 - |A-|^2) / sqrt(|A+|^2 + |A-|^2), r the
+    `ideal_axis_ratio`."""
     energy_flux: float
     """Power carried towards +x through the middle of the window, watt."""
 
