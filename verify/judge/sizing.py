@@ -17,7 +17,7 @@ from verify.exact.error_laws import (
     smallest_count,
 )
 from verify.judge.known import by_law, kept, solved, worst_of
-from verify.judge.variants import Rules, Variant, beside, falls_within, without_effect
+from verify.judge.variants import Rules, Variant, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.patience import check_work
@@ -330,7 +330,7 @@ def choose_of_all(
     found: dict[Variant, Enough] = {}
     for one in asked:
         found[one] = enough_from(bench, one.model, mode, error, one.settings, _work_s(found))
-    for one in beside(bench.beam, (rules or Rules()).settled):
+    for one in (rules or Rules()).beside(bench.beam):
         try:
             if one not in found:
                 found[one] = enough_from(bench, one.model, mode, error, one.settings, _work_s(found))
