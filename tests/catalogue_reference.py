@@ -569,6 +569,7 @@ SLIDER = {
     "terminal-speed-quarter": lambda: mean_of_the_wave(1.15e-7),
     "terminal-speed-following": lambda: -Paper.K * Paper.W * 2.3e-7**2 / 2 * (Paper.K * Paper.H / 2) ** 2,
     "slider-at-once": slider_at_once,
+    "slider-step-steep": lambda: slider_at_once(slope=1e6, steps=50_000),
     "slider-against-the-wave": lambda: 2 * mean_of_the_wave(pure_amplitude()),
     "slider-reversed": lambda: -2 * mean_of_the_wave(pure_amplitude()),
     "chain-slider-saturates": lambda: 0.2 * SLIDER_MASS * GRAVITY,

@@ -67,10 +67,13 @@ def bare_percent(value: float) -> str:
 
 
 def rounded(value: float, within: float) -> str:
-    """A value to the last digit of the band around it: 4469.9405 within 0.001 is 4469.941."""
-    mantissa, _, exponent = f"{within:g}".partition("e")
-    places = max(len(mantissa.partition(".")[2]) - int(exponent or 0), 0)
+    """A value to a thousandth of the band around it, so that the band shown is the one judged: 4.55 within 1."""
+    places = max(BEYOND - int(f"{within:e}".partition("e")[2]), 0)
     return f"{value:.0f}" if places == 0 else repr(round(value, places))
+
+
+BEYOND = 3
+"""Digits beyond the first of a band: as many as its share is told with."""
 
 
 def told_once(notes: Iterable[str]) -> list[str]:

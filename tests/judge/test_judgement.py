@@ -9,6 +9,8 @@ from verify.errors import InputError, NoBracketError, NoFigureError, PairingErro
 from verify.judge import compare
 from verify.judge.workbench import Need, Workbench, merged
 from verify.models.modes import Modes
+from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
+from verify.scenes.scene import load_scene
 
 X = np.linspace(0, 1, 41)
 SINES = np.array([np.sin(n * np.pi * X) for n in (1, 2, 3, 4)])
@@ -101,6 +103,38 @@ def test_a_slope_through_errors_that_fall_at_no_order_is_refused(errors, due, me
     assert compare.observed_order((60, 120, 240), errors) > 0.0
     with pytest.raises(InputError, match=message):
         compare.settled_order((60, 120, 240), errors, due)
+
+
+def test_a_complex_error_has_an_order_where_it_keeps_its_direction():
+    counts, turns = (10, 20, 40), np.exp(1j * np.array([0.1, 0.9, 1.5]))
+    errors = [7.0 * n**-2.0 * turn for n, turn in zip(counts, turns, strict=True)]
+    assert compare.settled_order(counts, errors) == pytest.approx(2.0, rel=1e-10)
+    with pytest.raises(InputError, match="changes sign"):
+        compare.settled_order(counts, [errors[0], 1j * errors[1], errors[2]])
+
+
+@pytest.mark.parametrize(
+    ("scene", "quantity", "arguments", "message"),
+    [
+        ("absorbing-end", "wave.order", {"of": "deflection", "counts": [40, 80, 160]}, "changes sign"),
+        ("absorbing-end", "wave.order", {"counts": [40, 80, 160]}, r"no settled order between them \(5.14, 0.75\)"),
+        (
+            "paper-slider",
+            "slider.order",
+            {"count": 49, "steps": [3.65e-6, 1.825e-6, 9.125e-7], "slope": 1e6},
+            "steps = ",
+        ),
+        ("steel-cantilever", "mode.shape_order", {"mode": 5, "counts": [5, 10, 20]}, "no settled order"),
+    ],
+)
+def test_an_order_of_any_figure_is_refused_where_its_error_changes_its_sign_or_falls_at_none(
+    scene, quantity, arguments, message
+):
+    """Handed over without their signs the errors gave 2.8, -0.2 or whatever slope lay through them."""
+    kind, loaded = QUANTITIES[quantity], load_scene(scene)
+    asked = arguments_of(kind, {"model": "segment"} | arguments)
+    with pytest.raises(InputError, match=message):
+        evaluate(kind, asked, loaded, Workbench(loaded.beam))
 
 
 def test_a_bracket_knows_its_middle_and_refuses_to_be_thinner_than_rounding():

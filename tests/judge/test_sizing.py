@@ -6,6 +6,7 @@ from msgspec.structs import replace
 from verify.errors import InputError
 from verify.exact import error_laws
 from verify.judge import known, sizing
+from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
 from verify.scenes.scene import load_scene
@@ -219,3 +220,24 @@ def test_a_rule_that_takes_too_many_parts_to_be_gone_through_is_left_out_of_a_ch
     assert [one.variant.title for one in choices] == ["segments", "Hermite elements", "segments, wall half"]
     assert left_out.keys() == {"segments, attachment lever"}
     assert "would take about" in left_out["segments, attachment lever"]
+
+
+@pytest.mark.parametrize(
+    ("supports", "mode", "error"),
+    [(("pinned", "pinned"), 22, 0.3), (("pinned", "pinned"), range(1, 23), 0.15), (("clamped", "free"), 7, 0.3)],
+)
+def test_no_law_is_told_of_elements_beyond_their_lower_branch(titanium_strip, supports, mode, error):
+    """Mode 22 of 14 elements is +27.9 % off; the dispersion, which ends at 22 of them, was told as -92.5 %."""
+    (fem,) = sizing.choose(Workbench(replace(titanium_strip, supports=supports)), mode, error, (Variant("fem"),))
+    assert fem.count < fem.mode
+    assert fem.expected_error is None
+    assert fem.error > 0.079
+
+
+def test_a_law_is_told_where_it_speaks_of_the_mode(titanium_strip):
+    (chain,) = sizing.choose(Workbench(titanium_strip), 22, 0.3, (Variant("segment"),))
+    assert chain.count == 23
+    assert chain.expected_error == pytest.approx(chain.error, rel=1e-9)
+    clamped = Workbench(replace(titanium_strip, supports=("clamped", "free")))
+    (chain,) = sizing.choose(clamped, 3, 1e-3, (Variant("segment"),))
+    assert chain.expected_error == pytest.approx(chain.error, rel=0.3)

@@ -28,7 +28,8 @@ def test_a_setting_turns_the_models_that_have_it_and_leaves_the_others():
     assert labels(Rules(theory="timoshenko").variants(BOTH)) == ["segment theory=timoshenko", "fem theory=timoshenko"]
     several = Rules(wall=("gregory", "half"), grading=1.7)
     assert labels(several.variants(BOTH)) == ["segment grading=1.7", "segment wall=half grading=1.7", "fem grading=1.7"]
-    assert several.chosen == (("grading", 1.7),)
+    assert several.combinations == ((("grading", 1.7),), (("wall", "half"), ("grading", 1.7)))
+    assert several.several == ("wall",)
 
 
 def test_a_setting_that_no_model_has_is_refused():
@@ -159,6 +160,16 @@ def test_an_elastic_clamp_is_a_wall_and_a_spring_on_the_way_is_none():
     assert labels(beside(on_the_way)) == ["segment wall=half", "segment attachment=lever"]  # the instrument's inertia
     light = tuple(replace(one, rotary_inertia=0.0) for one in arm.mass)
     assert labels(beside(replace(on_the_way, mass=light))) == ["segment attachment=lever"]
+
+
+def test_a_choice_sets_other_rules_beside_each_of_several_theories():
+    rules = Rules(theory=("timoshenko", "rayleigh"), joints=("tensioned", "series"))
+    found = {one.variant.label: one.count for one in choose_of_all(Workbench(CANTILEVER), 2, 1e-2, rules)[0]}
+    for theory in ("rayleigh", "timoshenko"):
+        alone = Rules(theory=theory, joints=rules.joints)
+        own = {one.variant.label: one.count for one in choose_of_all(Workbench(CANTILEVER), 2, 1e-2, alone)[0]}
+        assert own == {label: count for label, count in found.items() if label.endswith(theory)}
+        assert f"segment wall=half joints=tensioned theory={theory}" in own
 
 
 def test_bodies_on_rigid_links_stand_beside_wherever_they_differ():

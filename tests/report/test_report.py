@@ -355,6 +355,23 @@ def test_the_report_says_where_the_mean_of_both_is_farther_off_than_elements(tit
     assert mean_in_words(high).endswith("beyond about n = 0.7 N: mode 9 at N = 12.")
 
 
+def test_the_mean_of_a_chain_at_the_literatures_wall_has_the_walls_order():
+    """Segments of order 2 and elements of order 4: the mean halves the former's error and cancels nothing."""
+    from verify.judge.workbench import Workbench
+    from verify.scenes.scene import load_scene
+    from verify.studies.convergence import Convergence
+    from verify.studies.convergence_figures import convergence
+    from verify.studies.mode_charts import mean_in_words
+
+    bench = Workbench(load_scene("steel-cantilever").beam)
+    found = convergence(bench, Convergence(modes=(3,), counts=(30, 60), wall="half"))
+    coarse, fine = (row.mean_error for row in found.rows)
+    assert coarse / fine == pytest.approx(4.0, rel=0.02)
+    assert mean_in_words(found) == "The mean of both is of order 2, the segments' own at this wall: nothing cancels."
+    (chart,) = (chart for chart in found.charts() if chart.id == "convergence")
+    assert {line.name for line in chart.lines if line.guide} == {"slope 2", "slope 4"}
+
+
 def test_words_in_a_drawing_keep_clear_of_each_other_however_close_their_places():
     from verify.report.labels import Box, Label, placed
 

@@ -1,6 +1,8 @@
 """Figures and notices as the terminal tells them: once, to the digits that count, broken where names may be."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from rich.console import Console
 
 from verify.cli import status_of
@@ -17,12 +19,17 @@ from verify.words import rounded, told_once
 @pytest.mark.parametrize(
     ("value", "within", "shown"),
     [
-        (4469.94052, 0.001, "4469.941"),
-        (3.743511896211, 0.00012, "3.74351"),
-        (-8.2345302521e-08, 1.5e-12, "-8.23453e-08"),
+        (4469.94052, 0.001, "4469.94052"),
+        (3.743511896211, 0.00012, "3.7435119"),
+        (-8.2345302521e-08, 1.5e-12, "-8.2345303e-08"),
+        (0.123456789, 20.0, "0.12"),
+        (4.55, 1.0, "4.55"),
+        (6.5, 1.0, "6.5"),
+        (0.5, 50.0, "0.5"),
         (-0.00428024, 5e-9, "-0.00428024"),
         (4.0, 0.3, "4.0"),
-        (1234.6, 20.0, "1235"),
+        (1234.6, 20.0, "1234.6"),
+        (1234567.8, 2e4, "1234568"),
         (0.0, 1e-7, "0.0"),
     ],
 )
@@ -35,9 +42,16 @@ def test_a_complex_expectation_is_rounded_in_both_parts_and_a_bound_is_as_given(
         return Band(**{"expect": None, "within": None, "at_least": None, "at_most": None} | given)
 
     complex_one = band(expect=Complex(-6.68447222298735e-07, 1.77076918186928e-06), within=3e-10)
-    assert shown_expectation(complex_one) == "-6.684e-07 +1.7708e-06i ± 3e-10"
+    assert shown_expectation(complex_one) == "-6.684472e-07 +1.7707692e-06i ± 3e-10"
     assert shown_expectation(band(at_least=1.7)) == "at least 1.7"
     assert shown_expectation(band(expect=230.88535783517)) == "contains 230.88535783517"
+
+
+@given(st.floats(1e-6, 1e6), st.floats(1e-6, 1e6), st.sampled_from((-1.01, -0.998, 0.995, 1.002)))
+def test_the_band_that_is_shown_passes_and_fails_what_the_judged_one_does(expect, within, off):
+    """To the thousandth of the band to which its share is told."""
+    shown, measured = float(rounded(expect, within)), expect + off * within
+    assert (abs(measured - shown) <= within) == (abs(off) <= 1.0)
 
 
 def lines_of(name, width):

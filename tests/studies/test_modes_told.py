@@ -17,11 +17,80 @@ THICK = Workbench(load_scene("thick-bar").beam)
 
 def test_a_table_of_two_theories_names_the_exact_frequency_of_each():
     told = convergence(THICK, Convergence(modes=(2,), counts=(7, 12), theory=("euler-bernoulli", "timoshenko")))
-    first, *_, rules = told.tables()
+    first, _, rules, thick = told.tables()
     assert first.title == "mode 2, exact 1454.4703 Hz (Euler-Bernoulli), 1401.4956 Hz (Timoshenko)"
-    heads = [column.head for column in rules.columns]
-    assert heads[1:3] == ["default", "default, timoshenko"]
-    assert len(set(heads)) == len(heads)
+    assert rules.title == "mode 2 by Euler-Bernoulli and every rule of the chain, error in %"
+    walls = ["wall half", "wall welded", "wall third-order", "wall five-joint"]
+    assert [column.head for column in rules.columns] == ["N", "default", *walls]
+    assert thick.title == "mode 2 by Timoshenko and every rule of the chain, error in %"
+    assert [column.head for column in thick.columns] == ["N", "default", walls[0], *walls[2:], "joints tensioned"]
+
+
+FREE = Workbench(load_scene("free-free-bar").beam)
+CLAMPED = Workbench(load_scene("steel-cantilever").beam)
+
+
+@pytest.mark.parametrize(
+    ("bench", "asked", "by"),
+    [
+        (FREE, {"theory": ("timoshenko", "euler-bernoulli")}, (("theory", "euler-bernoulli"),)),
+        (FREE, {"grading": (1.7, 1.0)}, (("grading", 1.0),)),
+        (CLAMPED, {"wall": ("gregory", "half", "third-order")}, (("wall", "half"),)),
+        (FREE, {"wall": ("gregory", "half")}, ()),  # no end is clamped: both are the same
+    ],
+)
+def test_a_bracket_beside_several_settings_is_that_of_one_of_them_and_names_it(bench, asked, by):
+    several = convergence(bench, Convergence(modes=(3,), counts=(12, 17), **asked))
+    alone = convergence(bench, Convergence(modes=(3,), counts=(12, 17), **dict(by)))
+    assert [row.bracket_width for row in several.rows] == [row.bracket_width for row in alone.rows]
+    assert [row.mean_error for row in several.rows] == [row.mean_error for row in alone.rows]
+    assert None not in [row.bracket_width for row in alone.rows]
+    words = ", ".join(f"{name} {word}" for name, word in by)
+    assert bool(by) == any(f"are those of {words}:" in note for note in several.rows[0].notes)
+    lower, upper = bracket_lines(several)
+    below, above = bracket_lines(alone)
+    assert (lower.y, upper.y) == (below.y, above.y)
+
+
+def test_every_rule_of_the_table_stands_in_the_plain_data_too():
+    """The terminal names --csv where a column finds no room: it must be there."""
+    found = convergence(CLAMPED, Convergence(modes=(1, 2), counts=(9, 14)))
+    other, first, second = (found.records()[i] for i in (0, 2, 3))
+    table = found.tables()[-1]
+    assert set(other) == set(first)
+    assert other["segment wall=half_error"] is None
+    for one, column in zip(found.rules, range(1, len(table.columns)), strict=True):
+        told = [row[column] for row in table.rows]
+        assert [row[f"{one.variant.label}_error"] for row in (first, second)] == told
+
+
+def bracket_lines(found):
+    """(lower, upper) of the chart of the bound."""
+    (chart,) = (chart for chart in found.charts() if chart.id == "bracket")
+    return chart.lines[1], chart.lines[0]
+
+
+def test_without_a_setting_that_has_a_bracket_there_is_none():
+    """A free bar by Rayleigh and Timoshenko: the width of Euler-Bernoulli's bracket stood beside their errors."""
+    found = convergence(FREE, Convergence(modes=(2,), counts=(20, 41), theory=("rayleigh", "timoshenko")))
+    assert [(row.bracket_width, row.mean_error) for row in found.rows] == [(None, None)] * 2
+    assert any("theory = 'rayleigh'" in note for note in found.rows[0].notes)
+    assert "bracket" not in [chart.id for chart in found.charts()]
+    row = found.records()[0]
+    assert "exact_hz" not in row
+    assert row["timoshenko_exact_hz"] == pytest.approx(FREE.exact_hz(2, "timoshenko"), rel=1e-12)
+    assert row["rayleigh_exact_hz"] == pytest.approx(FREE.exact_hz(2, "rayleigh"), rel=1e-12)
+
+
+def test_every_rule_is_by_each_of_several_theories_and_by_none_that_nobody_asks_for():
+    settings = {"grading": 1.3, "joints": ("series", "tensioned")}
+    both = convergence(CLAMPED, Convergence(modes=(2,), counts=(9,), theory=("rayleigh", "timoshenko"), **settings))
+    found = {one.variant: one.errors for one in both.rules}
+    assert {one.theory for one in found} == {"rayleigh", "timoshenko"}
+    for theory in ("rayleigh", "timoshenko"):
+        alone = convergence(CLAMPED, Convergence(modes=(2,), counts=(9,), theory=theory, **settings)).rules
+        assert {one.variant: one.errors for one in alone} == {v: e for v, e in found.items() if v.theory == theory}
+        assert "segment wall=half grading=1.3 theory=" + theory in {one.variant.label for one in alone}
 
 
 def test_a_table_of_one_theory_names_its_exact_frequency():
@@ -80,7 +149,14 @@ def errors_of(*errors, due=4):
     orders = [None, *(_local_order(*a, *b) for a, b in pairwise(pairs))]
     cells = [Cell(frequency_hz=1.0, error=e, order=order) for e, order in zip(errors, orders, strict=True)]
     rows = tuple(
-        Row(mode=5, count=n, exact_hz=1.0, cells={"segment": one}, bracket_width=None, mean_error=None)
+        Row(
+            mode=5,
+            count=n,
+            exact_hz={"euler-bernoulli": 1.0},
+            cells={"segment": one},
+            bracket_width=None,
+            mean_error=None,
+        )
         for n, one in zip(counts, cells, strict=True)
     )
     return ConvergenceFound(rows=rows, variants=(Variant("segment"),), slopes=(("segment", due),) if due else ())

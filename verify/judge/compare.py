@@ -117,44 +117,43 @@ def zeros(shape: Callable[[Array], Array], length: float, mode: int) -> Array:
     return np.array([zero_between(at, float(x[i]), float(x[i + 1]), 1e-14 * length, 1e-14) for i in turns])
 
 
-def observed_order(counts: Sequence[int], errors: Sequence[float]) -> float:
-    """Minus the least-squares slope of log |error| over log count.
+def observed_order(counts: Sequence[float], errors: Sequence[complex], told: str = "") -> float:
+    """Minus the least-squares slope of log |error| over log count; `errors` signed, or complex.
 
-    Raises InputError for fewer than three sizes, equal sizes, an error that changes its sign (then no power of
-    the count describes it), or one at the rounding floor.
+    `told` is what was asked for where it is not counts: 'steps = [...]'. Raises InputError for fewer than three sizes,
+    equal sizes, an error that changes its sign, or turns by more than a right angle (then no power of the count
+    describes it), or one at the rounding floor.
     """
-    sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=float)
+    told = told or f"counts = {list(counts)}"
+    sizes, values = np.asarray(counts, dtype=float), np.asarray(errors, dtype=complex)
     if len(sizes) < 3 or len(set(counts)) != len(sizes):
-        raise InputError(f"counts = {list(counts)}: an observed order needs three or more different sizes")
+        raise InputError(f"{told}: an observed order needs three or more different sizes")
     if not np.isfinite(values).all():
-        raise InputError(
-            f"counts = {list(counts)}: an error that is not finite is rounding, or of an infinite figure: ask "
-            "for another one"
-        )
+        raise InputError(f"{told}: an error that is not finite is rounding, or of an infinite figure: ask for another")
     if (abs(values) < ORDER_FLOOR).any():
         raise InputError(
-            f"counts = {list(counts)}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "
+            f"{told}: an error of {abs(values).min():.1e} is rounding (floor {ORDER_FLOOR:.0e}), "
             "use coarser sizes or a higher mode"
         )
-    if len(set(np.sign(values))) > 1:
-        raise InputError(f"counts = {list(counts)}: the error changes sign between them, so it has no order there")
+    if (np.outer(values, values.conj()).real < 0.0).any():
+        raise InputError(f"{told}: the error changes sign between them, so it has no order there")
     return float(-np.polyfit(np.log(sizes), np.log(abs(values)), 1)[0])
 
 
-def settled_order(counts: Sequence[int], errors: Sequence[float], due: int | None = None) -> float:
+def settled_order(counts: Sequence[float], errors: Sequence[complex], due: int | None = None, told: str = "") -> float:
     """`observed_order` of errors that fall from size to size at orders within ASTRAY of the one that is due.
 
     Of each other where nobody knows that one. Raises InputError where they do not: sizes are too coarse, or the error
     is about to change its sign, and a slope through them is no order.
     """
-    found = observed_order(counts, errors)
+    found = observed_order(counts, errors, told)
     by_size = sorted(zip(counts, np.abs(errors), strict=True))
     orders = [float(np.log(e / f) / np.log(m / n)) for (n, e), (m, f) in pairwise(by_size)]
     low, high = (min(orders), max(orders)) if due is None else (due, due)
     if min(orders) <= 0.0 or max(orders) - low > ASTRAY or high - min(orders) > ASTRAY:
         seen = ", ".join(f"{order:.2f}" for order in orders)
         raise InputError(
-            f"counts = {list(counts)}: the error falls at no settled order between them ({seen}"
+            f"{told or f'counts = {list(counts)}'}: the error falls at no settled order between them ({seen}"
             f"{'' if due is None else f', where {due} is due'}), near a change of sign or too coarse: give others"
         )
     return found

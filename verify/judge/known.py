@@ -2,9 +2,11 @@
 
 from math import inf
 
-from verify.exact.error_laws import KEPT, KEPT_FROM, expected_error, is_kept
+from verify.exact.error_laws import KEPT, KEPT_FROM, expected_error, has_law, is_kept
 from verify.judge.compare import ORDER_FLOOR
 from verify.judge.workbench import Settings, Workbench
+
+UNKNOWN = "neither larger nor smaller ones were looked through"
 
 
 def kept(bench: Workbench, model: str, modes: range, count: int, does: dict[int, bool]) -> str:
@@ -34,9 +36,11 @@ def solved(count: int, does: dict[int, bool], beyond: str = "") -> str:
 
 def by_law(bench: Workbench, model: str, mode: int, count: int) -> str:
     """What is said of larger sizes where a size was found next to the error law's answer alone."""
+    if not has_law(bench.beam, mode, count):
+        return UNKNOWN
     off = abs(bench.frequency_error(model, count, mode) / expected_error(model, bench.beam, mode, count) - 1.0)
     if off > KEPT:
-        return "neither larger nor smaller ones were looked through"
+        return UNKNOWN
     return f"every larger N does by the error law, {off:.1%} off here; smaller ones were not looked through"
 
 

@@ -11,13 +11,14 @@ from verify.exact.error_laws import (
     LAWS,
     certain_from,
     expected_error,
+    has_law,
     law_of,
     parts_from_here_on,
     sine_fits,
     smallest_count,
 )
 from verify.judge.known import by_law, kept, solved, worst_of
-from verify.judge.variants import Rules, Variant, beside, falls_within, without_effect
+from verify.judge.variants import Rules, Variant, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
 from verify.patience import check_work
@@ -79,7 +80,7 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     error: float
     """Signed relative frequency error of `mode` at `count`, solved."""
     expected_error: float | None
-    """The same from the error law; None where there is none (stepped beams)."""
+    """The same from the error law; None where there is none (stepped beams, modes beyond the lower branch)."""
     run_time_s: float
     """Median of warm solves, set-up included."""
     smaller: int | None
@@ -103,8 +104,9 @@ def count_guess(model: str, beam: "Beam", mode: int, error: float) -> int:
 
 
 def _expected(model: str, beam: "Beam", mode: int, count: int) -> float | None:
-    """The error that the model's own law expects; None on a stepped beam, and of a model without one."""
-    return None if not beam.uniform or model not in LAWS else expected_error(model, beam, mode, count)
+    """The error that the model's own law expects; None on a stepped beam, and where the model has none for the mode."""
+    known = beam.uniform and model in LAWS and has_law(beam, mode, count)
+    return expected_error(model, beam, mode, count) if known else None
 
 
 def check_reachable(beam: "Beam", model: str, settings: Settings) -> None:
@@ -330,7 +332,7 @@ def choose_of_all(
     found: dict[Variant, Enough] = {}
     for one in asked:
         found[one] = enough_from(bench, one.model, mode, error, one.settings, _work_s(found))
-    for one in beside(bench.beam, (rules or Rules()).settled):
+    for one in (rules or Rules()).beside(bench.beam):
         try:
             if one not in found:
                 found[one] = enough_from(bench, one.model, mode, error, one.settings, _work_s(found))

@@ -89,16 +89,23 @@ class Rules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 raise InputError(f"{name} = {turned[0]!r} is a setting of none of {', '.join(models)}: leave it out")
 
     @property
-    def settled(self) -> Settings:
-        """Those that somebody turned: of several words the first."""
-        first = ((name, self._several(name)) for name in DEFAULTS)
-        return tuple((name, words[0]) for name, words in first if words != (DEFAULTS[name],))
+    def several(self) -> tuple[str, ...]:
+        """Settings of several words."""
+        return tuple(name for name in DEFAULTS if len(self._several(name)) > 1)
 
     @property
-    def chosen(self) -> Settings:
-        """Those that are one word, other than the default."""
-        single = ((name, self._several(name)) for name in DEFAULTS)
-        return tuple((name, words[0]) for name, words in single if len(words) == 1 and words[0] != DEFAULTS[name])
+    def combinations(self) -> tuple[Settings, ...]:
+        """Every word of each setting with every word of the others, defaults left out."""
+        every = product(*(self._several(name) for name in DEFAULTS))
+        return tuple(dict.fromkeys(told(dict(zip(DEFAULTS, words, strict=True))) for words in every))
+
+    def beside(self, beam: Beam) -> tuple[Variant, ...]:
+        """The rules that stand beside each combination on this beam (`beside`), each once."""
+        return tuple(dict.fromkeys(one for chosen in self.combinations for one in beside(beam, chosen)))
+
+    def every_rule(self, beam: Beam) -> tuple[Variant, ...]:
+        """Every rule that makes a difference on this beam by each combination (`every_rule`), each once."""
+        return tuple(dict.fromkeys(one for chosen in self.combinations for one in every_rule(beam, chosen)))
 
 
 def models_with(name: str) -> tuple[str, ...]:
@@ -154,7 +161,7 @@ def without_effect(beam: Beam, rules: Rules) -> dict[str, str]:
         "wall": "" if has_wall(beam) else "no end is clamped",
         "attachment": "" if beam.mass or beam.spring else "nothing stands on the beam",
     }
-    turned = {name for name, _ in rules.settled}
+    turned = {name for chosen in rules.combinations for name, _ in chosen}
     return {name: f"it makes no difference here, {why}" for name, why in reasons.items() if why and name in turned}
 
 

@@ -95,10 +95,22 @@ def check_bracket(beam: Beam, settings: Settings) -> None:
     raise NoBracketError(f"mode.bracket: {reason}")
 
 
-def is_bracketed(beam: Beam) -> bool:
-    """Whether segments lie below and elements above for this beam, as they are by default."""
+def bracketed(beam: Beam, asked: Iterable[Settings]) -> Settings:
+    """The first of several settings by which a beam has a bracket. Raises NoBracketError, with the first's reason."""
+    refused: list[NoBracketError] = []
+    for settings in asked:
+        try:
+            check_bracket(beam, settings)
+            return settings
+        except NoBracketError as error:
+            refused.append(error)
+    raise refused[0]
+
+
+def has_bracket(beam: Beam, settings: Settings = ()) -> bool:
+    """Whether segments lie below and elements above for this beam, by default or by other settings."""
     try:
-        check_bracket(beam, ())
+        check_bracket(beam, settings)
     except NoBracketError:
         return False
     return True

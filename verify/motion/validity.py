@@ -4,7 +4,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from verify.beam import Beam
-from verify.exact.closed_forms import frequency_hz
+from verify.exact.closed_forms import frequency_hz, wavenumber_length
 from verify.exact.error_laws import LAWS, expected_error, leading_error
 
 if TYPE_CHECKING:
@@ -52,13 +52,15 @@ def model_form(beam: Beam, drive_hz: float) -> float | None:
 
 
 def discretisation(beam: Beam, model: str, count: int | None, drive_hz: float) -> float | None:
-    """The leading frequency error of a discrete model at the mode nearest the drive; None where no law is known.
+    """The leading frequency error of a discrete model at the mode nearest the drive; None where no law knows it.
 
     Of a chain with clamped ends the whole law: its leading terms have the wrong sign at practical sizes.
     """
     if count is None or not beam.uniform or model not in LAWS:
         return None
     mode = nearest_mode(beam, drive_hz)
+    if wavenumber_length(beam.supports, mode) >= pi * count:
+        return None
     if "clamped" in beam.supports and LAWS[model].feels_clamps:
         return expected_error(model, beam, mode, count)
     return leading_error(model, beam.supports, mode, count)

@@ -110,12 +110,21 @@ def _check_devices(found: Quantity[A], scene: "Scene") -> None:
         scene.refuse_devices(found.name)
 
 
+UNCOUNTED = {
+    "equilibrium": "equilibria and modes of the nonlinear chain",
+    "matrices": "figures of matrices",
+}
+"""By kind of work, what a figure was solved by that no workbench counts."""
+
+
 def evaluate(found: Quantity[A], arguments: A, scene: "Scene", bench: Workbench) -> Figure:
     """The figure. Raises InputError, also where the quantity gives none."""
     _check_devices(found, scene)
     value = found.evaluate(arguments, scene, bench)
     if not isinstance(value, float | int | complex | Bracket):
         raise InputError(f"quantity = {found.name!r} gave {value!r}, which is no figure: let it give a number")
+    if told := UNCOUNTED.get(found.work):
+        bench.others[told] = bench.others.get(told, 0) + 1
     return value
 
 

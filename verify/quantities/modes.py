@@ -125,10 +125,10 @@ def _order(a: OverSizes, scene: "Scene", bench: Workbench) -> float:
 
 
 def _shape_order(a: ShapesOverSizes, scene: "Scene", bench: Workbench) -> float:
-    from verify.judge.compare import observed_order
+    from verify.judge.compare import settled_order
 
     errors = [bench.shape_error(a.model, n, a.mode, a.reading, a.settings) for n in a.counts]
-    return observed_order(a.counts, errors)
+    return settled_order(a.counts, errors)
 
 
 def _count_needed(a: ToError, scene: "Scene", bench: Workbench) -> int:
@@ -307,7 +307,7 @@ MODE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "mode.shape_order",
         "1",
-        "Observed order of the shape error over sizes.",
+        "Observed order of the shape error over sizes, refused where it is not settled between them.",
         ShapesOverSizes,
         "modes",
         _shape_order,

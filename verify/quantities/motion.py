@@ -200,7 +200,7 @@ MOTION_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "slider.order",
         "1",
-        "Observed order of the slider's displacement in the size or in the step.",
+        "Observed order of the slider's displacement in the size or in the step, refused where it is not settled.",
         SliderOrder,
         "in time",
         _order,

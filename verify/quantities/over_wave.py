@@ -68,7 +68,7 @@ def _over_wave_order(a: OverWaveOrder, scene: "Scene", bench: Workbench) -> floa
     own = {name: getattr(a, name) for name in _OverWave.__struct_fields__}
     steps = [round(a.steps_per_period * n / a.counts[0]) for n in a.counts]
     cases = [OverWave(**{**own, "points": n, "steps_per_period": s}) for n, s in zip(a.counts, steps, strict=True)]
-    return observed_order(a.counts, [abs(_over_wave(one, scene, bench) - exact) for one in cases])
+    return observed_order(a.counts, [_over_wave(one, scene, bench) - exact for one in cases])
 
 
 WAVE_FORCE_QUANTITIES: tuple[Quantity[Any], ...] = (

@@ -210,7 +210,7 @@ def slider_order(a: SliderOrder, scene: "Scene", bench: "Workbench") -> float:
 
     Over counts against the exact beam, over steps against one sixteen times finer than the finest.
     """
-    from verify.judge.compare import observed_order, relative_error
+    from verify.judge.compare import relative_error, settled_order
 
     given = {name: getattr(a, name) for name in SliderInTime.__struct_fields__}
 
@@ -220,7 +220,8 @@ def slider_order(a: SliderOrder, scene: "Scene", bench: "Workbench") -> float:
     if a.counts is not None:
         exact = displacement(model="analytic", count=None)
         found = [displacement(count=n, modes=None) for n in a.counts]
-        return observed_order(a.counts, [abs(relative_error(one, exact)) for one in found])
-    exact = displacement(step=min(a.steps or ()) / 16.0)
-    errors = [abs(relative_error(displacement(step=dt), exact)) for dt in a.steps or ()]
-    return observed_order([round(max(a.steps or ()) / dt * 1e6) for dt in a.steps or ()], errors)
+        return settled_order(a.counts, [relative_error(one, exact) for one in found])
+    steps = a.steps or ()
+    exact = displacement(step=min(steps) / 16.0)
+    errors = [relative_error(displacement(step=dt), exact) for dt in steps]
+    return settled_order([1.0 / dt for dt in steps], errors, told=f"steps = {list(steps)}")

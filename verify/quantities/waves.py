@@ -283,7 +283,7 @@ WAVE_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "wave.order",
         "1",
-        "Observed order of a wave figure's error against the exact field.",
+        "Observed order of a wave figure's error against the exact field, refused where it is not settled.",
         WaveOrder,
         "harmonic",
         _order,

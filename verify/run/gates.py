@@ -159,7 +159,7 @@ def _in_words(band: Band) -> str:
 
 
 def shown_expectation(band: Band) -> str:
-    """The same for a person: no more digits than the band tells."""
+    """The same for a person: no more digits than a thousandth of the band."""
     if band.expect is None or band.within is None:
         return _in_words(band)
     parts = (band.expect.re, band.expect.im) if isinstance(band.expect, Complex) else (band.expect,)

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.judge.variants import Rules, Variant, beside, every_rule, without_effect
-from verify.judge.workbench import Settings, Workbench, comparable, is_bracketed
+from verify.judge.workbench import Settings, Workbench, comparable, has_bracket
 from verify.section import Section
 from verify.stress.beams import STEPPED, STRIP, held
 from verify.stress.choices import pinned_error
@@ -64,7 +64,8 @@ def words_error(number: float) -> float:
     wrong += [one.title for one in found][1] != "segments, wall half, grading 2.0"
     wrong += [one.order(CLAMPED) for one in found] != [2, 2, 4]
     wrong += Variant("fem", THICK).theory != "timoshenko" or Variant("fem").theory != "euler-bernoulli"
-    wrong += wide.chosen != (("grading", 2.0),) or wide.settled != (("wall", "gregory"), ("grading", 2.0))
+    wrong += wide.combinations != ((("grading", 2.0),), (("wall", "half"), ("grading", 2.0)))
+    wrong += wide.several != ("wall",) or {one.label for one in wide.beside(CLAMPED)} != {labels[1]}
     turned = Rules(wall="half", attachment="lever")
     wrong += set(without_effect(STRIP, turned)) != {"wall", "attachment"}
     wrong += set(without_effect(CLAMPED, turned)) != {"attachment"} or bool(without_effect(STRIP, Rules()))
@@ -83,7 +84,7 @@ def brackets_error(mode: float) -> float:
     pairs += [(1.0 + found.relative_width, 1.0 + 2.0 * (high - low) / (high + low)), (bench.exact_hz(number), exact)]
     pairs += [(bench.paired_frequency_hz("mean", n, number), 0.5 * (low + high))]
     worst = max(abs(one / other - 1.0) for one, other in pairs)
-    wrong = int([is_bracketed(beam) for beam in (STRIP, CLAMPED, STEPPED, TAUT)] != [True, False, False, False])
+    wrong = int([has_bracket(beam) for beam in (STRIP, CLAMPED, STEPPED, TAUT)] != [True, False, False, False])
     wrong += comparable(CLAMPED, (9, 20), 3) != (["segment", "fem"], {})
     none, why = bench.error_or_why("segment", 5, 9)
     wrong += none is not None or "mode = 9" not in why

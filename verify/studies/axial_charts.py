@@ -36,13 +36,23 @@ def axial_charts(study: "AxialFound") -> tuple[Chart, ...]:
     return (*charts, bending_movie(study.beam, _COLOURS["full"])) if study.beam is not None else charts
 
 
+def _off(study: "AxialFound") -> str:
+    """How far each chain lies off the linear one at the force that is shown; nothing where it is none of the table."""
+    row = next((row for row in study.rows if row.force == study.shown), None)
+    if row is None:
+        return ""
+    ends = (("rigid links", row.full), ("without axial inertia", row.transverse), ("links that stretch", row.elastic))
+    off = ", ".join(f"{name} {one.at_end:.1e}" for name, one in ends)
+    return f"At the end chains lie off the linear one by, over its rms deflection: {off}. "
+
+
 def _lines(study: "AxialFound") -> Chart:
     times = [1e3 * t for t in thinned(study.times)]
     return Chart(
         id="axial-models",
         title=f"Deflection at x = {study.x:g} m under {study.shown:g} N, N = {study.count}",
-        caption="From rest, undamped. Chains without axial inertia, or with links that stretch, lie on the linear "
-        "chain; what separates it from the exact field is the division into links, not the nonlinearity.",
+        caption=f"From rest, undamped. {_off(study)}What separates the linear chain from the exact field is the "
+        "division into links, not the nonlinearity.",
         x=Axis("time, ms"),
         y=Axis("deflection, µm"),
         lines=tuple(
@@ -94,11 +104,11 @@ def axial_tables(study: "AxialFound") -> tuple[Table, ...]:
 def _forces_table(study: "AxialFound") -> Table:
     return Table(
         before="Rigid links cannot stretch: bending draws the sliding tip in and takes the mass of the chain along. "
-        "This axial inertia, of relative size (kL)² ⟨θ²⟩, makes the chain nonlinear, not the amplitude over the "
-        "thickness. Below, how far each chain lies from the linear chain of as many links, over the linear chain's rms "
-        f"deflection at x = {study.x:g} m, at the end of {1e3 * study.duration:g} ms from rest (at end), and as rms "
-        "over that time (rms). It grows with time as with the force. Other places depart by more or less: beside it "
-        "the range of the rigid links' figure at the end over the tenths of the beam.",
+        "This axial inertia, of relative size (kL)² ⟨θ²⟩, makes a chain of rigid links nonlinear, not the amplitude "
+        "over the thickness. Below, how far each chain lies from the linear chain of as many links, over the linear "
+        f"chain's rms deflection at x = {study.x:g} m, at the end of {1e3 * study.duration:g} ms from rest (at end), "
+        "and as rms over that time (rms). It grows with time as with the force. Other places depart by more or less: "
+        "beside it the range of the rigid links' figure at the end over the tenths of the beam.",
         columns=(
             Column("force", "g", unit=" N"),
             Column("rms deflection, µm", ".3g", 1e6),

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from msgspec import Meta
 
-from verify.judge.variants import Rules, every_rule
+from verify.judge.variants import Rules
 from verify.models.catalogue import discrete
 from verify.studies.kind import Progress, Study
 
@@ -41,7 +41,7 @@ class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
 
         last = max(asked.modes)
         variants = asked.variants(model.name for model in discrete("solve_modes", scene.beam))
-        every = (*variants, *every_rule(scene.beam, asked.chosen))
+        every = (*variants, *asked.every_rule(scene.beam))
         return tuple(Need(one.model, count, last, one.settings) for count in asked.counts for one in every)
 
     def n_steps(self, asked: Convergence, scene: "Scene") -> int:

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from verify.errors import InputError
+from verify.errors import InputError, NoBracketError
 from verify.judge.crossing import ASTRAY
-from verify.judge.variants import Variant, every_rule
-from verify.judge.workbench import Settings, Workbench, comparable, theory_of
+from verify.judge.variants import DEFAULTS, Variant
+from verify.judge.workbench import Settings, Workbench, bracketed, comparable, has_bracket, theory_of
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
-from verify.options import THEORIES
 from verify.patience import check_work
 from verify.studies.chart import Chart
 from verify.studies.kind import Progress
@@ -43,7 +42,8 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
     mode: int
     count: int
-    exact_hz: float
+    exact_hz: dict[str, float]
+    """By each theory that is asked for; without those that the beam has no figure of."""
     cells: dict[str, Cell]
     """By the label of each variant: 'segment', 'segment wall=half'."""
     bracket_width: float | None
@@ -51,7 +51,17 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     mean_error: float | None
     """Error of the middle of the bracket."""
     notes: tuple[str, ...] = ()
-    """Why a cell is empty."""
+    """Why a cell is empty, and by which of several settings the bracket is."""
+
+
+class Bracketed(msgspec.Struct, frozen=True, kw_only=True):
+    """By which of the settings that stand side by side there is a bracket."""
+
+    settings: Settings = ()
+    why_not: str = ""
+    """Why by none of them; empty where there is one."""
+    told: str = ""
+    """By which, where others that stand beside it have none."""
 
 
 class RuleErrors(msgspec.Struct, frozen=True, kw_only=True):
@@ -71,6 +81,8 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
     rows: tuple[Row, ...]
     variants: tuple[Variant, ...] = ()
     """Of the cells."""
+    bracketed: Bracketed = Bracketed()
+    """By which settings the bracket is."""
     slopes: tuple[tuple[str, int], ...] = ()
     """(label of a variant, order at which it converges on this beam, as theory has it)."""
     rules: tuple[RuleErrors, ...] = ()
@@ -95,23 +107,19 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
         parts = [self.variants[i : i + ABREAST] for i in range(0, len(self.variants), ABREAST)]
         tables = [(group, part) for group in groups for part in parts]
         slopes = dict(self.slopes)
-        return (*(_mode_table(group, part, slopes) for group, part in tables), *self._rules_table())
+        theories = tuple(dict.fromkeys(one.variant.theory for one in self.rules))
+        rules = (self._rules_table(theory, several=len(theories) > 1) for theory in theories)
+        return (*(_mode_table(group, part, slopes) for group, part in tables), *rules)
 
-    def _rules_table(self) -> tuple[Table, ...]:
-        if not self.rules:
-            return ()
-        first = self.rules[0]
-        mixed = len({one.variant.theory for one in self.rules}) > 1
-        columns = [Column("N"), *(Column(_rule(one.variant, mixed), "bare percent") for one in self.rules)]
-        refused = (f"{_rule(one.variant, mixed)}: {one.why}" for one in self.rules if one.why)
-        rows = zip(first.counts, *(one.errors for one in self.rules), strict=True)
-        return (
-            Table(
-                title=f"mode {first.mode} by every rule of the chain, error in %",
-                columns=tuple(columns),
-                rows=tuple(rows),
-                notes=tuple(refused),
-            ),
+    def _rules_table(self, theory: str, *, several: bool) -> Table:
+        """By one theory, which is named where there are several."""
+        own = [one for one in self.rules if one.variant.theory == theory]
+        by = f"{theory_name(theory)} and " if several else ""
+        return Table(
+            title=f"mode {own[0].mode} by {by}every rule of the chain, error in %",
+            columns=(Column("N"), *(Column(_rule(one.variant), "bare percent") for one in own)),
+            rows=tuple(zip(own[0].counts, *(one.errors for one in own), strict=True)),
+            notes=tuple(f"{_rule(one.variant)}: {one.why}" for one in own if one.why),
         )
 
     def charts(self) -> tuple[Chart, ...]:
@@ -121,8 +129,8 @@ class ConvergenceFound(Found, frozen=True, eq=False, kw_only=True):
         return convergence_charts(self)
 
     def records(self) -> list[dict[str, Any]]:
-        """Rows with one level of names."""
-        return [flat_row(row) for row in self.rows]
+        """Rows with one level of names; those of the mode that has them with the errors of every rule."""
+        return [flat_row(row, self.rules) for row in self.rows]
 
     def plain(self) -> Any:
         """The same."""
@@ -162,11 +170,17 @@ def strays(orders: "Sequence[float | None]", due: int | None) -> bool:
     return any(abs(order - known) > ASTRAY for order in seen)
 
 
-def flat_row(row: Row) -> dict[str, Any]:
-    """One row with one level of names."""
-    flat: dict[str, Any] = {"mode": row.mode, "count": row.count, "exact_hz": row.exact_hz}
+def flat_row(row: Row, rules: tuple[RuleErrors, ...] = ()) -> dict[str, Any]:
+    """One row with one level of names, and the errors of rules that are none of its cells."""
+    alone = len(row.exact_hz) == 1
+    exact = {"exact_hz" if alone else f"{theory}_exact_hz": hertz for theory, hertz in row.exact_hz.items()}
+    flat: dict[str, Any] = {"mode": row.mode, "count": row.count, **exact}
     for model, cell in row.cells.items():
         flat |= {f"{model}_{name}": value for name, value in msgspec.to_builtins(cell).items()}
+    for one in rules:
+        if one.variant.label not in row.cells:
+            errors = dict(zip(one.counts, one.errors, strict=True)) if one.mode == row.mode else {}
+            flat[f"{one.variant.label}_error"] = errors.get(row.count)
     return flat | {"bracket_width": row.bracket_width, "mean_error": row.mean_error, "notes": list(row.notes)}
 
 
@@ -180,10 +194,9 @@ ABREAST = 2
 """Variants in one table: more do not fit into a terminal."""
 
 
-def _rule(variant: Variant, mixed: bool) -> str:
-    """A rule of the chain above a column, with a theory of its own where there are several."""
-    rule = ", ".join(f"{n} {value}" for n, value in variant.settings if n != "theory") or "default"
-    return f"{rule}, {variant.theory}" if mixed and variant.theory != THEORIES[0] else rule
+def _rule(variant: Variant) -> str:
+    """A rule of the chain above a column of a table of one theory."""
+    return ", ".join(f"{n} {value}" for n, value in variant.settings if n != "theory") or "default"
 
 
 def _head(variant: Variant) -> str:
@@ -194,13 +207,10 @@ def _head(variant: Variant) -> str:
 
 def _exact(rows: tuple[Row, ...], variants: tuple[Variant, ...]) -> str:
     """The exact frequency that errors are against; of each theory where the variants have several."""
-    found: dict[str, float] = {}
-    for one in variants:
-        for cell in (row.cells[one.label] for row in rows):
-            if cell.frequency_hz is not None and cell.error is not None:
-                found.setdefault(one.theory, cell.frequency_hz / (1.0 + cell.error))
+    theories = dict.fromkeys(one.theory for one in variants)
+    found = {theory: hertz for theory, hertz in rows[0].exact_hz.items() if theory in theories}
     if len(found) < 2:
-        return f"{next(iter(found.values()), rows[0].exact_hz):.4f} Hz"
+        return next((f"{hertz:.4f} Hz" for hertz in found.values()), "not known")
     return ", ".join(f"{hertz:.4f} Hz ({theory_name(theory)})" for theory, hertz in found.items())
 
 
@@ -238,20 +248,22 @@ def convergence(bench: Workbench, asked: "Convergence", progress: Progress = lam
     names, left_out = comparable(bench.beam, asked.counts, last)
     variants = asked.variants(names)
     _check_together(bench.beam, variants, asked.counts, last)
-    seconds = {}
+    theories, seconds = tuple(dict.fromkeys(map(theory_of, asked.combinations))), {}
     for count in asked.counts:
         progress(f"{count} segments and elements")
         seconds[count] = _timed(bench, variants, count, last)
     rows: list[Row] = []
+    by = _bracketed(bench.beam, asked)
     for mode in asked.modes:
         previous: Row | None = None
         for count in asked.counts:
-            previous = _row(bench, mode, count, seconds[count], previous, asked.chosen, tuple(left_out.values()))
+            previous = _row(bench, mode, count, seconds[count], previous, by, theories, tuple(left_out.values()))
             rows.append(previous)
     orders = ((one.label, one.order(bench.beam)) for one in variants)
     return ConvergenceFound(
         rows=tuple(rows),
         variants=variants,
+        bracketed=by,
         slopes=tuple((label, order) for label, order in orders if order),
         rules=_rules(bench, variants, asked, last),
     )
@@ -259,7 +271,7 @@ def convergence(bench: Workbench, asked: "Convergence", progress: Progress = lam
 
 def _rules(bench: Workbench, variants: tuple[Variant, ...], asked: "Convergence", mode: int) -> tuple[RuleErrors, ...]:
     """Errors by every rule of the chain on this beam, the default first; none where it has one rule alone."""
-    every, counts = every_rule(bench.beam, asked.chosen), asked.counts
+    every, counts = asked.every_rule(bench.beam), asked.counts
     models = dict.fromkeys(one.model for one in every)
     shown = dict.fromkeys((*(one for one in variants if one.model in models), *every))
     found = []
@@ -300,28 +312,63 @@ def _row(
     count: int,
     seconds: dict[Variant, float],
     previous: Row | None,
-    chosen: Settings,
+    by: Bracketed,
+    theories: tuple[str, ...],
     left_out: tuple[str, ...],
 ) -> Row:
     cells, notes = {}, []
     for one, time in seconds.items():
         cells[one.label], note = _cell(bench, one, mode, count, time, previous)
         notes += [note] if note else []
-    width = mean_error = None
-    try:
-        found = bench.bracket(mode, count, chosen)
-        width, mean_error = found.relative_width, bench.frequency_error(MEAN, count, mode, chosen)
-    except InputError as error:
-        notes += [str(error)] if not notes else []
+    width, mean_error, why = _bracket(bench, mode, count, by)
+    notes += [why] if why and not (notes and width is None) else []
     return Row(
         mode=mode,
         count=count,
-        exact_hz=bench.exact_hz(mode, theory_of(chosen)),
+        exact_hz=_exact_hz(bench, mode, theories),
         cells=cells,
         bracket_width=width,
         mean_error=mean_error,
         notes=(*notes, *left_out),
     )
+
+
+def _bracketed(beam: "Beam", asked: "Convergence") -> Bracketed:
+    """Of the settings that are asked for the first by which a beam has a bracket."""
+    try:
+        settings = bracketed(beam, asked.combinations)
+    except NoBracketError as error:
+        return Bracketed(why_not=str(error))
+    if all(has_bracket(beam, others) for others in asked.combinations):
+        return Bracketed(settings=settings)
+    words = ", ".join(f"{name} {dict(settings).get(name, DEFAULTS[name])}" for name in asked.several)
+    return Bracketed(
+        settings=settings,
+        told=f"the bracket and its mean are those of {words}: by the others segments may lie above the exact frequency",
+    )
+
+
+def _bracket(bench: Workbench, mode: int, count: int, by: Bracketed) -> tuple[float | None, float | None, str]:
+    """(width of the bracket, error of its middle, by which of several settings), or (None, None, why there is none)."""
+    if by.why_not:
+        return None, None, by.why_not
+    try:
+        found = bench.bracket(mode, count, by.settings)
+        return found.relative_width, bench.frequency_error(MEAN, count, mode, by.settings), by.told
+    except InputError as error:
+        return None, None, str(error)
+
+
+def _exact_hz(bench: Workbench, mode: int, theories: tuple[str, ...]) -> dict[str, float]:
+    """By each theory; of several, by those that have a figure. Raises InputError."""
+    found = {}
+    for theory in theories:
+        try:
+            found[theory] = bench.exact_hz(mode, theory)
+        except InputError:
+            if len(theories) == 1:
+                raise
+    return found
 
 
 def _cell(

@@ -1,13 +1,15 @@
 """Charts of modes: errors over mode number and size, the bracket, run time, material."""
 
 from itertools import groupby
-from math import pi
+from math import log, pi
 from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
 from verify.exact.error_laws import MEAN_LIMIT
 from verify.judge.compare import EIGENVALUE_FLOOR
+from verify.judge.variants import Variant
+from verify.judge.workbench import for_model
 from verify.models.catalogue import MODELS, bounding
 from verify.options import THEORIES
 from verify.studies.chart import Axis, Bars, Chart, Line
@@ -40,6 +42,8 @@ if TYPE_CHECKING:
 
 GUIDES: "dict[int, Dash]" = {2: "dashdot", 4: "solid", 6: "dot"}
 """Of a slope, by its order."""
+CANCELLED = 6
+"""Order of the mean of segments and elements of order 4, whose leading errors are of one size and two signs."""
 _THEORIES = {"rayleigh": RAYLEIGH, "timoshenko": TIMOSHENKO, "plate": PLATE}
 
 
@@ -177,7 +181,8 @@ def _convergence(found: "ConvergenceFound") -> Chart:
         lines += [one for one in traces if any(v is not None for v in one.y)]
         keys.append(entry)
     means = any(row.mean_error is not None for row in rows)
-    guides = [_slope(found, order) for order in (*dict.fromkeys(o for _, o in found.slopes), *([6] if means else []))]
+    orders = dict.fromkeys([*(order for _, order in found.slopes), *([_mean_order(found)] if means else [])])
+    guides = [_slope(found, order) for order in orders]
     return Chart(
         id="convergence",
         title="Convergence with the number of segments or elements",
@@ -200,16 +205,32 @@ def _named_once(lines: list[Line]) -> list[Line]:
     return once
 
 
+def _bounding_labels(found: "ConvergenceFound") -> dict[str, str]:
+    """By model, the label of the variant that the bracket is made of."""
+    names = [model.name for model in bounding()]
+    return {name: Variant(name, for_model(name, found.bracketed.settings)).label for name in names}
+
+
+def _mean_order(found: "ConvergenceFound") -> int:
+    """Of the middle of the bracket: of equal orders both errors cancel, else the lower one stays."""
+    orders = dict(found.slopes)
+    low, high = (orders[label] for label in _bounding_labels(found).values())
+    return CANCELLED if low == high else min(low, high)
+
+
 def mean_in_words(found: "ConvergenceFound") -> str:
     """What the mean of both models is good for, by what was solved: it is farther off than elements on few parts."""
-    above = next(one.label for one in found.variants if one.model == bounding()[1].name)
+    order = _mean_order(found)
+    if order != CANCELLED:
+        return f"The mean of both is of order {order}, the segments' own at this wall: nothing cancels."
+    above = _bounding_labels(found)[bounding()[1].name]
     errors = [(row, row.mean_error, row.cells[above].error) for row in found.rows]
     farther = [f"mode {row.mode} at N = {row.count}" for row, m, e in errors if m and e and abs(m) >= abs(e)]
-    order = "The mean of both is of order 6, because the leading errors cancel"
+    cancel = f"The mean of both is of order {order}, because the leading errors cancel"
     if not farther:
-        return f"{order}, and here always nearer than elements alone."
+        return f"{cancel}, and here always nearer than elements alone."
     named = ", ".join(farther[:3]) + (f" and {len(farther) - 3} more" if len(farther) > 3 else "")
-    return f"{order}, but farther off than elements alone beyond about n = {MEAN_LIMIT / pi:.1f} N: {named}."
+    return f"{cancel}, but farther off than elements alone beyond about n = {MEAN_LIMIT / pi:.1f} N: {named}."
 
 
 def _slope(found: "ConvergenceFound", order: int) -> Line:
@@ -228,7 +249,7 @@ def _slope(found: "ConvergenceFound", order: int) -> Line:
 def _bracket(found: "ConvergenceFound") -> Chart:
     """The bound of the highest mode, relative to the exact frequency."""
     mode, group = max(_by_mode(found.rows).items())
-    labels = {model.name: next(one.label for one in found.variants if one.model == model.name) for model in bounding()}
+    labels = _bounding_labels(found)
     group = [row for row in group if row.bracket_width is not None]
     counts = [row.count for row in group]
     lower, upper = (
@@ -239,7 +260,7 @@ def _bracket(found: "ConvergenceFound") -> Chart:
         id="bracket",
         title=f"Two-sided bound on mode {mode}",
         caption="The exact frequency (zero) lies in the grey band for every N: no reference solution is needed to know "
-        "that.",
+        "that." + (f" Here {found.bracketed.told}." if found.bracketed.told else ""),
         x=sizes_axis("number of parts N", counts),
         y=Axis("against the exact frequency, %"),
         lines=(upper, replace(lower, filled=True), mean) if group else (),
@@ -276,10 +297,7 @@ def sensitivity_chart(study: "SensitivityFound") -> Chart:
         plain_line(f"ρ = {rho:.0f} kg/m³", shades[i], moduli, row, width=3.0 if i == 2 else 1.5)
         for i, (rho, row) in enumerate(zip(study.densities, study.frequencies_hz, strict=True))
     ]
-    caption = (
-        f"Exact Euler-Bernoulli: frequency goes with sqrt(E / rho), so that one per cent of modulus or density moves "
-        f"mode {study.mode} by half a per cent."
-    )
+    caption = f"Exact Euler-Bernoulli: {_moved_by(study)}."
     if study.published_hz:
         lines.append(_published(study.published_hz, moduli))
         caption += " The dashed line is the published figure: every crossing is a material that fits it."
@@ -291,6 +309,23 @@ def sensitivity_chart(study: "SensitivityFound") -> Chart:
         y=Axis(f"frequency of mode {study.mode}, Hz"),
         lines=tuple(lines),
     )
+
+
+PLAINLY = 1e-4
+"""How far exponents of modulus and density may lie from 1/2 and -1/2 where nothing but the beam counts."""
+
+
+def _moved_by(study: "SensitivityFound") -> str:
+    """What one per cent of modulus or density does, by what was solved: half on a beam that carries nothing else."""
+    table = study.frequencies_hz
+    stiff = log(table[2][-1] / table[2][0]) / log(study.moduli[-1] / study.moduli[0])
+    middle = len(study.moduli) // 2
+    heavy = log(table[-1][middle] / table[0][middle]) / log(study.densities[-1] / study.densities[0])
+    if max(abs(stiff - 0.5), abs(heavy + 0.5)) < PLAINLY:
+        half = f"one per cent of modulus or density moves mode {study.mode} by half a per cent"
+        return f"frequency goes with sqrt(E / rho), so that {half}"
+    of = "with what stands on the beam, holds or pulls it, frequency does not go with sqrt(E / rho)"
+    return f"{of}: one per cent of modulus moves mode {study.mode} by {stiff:+.3g} %, one of density by {heavy:+.3g} %"
 
 
 def _published(frequency_hz: float, moduli: list[float]) -> Line:

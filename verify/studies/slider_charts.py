@@ -25,6 +25,13 @@ def slider_charts(study: "SliderFound") -> tuple[Chart, ...]:
     return (*charts, *_split(study))
 
 
+SATURATES = {
+    "tanh": "Friction is more than three quarters of mu N where slider and surface pass each other faster than 1/K",
+    "coulomb": "Friction is mu N while the slider slips on the surface, and what holds it while it sticks",
+}
+"""By the law of friction, what is seen of its limit."""
+
+
 def _how(study: "SliderFound") -> str:
     """Under which condition."""
     how = study.condition
@@ -70,7 +77,7 @@ def _force(study: "SliderFound") -> Chart:
     return Chart(
         id="slider-force",
         title=f"Tangential force on the slider, N = {study.count}",
-        caption=f"Friction saturates at ±mu N as soon as the surface moves faster than 1/K: {_how(study)}.",
+        caption=f"{SATURATES[study.condition.law]}: {_how(study)}.",
         x=Axis("time, ms"),
         y=Axis("force, mN"),
         lines=_lines(study, lambda run: run.friction, 1e3),

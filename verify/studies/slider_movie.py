@@ -32,7 +32,7 @@ def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
             id="slider-moving",
             title=f"The ride, N = {study.count}",
             caption=f"Links straight from joint to joint. Pink: friction on the slider, {1e3 * largest:.3g} mN at its "
-            "longest. Along the beam the slider moves by too little to be seen; its way is charted above.",
+            f"longest. {_way(run)}; its way is charted above.",
             x=Axis("x, mm"),
             y=Axis("deflection, µm"),
             lines=_parts(run, kept, largest),
@@ -40,6 +40,18 @@ def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
             plays=True,
         ),
     )
+
+
+UNSEEN = 2e-3
+"""Of the beam's length: a shorter way is not seen."""
+
+
+def _way(run: "Motion") -> str:
+    """Whether the slider is seen to move along the beam."""
+    way = float(np.ptp(run.position))
+    if way < UNSEEN * float(run.points[-1] - run.points[0]):
+        return "Along the beam the slider moves by too little to be seen"
+    return f"Along the beam the slider moves over {1e3 * way:.3g} mm"
 
 
 def _parts(run: "Motion", kept: "Array", largest: float) -> tuple[Line, ...]:

@@ -8,7 +8,7 @@ import msgspec
 from verify.errors import InputError
 from verify.exact.plate_strip import plate_error
 from verify.judge.variants import Variant
-from verify.judge.workbench import Workbench, comparable, is_bracketed
+from verify.judge.workbench import Workbench, comparable, has_bracket
 from verify.options import THEORIES
 from verify.studies.chart import Chart
 from verify.studies.told import Found
@@ -106,7 +106,7 @@ def spectrum(bench: Workbench, asked: "Spectrum") -> SpectrumFound:
         variants=variants,
         theory=" and ".join(theory_name(word) for word in dict.fromkeys(one.theory for one in variants)),
         theories=_theory_errors(bench, modes),
-        bracketed=is_bracketed(bench.beam) and len(variants) == len(models) and not asked.chosen,
+        bracketed=has_bracket(bench.beam) and len(variants) == len(models) and asked.combinations == ((),),
         left_out=tuple(left_out.values()),
         missing={one.label: _why(bench, one, asked, errors[one.label]) for one in variants if not _has(errors, one)},
         bench=bench,

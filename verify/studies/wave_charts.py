@@ -34,6 +34,17 @@ def magnification(ellipses: "tuple[Ellipse, ...]") -> float:
     return 0.42 * (ellipses[1].x - ellipses[0].x) / across
 
 
+SLIVER = 0.2
+"""Width over height up to which an ellipse is one."""
+
+
+def _drawn_to_scale(ratio: float) -> str:
+    """What ellipses so many times as wide as high look like."""
+    if ratio <= SLIVER:
+        return f"Drawn to scale they are slivers ({ratio:.3f} as wide as high)"
+    return f"They are {ratio:.3f} times as wide as high"
+
+
 def _damping(study: "WaveFound") -> str:
     return "Undamped. " if study.undamped else "With the beam's loss factor. "
 
@@ -66,7 +77,7 @@ def _ellipses(study: "WaveFound") -> Chart:
     return Chart(
         id="wave-ellipses",
         title="Surface ellipses along the beam, exact field",
-        caption=f"Drawn to scale they are slivers ({ratio:.3f} as wide as high): motion along the beam is magnified "
+        caption=f"{_drawn_to_scale(ratio)}: motion along the beam is magnified "
         f"{magnified:.2g} times, across it the axis has its own scale. Dots: where each point is at t = 0.",
         x=Axis("x, mm"),
         y=Axis("up, µm"),

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
-from verify.judge.compare import observed_order, relative_error
+from verify.judge.compare import relative_error, settled_order
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.models.eigen import field_seconds
@@ -268,4 +268,4 @@ def wave_order(
         return complex(found.standing_wave_ratio if of == "standing_wave_ratio" else found.axis_ratio)
 
     exact = figure(replace(case, model="analytic", count=None, settings=()))
-    return observed_order(counts, [abs(relative_error(figure(replace(case, count=n)), exact)) for n in counts])
+    return settled_order(counts, [relative_error(figure(replace(case, count=n)), exact) for n in counts])
