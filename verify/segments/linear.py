@@ -150,7 +150,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     shapes = line_through(chain, corrected)
 
     def curvatures() -> Array:
-        return joint_curvatures(chain, vectors)
+        return joint_curvatures(chain, vectors, pairs.values)
 
     nodes = chain.nodes
     return Modes(
