@@ -53,8 +53,8 @@ def walls_without_excess(patch):
 
 
 def walls_without_factors(patch):
-    true = loaded.curvatures
-    patch.setattr(loaded, "curvatures", lambda chain, free: 1.01 * true(chain, free))
+    true = loaded.bending
+    patch.setattr(loaded, "bending", lambda chain, free: 1.01 * true(chain, free))
 
 
 def loads_in_phase(patch):

@@ -323,7 +323,7 @@ def sections_of_the_mean_thickness(patch):
 
 def link_curvature_for_the_joints_moment(patch):
     true = segment_model.joint_curvatures
-    patch.setattr(segment_model, "joint_curvatures", lambda links, free: true(links, free) * links.compliances)
+    patch.setattr(segment_model, "joint_curvatures", lambda links, *given: true(links, *given) * links.compliances)
 
 
 def one_rigid_motion_too_few(patch):

@@ -15,9 +15,11 @@ from verify.elements.mesh import build_elements, point_loads
 from verify.errors import InputError
 from verify.exact import modes as analytic_modes
 from verify.exact.in_time import MOST
+from verify.models.catalogue import MODELS
 from verify.models.fields import phasor
 from verify.models.time_basis import taylor_table
 from verify.motion.forcing import SMOOTH_STEP
+from verify.motion.free_vibration import free_vibration
 from verify.motion.surface import Growth, Steps, basis_of, stages_from_rest, steady_stage
 from verify.section import Section
 from verify.segments import in_time as segment_motion
@@ -29,6 +31,33 @@ HELD = [("pinned", "pinned"), ("clamped", "free"), ("clamped", "clamped"), ("gui
 
 def held(supports):
     return Beam(length=0.43, width=0.017, thickness=0.0013, youngs_modulus=113e9, density=4470.0, supports=supports)
+
+
+LOADED = [
+    (("pinned", "pinned"), {}),
+    (("clamped", "pinned"), {}),
+    (("guided", "clamped"), {}),
+    (("pinned", "clamped"), {"tension": 20.0}),
+    (("clamped", "free"), {"spring": (PointSpring(position=0.3, stiffness=300.0, rotational=2.0),)}),
+    (("pinned", "pinned"), {"foundation": 700.0, "mass": (PointMass(position=0.11, mass=0.03, rotary_inertia=4e-6),)}),
+    (("clamped", "free"), {"section": (Section(length=0.13, thickness=0.002), Section(length=0.3))}),
+]
+
+
+IN_TIME = [(*given, *of) for of in [("segment", 23, 20), ("fem", 9, 15)] for given in LOADED]
+IN_TIME += [(*given, "analytic", None, 12) for given in LOADED if not given[1] or "section" in given[1]]
+
+
+@pytest.mark.parametrize(("supports", "loads", "model", "count", "last"), IN_TIME)
+def test_modes_in_time_are_the_models_own_with_their_sign(supports, loads, model, count, last):
+    """Eigenvectors have none, shares q of a shape do: they are those of the phi that `solve_modes` gives."""
+    beam = replace(held(supports), **loads)
+    basis, x = basis_of(beam, model, count, last), np.linspace(0.0, beam.length, 60)[:-1]
+    own = MODELS[model].solve_modes(beam, last, count).shapes(x, 0)
+    assert abs(basis.shapes(x, 0)[:last] - own).max() < 2e-6 * abs(own).max()
+    let_go = free_vibration(beam, 2, 0.01, amplitude=1e-3, model=model, count=count, modes=last)
+    assert let_go.amplitudes[1] > 1e-5
+    assert let_go.end.q[1] == pytest.approx(let_go.amplitudes[1] * np.cos(basis.omegas[1] * 0.01), rel=1e-6)
 
 
 def dense_segments(n, line="spline"):

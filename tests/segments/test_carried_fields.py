@@ -9,6 +9,8 @@ from verify.attached import PointMass, PointSpring
 from verify.beam import Beam, PointForce
 from verify.chain.system import build_system
 from verify.errors import InputError, ResonanceError
+from verify.exact.modes import mode_shapes
+from verify.section import Section
 from verify.segments.in_time import time_basis
 from verify.segments.linear import solve_harmonic, solve_modes, unit_responses
 
@@ -113,6 +115,46 @@ def test_curvatures_under_axial_force_are_the_beams(joints):
     expected = -amplitude * beta**2 * np.sin(beta * modes.curvature_points)
     bound = 2e-6 if joints == "tensioned" else 3e-4
     assert abs(modes.curvatures()[1] - expected).max() < bound * amplitude * beta**2
+
+
+STEPPED = replace(
+    BARE,
+    supports=("clamped", "free"),
+    section=(
+        Section(length=0.31, bending_stiffness=29.6, mass_per_length=0.62, rotary_inertia=2.4e-4, shear_stiffness=4e3),
+        Section(length=0.42, bending_stiffness=3.7, mass_per_length=0.31),
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("theory", "added"),
+    [
+        ("euler-bernoulli", {}),
+        ("rayleigh", {}),
+        ("timoshenko", {}),
+        ("euler-bernoulli", {"mass": (PointMass(position=0.24, mass=0.07),)}),
+        ("timoshenko", {"mass": (PointMass(position=0.24, mass=0.07),), "foundation": 300.0}),
+        ("euler-bernoulli", {"tension": 40.0}),
+    ],
+)
+def test_curvatures_on_a_step_are_the_moment_over_the_sections_own_stiffness(theory, added):
+    """Order 2, as all of a stepped chain, 1 at a body's joint; the joint on the step has the curvature right of it.
+
+    By Timoshenko's theory shear jumps there and at the body: its change is no difference across them.
+    """
+    beam, found = replace(STEPPED, **added), []
+    for count in (146, 292):
+        modes = solve_modes(beam, 2, count, theory=theory)
+        exact = mode_shapes(beam, 2, modes.curvature_points, 2, theory)
+        off, largest = abs(modes.curvatures() - exact), abs(exact).max(axis=1)
+        assert (off.max(axis=1) / largest < 5e-4).all()
+        found.append(np.linalg.norm(off, axis=1) / np.linalg.norm(exact, axis=1))
+    assert np.log2(found[0] / found[1]) == pytest.approx(np.array([2.0, 1.8]), abs=0.25)
+    step = int(abs(modes.nodes - 0.31).argmin())
+    before, after = modes.curvatures()[:, step - 1], modes.curvatures()[:, step]
+    if theory != "timoshenko":  # whose shear curves the line as well
+        assert after / before == pytest.approx(8.0, rel=0.2)
 
 
 def test_links_that_slip_stand_beside_each_other_and_the_joint_between():

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.beam import Beam
 from verify.elements.curvatures import curvature_weights
-from verify.elements.linear import check
+from verify.elements.linear import check, leading_sign
 from verify.elements.mesh import Elements, basis_between, build_elements, mass_matrix, stiffness_matrix, weighed
 from verify.elements.pencil import element_pencil
 from verify.models.arrays import Array, Indices
@@ -100,7 +100,8 @@ def _dense(elements: Elements) -> tuple[Array, Nodal, str]:
     check_dense(pencil, "motion in time")
     values, vectors = modal_basis(pencil)
     deflections, slopes = elements.basis.nodal_dofs
-    everywhere = np.ascontiguousarray(elements.all_values(vectors / np.sqrt(beam.mass_per_length * unit)).T)
+    nodal = elements.all_values(vectors / np.sqrt(beam.mass_per_length * unit))
+    everywhere = np.ascontiguousarray((nodal * leading_sign(elements, nodal)[:, None]).T)
     omegas = np.sqrt(values) * beam.wave_constant / unit**2
     return omegas, lambda i: (everywhere[deflections[i]], everywhere[slopes[i]]), "dense eigenvalues"
 
@@ -118,6 +119,7 @@ def _pinned(beam: Beam, n: int) -> tuple[Array, Nodal, str]:
     scale = 1.0 / np.sqrt(beam.mass_per_length * element * np.where(alone, float(n), 0.5 * n))
     turn = pi * np.arange(2 * n) / n
     waves = np.array([np.sin(turn), np.cos(turn)])
+    scale[slope < 0.0] *= -1.0  # which is the slope at the left end
     scales = np.array([scale * w, scale * slope])[:, None]
 
     def nodal(nodes: Indices) -> tuple[Array, Array]:

@@ -59,7 +59,7 @@ def solve_modes(
     elements = build_elements(beam, n_elements, grading, theory)
     pairs = lowest(element_pencil(elements), n_modes)
     nodal = elements.all_values(pairs.vectors)
-    nodal = nodal * _sign(elements, nodal)[:, None]
+    nodal = nodal * leading_sign(elements, nodal)[:, None]
     return _modes(elements, nodal / sqrt(beam.mass_per_length * elements.parts.unit), pairs)
 
 
@@ -124,7 +124,7 @@ def _inside(parts: Parts, xi: Array) -> Array:
     return np.asarray((parts.nodes[:-1, None] + parts.lengths[:, None] * xi).ravel())
 
 
-def _sign(elements: Elements, nodal: Array) -> Array:
+def leading_sign(elements: Elements, nodal: Array) -> Array:
     """+-1 for each mode, (k,): by the first of deflection, slope, curvature that the left end leaves free."""
     if elements.beam.supports[0] == "clamped":
         leading = interpolate(elements.basis, nodal, np.zeros(1), 2)[:, 0]

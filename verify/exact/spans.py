@@ -27,6 +27,8 @@ _TERMS = 26
 """Of the power series, to rounding."""
 _MOST = 100_000
 """Spans: more take too much memory, 1 kB each."""
+_SAME = 1e-12
+"""Of the beam's length: places nearer than that are one."""
 _BAND = 5
 """Diagonals on either side."""
 
@@ -47,8 +49,8 @@ class Spans(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(n,), to which stretch of the line each belongs."""
 
     def span(self, x: Array) -> Indices:
-        """In which each x lies, of the beam's length; the right one of two."""
-        return np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.stretch) - 1)
+        """In which each x lies, of the beam's length; the right one of two, to rounding."""
+        return np.clip(np.searchsorted(self.ends, x + _SAME, side="right") - 1, 0, len(self.stretch) - 1)
 
     def states(self, at_ends: ComplexArray, x: Array) -> tuple[Indices, ComplexArray]:
         """(span, states (len(x), 4, k)) at x, of the beam's length, from those right of each end, (n + 1, 4, k)."""

@@ -2,6 +2,7 @@
 
 from math import log
 
+from verify.beam import Beam
 from verify.identify.fitting import FLOOR, PLAIN, UNITS, Fit, Identified, beyond_unit
 from verify.identify.pairing import Found
 from verify.words import percent
@@ -9,14 +10,18 @@ from verify.words import percent
 _LITTLE = 1e-3
 """Of what a common factor changes: one that leaves more is not claimed, but told as the nearest."""
 
+_SIZES = {"rectangle": "the thickness", "round": "the diameter", "tube": "its diameters, outer and inner,"}
+_BESIDE = {"mass": "bodies", "spring": "springs", "tension": "axial force", "foundation": "foundation"}
+"""What one thing alone leaves as it is."""
 
-def cause_of(found: Identified) -> tuple[Found, ...]:
+
+def cause_of(found: Identified, beam: Beam) -> tuple[Found, ...]:
     """What is to be told of a list: its one cause, or all that leave about as much; of one as it stands nothing."""
     if not found.rivals:
         kind = kind_of(found)
-        return (Found(kind=kind, words=_words(found)),) if kind != "none" else ()
+        return (Found(kind=kind, words=_words(found, beam)),) if kind != "none" else ()
     causes = (found, *found.rivals)
-    each = "; ".join(f"({letter}) {_among(one)}" for letter, one in zip("abcdef", causes, strict=False))
+    each = "; ".join(f"({letter}) {_among(one, beam)}" for letter, one in zip("abcdef", causes, strict=False))
     words = f"this list does not say which it is, and neither is claimed: {each}"
     return (Found(kind="causes", words=words, wrong=all(kind_of(one) != "none" for one in causes)),)
 
@@ -30,13 +35,13 @@ def kind_of(found: Identified) -> str:
     return "unit" if found.reading.factor in UNITS else "none"
 
 
-def plain_cause(found: Identified) -> dict[str, object]:
+def plain_cause(found: Identified, beam: Beam) -> dict[str, object]:
     """A cause in JSON."""
     best = found.best
     clamp = best.clamp
     return {
         "kind": kind_of(found),
-        "words": _words(found),
+        "words": _words(found, beam),
         "factor": best.factor,
         "clamp": None
         if clamp is None
@@ -56,12 +61,12 @@ def left(one: Fit) -> str:
     return "nothing but rounding" if one.residual <= FLOOR else percent(one.residual, sign=False)
 
 
-def _among(found: Identified) -> str:
+def _among(found: Identified, beam: Beam) -> str:
     """One of several causes: what it is, what is nearest by it, what that leaves."""
-    return f"{_words(found)}, which leaves {left(found.best)} with {nearest(found.best)}"
+    return f"{_words(found, beam)}, which leaves {left(found.best)} with {nearest(found.best)}"
 
 
-def _words(found: Identified) -> str:
+def _words(found: Identified, beam: Beam) -> str:
     kind, best = kind_of(found), found.best
     unit = UNITS.get(found.reading.factor or 1.0, "")
     said = [f"the frequencies are {unit}"] if unit else []
@@ -69,7 +74,7 @@ def _words(found: Identified) -> str:
         near = f"nearest comes a clamp that gives: {best.clamp.words}, and {left(best)} is left"
         said += [best.clamp.words if found.explained else near]
     if kind == "scale":
-        return _scale_words(best)
+        return _scale_words(best, beam)
     return "; ".join(said) or ("nothing is off" if found.reading == PLAIN else "modes are missing or too many")
 
 
@@ -79,17 +84,44 @@ def loosely(best: Fit) -> bool:
     return best.residual > max(FLOOR, _LITTLE * change)
 
 
-def _scale_words(best: Fit) -> str:
-    """One factor on all frequencies, and what it may be of: sqrt(E / rho), thickness, 1 / L^2."""
+def _scale_words(best: Fit, beam: Beam) -> str:
+    """One factor on all frequencies, and what alone it may be of on this beam."""
     factor, unit = beyond_unit(best.factor)
     plainly = not loosely(best)
     had = "all frequencies have the common factor" if plainly else "nearest comes a common factor of all frequencies,"
     beside = f": {UNITS[unit]}; beyond that {factor:.6g}, so that" if unit != 1.0 else ""
-    return (
-        f"{had} {best.factor:.6g}{beside or ':'} E is {_change(factor**2)} or rho {_change(factor**-2)}, "
-        f"or the thickness {_change(factor)}, or the length {_change(factor**-0.5)}"
-        f"{'' if plainly else f', and {left(best)} is left'}"
-    )
+    made = made_by(factor, beam, best.candidate.theory)
+    return f"{had} {best.factor:.6g}{beside or ':'} {made}{'' if plainly else f', and {left(best)} is left'}"
+
+
+def made_by(factor: float, beam: Beam, theory: str) -> str:
+    """What is off where a factor on all frequencies is of one thing alone."""
+    first, *others = [(name, _change(factor**power)) for name, power in _alone(beam, theory)] or [("", "")]
+    if not first[0]:
+        there = " and ".join(_BESIDE[name] for name in beam.added if name in _BESIDE)
+        return f"neither E nor rho nor a size alone makes one on this beam, with its {there}"
+    joined = "".join(f"{', ' * bool(i)}{'' if i else ' '}or {name} {by}" for i, (name, by) in enumerate(others))
+    return f"{'in all sections alike ' * beam.stepped}{first[0]} is {first[1]}{joined}"
+
+
+def _alone(beam: Beam, theory: str) -> list[tuple[str, float]]:
+    """What alone changes all frequencies of a beam by one factor, and in which power of it.
+
+    EI / (rho A L^4) where that is all there is. E leaves springs, ground and axial force as they are, rho bodies, sizes
+    all of them, and what is thick another slenderness.
+    """
+    held, bodies = bool(beam.spring or beam.foundation or beam.tension), bool(beam.mass)
+    sized = not held and not bodies and theory == "euler-bernoulli"
+    found = [("E", 2.0)] * (not held) + [("rho", -2.0)] * (not bodies)
+    return found + ([*_across(beam), ("the length", -0.5)] if sized else [])
+
+
+def _across(beam: Beam) -> list[tuple[str, float]]:
+    """The size of all sections by which EI / (rho A) goes, by its shape's name; nothing where sizes are not known."""
+    if any(piece.second_moment is None or piece.area is None for piece in beam.pieces):
+        return []
+    shapes = {section.shape or beam.shape or "rectangle" for section in beam.section} or {beam.shape or "rectangle"}
+    return [(_SIZES[shapes.pop()], 1.0)] if len(shapes) == 1 else []
 
 
 def _change(ratio: float) -> str:

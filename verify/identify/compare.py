@@ -9,6 +9,7 @@ from typing import get_args
 import msgspec
 import numpy as np
 
+from verify.beam import Beam
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.identify.causes import identify
@@ -87,7 +88,7 @@ def compared(scene: Scene, asked: Asked, listed: Listed, shapes: Shapes | None, 
     )
     data, told, likeness = _by_shapes(scene, data, shapes, elastic, count)
     found, recounted = _identified(data, count)
-    told = (*elastic.told, *told, *_of_list(found, data), *recounted, *_of_supports(scene, found, data))
+    told = (*elastic.told, *told, *_of_list(scene.beam, found, data), *recounted, *_of_supports(scene, found, data))
     told = (*told, *twin_of(beam, found))
     best = found.best
     mode = asked.mode or int(best.pairs.modes.max()) + 1
@@ -211,10 +212,10 @@ def _explaining(data: Data, counts: Sequence[int | None]) -> Identified | None:
     return min(good, key=lambda one: one.best.score, default=None)
 
 
-def _of_list(found: Identified, data: Data) -> tuple[Found, ...]:
+def _of_list(beam: Beam, found: Identified, data: Data) -> tuple[Found, ...]:
     """What the best reading of a list says of it: its unit, a common factor, a clamp, what is missing."""
     gaps = missing(found.best.pairs, len(data.listed)) if data.paired is None else ()
-    return (*cause_of(found), *gaps)
+    return (*cause_of(found, beam), *gaps)
 
 
 def _of_supports(scene: Scene, found: Identified, data: Data) -> tuple[Found, ...]:
@@ -277,6 +278,7 @@ def _told(
 ) -> Compared:
     return Compared(
         scene=scene.name,
+        beam=scene.beam,
         source=listed.source,
         unit=listed.unit,
         theory=asked.theory,

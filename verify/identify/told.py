@@ -4,6 +4,7 @@ from typing import Any
 
 import msgspec
 
+from verify.beam import Beam
 from verify.identify.causes_told import left, loosely, nearest, plain_cause
 from verify.identify.family import CHAIN, Candidate
 from verify.identify.fitting import FLOOR, TOLERANCE, Fit, Identified
@@ -53,6 +54,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
     """A model of somebody's, compared."""
 
     scene: str
+    beam: Beam
     source: str
     unit: str
     theory: str
@@ -287,7 +289,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             },
             "told": msgspec.to_builtins(self.told),
             "factor": self.found.best.factor,
-            "causes": [plain_cause(one) for one in (self.found, *self.found.rivals)],
+            "causes": [plain_cause(one, self.beam) for one in (self.found, *self.found.rivals)],
             "parts_needed": msgspec.to_builtins(self.size),
             "theory": self.theory,
             "modes": msgspec.to_builtins(self.rows),

@@ -37,7 +37,7 @@ class Modes(Value, frozen=True, eq=False, kw_only=True):
     curvature_points: Array
     """(n_curvatures,), metres: where this model knows its curvature best."""
     curvatures: Callable[[], Array]
-    """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg))."""
+    """() -> curvature at `curvature_points`, (n_modes, n_curvatures), in 1/(m^2 sqrt(kg)); on a step right of it."""
     method: str = "closed form"
     """How the eigenvalues were found."""
 

@@ -24,7 +24,8 @@ class TimeBasis(Value, frozen=True, eq=False, kw_only=True):
     omegas: Array
     """(n,), rad/s, undamped."""
     shapes: Callable[[Array, int], Array]
-    """(x, derivative) -> (n, len(x)), in 1/sqrt(kg) per metre^derivative; from the right where it jumps."""
+    """(x, derivative) -> (n, len(x)), in 1/sqrt(kg) per metre^derivative; from the right where it jumps. Positive
+    where the beam first moves off its left end, as the shapes of `Modes`."""
     loads: Callable[[float], Array]
     """Position in metres -> (n,), the load of every mode under a unit transverse force there."""
     edges: Array

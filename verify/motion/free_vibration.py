@@ -69,7 +69,7 @@ class FreeVibration(Value, frozen=True, eq=False, kw_only=True):
     frequencies_hz: Array
     """(m,), of the model's modes, undamped, ascending."""
     amplitudes: Array
-    """(m,), sqrt(kg) m: every mode's share q of the initial shape, w = sum q phi."""
+    """(m,), sqrt(kg) m: every mode's share q of the initial shape, w = sum q phi, phi as in `Modes`."""
     unread: float
     """What the modes leave of the initial shape, rms over rms (weighted by mass, turns of bodies by their rotary
     inertia); 0 without one."""

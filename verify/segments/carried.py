@@ -90,10 +90,9 @@ def _of_links(beam: Beam, n_segments: int, field: str) -> Array:
     return np.repeat(figures, part_counts([piece.length for piece in beam.pieces], n_segments))
 
 
-def _softness(beam: Beam, chain: Chain) -> Array:
+def _softness(chain: Chain, shears: Array) -> Array:
     """1/k against slipping of joints 0..N, l/(kappa G A) as bending has l/(EI), two half links in series, (N + 1,)."""
-    shear = _of_links(beam, chain.n_segments, "shear_stiffness") * chain.unit**2 / beam.bending_stiffness
-    links = chain.lengths / shear
+    links = chain.lengths / shears
     return np.concatenate([links[:1], 0.5 * (links[1:] + links[:-1]), links[-1:]])
 
 
@@ -102,13 +101,16 @@ def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
 
     A spring without a body is in series with that slip, so that no position is without mass.
     """
-    softness, n = _softness(beam, chain), chain.n_segments
+    n = chain.n_segments
+    shears = _of_links(beam, n, "shear_stiffness") * chain.unit**2 / beam.bending_stiffness
+    softness = _softness(chain, shears)
+    chain = replace(chain, shears=shears, softness=softness)
     free = {at: joint for at, joint in ((0.0, 0), (beam.length, n)) if beam.supports[bool(joint)] == "free"}
     places = {body.position for body in chain.bodies if body.mass or body.stiffness}
     loaded = (beam.supports[0] == "free" and 0.0 in places, beam.supports[1] == "free" and beam.length in places)
     if chain.attachment == "lever":
         slips = softness * shear_factors(beam.supports, n, wall)
-        return replace(chain, softness=softness, slips=slips, slip_masses=_slip_masses(chain, slips))
+        return replace(chain, slips=slips, slip_masses=_slip_masses(chain, slips))
     slips = softness * shear_factors(beam.supports, n, wall, loaded)
     bodies, every = [], sorted({body.position for body in chain.bodies})
     weights = felt_together(chain, every, chain.attachment)[0]
@@ -124,7 +126,7 @@ def _slipping(beam: Beam, chain: Chain, wall: str) -> Chain:
             body = replace(body, give=give)
         bodies.append(body)
     taken = _slip_masses(chain, slips)
-    return replace(chain, bodies=tuple(bodies), softness=softness, slips=slips, slip_masses=taken)
+    return replace(chain, bodies=tuple(bodies), slips=slips, slip_masses=taken)
 
 
 def _slip_masses(chain: Chain, slips: Array) -> Array | None:

@@ -15,7 +15,7 @@ from verify.models.eigen import modal_basis
 from verify.models.places import as_typed
 from verify.models.time_basis import TimeBasis, check_held
 from verify.options import LINES, Attachment, Joints, Line, Load, Wall
-from verify.segments.linear import check
+from verify.segments.linear import check, leading_sign
 from verify.segments.links import Chain, build_chain, chain_pencil
 from verify.segments.loads import joint_weights
 from verify.segments.reading import body_turns, corrected_reading, joint_positions, spline_at
@@ -96,7 +96,7 @@ def _dense(beam: Beam, chain: Chain) -> tuple[Array, Read, str, Turns]:
     pencil = chain_pencil(chain)
     check_dense(pencil, "motion in time")
     values, vectors = modal_basis(pencil)
-    vectors = vectors / np.sqrt(beam.mass_per_length * chain.unit)
+    vectors = vectors * (leading_sign(chain, vectors) / np.sqrt(beam.mass_per_length * chain.unit))
     raw = joint_positions(chain, vectors)
     omegas = np.sqrt(values) * beam.wave_constant / chain.unit**2
     turns = partial(body_turns, chain, len(beam.mass), vectors) if beam.mass else None

@@ -141,7 +141,7 @@ def check(
 
 def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     frequencies = np.sqrt(pairs.values) * (beam.wave_constant / (2.0 * pi)) / chain.unit**2
-    vectors = pairs.vectors * (_sign(chain, pairs.vectors) / sqrt(beam.mass_per_length * chain.unit))
+    vectors = pairs.vectors * (leading_sign(chain, pairs.vectors) / sqrt(beam.mass_per_length * chain.unit))
     raw = joint_positions(chain, vectors)
 
     def corrected() -> Array:
@@ -150,7 +150,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     shapes = line_through(chain, corrected)
 
     def curvatures() -> Array:
-        return joint_curvatures(chain, vectors)
+        return joint_curvatures(chain, vectors, pairs.values)
 
     nodes = chain.nodes
     return Modes(
@@ -169,7 +169,7 @@ def _modes(beam: Beam, chain: Chain, pairs: Eigenpairs) -> Modes:
     )
 
 
-def _sign(chain: Chain, free: Array) -> Array:
+def leading_sign(chain: Chain, free: Array) -> Array:
     """+-1 for each mode, (k,): positive where the chain first moves off its left end."""
     return np.where(free[0] < 0, -1.0, 1.0)
 

@@ -55,6 +55,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(N,)."""
     inertias: Array
     """(N,), about each link's middle."""
+    stiffnesses: Array | None = None
+    """(N,), EI of the links; None: one everywhere."""
     tension: float = 0.0
     """Negative compresses."""
     foundation: float = 0.0
@@ -73,6 +75,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(N + 1,), on the corrections of the joints' reading where ends are elastic (`walls`); None: one everywhere."""
     slips: Array | None = None
     """(N + 1,), compliances of the joints against slipping, infinite where an end has none; None: nothing slips."""
+    shears: Array | None = None
+    """(N,), kappa G A of the links; None: nothing slips."""
     softness: Array | None = None
     """(N + 1,), what they would be inside: of the length of beam that each stands for."""
     joint_inertias: Array | None = None
@@ -181,6 +185,7 @@ def build_chain(
         compliances=series_compliances(parts, parts.stiffnesses, joints) * factors,
         masses=masses,
         inertias=link_inertia(masses, parts.lengths),
+        stiffnesses=parts.stiffnesses,
     )
     if theory == "euler-bernoulli" and beam.added in ((), ("section",)):
         return chain
@@ -295,7 +300,7 @@ def _between_zeros(rows: Any, left: bool, right: bool) -> Any:
 def plain_curvatures(chain: Chain, joints: Array) -> Array:
     """Curvature of the beam at every joint from the joint's moment over EI there, (k, N + 1), 1/m of `joints`.
 
-    The joint's angle over its compliance is the moment; over the beam's own EI between the links it is the
+    The joint's angle over its compliance is the moment; over the EI of the link that follows (`right_of`) it is the
     curvature. Zero at ends without a joint.
     """
     angles = np.zeros_like(joints)
@@ -304,4 +309,14 @@ def plain_curvatures(chain: Chain, joints: Array) -> Array:
     left, right = chain.walls
     angles[:, 0] = slopes[:, 0] * left
     angles[:, -1] = -slopes[:, -1] * right
-    return np.asarray(angles / chain.compliances / chain.unit**2)
+    return np.asarray(angles / (chain.compliances * stiffness_at_joints(chain)) / chain.unit**2)
+
+
+def stiffness_at_joints(chain: Chain) -> Array:
+    """EI at joints 0..N, (N + 1,)."""
+    return right_of(np.ones(chain.n_segments) if chain.stiffnesses is None else chain.stiffnesses)
+
+
+def right_of(links: Array) -> Array:
+    """A figure of the links (N,) at joints 0..N, (N + 1,): on a step that of the right one, at the end of the last."""
+    return np.append(links, links[-1])

@@ -35,7 +35,7 @@ import numpy as np
 from verify.models.arrays import Array, ComplexArray
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
 from verify.segments.crowded import felt_together
-from verify.segments.links import Chain
+from verify.segments.links import Chain, right_of, stiffness_at_joints
 
 
 class _Placed(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -191,14 +191,21 @@ def spans(chain: Chain) -> Array:
     return np.concatenate([chain.lengths[:1], 0.5 * (chain.lengths[1:] + chain.lengths[:-1]), chain.lengths[-1:]])
 
 
-def curvatures(chain: Chain, free: Array) -> Array:
-    """Curvature of the beam at joints 0..N, (k, N + 1), 1/m: w'', of bending and of changing shear."""
-    bent = angles(chain, free) / chain.compliances[:, None]
-    if chain.eased is not None:
-        bent = bent / chain.eased[:, None]
-    if chain.slips is not None:
-        bent = bent + _shear_change(chain, free)
-    return np.asarray(bent.T / chain.unit**2)
+def bending(chain: Chain, free: Array) -> Array:
+    """Change of the section's turn along the beam at joints 0..N, M/EI of the link that follows, (k, N + 1), 1/unit."""
+    bent = angles(chain, free) / (chain.compliances * stiffness_at_joints(chain))[:, None]
+    return np.asarray(bent.T if chain.eased is None else bent.T / chain.eased)
+
+
+def shear_change(chain: Chain, deflections: Array, values: Array) -> Array:
+    """Change of the shear angle of modes (k, N + 1) of eigenvalues (k,) at joints 0..N, (k, N + 1), 1/unit.
+
+    By balance of transverse forces, kappa G A gamma' = (k_f - rho A omega^2) w: shear itself jumps at bodies and steps,
+    where differences of it tell nothing.
+    """
+    assert chain.shears is not None
+    force = chain.foundation - values[:, None] * right_of(chain.masses / chain.lengths)
+    return np.asarray(force * deflections / right_of(chain.shears))
 
 
 def _shear_change(chain: Chain, free: Array) -> Array:

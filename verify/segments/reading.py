@@ -29,13 +29,19 @@ def joint_readings(chain: Chain, free: Array) -> Array:
     return np.asarray(joints + corrections(chain, free))
 
 
-def joint_curvatures(chain: Chain, free: Array) -> Array:
-    """Curvature of the beam at joints 0..N of the unknowns (n, k), (k, N + 1), 1/m."""
+def joint_curvatures(chain: Chain, free: Array, values: Array) -> Array:
+    """Curvature of the beam at joints 0..N of modes (n, k), (k, N + 1), 1/m: on a step that right of it.
+
+    `values` (k,) are their eigenvalues, which shear takes its change from.
+    """
     if chain.plain:
         return plain_curvatures(chain, joint_positions(chain, free))
-    from verify.segments.loaded import curvatures
+    from verify.segments.loaded import bending, shear_change
 
-    return curvatures(chain, free)
+    bent = bending(chain, free)
+    if chain.slips is not None:
+        bent = bent + shear_change(chain, joint_readings(chain, free), values)
+    return np.asarray(bent / chain.unit**2)
 
 
 def link_slopes(chain: Chain, free: Any) -> Any:
