@@ -237,7 +237,8 @@ def _swept_reflections(sweep: HarmonicSweep, window: Window) -> Array:
     """The reflection in a window at every frequency of a sweep, as `two_waves` finds it in each field, (n,)."""
     lowest, highest = (sweep.field(int(end(sweep.frequencies_hz))) for end in (np.argmin, np.argmax))
     for field in (lowest, highest):  # the longest waves and the shortest
-        check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
+        places = [force.position for force in field.forces]
+        check_window(field.beam, places, field.frequency_hz, window, field.turning_held)
     rule = window_rule(window, highest.wavenumber.real)
     deflections = sweep.deflection(rule.x)
     fields = [sweep.field(index) for index in range(len(sweep))]
