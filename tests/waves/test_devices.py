@@ -6,15 +6,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, segment_model
+from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, load_scene, segment_model
 from verify.device import Device, of_impedance
-from verify.errors import InputError
+from verify.errors import InputError, WindowError
 from verify.judge.workbench import Workbench
 from verify.models.fields import phasor
+from verify.run.plan import plan_scene
 from verify.waves.absorber import matched_device
 from verify.waves.case import DrivenCase
 from verify.waves.devices import DevicesResonanceError, field_with_devices, powers
-from verify.waves.driven import driven
+from verify.waves.driven import driven, own_wavenumber
+from verify.waves.measures import measure
 
 SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
 STRIP = Beam(**SIZES)
@@ -313,3 +315,51 @@ def test_what_drives_nothing_or_gives_energy_is_refused():
         of_impedance(0.3, -1.0 + 2.0j, 700.0)
     with pytest.raises(InputError, match=r"drive\.kind = 'displacement': beside a device"):
         driven(case(kind="displacement", devices=ONE), Workbench(STRIP))
+
+
+TURNS = Device(position=0.31, rotational_dashpot=0.02)
+AROUND = [PointForce(position=0.07), PointForce(position=0.79, phase_deg=90.0)]
+
+
+@pytest.mark.parametrize("model", [exact, segments(60), elements(60)])
+@pytest.mark.parametrize("more", [[], [Device(position=0.81, dashpot=2.0)]])
+def test_a_window_over_a_device_that_only_turns_is_refused(model, more):
+    """Its couple parts the waves as a force does: 37 % were left over, and nothing was told."""
+    field = field_with_devices(model, STRIP, AROUND, 1700.0, [TURNS, *more])
+    with pytest.raises(WindowError, match=r"holds a device against turning at \[0\.31\] m: two waves alone live"):
+        measure(field, (0.2, 0.6))
+    assert measure(field, (0.14, 0.26), own_wavenumber(field)).waves.residual < 0.02
+    assert measure(field, (0.36, 0.7), own_wavenumber(field)).waves.residual < 0.01
+
+
+def test_a_plan_tells_of_a_device_that_only_turns_inside_the_window(tmp_path):
+    scene = tmp_path / "turns.toml"
+    scene.write_text(TURNING_SCENE)
+    problems = plan_scene(load_scene(str(scene))).problems
+    assert "holds a device against turning at [0.3] m" in str(problems)
+
+
+TURNING_SCENE = """name = "turns"
+[beam]
+length = 0.5
+width = 0.02
+thickness = 0.001
+youngs_modulus = 70e9
+density = 2700.0
+[drive]
+frequency_hz = 4276.0
+[[drive.force]]
+position = 0.05
+[[drive.force]]
+position = 0.45
+phase_deg = 90.0
+[[drive.device]]
+position = 0.3
+rotational_dashpot = 0.02
+[[gate]]
+id = "ratio"
+quantity = "wave.standing_wave_ratio"
+expect = 1.6876
+within = 0.1
+why = "A device inside the window."
+"""

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from verify import load_scene
+from verify.attached import PointMass, PointSpring
 from verify.beam import PointForce
 from verify.elements import linear as fem_beam
 from verify.errors import CutOffError, InputError, WindowError, ZeroFieldError
@@ -117,6 +118,28 @@ def test_series_too_short_to_measure_are_refused():
         phasors(np.linspace(0, 2 / 4276, 6), np.zeros((6, 5)), 4276.0)
     with pytest.raises(InputError, match="half a wavelength"):
         measure_series(BEAM, np.linspace(0.2, 0.21, 30), np.linspace(0, 1e-2, 300), np.zeros((300, 30)), 4276.0)
+
+
+def test_series_across_a_body_or_a_spring_of_the_beam_are_refused():
+    """Two waves alone live beside it: 39 % were left over, and nothing was told."""
+    x, times = np.linspace(0.19, 0.37, 40), np.linspace(0.0, 5 / 4276.0, 100)
+    waves = np.cos(2 * np.pi * 4276.0 * times[:, None] - 135.2 * x)
+    for added in (
+        {"mass": (PointMass(position=0.23, mass=0.05),)},
+        {"spring": (PointSpring(position=0.23, rotational=2.0),)},
+    ):
+        with pytest.raises(WindowError, match=r"x from 0\.19 to 0\.37 m holds a mass or a spring at \[0\.23\] m: "):
+            measure_series(replace(BEAM, **added), x, times, waves, 4276.0, 135.2)
+    beside = replace(BEAM, mass=(PointMass(position=0.19, mass=0.05),))
+    assert measure_series(beside, x, times, waves, 4276.0, 135.2).reflection < 1e-3
+
+
+@pytest.mark.parametrize("window", [(0.005, 0.3), (0.2, 0.495)])
+def test_a_wave_in_time_is_not_measured_across_a_force(window):
+    scene, found = load_scene("paper-slider"), quantity("motion.reflection")
+    given = arguments_of(found, {"model": "analytic", "start": "steady", "time": 0.0011, "window": list(window)})
+    with pytest.raises(WindowError, match="leaves the span between two forces"):
+        evaluate(found, given, scene, Workbench(scene.beam))
 
 
 def test_the_ellipse_of_a_point_is_that_of_its_path():

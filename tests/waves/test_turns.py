@@ -147,6 +147,19 @@ def test_forces_give_what_bending_and_shear_lose_and_waves_carry(model, within, 
     assert abs(power_imbalance(field, measures(field, None))) < within
 
 
+@pytest.mark.parametrize("theory", ["euler-bernoulli", "rayleigh", "timoshenko"])
+@pytest.mark.parametrize("turning", ["body", "spring"])
+def test_books_close_where_something_that_turns_stands_before_the_window(theory, turning):
+    """Its couple makes the curvature jump inside what was one cell of the quadrature: up to 23 % were missing."""
+    body, spring = PointMass(position=0.0371, mass=0.004, rotary_inertia=1e-6), PointSpring
+    added = {"mass": (body,)} if turning == "body" else {"spring": (spring(position=0.0371, rotational=3000.0),)}
+    sizes = {"length": 0.5, "width": 0.02, "thickness": 0.002, "youngs_modulus": 70e9, "density": 2700.0}
+    beam = Beam(**sizes, supports=("clamped", "free"), loss_factor=0.02, **added)
+    forces = (PointForce(position=0.04, amplitude=3.0), PointForce(position=0.45, amplitude=2.0, phase_deg=70.0))
+    field = analytic_modes.solve_harmonic(beam, forces, 20000.0, theory=theory)
+    assert abs(power_imbalance(field, measures(field, None))) < 1e-6
+
+
 @pytest.mark.parametrize("x", [0.001, 0.03, 0.1, 0.195])
 def test_a_surface_point_near_forces_and_ends_moves_as_its_section_turns(x):
     paper = load_scene("paper-wave")

@@ -38,6 +38,8 @@ class HarmonicField(Value, frozen=True, eq=False, kw_only=True):
     """Of the beam."""
     turned: Callable[[Array, int], ComplexArray] | None = None
     """(x, derivative) -> (len(x),) complex: turn psi of the section where shear sets it apart from the slope w'."""
+    turning_held: tuple[float, ...] = ()
+    """Where devices act against turning, metres: their couples are not among the forces."""
 
     def __post_init__(self) -> None:
         keep_lines(self, "shapes", "turned")

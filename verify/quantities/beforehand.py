@@ -55,7 +55,8 @@ def _check_window(a: Driven | Sensitivity, case: "DrivenCase") -> None:
 
     places = [force.position for force in case.forces]
     places += [device.position for device in case.devices if device.across]
-    check_window(case.beam, places, case.frequency_hz, given or middle_half(case.beam))
+    turning = [device.position for device in case.devices if device.turning]
+    check_window(case.beam, places, case.frequency_hz, given or middle_half(case.beam), turning)
 
 
 def _at_a_place(a: InWindow) -> bool:

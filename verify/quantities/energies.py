@@ -80,6 +80,16 @@ class MeasuredInTime(InTime, frozen=True, kw_only=True):
     points: Annotated[int, Meta(ge=4, le=2000, description="evenly spaced, that are watched")] = 40
 
 
+def between_forces(a: MeasuredInTime, scene: "Scene") -> tuple[()]:
+    """Raise InputError for a window in which two waves are not alone."""
+    from verify.quantities.simulated import motion_case
+    from verify.waves.window import check_window
+
+    case = motion_case(a, scene)
+    check_window(scene.beam, [force.position for force in case.forces], case.frequency_hz, a.window)
+    return ()
+
+
 def _reflection(a: MeasuredInTime, scene: "Scene", bench: Workbench) -> float:
     import numpy as np
 
@@ -87,6 +97,7 @@ def _reflection(a: MeasuredInTime, scene: "Scene", bench: Workbench) -> float:
     from verify.quantities.simulated import motion_case
     from verify.waves.series import measure_series
 
+    between_forces(a, scene)
     case, (start, end) = motion_case(a, scene), a.window
     x = places("window", np.linspace(start, end, a.points), scene.beam.length)
     samples = int(SAMPLES * case.duration * case.frequency_hz) + 1
@@ -171,6 +182,7 @@ ENERGY_QUANTITIES: tuple[Quantity[Any], ...] = (
         MeasuredInTime,
         "in time",
         _reflection,
+        needs=between_forces,
     ),
     Quantity(
         "chain.imbalance",

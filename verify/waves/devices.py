@@ -196,7 +196,8 @@ def _by_three_springs(
     first, second = (solve(_sprung(beam, position, spring), forces, frequency_hz) for spring in springs[:2])
     more = stiffness - springs[0]
     share = complex(more / (1.0 + more * give) * (1.0 + a * give) / a)
-    return replace(combined([(1.0 - share, first), (share, second)]), beam=beam)
+    found = combined([(1.0 - share, first), (share, second)])
+    return replace(found, beam=beam, turning_held=(*first.turning_held, position))
 
 
 def _sprung(beam: Beam, position: float, rotational: float) -> Beam:

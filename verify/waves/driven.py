@@ -166,12 +166,22 @@ def power_imbalance(field: HarmonicField, wave: WaveMeasures) -> float:
     speeds = 1j * field.omega * field.deflection([force.position for force in left])
     given = sum(0.5 * (phasor(f) * np.conj(v)).real for f, v in zip(left, speeds, strict=True))
     points, weights = np.polynomial.legendre.leggauss(8)
-    cells = max(int(middle * field.wavenumber.real), 8)
-    edges = distinct(np.concatenate([np.linspace(0.0, middle, cells), [f.position for f in left]]))
+    edges = _cell_edges(field, middle)
     half = 0.5 * np.diff(edges)
     x = (edges[:-1, None] + half[:, None] * (points + 1.0)).ravel()
     lost = _lost(field, x, (half[:, None] * weights).ravel())
     return float((given - lost - wave.energy_flux) / wave.energy_flux)
+
+
+def _cell_edges(field: HarmonicField, end: float) -> Array:
+    """Of cells from the left end to `end` metres in which a field is smooth, (n,), metres.
+
+    Forces, bodies and springs stand on edges: the third derivative jumps at a force, the second where a couple acts.
+    """
+    of_forces, beam = [force.position for force in field.forces], field.beam
+    places = np.array([*of_forces, *(m.position for m in beam.mass), *(s.position for s in beam.spring)])
+    cells = max(int(end * field.wavenumber.real), 8)
+    return distinct(np.concatenate([np.linspace(0.0, end, cells), places[places < end]]))
 
 
 def _lost(field: HarmonicField, x: Array, weights: Array) -> float:
@@ -227,7 +237,8 @@ def _swept_reflections(sweep: HarmonicSweep, window: Window) -> Array:
     """The reflection in a window at every frequency of a sweep, as `two_waves` finds it in each field, (n,)."""
     lowest, highest = (sweep.field(int(end(sweep.frequencies_hz))) for end in (np.argmin, np.argmax))
     for field in (lowest, highest):  # the longest waves and the shortest
-        check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
+        places = [force.position for force in field.forces]
+        check_window(field.beam, places, field.frequency_hz, window, field.turning_held)
     rule = window_rule(window, highest.wavenumber.real)
     deflections = sweep.deflection(rule.x)
     fields = [sweep.field(index) for index in range(len(sweep))]

@@ -76,7 +76,8 @@ def _seen(field: HarmonicField, window: tuple[float, float], wave_number: comple
 
 def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> TwoWaves:
     """The two waves alone, fitted in the mean square over the whole window. Raises as `measure` does."""
-    check_window(field.beam, [force.position for force in field.forces], field.frequency_hz, window)
+    places = [force.position for force in field.forces]
+    check_window(field.beam, places, field.frequency_hz, window, field.turning_held)
     start = field.wavenumber
     rule = window_rule(window, start.real)
     deflection = field.deflection(rule.x)

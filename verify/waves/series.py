@@ -12,6 +12,7 @@ from verify.models.spline import natural_or_flat
 from verify.waves.found import WaveMeasures
 from verify.waves.measures import STILL, fit_waves, fitted_wavenumber, measures_of
 from verify.waves.medium import Medium
+from verify.waves.window import check_clear
 
 
 def check_series(times: Array, values: Array, frequency_hz: float) -> None:
@@ -62,7 +63,9 @@ def measure_series(
     """The same measures from time series at positions x (ascending), values (n_times, n_positions), metres.
 
     Between the positions the field is that of a cubic spline through their phasors; slopes come from the two fitted
-    waves. Raises InputError for series or spans that are too short.
+    waves. What drives or holds the beam between the positions is not known here, but for its masses and springs: a
+    large `waves.residual` tells that two waves are not alone there. Raises InputError for series or spans that are too
+    short, and WindowError where the beam has a mass or a spring between the positions.
     """
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
     start, x = wavenumber(beam, frequency_hz), real_array("x", x, "metres")
@@ -70,6 +73,8 @@ def measure_series(
         raise InputError("x has to be finite, ascending and as long as values are wide")
     if len(x) < 4 or (x[-1] - x[0]) * start.real < np.pi:
         raise InputError("x covers less than half a wavelength or four points: measure over a longer span")
+    ends = (float(x[0]), float(x[-1]))
+    check_clear(beam, ends, f"x from {ends[0]:.6g} to {ends[1]:.6g} m", "measure over a span")
     deflection = phasors(times, values, frequency_hz)
     if not abs(deflection).max() > STILL * abs(np.asarray(values)).max():
         raise ZeroFieldError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")

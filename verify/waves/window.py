@@ -1,5 +1,7 @@
 """Whether a window of a beam suits what drives it: two waves of one length alone, enough of them, not too many."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from verify.beam import Beam
@@ -25,10 +27,17 @@ def _own_section(beam: Beam, start: float, end: float) -> bool:
     return True
 
 
-def check_window(beam: Beam, places: list[float], frequency_hz: float, window: tuple[float, float]) -> None:
+def check_window(
+    beam: Beam,
+    places: list[float],
+    frequency_hz: float,
+    window: tuple[float, float],
+    turning_held: Sequence[float] = (),
+) -> None:
     """Raise for a window off the span between two neighbouring forces (at `places`) or too short to measure.
 
-    InputError where it is no window of the beam at all, WindowError where it does not suit forces or frequency.
+    Nor may a device act against turning in it, at `turning_held` (metres). InputError where it is no window of the
+    beam at all, WindowError where it does not suit forces or frequency.
     """
     try:
         start, end = (float(end) for end in window)
@@ -37,11 +46,11 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
     window, told = (start, end), as_written((start, end))
     if not (np.isfinite(start) and np.isfinite(end) and 0.0 <= start < end <= beam.length):
         raise InputError(f"window = {told}: give start and end, ascending, between 0 and {beam.length!r} m")
-    attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
-    if standing := [p for p in attached if start < p < end]:
+    check_clear(beam, window, f"window = {told}", "choose a window")
+    if turned := [p for p in turning_held if start < p < end]:
         raise WindowError(
-            f"window = {told} holds a mass or a spring at {as_written(standing)} m: two waves alone live beside it, "
-            "choose a window without one"
+            f"window = {told} holds a device against turning at {as_written(turned)} m: two waves alone live beside "
+            "it, choose a window without one"
         )
     if not _own_section(beam, start, end):
         raise WindowError(
@@ -56,6 +65,16 @@ def check_window(beam: Beam, places: list[float], frequency_hz: float, window: t
             "two waves alone live there, choose a window inside it"
         )
     check_halves(beam, frequency_hz, window)
+
+
+def check_clear(beam: Beam, span: tuple[float, float], told: str, remedy: str) -> None:
+    """Raise WindowError where a mass or a spring of the beam stands inside a span, metres, `told` as it was given."""
+    attached = [mass.position for mass in beam.mass] + [spring.position for spring in beam.spring]
+    if standing := [p for p in attached if span[0] < p < span[1]]:
+        raise WindowError(
+            f"{told} holds a mass or a spring at {as_written(standing)} m: two waves alone live beside it, "
+            f"{remedy} without one"
+        )
 
 
 def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -> None:
