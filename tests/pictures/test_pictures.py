@@ -17,6 +17,8 @@ from verify.pictures.drawn import picture_of
 from verify.pictures.picture import Solid, arrow, strip
 from verify.pictures.rows import AMPLITUDE, Asked
 from verify.pictures.view import STILL, view_of
+from verify.scenes.checked import checked
+from verify.scenes.scene import scene_type
 
 NO_PYVISTA = "pyvista is missing: pip install 'fem-segment-verify[viz]'"
 
@@ -101,6 +103,81 @@ def test_a_chain_rolled_up_is_a_polygon_about_the_exact_circle_at_true_scale():
     assert "meet but for rounding" in picture.said[0]
     arc = picture.traces[-1].points[0]
     assert np.linalg.norm(arc - [0.0, 0.5 / np.pi], axis=1) == pytest.approx(0.5 / np.pi, rel=1e-9)
+
+
+STEPS = {"length": 0.62, "width": 0.024, "thickness": 0.004, "youngs_modulus": 205e9, "density": 7850.0}
+STEPS |= {"section": [{"length": 0.21}, {"length": 0.17, "thickness": 0.03}, {"length": 0.24, "width": 0.018}]}
+
+
+def scene_of(beam):
+    return checked({"name": "drawn", "title": "Drawn", "beam": beam}, scene_type())
+
+
+def stepped(count, **beam):
+    """A beam of three sections: the middle one 7.5 times as thick, the last one narrower."""
+    return picture_of(scene_of(beam=STEPS | beam), Asked(what="modes", mode=1, count=count))
+
+
+def coloured(picture, *, links):
+    """Outlines (m, 4, 2) of the chain or of the bar, where in three sections they lie, and half of what they are wide."""
+    solids = [one for one in picture.solids if one.values is not None and one.edges is links]
+    outlines = np.concatenate([one.outlines[0] for one in solids])
+    depths = np.concatenate([np.full(one.outlines.shape[1], one.depth) for one in solids])
+    middle = outlines[:, :, 0].mean(axis=1)
+    return outlines, np.searchsorted([0.21 / 0.62, 0.38 / 0.62], middle), depths
+
+
+def thicknesses(outlines):
+    """Across the middle line of each outline (m, 4, 2), over the length."""
+    along = 0.5 * (outlines[:, 1] + outlines[:, 2] - outlines[:, 0] - outlines[:, 3])
+    across = 0.5 * (outlines[:, 2] + outlines[:, 3] - outlines[:, 0] - outlines[:, 1])
+    return abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]) / np.linalg.norm(along, axis=1)
+
+
+@pytest.mark.parametrize("links", [True, False])
+@pytest.mark.parametrize(("count", "middle"), [(40, 0.03), (7, 0.03), (40, 0.0061)])
+def test_a_stepped_beam_is_drawn_as_thick_as_its_words_say_everywhere(links, count, middle):
+    sections = [dict(one) for one in STEPS["section"]]
+    sections[1]["thickness"] = middle
+    picture = stepped(count, section=sections)
+    factor = float(re.search(r"thickness drawn ([\d.]+) times", picture.said[0])[1])
+    outlines, section, _ = coloured(picture, links=links)
+    own = np.array([0.004, middle, 0.004])[section] / 0.62
+    assert set(section) == {0, 1, 2}
+    assert thicknesses(outlines) == pytest.approx(factor * own, rel=0.01)
+
+
+def test_a_stepped_beam_is_drawn_as_wide_as_it_is():
+    _, section, depths = coloured(stepped(40), links=True)
+    assert depths == pytest.approx(0.5 * np.array([0.024, 0.024, 0.018])[section] / 0.62, rel=1e-9)
+    assert "width" not in stepped(40).said[0]
+
+
+def test_a_round_section_is_drawn_as_wide_as_it_is_thick():
+    beam = {"length": 0.4, "shape": "round", "diameter": 0.022, "youngs_modulus": 205e9, "density": 7850.0}
+    picture = picture_of(scene_of(beam=beam), Asked(what="modes", mode=1, count=9))
+    assert links_of(picture).depth == pytest.approx(0.011 / 0.4, rel=1e-9)
+    assert picture.said[0].endswith("thickness as it is.")
+
+
+def test_a_section_without_sizes_is_said_to_be_a_strip():
+    plain = {"length": 0.5, "bending_stiffness": 5.0, "mass_per_length": 0.2}
+    sections = [
+        {"length": 0.2},
+        {"length": 0.3, "width": 0.03, "thickness": 0.011, "youngs_modulus": 2e9, "density": 950.0},
+    ]
+    picture = picture_of(scene_of(beam=plain | {"section": sections}), Asked(what="modes", mode=1, count=10))
+    assert picture.said[0].endswith("; thickness as it is, of a section without sizes as a strip.")
+
+
+def test_thick_beams_stand_clear_of_each_other_and_of_words():
+    picture = stepped(40, thickness=0.2, section=[])
+    lower, upper = (coloured(picture, links=links)[0][..., 1] for links in (False, True))
+    assert lower.max() < upper.min()
+    words = [label.y for label in picture.labels]
+    assert words[0] > upper.max()
+    assert lower.max() < words[1] < upper.max()
+    assert picture.box[2] <= lower.min() + 1e-9
 
 
 def test_a_strip_has_no_gap_where_it_bends():

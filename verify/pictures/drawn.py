@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.judge.workbench import Workbench, no_such_mode
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
-from verify.pictures.parts import drawn_section, force_solids
+from verify.pictures.parts import force_solids
 from verify.pictures.picture import Picture, Solid
 from verify.pictures.ridden import ridden
 from verify.pictures.rolled import rolled
@@ -31,6 +31,7 @@ from verify.pictures.rows import (
     stage_of,
     unit_of,
 )
+from verify.pictures.sizes import drawn_section
 from verify.scenes.scene import Scene
 
 MODE, PERIOD = 3, 36

@@ -2,66 +2,55 @@
 
 from collections.abc import Iterator
 
-import msgspec
 import numpy as np
 
 from verify.beam import Beam
 from verify.models.arrays import Array
 from verify.pictures.picture import GREY, INK, ORANGE, STEEL, Solid, Trace, arrow, bars, discs, strip
+from verify.pictures.sizes import Drawn, Span
 
-THIN, NARROW, BROAD = 0.007, 0.012, 0.06
-"""Half a drawn thickness at least; half a drawn width at least and at most; all over the length."""
 WALL = 0.068
 """Half the height of what guides an end, over the length."""
 GAP = 0.08
 """Of a link, between it and its joints."""
 
 
-class Drawn(msgspec.Struct, frozen=True, kw_only=True):
-    """How thick and wide a beam is drawn, half of each over its length, and what is to be said of it."""
-
-    half: float
-    depth: float
-    said: str
-
-
-def drawn_section(beam: Beam) -> Drawn:
-    """As it is where that can be seen, else larger, in words."""
-    fibre, width = beam.own.extreme_fibre, beam.width
-    half = max(THIN, fibre / beam.length if fibre else 0.0)
-    own = 0.5 * (width or 0.0) / beam.length
-    depth = min(max(own, NARROW), BROAD)
-    if fibre is None:
-        return Drawn(half=half, depth=depth, said="the section has no sizes and is drawn as a strip")
-    thick = half * beam.length / fibre
-    said = f"thickness drawn {times(thick)}" if thick > 1.01 else "thickness as it is"
-    if width is not None and abs(depth / own - 1.0) > 0.01:
-        said += f", width {times(depth / own)}"
-    return Drawn(half=half, depth=depth, said=said)
+def chain_solids(x: Array, line: Array, values: Array, drawn: Drawn) -> tuple[Solid, ...]:
+    """Rigid links between joints (f, n, 2) at x (n,) over the length, coloured by (f, n), and the pins."""
+    links = [_links(x, line, values, span) for span in drawn.spans]
+    closest = float(np.linalg.norm(np.diff(line[0], axis=0), axis=1).min())
+    at = np.searchsorted(drawn.steps, x, side="right")
+    pins = [
+        Solid(
+            outlines=discs(line[:, at == i], min(0.75 * one.half, 0.35 * closest)), depth=1.12 * one.depth, colour=INK
+        )
+        for i, one in enumerate(drawn.spans)
+    ]
+    return tuple(one for one in (*links, *pins) if one.outlines.shape[1])
 
 
-def times(factor: float) -> str:
-    """'5,800 times as large': two digits, or three from 1.0 to 9.99."""
-    if 1e-2 <= factor < 10.0:
-        return f"{factor:.3g} times as large"
-    power = int(np.floor(np.log10(factor))) - 1
-    rounded = round(factor / 10.0**power) * 10.0**power
-    return f"{rounded:,.0f} times as large" if rounded < 1e7 else f"{factor:.1e} times as large"
+def _links(x: Array, line: Array, values: Array, span: Span) -> Solid:
+    """What of the links between joints (f, n, 2) lies in a stretch; a link is cut where its section steps."""
+    start, end = (np.clip((at - x[:-1]) / np.diff(x), GAP, 1.0 - GAP) for at in (span.start, span.end))
+    kept = end > start
+    first, last = (line[:, :-1][:, kept] + share[kept, None] * np.diff(line, axis=1)[:, kept] for share in (start, end))
+    low, high = (values[:, :-1][:, kept] + share[kept] * np.diff(values, axis=1)[:, kept] for share in (start, end))
+    colours = np.stack([low, high, high, low], axis=2)
+    return Solid(outlines=bars(first, last, span.half), values=colours, depth=span.depth, edges=True)
 
 
-def chain_solids(line: Array, values: Array, drawn: Drawn) -> tuple[Solid, ...]:
-    """Rigid links between joints (f, n, 2), coloured by (f, n), and the pins."""
+def bar_solids(x: Array, line: Array, values: Array, drawn: Drawn) -> tuple[Solid, ...]:
+    """One bar through (f, n, 2) at x (n,) over the length, coloured by (f, n), a solid for each stretch of it."""
+    at = np.union1d(x, drawn.steps)
+    line = np.stack([[np.interp(at, x, one[:, k]) for k in (0, 1)] for one in line]).swapaxes(1, 2)
+    values = np.stack([np.interp(at, x, one) for one in values])
+    stretch = np.searchsorted(drawn.steps, 0.5 * (at[1:] + at[:-1]))
+    outlines = strip(line, np.array([span.half for span in drawn.spans])[stretch])
     ends = np.stack([values[:, :-1], values[:, 1:], values[:, 1:], values[:, :-1]], axis=2)
-    links = Solid(outlines=bars(line, drawn.half, GAP), values=ends, depth=drawn.depth, edges=True)
-    size = min(0.75 * drawn.half, 0.35 * float(np.linalg.norm(np.diff(line[0], axis=0), axis=1).min()))
-    pins = Solid(outlines=discs(line, size), depth=1.12 * drawn.depth, colour=INK)
-    return links, pins
-
-
-def bar_solids(line: Array, values: Array, drawn: Drawn) -> tuple[Solid, ...]:
-    """One bar through (f, n, 2), coloured by (f, n)."""
-    ends = np.stack([values[:, :-1], values[:, 1:], values[:, 1:], values[:, :-1]], axis=2)
-    return (Solid(outlines=strip(line, drawn.half), values=ends, depth=drawn.depth),)
+    return tuple(
+        Solid(outlines=outlines[:, stretch == i], values=ends[:, stretch == i], depth=span.depth)
+        for i, span in enumerate(drawn.spans)
+    )
 
 
 def support_solids(supports: tuple[str, str], y: float, drawn: Drawn) -> Iterator[Solid]:
@@ -88,7 +77,8 @@ def attached_parts(beam: Beam, x: Array, line: Array, y: float, drawn: Drawn) ->
     solids, traces = [], []
     for mass in beam.mass:
         at = _on(line, x, mass.position)[:, None]
-        solids.append(Solid(outlines=discs(at, min(2.2 * drawn.half, 0.022), 24), depth=0.5 * drawn.depth, colour=INK))
+        radius = min(2.2 * float(drawn.half_at(np.array(mass.position / beam.length))), 0.022)
+        solids.append(Solid(outlines=discs(at, radius, 24), depth=0.5 * drawn.depth, colour=INK))
     for spring in beam.spring:
         top = _on(line, x, spring.position)
         if spring.stiffness:

@@ -76,25 +76,23 @@ def at_frame(values: Array, frame: int) -> Array:
     return np.asarray(values[min(frame, len(values) - 1)])
 
 
-def bars(line: Array, half: float, gap: float = 0.0) -> Array:
-    """Outlines (f, n - 1, 4, 2) of bars of half a thickness between the points of lines (f, n, 2).
-
-    `gap` is left out at both ends of each, a share of its length.
-    """
-    first, last = line[:, :-1], line[:, 1:]
+def bars(first: Array, last: Array, half: float) -> Array:
+    """Outlines (f, m, 4, 2) of bars of half a thickness from places (f, m, 2) to others."""
     along = last - first
-    size = np.linalg.norm(along, axis=2, keepdims=True)
-    up = np.stack([-along[..., 1], along[..., 0]], axis=2) / size * half
-    a, b = first + gap * along, last - gap * along
-    return np.stack([a - up, b - up, b + up, a + up], axis=2)
-
-
-def strip(line: Array, half: float) -> Array:
-    """Outlines (f, n - 1, 4, 2) of one bar of half a thickness along lines (f, n, 2), without a gap where it bends."""
-    along = np.gradient(line, axis=1)
     up = np.stack([-along[..., 1], along[..., 0]], axis=2) / np.linalg.norm(along, axis=2, keepdims=True) * half
-    low, high = line - up, line + up
-    return np.stack([low[:, :-1], low[:, 1:], high[:, 1:], high[:, :-1]], axis=2)
+    return np.stack([first - up, last - up, last + up, first + up], axis=2)
+
+
+def strip(line: Array, half: float | Array) -> Array:
+    """Outlines (f, n - 1, 4, 2) of one bar along lines (f, n, 2), without a gap where it bends.
+
+    `half` its thickness is that of all of it, or (n - 1,).
+    """
+    along = np.gradient(line, axis=1)
+    up = np.stack([-along[..., 1], along[..., 0]], axis=2) / np.linalg.norm(along, axis=2, keepdims=True)
+    first, last = (np.reshape(half, (-1, 1)) * way for way in (up[:, :-1], up[:, 1:]))
+    a, b = line[:, :-1], line[:, 1:]
+    return np.stack([a - first, b - last, b + last, a + first], axis=2)
 
 
 def discs(at: Array, radius: float, corners: int = 12) -> Array:

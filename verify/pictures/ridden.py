@@ -6,7 +6,7 @@ from verify.beam import Beam
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.motion.result import Motion
-from verify.pictures.parts import drawn_section, force_solids
+from verify.pictures.parts import force_solids
 from verify.pictures.picture import RED, Picture, Solid, box
 from verify.pictures.rows import (
     CHAIN,
@@ -23,6 +23,7 @@ from verify.pictures.rows import (
     stage_of,
     unit_of,
 )
+from verify.pictures.sizes import drawn_section
 from verify.scenes.scene import Scene
 
 RUN = 72
@@ -100,7 +101,8 @@ def _block(beam: Beam, row: Row, run: Motion, shown: slice, stage: Stage, hardes
         [np.interp(at, one[:, 0], np.gradient(one[:, 1], one[:, 0])) for at, one in zip(x, line, strict=True)]
     )
     turn = np.arctan(slope)
-    foot = np.stack([x - drawn.half * np.sin(turn), y + drawn.half * np.cos(turn)], axis=1)
+    up = drawn.half_at(x)
+    foot = np.stack([x - up * np.sin(turn), y + up * np.cos(turn)], axis=1)
     half, height = 0.016, 0.026
     middle = foot + 0.5 * height * np.stack([-np.sin(turn), np.cos(turn)], axis=1)
     push = FORCE * run.friction[shown] / hardest

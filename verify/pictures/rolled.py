@@ -8,9 +8,10 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
-from verify.pictures.parts import chain_solids, drawn_section, support_solids
+from verify.pictures.parts import chain_solids, support_solids
 from verify.pictures.picture import Label, Picture, Trace
 from verify.pictures.rows import Asked
+from verify.pictures.sizes import drawn_section
 from verify.scenes.scene import Scene
 
 COUNT, FRAMES = 20, 36
@@ -37,7 +38,8 @@ def rolled(scene: Scene, asked: Asked) -> Picture:
         if asked.moving
         else [(lines[i : i + 1], values[i : i + 1], exact[i : i + 1]) for i in range(len(turns))]
     )
-    solids = [part for line, value, _ in shown for part in chain_solids(line, value, drawn)]
+    even = np.linspace(0.0, 1.0, lines.shape[1])
+    solids = [part for line, value, _ in shown for part in chain_solids(even, line, value, drawn)]
     wall = list(support_solids(("clamped", "free"), 0.0, drawn))
     traces = tuple(Trace(points=arc, width=1.2, depth=1.4 * drawn.depth) for _, _, arc in shown)
     gap = float(np.hypot(*(lines[-1, -1] - lines[-1, 0])))

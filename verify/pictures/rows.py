@@ -6,8 +6,9 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
-from verify.pictures.parts import attached_parts, bar_solids, chain_solids, drawn_section, support_solids, times
+from verify.pictures.parts import attached_parts, bar_solids, chain_solids, support_solids
 from verify.pictures.picture import Label, Picture, Solid, Trace
+from verify.pictures.sizes import drawn_section, times
 from verify.scenes.scene import Scene
 
 CHAIN, ELEMENTS = "segment", "fem"
@@ -92,7 +93,7 @@ def picture_of_rows(
     for row in rows:
         line, y = stage.line(scene.beam, row), stage.y(row)
         values = np.clip(row.deflection / largest, -1.0, 1.0)
-        solids += (chain_solids if row.links else bar_solids)(line, values, drawn)
+        solids += (chain_solids if row.links else bar_solids)(row.x / scene.beam.length, line, values, drawn)
         solids += support_solids(scene.beam.supports, y, drawn)
         bodies, springs = attached_parts(scene.beam, row.x, line, y, drawn)
         solids, traces = solids + bodies, traces + springs
@@ -104,18 +105,18 @@ def picture_of_rows(
             traces.append(Trace(points=stage.line(scene.beam, known), width=1.2, depth=1.3 * drawn.depth))
     left = _free_place([one.position / scene.beam.length for one in scene.forces] if more else [])
     deepest = 0.11 if scene.beam.spring else FORCE + 0.005
-    top = stage.apart + max(stage.amplitude, drawn.half) + LETTERS + 0.02
+    words = stage.amplitude + drawn.bulge + LETTERS
     return Picture(
         title=title,
         said=(f"{said}; {drawn.said}.",),
         notes=notes,
         solids=(*solids, *more),
         traces=tuple(traces),
-        labels=tuple(Label(text=row.words, x=left, y=stage.y(row) + stage.amplitude + LETTERS) for row in rows),
+        labels=tuple(Label(text=row.words, x=left, y=stage.y(row) + words) for row in rows),
         scale=scale,
         frames=len(rows[0].deflection),
         seconds=seconds,
-        box=(-0.035, 1.035, -stage.apart - max(stage.amplitude, deepest), top),
+        box=(-0.035, 1.035, -stage.apart - max(stage.amplitude + drawn.bulge, deepest), stage.apart + words + 0.02),
     )
 
 
@@ -130,7 +131,7 @@ def stage_of(beam: Beam, rows: list[Row], largest: float) -> Stage:
     smooth = next(row for row in rows if not row.links)
     steep = float(abs(np.gradient(smooth.deflection, smooth.x / beam.length, axis=1)).max()) / largest
     amplitude = min(AMPLITUDE, STEEPEST / steep)
-    return Stage(largest=largest, amplitude=amplitude, apart=amplitude + ROOM)
+    return Stage(largest=largest, amplitude=amplitude, apart=amplitude + drawn_section(beam).bulge + ROOM)
 
 
 def check_moves(largest: float, what: str) -> None:
