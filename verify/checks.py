@@ -12,6 +12,8 @@ from msgspec import Meta
 from verify.errors import InputError, shown
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import msgspec
 
 LARGEST = float_info.max
@@ -25,6 +27,12 @@ _SETTLED = (float, int, str, tuple, type(None))
 def plain(value: Any) -> Any:
     """A scalar of numpy's as Python's own number, whose arithmetic neither rounds to 32 bits nor overflows."""
     return value.item() if hasattr(value, "dtype") and getattr(value, "shape", None) == () else value
+
+
+def check_sizes(field: str, sizes: "Sequence[float]") -> None:
+    """Raise InputError for sizes through which no order is observed: three or more, no two alike."""
+    if len(sizes) < 3 or len(set(sizes)) != len(sizes):
+        raise InputError(f"{field} = {list(sizes)}: an observed order needs three or more different sizes")
 
 
 def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:

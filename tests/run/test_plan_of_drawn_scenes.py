@@ -21,7 +21,8 @@ SEARCHED = "mode.count_needed"
 TOLD_BEFOREHAND = (
     "time is missing", "has no slider", "has no drive", "the forces grow over", "leaves the span between two forces",
     "shorter than half a wavelength", "takes imposed forces", "lies beyond, give count", "undamped resonance of mode",
-    "no wave runs below", "position and phase_deg are for two forces", "a phase between two forces",
+    "no wave runs below", "position and phase_deg are for two forces", "a phase between two forces", "lies off the beam",
+    "an observed order needs three",
 )  # fmt: skip
 """Refusals of figures of a driven beam that a plan has to know; there are others that stand in a field alone."""
 DRIVEN = ("wave.", "slider.displacement", "slider.mean", "slider.deflection", "motion.", "chain.slider_")

@@ -101,7 +101,20 @@ def _one_name(given: dict[str, Any], known: set[str]) -> dict[str, Any]:
 def needs_of(found: Quantity[A], arguments: A, scene: "Scene") -> tuple[Need, ...]:
     """The solves a figure will ask for."""
     _check_devices(found, scene)
+    _check_places(arguments, scene.beam.length)
     return found.needs(arguments, scene)
+
+
+ROUNDED = 1e-12
+"""Of a beam's length, as in `models/places.py`: as far off an end a place is one that rounding put there."""
+
+
+def _check_places(arguments: Arguments, length: float) -> None:
+    """Raise InputError for a place off the beam: a plan knows it before anything is solved."""
+    for name in arguments.places:
+        x = getattr(arguments, name)
+        if x is not None and not -ROUNDED * length <= x <= length * (1.0 + ROUNDED):
+            raise InputError(f"{name} = {x!r} lies off the beam: give a place between 0 and {length!r} m")
 
 
 def _check_devices(found: Quantity[A], scene: "Scene") -> None:

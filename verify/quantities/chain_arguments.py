@@ -90,6 +90,7 @@ class FreeMotion(Chained, frozen=True, kw_only=True):
 class Departing(Chained, frozen=True, kw_only=True):
     """A nonlinear chain beside the linear one, driven from rest."""
 
+    places: ClassVar[tuple[str, ...]] = ("x",)
     force: Annotated[float, Meta(gt=0, description="N, of every force of the scene's drive")]
     time: Annotated[float, Meta(gt=0, description="s after the forces set in")] = 1e-3
     inertia: Annotated[
@@ -103,6 +104,7 @@ class Departing(Chained, frozen=True, kw_only=True):
 class FromRest(Chained, frozen=True, kw_only=True):
     """The driven chain at one time and place."""
 
+    places: ClassVar[tuple[str, ...]] = ("x",)
     time: Annotated[float, Meta(gt=0, description="s after the forces of the scene's drive set in")]
     x: Annotated[float, Meta(ge=0, description="m from the left end, on the links")]
     step: Step | None = None
@@ -119,6 +121,7 @@ class FromRest(Chained, frozen=True, kw_only=True):
 class ContactLine(Chained, frozen=True, kw_only=True):
     """One mode of the scene's beam as a slider on its nonlinear chain sees it."""
 
+    places: ClassVar[tuple[str, ...]] = ("x",)
     reads: ClassVar[tuple[str, ...]] = ("beam",)
     mode: Mode
     x: Annotated[float, Meta(ge=0, description="m from the left end: on which piece")]
@@ -129,6 +132,7 @@ class ContactLine(Chained, frozen=True, kw_only=True):
 class Ridden(Arguments, frozen=True, kw_only=True):
     """The scene's slider on the nonlinear chain from rest, with what is given instead of the scene's."""
 
+    places: ClassVar[tuple[str, ...]] = ("slider_position",)
     slides: ClassVar[bool] = True
     segments: Links
     links: Annotated[options.Links, Meta(description="stretching: by the beam's own EA / l")] = "rigid"

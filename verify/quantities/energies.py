@@ -64,6 +64,7 @@ class Released(Arguments, frozen=True, kw_only=True):
 class ReleasedAt(Released, frozen=True, kw_only=True):
     """A place on it."""
 
+    places: ClassVar[tuple[str, ...]] = ("x",)
     x: Annotated[float, Meta(description="metres from the left end")]
 
 

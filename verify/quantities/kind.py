@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from verify import options
-from verify.checks import Relative
+from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.judge.bracket import Bracket
 from verify.judge.variants import DEFAULTS
@@ -73,6 +73,8 @@ class Arguments(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """Whether they are about the scene's slider."""
     reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
     """Tables of a scene on which the figure depends; a gate is about another scene where one of these is."""
+    places: ClassVar[tuple[str, ...]] = ()
+    """Those that are places on the beam, metres from its left end."""
 
 
 class Divided(Arguments, frozen=True, kw_only=True):
@@ -145,6 +147,7 @@ class NodeAt(Divided, frozen=True, kw_only=True):
 class ShapeOf(Divided, frozen=True, kw_only=True):
     """One shape of one model at one place."""
 
+    places: ClassVar[tuple[str, ...]] = ("x",)
     model: ModesModel
     mode: Mode
     x: Annotated[float, Meta(description="metres from the left end")]
@@ -164,6 +167,7 @@ class OverSizes(Divided, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         self.check_settings(self.model)
+        check_sizes("counts", self.counts)
 
 
 class ShapesOverSizes(OverSizes, frozen=True, kw_only=True):
@@ -244,6 +248,7 @@ class AtFrequency(Arguments, frozen=True, kw_only=True):
 class DriveArguments(AtFrequency, frozen=True, kw_only=True):
     """The drive of a scene, with what is given instead."""
 
+    places: ClassVar[tuple[str, ...]] = ("position",)
     phase_deg: Annotated[float, Meta(description="of the second force; default: the scene's")] | None = None
     position: Annotated[float, Meta(description="d of the first force, L-d of the second, metres")] | None = None
 

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from msgspec import Meta
 
 from verify import options
-from verify.checks import Relative
+from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.quantities.kind import (
@@ -112,12 +112,14 @@ class InTime(DriveArguments, frozen=True, kw_only=True):
 class DeflectionAt(InTime, frozen=True, kw_only=True):
     """A place on the beam."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "x")
     x: Annotated[float, Meta(description="metres from the left end")]
 
 
 class SliderInTime(InTime, frozen=True, kw_only=True):
     """The scene's slider, with what is given instead of its own."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "slider_position")
     slides: ClassVar[bool] = True
 
     step: Annotated[float, Meta(gt=0, description="seconds; default: as the start asks for")] | None = None
@@ -143,6 +145,7 @@ class SliderInTime(InTime, frozen=True, kw_only=True):
 class SliderDeflection(SliderInTime, frozen=True, kw_only=True):
     """A place on the beam while the slider is on it."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "slider_position", "x")
     x: Annotated[float, Meta(description="metres from the left end")]
 
 
@@ -161,6 +164,7 @@ class SliderBooked(SliderInTime, frozen=True, kw_only=True):
 class Steady(DriveArguments, frozen=True, kw_only=True):
     """The driven beam in its steady state with the slider on it: what is not given is the scene's."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "slider_position")
     reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
     slides: ClassVar[bool] = True
 
@@ -176,6 +180,7 @@ class Steady(DriveArguments, frozen=True, kw_only=True):
 class LoadedDeflection(Steady, frozen=True, kw_only=True):
     """A place on the beam that carries the slider's mass at rest."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "slider_position", "x")
     x: Annotated[float, Meta(description="metres from the left end")]
 
 
@@ -205,6 +210,7 @@ class SliderOrder(SliderInTime, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if (self.counts is None) == (self.steps is None):
             raise InputError("slider.order takes counts or steps: give one of the two")
+        check_sizes("steps" if self.counts is None else "counts", self.steps or self.counts or ())
         if self.steps is not None and self.step is not None:
             raise InputError(f"step = {self.step!r}: slider.order over steps takes its steps from there, leave it out")
         if self.counts is None:

@@ -28,6 +28,7 @@ Positive = Annotated[float, Meta(gt=0)]
 class Motor(DriveArguments, frozen=True, kw_only=True):
     """The scene's motor, one model's beam in its steady state, with what is given instead."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "slider_position")
     reads: ClassVar[tuple[str, ...]] = WHAT_EXISTS
     slides: ClassVar[bool] = True
 

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import Meta
 
+from verify.checks import check_sizes
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.quantities import compiled
@@ -35,6 +36,9 @@ class OverWaveOrder(_OverWave, frozen=True, kw_only=True):
     """Several numbers of them, with steps in proportion to the first."""
 
     counts: Annotated[tuple[int, ...], Meta(min_length=3, description="three or more numbers of points")]
+
+    def __post_init__(self) -> None:
+        check_sizes("counts", self.counts)
 
 
 def _over_wave(a: OverWave, scene: "Scene", bench: Workbench) -> float:

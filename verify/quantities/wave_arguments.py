@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from msgspec import Meta
 
 from verify import options
-from verify.checks import Relative
+from verify.checks import Relative, check_sizes
 from verify.errors import InputError
 from verify.judge.variants import DEFAULTS
 from verify.models.catalogue import MODELS
@@ -76,6 +76,7 @@ class Driven(DriveArguments, frozen=True, kw_only=True):
 class At(Driven, frozen=True, kw_only=True):
     """A driven beam and a place on it."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "x")
     x: Annotated[float, Meta(description="metres from the left end")]
 
 
@@ -100,6 +101,7 @@ class Power(InWindow, frozen=True, kw_only=True):
 class AxisRatio(InWindow, frozen=True, kw_only=True):
     """A window to take the mean over, or a place."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "x")
     x: Annotated[float, Meta(description="metres; default: the mean over whole half wavelengths")] | None = None
 
     def __post_init__(self) -> None:
@@ -124,6 +126,7 @@ class WaveOrder(InWindow, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if self.count is not None:
             raise InputError(f"count = {self.count!r}: wave.order takes several sizes, give counts instead")
+        check_sizes("counts", self.counts)
         self.check_settings()
         for name in ("modal_damping", "joint_dashpot"):
             if value := getattr(self, name):
@@ -143,6 +146,7 @@ class BestFrequency(InWindow, frozen=True, kw_only=True):
 class Lumped(Arguments, frozen=True, kw_only=True):
     """Two modes of the beam as one wave, whatever drives it."""
 
+    places: ClassVar[tuple[str, ...]] = ("x",)
     reads: ClassVar[tuple[str, ...]] = ("beam",)
     x: Annotated[float, Meta(ge=0, description="metres from the left end")]
     modes: Annotated[tuple[Mode, Mode], Meta(description="which two")] = (21, 22)
@@ -155,6 +159,7 @@ class Lumped(Arguments, frozen=True, kw_only=True):
 class Receptance(AtFrequency, frozen=True, kw_only=True):
     """One place under a unit force at another."""
 
+    places: ClassVar[tuple[str, ...]] = ("position", "x")
     model: UnitModel = "analytic"
     count: Size | None = None
     loss_factor: Loss | None = None

@@ -341,7 +341,8 @@ def _print_solves(console: Console, plan: "Plan") -> None:
 def print_plan(plan: "Plan") -> None:
     """What will run, what is skipped, what cannot work."""
     console = Terminal()
-    console.print(f"[bold]{plan.scene}[/] will run")
+    unable = len({problem.who for problem in plan.problems})
+    console.print(f"[bold]{plan.scene}[/] will run" + (f", but for {unable} asked for that cannot" if unable else ""))
     if plan.solves:
         _print_solves(console, plan)
     if plan.closed_forms:
