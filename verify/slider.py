@@ -100,7 +100,7 @@ class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
     pitches: bool = True
     """Whether it turns; a foot of one point never does."""
     face: Face = "upper"
-    """Of the beam, on which it is pressed."""
+    """Of the beam, on which the preload presses it; its weight pulls it off the lower one."""
     mirrored: bool = False
     """Whether the mirror image of the beam presses on it from above, as a slider between two beams has it."""
 
@@ -203,7 +203,7 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
                 )
         if self.position is not None:
             check_number("slider.position", self.position, "metres")
-        if self.normal_force == 0.0:
+        if self.mass * self.gravity + self.preload == 0.0:
             raise InputError("slider.gravity = 0.0 without slider.preload presses on nothing: give one of the two")
 
     def _check_feet(self) -> None:
@@ -259,8 +259,33 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     @property
     def normal_force(self) -> float:
-        """N, newton."""
-        return self.mass * self.gravity + self.preload
+        """N, newton: what presses all its feet on, each on its own face, without what a `preload_stiffness` adds."""
+        return sum(self.pressing(foot) for foot in self.feet)
+
+    @property
+    def load(self) -> float:
+        """Newton on one beam: of a foot between two beams each bears half."""
+        return sum(self.pressing(foot) * (0.5 if foot.mirrored else 1.0) for foot in self.feet)
+
+    def pressing(self, foot: Foot) -> float:
+        """What presses one of its feet on at rest, newton: preload and weight, which lifts it off the lower face.
+
+        Between two beams the preload comes from either: both together, or the weight alone where that is more.
+        """
+        weight, preload = self.mass * self.gravity / len(self.feet), self.preload / len(self.feet)
+        if foot.mirrored:
+            return max(2.0 * preload, weight)
+        return max(preload - weight, 0.0) if foot.face == "lower" else weight + preload
+
+    @property
+    def effective_gravity(self) -> float:
+        """m/s^2: what presses a foot on a beam, over what moves with it across; of the foot where that is least."""
+        each = ((0.5 if foot.mirrored else 1.0) * self.pressing(foot) / self.moved_by(foot) for foot in self.feet)
+        return min(each)
+
+    def moved_by(self, foot: Foot) -> float:
+        """What of it moves with one of its feet across the beam, kg."""
+        return self.mass / len(self.feet) if foot.mass is None else foot.mass
 
     def start_on(self, beam: Beam) -> float:
         """Where it starts, metres. Raises InputError off the beam."""

@@ -25,9 +25,8 @@ RATIO = 150.0
 
 def bouncing(ratio=RATIO, **given):
     """A point pressed on a place that a wave to the right shakes."""
-    slider = Slider(
-        mass=MASS, mu=MU, law="coulomb", gravity=0.0, preload=PRELOAD, position=MIDDLE, coupling="one-way", **given
-    )
+    pressed = {"gravity": 0.0, "preload": PRELOAD, **given}
+    slider = Slider(mass=MASS, mu=MU, law="coulomb", position=MIDDLE, coupling="one-way", **pressed)
     return MotorCase(
         beam=STRIP,
         forces=drive(ratio * GRAVITY / OMEGA**2)[0],
@@ -43,6 +42,8 @@ def hard(restitution, ratio=RATIO):
 
 
 SPRING = Contact(stiffness=MASS * (0.31 * OMEGA) ** 2, damping=0.02 * MASS * OMEGA)
+HANGING = {"gravity": 9.81, "preload": MASS * 9.81 + PRELOAD, "foot": (Foot(face="lower"),)}
+"""Pressed against the lower face with a thousand times what is left beyond its weight."""
 CASES = {
     "plastic": hard(0.0),
     "restitution 0.3": hard(0.3),
@@ -55,6 +56,7 @@ CASES = {
         contact=SPRING,
         foot=(Foot(length=0.04, points=3), Foot(length=0.03, points=2, face="lower", offset=0.004)),
     ),
+    "below, with a weight": bouncing(contact=SPRING, **HANGING),
 }
 
 
@@ -183,6 +185,47 @@ def test_a_free_run_that_is_in_flight_at_its_end_has_come_to_no_speed():
     assert not comes_to_speed(run, 20, crest_speed(case))
     still = replace(case, forces=drive(0.4 * GRAVITY / OMEGA**2)[0])
     assert comes_to_speed(still.run(60 * case.period, samples=61), 20, 1e3 * HALF)
+
+
+@pytest.mark.parametrize("feet", [(Foot(face="lower"),), (Foot(), Foot(face="lower"))], ids=["below", "clasp"])
+def test_a_free_run_on_the_lower_face_carries_the_preload_less_the_weight(feet):
+    """A tenth of the preload is weight: on a clasp it adds to one foot what it takes from the other."""
+    case = bouncing(0.4, contact=SPRING, gravity=0.1 * PRELOAD / MASS, foot=feet)
+    run = case.run(200 * case.period, samples=201)
+    presses = (0.9 if len(feet) == 1 else 1.0) * PRELOAD
+    assert case.slider.normal_force == pytest.approx(presses, rel=1e-12)
+    assert run.normal_force[0] == pytest.approx(presses, rel=1e-12)
+    assert float(run.normal_force[-20:].mean()) == pytest.approx(presses, rel=0.01)
+    heavy = replace(case.slider, preload=4.0 * PRELOAD, gravity=3.0 * PRELOAD / MASS)
+    pressed = case.on(heavy).run(200 * case.period, samples=201)
+    assert comes_to_speed(pressed, 20, 1e3 * HALF)
+
+
+def test_what_presses_a_slider_on_is_each_foots_own():
+    """Newton: the weight, 0.6 N, is shared; it lifts a foot off the lower face, and sinks into either beam alike."""
+    own = {"mass": 0.06, "gravity": 10.0, "mu": 0.2, "contact": SPRING}
+    above, below, between = Foot(), Foot(face="lower", mass=0.01), Foot(mirrored=True)
+    for feet, preload, presses, load, fall in (
+        ((above,), 2.0, 2.6, 2.6, 2.6 / 0.06),
+        ((below,), 2.0, 1.4, 1.4, 140.0),
+        ((below,), 0.5, 0.0, 0.0, 0.0),
+        ((above, below), 2.0, 1.3 + 0.7, 2.0, 1.3 / 0.03),
+        ((between,), 2.0, 4.0, 2.0, 2.0 / 0.06),
+        ((between,), 0.2, 0.6, 0.3, 0.3 / 0.06),
+    ):
+        slider = Slider(preload=preload, foot=feet, **own)
+        assert slider.normal_force == pytest.approx(presses, rel=1e-12)
+        assert slider.load == pytest.approx(load, rel=1e-12)
+        assert slider.effective_gravity == pytest.approx(fall, rel=1e-12)
+
+
+def test_margins_and_sizes_of_a_slider_below_are_of_what_presses_it_on():
+    above = bouncing(0.4, contact=SPRING, gravity=0.6 * PRELOAD / MASS, foot=(Foot(),))
+    one = above.run(above.period, samples=2)
+    below = above.on(replace(above.slider, foot=(Foot(face="lower"),))).run(above.period, samples=2)
+    assert below.beam_margins.lift_off == pytest.approx(one.beam_margins.lift_off * 1.6 / 0.4, rel=1e-12)
+    assert below.coupling.normal_size == pytest.approx(one.coupling.normal_size * 0.4 / 1.6, rel=1e-12)
+    assert below.coupling.friction_size == pytest.approx(one.coupling.friction_size * 0.4 / 1.6, rel=1e-12)
 
 
 MEASURED = ("stall_force", "force_speed", "normal_mean", "contact_share", "power", "wear_power", "efficiency")

@@ -272,7 +272,7 @@ def _end(
         beam=request.beam,
         model=request.model,
         count=request.count,
-        time=_reached(stages, sliding.steps),
+        time=reached(stages, sliding.steps),
         q=q,
         rates=rates,
         steady=request.start == "steady",
@@ -285,7 +285,7 @@ def _end(
     )
 
 
-def _reached(stages: list[Stage], steps: int) -> float:
+def reached(stages: list[Stage], steps: int) -> float:
     """The time after so many steps, seconds."""
     for stage in stages:
         if steps <= stage.n_steps:

@@ -130,7 +130,7 @@ def friction_speed(slider: Slider, beam: Beam, omega: float, turning: complex) -
 
     h is that of the beam's own section, as in `coupling_of`: give the beam that is `standing_at` the slider.
     """
-    return float(slider.mu * slider.normal_force * beam.surface_distance**2 * omega * abs(turning))
+    return float(slider.mu * slider.load * beam.surface_distance**2 * omega * abs(turning))
 
 
 def coupling_of(

@@ -18,10 +18,10 @@ def margins_of(request: Request, stage: Stage, fall: float | None = None) -> Mar
     x = np.linspace(0.0, request.beam.length, 400)
     steady, slopes = stage.drive_shapes(x, 0)[:2], stage.drive_shapes(x, 1)[:2]
     falling = request.omega**2 * float(np.hypot(*steady).max()) if fall is None else fall
-    pressing = request.slider.normal_force / request.slider.mass if request.slider else GRAVITY
+    pressing = request.slider.effective_gravity if request.slider else GRAVITY
     square = 0.5 * float((slopes**2).sum(axis=0).mean())
     return Margins(
-        lift_off=falling / pressing,
+        lift_off=falling / pressing if pressing else float("inf"),
         nonlinearity=axial_inertia_size(request.beam, request.frequency_hz, square),
         model_form=model_form(request.beam, request.frequency_hz),
         discretisation=discretisation(request.beam, request.model, request.count, request.frequency_hz),

@@ -25,7 +25,7 @@ def sizes(
     not turn the surface. The surface is that of the beam's own section: give the beam that is `standing_at` there.
     """
     rub = friction_speed(slider, beam, omega, turning)
-    across = slider.normal_force * abs(receptance) / moved if moved else np.inf
+    across = slider.load * abs(receptance) / moved if moved else np.inf
     return float(across), float(rub / (beam.surface_distance * omega * turned)) if turned else None
 
 

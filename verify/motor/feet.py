@@ -23,11 +23,6 @@ def arms(foot: Foot) -> Array:
     return np.asarray(foot.length * ((np.arange(foot.points) + 0.5) / foot.points - 0.5))
 
 
-def shared_mass(slider: Slider, foot: Foot) -> float:
-    """What of the slider moves with one foot across the beam, kg."""
-    return slider.mass / len(slider.feet) if foot.mass is None else foot.mass
-
-
 class Placed(msgspec.Struct, frozen=True):
     """A slider and how it is put on."""
 
@@ -54,7 +49,7 @@ def hard_of(slider: Slider) -> Hard | None:
     """A hard contact; None of one on springs."""
     if slider.contact is None or not slider.contact.hard:
         return None
-    mass = shared_mass(slider, slider.feet[0])
+    mass = slider.moved_by(slider.feet[0])
     return Hard(mass, slider.normal_force / mass, float(slider.contact.restitution))
 
 
@@ -94,7 +89,7 @@ def _whole(values: Array) -> Indices:
 
 def _given(slider: Slider, foot: Foot) -> tuple[float, float, float, float]:
     """(1/mass, 1/inertia, force along z, stiffness of what presses) of a foot."""
-    mass, n = shared_mass(slider, foot), len(slider.feet)
+    mass, n = slider.moved_by(foot), len(slider.feet)
     inertia = mass * foot.length**2 / 12.0 if foot.inertia is None else foot.inertia
     weight, preload = slider.mass * slider.gravity / n, slider.preload / n
     pressed = 0.0 if foot.mirrored else preload if foot.face == "lower" else -preload

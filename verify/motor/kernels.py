@@ -17,6 +17,7 @@ from verify.motor.records import (
     DEPTH,
     DONE,
     FACE,
+    FREE,
     HEIGHT,
     IMAGE,
     INVERSE_MASS,
@@ -28,6 +29,7 @@ from verify.motor.records import (
     MEAN_SPEED,
     NOT_FINITE,
     OFF_BEAM,
+    OFFSET,
     PULL,
     PULLED,
     PUSH,
@@ -45,6 +47,7 @@ from verify.motor.records import (
     Log,
     Rubbing,
     V,
+    X,
 )
 from verify.motor.rub_kernels import agree, hold, settle, share, stretch
 from verify.motor.surface_kernels import draw
@@ -54,19 +57,27 @@ GIVES_WAY = 4
 
 
 @part()
-def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet: Feet) -> bool:
-    """Every point sees the surface under it; whether all stand on the beam."""
+def _stand(t: float, edges: Array, feet: Feet) -> bool:
+    """Find the piece that every point stands on t seconds on, before anything moves; whether all are on the beam."""
     for i in range(feet.points.shape[0]):
-        x = place(i, feet)
-        piece = find_piece(edges, x, feet.piece[i])
+        b = feet.owner[i]
+        on = t * feet.body[b, V] * feet.riders[b, FREE]
+        piece = find_piece(edges, feet.body[b, X] + on + feet.points[i, OFFSET], feet.piece[i])
         if piece < 0:
             return False
         feet.piece[i] = piece
+    return True
+
+
+@part()
+def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet: Feet) -> None:
+    """Every point sees the surface under it."""
+    for i in range(feet.points.shape[0]):
+        x, piece = place(i, feet), feet.piece[i]
         if line.stamp[piece] != number:
             draw(table, piece, line)
             line.stamp[piece] = number
         see(i, x, edges[piece], edges[piece + 1] - edges[piece], feet.body[feet.owner[i], V], half, line, feet)
-    return True
 
 
 @part()
@@ -192,11 +203,13 @@ def ride(
     modes, tally = surface.modes, log.tally
     for _ in range(n_steps):
         number = tally[STEP]
+        if not _stand(0.5 * dt, surface.edges, feet):
+            stored(dt, feet)
+            return OFF_BEAM
         drift(0.5 * dt, feet)
         rotate_half(modes)
         set_factors((number + 0.5) * dt, modes, surface.drive, line.factors)
-        if not _look(number, surface.table, surface.edges, rubbing.half, line, feet):
-            return OFF_BEAM
+        _look(number, surface.table, surface.edges, rubbing.half, line, feet)
         damped = press(dt, feet, before)
         if beam is None:
             _rub(dt, feet, rubbing.slope, before)
@@ -222,13 +235,12 @@ def ride_given(
     tally = log.tally
     for _ in range(n_steps):
         number = tally[STEP]
+        if not _stand(0.5 * dt, given.edges, feet):
+            stored(dt, feet)
+            return OFF_BEAM
         drift(0.5 * dt, feet)
         for i in range(feet.points.shape[0]):
-            x = place(i, feet)
-            piece = find_piece(given.edges, x, feet.piece[i])
-            if piece < 0:
-                return OFF_BEAM
-            feet.piece[i] = piece
+            x, piece = place(i, feet), feet.piece[i]
             for d in range(given.local.shape[3]):
                 line.local[piece, STILL, d] = given.local[number, piece, STILL, d]
                 line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]

@@ -113,7 +113,7 @@ def _run(given: GivenSurface, n_steps: int, dt: float, riding: Riding, progress:
 
 def _gone(given: GivenSurface, stage: Stage, riding: Riding) -> str:
     """What a slider has done that went beyond the links under it: those kept, or the last before a step."""
-    edges, (first, last) = given.edges + riding.start, span_of(riding)
+    edges, (first, last) = given.edges + riding.start, span_of(riding, stage.dt)
     end = 0 if edges[0] - first > last - edges[-1] else -1
     stepped = stage.ends[end] != LEFT_BEAM and abs(edges[end] - stage.edges[end]) < SLACK * stage.edges[-1]
     return stage.ends[end] if stepped else "left the links that it was put on"

@@ -6,6 +6,7 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
+from verify.motion.carried import reached
 from verify.motion.result import Statistics
 from verify.motor import records
 from verify.motor.feet import Placed
@@ -52,7 +53,7 @@ def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
         beam_margins=plan.margins,
         motor_margins=motor_margins(plan, one),
         ledger=ledger(riding, b),
-        state=_state(b, float(times[-1]), plan, riding, ended),
+        state=_state(b, reached(plan.stages, riding.steps), plan, riding, ended),
         statistics=_statistics(plan, riding, ended),
     )
 

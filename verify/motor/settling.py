@@ -10,7 +10,6 @@ import numpy as np
 
 from verify.models.arrays import Array
 from verify.motor import records
-from verify.motor.feet import shared_mass
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun, MotorState
@@ -55,7 +54,7 @@ def rows(run: "MotorRun") -> Array:
 
 def missed(slider: "Slider", before: "MotorState", run: "MotorRun") -> float:
     """By how much the normal force of a run misses what presses on, newton: of all feet, whichever way."""
-    masses = np.array([shared_mass(slider, foot) for foot in slider.feet])
+    masses = np.array([slider.moved_by(foot) for foot in slider.feet])
     gained = run.state.feet[:, records.CLIMB] - before.feet[:, records.CLIMB]
     return float(np.abs(masses * gained).sum()) / run.duration
 

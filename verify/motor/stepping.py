@@ -140,17 +140,18 @@ def run_stages(
             stopped = _run_stage(stage, surface, riding, tell)
         except KeyboardInterrupt:
             stopped = "interrupted"
-        stopped = stage.beyond(*span_of(riding)) if stopped == LEFT_BEAM else stopped
+        stopped = stage.beyond(*span_of(riding, stage.dt)) if stopped == LEFT_BEAM else stopped
         state = stage.state(surface.modes[:2].copy(), int(riding.log.tally[records.STEP]) * stage.dt)
         if stopped != END:
             break
     return stopped, *state
 
 
-def span_of(riding: Riding) -> tuple[float, float]:
-    """The least and the largest place of all points now, metres from the left end."""
+def span_of(riding: Riding, step: float) -> tuple[float, float]:
+    """The least and the largest place of all points after another step, seconds: metres from the left end."""
     feet = riding.feet
-    x = riding.start + feet.body[feet.owner, records.X] + feet.points[:, records.OFFSET]
+    on = feet.body[:, records.X] + step * feet.body[:, records.V] * feet.riders[:, records.FREE]
+    x = riding.start + on[feet.owner] + feet.points[:, records.OFFSET]
     return float(x.min()), float(x.max())
 
 
@@ -227,8 +228,18 @@ def _run_hard(
         before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
         riding.look()
 
+    def hop(steps: int) -> int:
+        return hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)
+
     def advance(steps: int) -> int:
-        why = hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)
+        grown = (feet.body, feet.state, feet.touch, feet.sums, before, riding.log.before, riding.log.tally)
+        kept = [one.copy() for one in grown]
+        why = hop(steps)
+        if why == records.OFF_BEAM:  # half-way through a step of flights and blows: again, to the end of that before
+            whole = int(riding.log.tally[records.STEP] - kept[-1][records.STEP])
+            for one, was in zip(grown, kept, strict=True):
+                one[:] = was
+            hop(whole)
         feet.touch[0, records.DEPTH] = before[0, 0]  # from where another run goes on
         return why
 

@@ -54,7 +54,7 @@ class RestHeld(msgspec.Struct, frozen=True, kw_only=True):
     speed: float
     """m/s along +x."""
     force: float
-    """Mean friction along +x over mu times the preload, over the places."""
+    """Mean friction along +x over mu times what presses on, over the places."""
     error: float
     """Its standard error."""
     halved: float | None

@@ -1,0 +1,71 @@
+"""A slider that runs off the beam: its books close and its state is of one instant, that of its last whole step."""
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+
+from verify.beam import Beam, PointForce
+from verify.motor.run import run_motor
+from verify.slider import Contact, Foot, Slider
+
+BEAM = Beam(
+    length=0.1, width=0.008, thickness=0.002, youngs_modulus=200e9, density=7850.0, supports=("clamped", "free")
+)
+SPEED, HERTZ = 20.0, 5000.0
+SPRUNG = Slider(
+    mass=0.02,
+    mu=1e-6,
+    position=0.015,
+    preload=30.0,
+    coupling="two-way",
+    contact=Contact(stiffness=1e6, damping=5.0),
+    foot=(Foot(length=0.009, points=2, offset=0.003),),
+)
+
+
+def crossing(slider=SPRUNG, duration=0.006, amplitude=0.0, **given):
+    asked = {"model": "fem", "count": 10, "start": "rest", "modal_damping": 0.0, "held_speed": SPEED, "samples": 37}
+    forces = [PointForce(position=0.05, amplitude=amplitude)]
+    return run_motor(BEAM, forces, HERTZ, duration, slider=slider, **{**asked, **given})
+
+
+def test_the_books_of_a_slider_that_leaves_the_beam_close_with_the_step():
+    coarse, fine = (crossing(steps_per_period=steps) for steps in (400, 1600))
+    for run in (coarse, fine):
+        assert run.statistics.stopped == "left the beam"
+        assert run.ledger.kinetic > 0.03
+    assert abs(coarse.ledger.residual) < 2e-5 * coarse.ledger.kinetic
+    assert abs(fine.ledger.residual) < 2e-6 * fine.ledger.kinetic
+
+
+def test_the_state_of_a_slider_that_left_is_that_of_a_run_up_to_there():
+    step = 1.3e-6
+    left = crossing(step=step)
+    there = crossing(step=left.statistics.step_s, duration=left.state.time, samples=2)
+    assert there.statistics.stopped == "end"
+    assert there.statistics.steps == left.statistics.steps
+    assert left.times[-1] < left.state.time < left.times[-1] + left.times[1]
+    for name in ("time", "travelled", "feet", "q", "rates"):
+        found, expected = (np.asarray(getattr(run.state, name)) for run in (left, there))
+        assert found == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
+    assert there.ledger.residual == pytest.approx(left.ledger.residual, rel=1e-3)
+
+
+HARD = replace(SPRUNG, coupling="one-way", contact=Contact(restitution=0.3), foot=())
+ALONG = {"slider": replace(SPRUNG, coupling="one-way")}
+ENDS = {
+    "springs that the beam feels": ({}, 0.085 - 0.003 - 0.00225),
+    "hard": ({"slider": HARD, "model": "analytic", "count": None, "start": "steady", "modal_damping": 0.01}, 0.085),
+    "a chain": ({**ALONG, "model": "chain", "duration": 3e-4, "held_speed": 150.0, "steps_per_period": 67}, None),
+}
+
+
+@pytest.mark.parametrize("name", ENDS)
+def test_time_and_place_of_a_slider_that_left_are_of_one_instant(name):
+    given, way = ENDS[name]
+    run = crossing(**{"amplitude": 3.0, **given})
+    assert run.statistics.stopped.startswith("left the")
+    assert run.state.travelled == pytest.approx(run.state.speed * run.state.time, rel=1e-9)
+    assert run.times[-1] < run.state.time
+    if way is not None:
+        assert way - 1.5 * SPEED * run.statistics.step_s < run.state.travelled <= way
