@@ -158,6 +158,47 @@ def test_references_are_as_well_known_as_they_say(paper):
     assert off <= rows(paper, set="modes")[0].reference_uncertainty < 1e-14
 
 
+@pytest.mark.parametrize(
+    ("added", "sets", "due"),
+    [
+        ({}, ("modes", "harmonic", "transient", "slider"), 4.0),
+        (
+            {"section": [{"length": 0.15}, {"length": 0.26, "thickness": 0.0016}]},
+            ("modes", "harmonic", "transient"),
+            2.0,
+        ),
+        ({"section": [{"length": 0.15}, {"length": 0.26, "thickness": 0.0016}]}, ("slider",), 2.0),
+        ({"tension": 90.0}, ("modes", "harmonic"), 2.0),
+        ({"foundation": 400.0}, ("modes", "harmonic"), 4.0),
+    ],
+)
+def test_every_set_compares_at_the_orders_that_are_due_on_the_beam(added, sets, due):
+    """As frequencies fall, so do fields and motions: a chain on steps never comes to order 4."""
+    scene, asked = strip(beam=STRIP["beam"] | added), Bench(**QUICK, sets=sets, counts=(40, 80), modes=(2,))
+    cases, _ = all_cases(asked, scene, Workbench(scene.beam))
+    lines = {(case.set, entry.line.name): entry.line.orders for case in cases for entry in case.entries}
+    assert {name for name, _ in lines} == set(sets)
+    for name in sets:
+        assert lines[name, "segments"] == (due, due)
+        assert lines[name, "Hermite elements"] == (4.0, 4.0)
+
+
+@pytest.mark.parametrize(("added", "due"), [({}, 4), ({"section": [{"length": 0.15}, {"length": 0.26}]}, 2)])
+def test_run_times_over_the_error_of_a_slider_know_the_order_that_is_due(added, due):
+    from verify.studies.work_precision import work_of
+
+    scene = strip(beam=STRIP["beam"] | added, motion={"duration": 3e-4, "soft_start_periods": 0.2})
+    assert work_of(scene, (30,)).orders == {"segment": due, "fem": 4}
+
+
+def test_times_on_a_beam_in_tension_are_earned_at_order_two():
+    scene = strip(beam=STRIP["beam"] | {"tension": 90.0, "loss_factor": 0.02})
+    found = found_of(scene, sets=("harmonic",), counts=(12, 24, 48, 96, 192))
+    (told,) = [one for one in found.sentences if one.methods == ("segments", "Hermite elements")]
+    assert told.earned
+    assert "observed orders 1." in told.text or "observed orders 2." in told.text
+
+
 # --- Sentences -----------------------------------------------------------------------------------------------------
 
 

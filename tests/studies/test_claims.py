@@ -243,7 +243,7 @@ def test_no_printed_word_of_the_code_names_a_paper():
 # --- Run times at equal error ----------------------------------------------------------------------------------------
 
 
-def rows(segment, fem, times=(1.0, 2.0, 4.0)):
+def rows(segment, fem, times=(1.0, 2.0, 4.0), due=4):
     """Work with the errors of both models at N = 20, 40, 80; elements take twice the time, and ten times the set-up."""
     made = []
     for model, errors, factor in (("segment", segment, 1.0), ("fem", fem, 2.0)):
@@ -265,7 +265,7 @@ def rows(segment, fem, times=(1.0, 2.0, 4.0)):
                 )
             )
             before = error
-    return Work(rows=tuple(made), step_floor=1e-7, duration=2e-3, n_runs=0)
+    return Work(rows=tuple(made), step_floor=1e-7, duration=2e-3, orders={"segment": due, "fem": 4}, n_runs=0)
 
 
 GOOD = (-0.16, -0.01, -0.000625)
@@ -281,6 +281,18 @@ def test_two_models_are_compared_at_one_error_loop_and_set_up_apart():
     words = answer_in_words(found)
     assert "take 2 times (spread 0 %) as long as segments in the loop" in words
     assert "5.1 times (spread 0 %) as long for the whole run of 2 ms, with a set-up of 50 and 5 ms" in words
+
+
+def test_segments_are_compared_at_the_order_that_is_due_on_the_beam():
+    """Two on steps, where no finer size would bring them to four."""
+    segment, fem = (-0.16, -0.04, -0.01), tuple(-e for e in GOOD)
+    found = at_equal_error(rows(segment, fem, due=2))
+    assert isinstance(found, Comparison)
+    assert found.error == pytest.approx(0.01)
+    assert "do not fall at order 4 but at 2.0, 2.0" in at_equal_error(rows(segment, fem)).why
+    assert "segments do not fall at order 2 but at 4.0, 4.0" in at_equal_error(rows(GOOD, fem, due=2)).why
+    nobody = at_equal_error(rows(GOOD, GOOD, due=None))
+    assert "nobody knows the order of the errors of segments" in nobody.why
 
 
 def shaken(work, **spreads):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
+from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
@@ -55,7 +55,7 @@ def field_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
         return run
 
     def entry(model: Model, count: int | None) -> Entry:
-        orders = (4.0, 4.0) if count else None
+        orders = orders_due(model, beam) if count else None
         return Entry(
             line=Line(name=model.title, model=model.name, orders=orders),
             size=1.0 / count if count else 0.0,

@@ -1,11 +1,15 @@
 """What is benched: a case, its methods at their sizes or steps, and what judges their answers. All plain values."""
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import msgspec
 
 from verify.options import BenchSet
+
+if TYPE_CHECKING:
+    from verify.beam import Beam
+    from verify.models.kind import Model
 
 Setting: TypeAlias = str | float | int
 Run: TypeAlias = Callable[[], "Told"]
@@ -58,6 +62,12 @@ class Line(msgspec.Struct, frozen=True, kw_only=True):
     refined: str = "N"
     """What is refined: N, step or tolerance."""
     settings: dict[str, Setting] = {}
+
+
+def orders_due(model: "Model", beam: "Beam", **settings: Setting) -> tuple[float, float] | None:
+    """Between which a model's errors fall on a beam, frequencies and motions alike; None where nobody says."""
+    order = model.order(beam, **settings)
+    return (float(order), float(order)) if order else None
 
 
 class Entry(msgspec.Struct, frozen=True, eq=False, kw_only=True):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
+from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.judge.compare import EIGENVALUE_FLOOR, ORDER_FLOOR, relative_error
@@ -67,9 +67,8 @@ def _pairs(lines: dict[str, None], variants: list[str]) -> tuple[tuple[str, str]
 
 
 def _line(beam: "Beam", one: Variant) -> Line:
-    order = one.order(beam)
-    orders = (float(order), float(order)) if order else None
-    return Line(name=one.title, model=one.model, orders=orders, settings=dict(one.settings))
+    how = dict(one.settings)
+    return Line(name=one.title, model=one.model, orders=orders_due(MODELS[one.model], beam, **how), settings=how)
 
 
 def _variant_entry(beam: "Beam", one: Variant, count: int, mode: int) -> Entry:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
+from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.exact.in_time import check_beam
@@ -12,7 +12,7 @@ from verify.models.catalogue import discrete
 from verify.models.eigen import solve_seconds
 from verify.models.kind import Model
 from verify.motion.stepping import slider_seconds
-from verify.studies.work_precision import ORDER, exact_way, run_once
+from verify.studies.work_precision import exact_way, run_once
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -59,7 +59,7 @@ def _entry(scene: "Scene", model: Model, count: int) -> Entry:
     steps = motion.duration * drive.frequency_hz * motion.steps_per_period
     loop = slider_seconds(steps, unknowns, two_way=False)
     return Entry(
-        line=Line(name=model.title, model=model.name, orders=(ORDER, ORDER)),
+        line=Line(name=model.title, model=model.name, orders=orders_due(model, scene.beam)),
         size=1.0 / count,
         count=count,
         estimate_s=loop + TABLES_S * unknowns + solve_seconds(unknowns, unknowns),

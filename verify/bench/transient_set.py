@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from verify.bench.field_set import forces_of, relative_rms
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
+from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.exact.in_time import check_beam
@@ -57,7 +57,7 @@ def _entry(scene: "Scene", its: Settled, model: Model, count: int | None) -> Ent
 
     unknowns = model.unknowns(scene.beam, count) if count else MODES
     return Entry(
-        line=Line(name=model.title, model=model.name, orders=(4.0, 4.0) if count else None),
+        line=Line(name=model.title, model=model.name, orders=orders_due(model, scene.beam) if count else None),
         size=1.0 / count if count else 0.0,
         count=count,
         estimate_s=TIME_S + TIME_PER_PART_S * unknowns + (solve_seconds(unknowns, unknowns) if count else 0.0),
