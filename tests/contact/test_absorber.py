@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from verify import Beam, PointForce, PointMass, analytic_modes, fem_beam, segment_model, travelling_wave
+from verify.device import of_impedance
 from verify.errors import InputError
-from verify.waves.absorber import beam_impedance, best_dashpot, matched_device, matched_impedance, reflection
+from verify.waves.absorber import beam_impedance, best_dashpot, ending, matched_device, matched_impedance, reflection
 from verify.waves.devices import field_with_devices
 
 SIZES = {"length": 0.9, "width": 0.031, "thickness": 0.0023, "youngs_modulus": 113e9, "density": 4470.0}
@@ -24,8 +25,8 @@ def solved(beam, hertz, d, impedance, support="pinned", turning=False):
     x = 0 at the device, the end at x = d; e^{+i omega t}, a wave from the left of size one.
     """
     omega = 2.0 * np.pi * hertz
-    k = (beam.mass_per_length * omega**2 / beam.bending_stiffness) ** 0.25
-    ei, z = beam.bending_stiffness, 1j * omega * impedance
+    ei, z = beam.bending_stiffness * (1.0 + 1j * beam.loss_factor), 1j * omega * impedance
+    k = (beam.mass_per_length * omega**2 / ei) ** 0.25
     a = np.zeros((6, 6), dtype=complex)  # r, n | A e^{-ikx}, B e^{ikx}, C e^{-kx}, D e^{k(x - d)}
     q = np.array([1j * k, k, -1j * k, 1j * k, -k, k])
     size = np.array([1, 1, 1, 1, 1, np.exp(-k * d)])
@@ -49,14 +50,15 @@ def solved(beam, hertz, d, impedance, support="pinned", turning=False):
     reactance=st.floats(-200.0, 200.0),
     support=st.sampled_from(list(ENDS)),
     turning=st.booleans(),
+    loss=st.sampled_from([0.0, 0.02, 0.3]),
 )
-def test_a_device_reflects_what_waves_say(hertz, d, resistance, reactance, support, turning):
-    """Against turning impedances of that size: EI k / omega beside EI k^3 / omega."""
-    omega = 2.0 * np.pi * hertz
+def test_a_device_reflects_what_waves_say(hertz, d, resistance, reactance, support, turning, loss):
+    """Against turning impedances of that size: EI k / omega beside EI k^3 / omega. With a loss factor k is complex."""
+    beam, omega = replace(STRIP, loss_factor=loss), 2.0 * np.pi * hertz
     k = (STRIP.mass_per_length * omega**2 / STRIP.bending_stiffness) ** 0.25
     impedance = complex(resistance, reactance) / (k**2 if turning else 1.0)
-    found = reflection(impedance, beam_impedance(STRIP, hertz, d, support, turning=turning))
-    assert found == pytest.approx(solved(STRIP, hertz, d, impedance, support, turning), abs=3e-7)
+    found = reflection(impedance, ending(beam, hertz, d, support, turning=turning))
+    assert found == pytest.approx(solved(beam, hertz, d, impedance, support, turning), abs=3e-7)
 
 
 def test_ends_that_are_known_by_heart():
@@ -71,16 +73,23 @@ def test_ends_that_are_known_by_heart():
     assert (across.stiffness, across.mass) == (pytest.approx(ei * k**3 / 2, rel=1e-12), 0.0)
     assert turning.rotational_dashpot == pytest.approx(ei * k / omega, rel=1e-12)
     assert (turning.rotary_inertia, turning.rotational) == (pytest.approx(ei * k / omega**2, rel=1e-12), 0.0)
-    for own in (beam_impedance(free, hertz, 0.0, "free"), beam_impedance(STRIP, hertz, 0.0, turning=True)):
-        assert best_dashpot(own)[1] == pytest.approx(np.sqrt(2) - 1, rel=1e-12)
+    for end in (ending(free, hertz, 0.0, "free"), ending(STRIP, hertz, 0.0, turning=True)):
+        assert best_dashpot(end)[1] == pytest.approx(np.sqrt(2) - 1, rel=1e-12)
 
 
-@given(hertz=st.floats(300.0, 9000.0), d=st.floats(2e-3, 0.1), s=st.floats(0.2, 5.0))
-def test_no_dashpot_alone_leaves_less_than_the_best(hertz, d, s):
-    own = beam_impedance(STRIP, hertz, d)
-    resistance, left = best_dashpot(own)
-    assert reflection(resistance + 0j, own) == pytest.approx(left, rel=1e-9)
-    assert reflection(s * resistance + 0j, own) >= left * (1 - 1e-9)
+@given(
+    hertz=st.floats(300.0, 9000.0),
+    d=st.floats(2e-3, 0.1),
+    s=st.floats(0.2, 5.0),
+    loss=st.sampled_from([0.0, 0.03, 0.4]),
+)
+def test_no_dashpot_alone_leaves_less_than_the_best(hertz, d, s, loss):
+    end = ending(replace(STRIP, loss_factor=loss), hertz, d)
+    resistance, left = best_dashpot(end)
+    assert reflection(resistance + 0j, end) == pytest.approx(left, rel=1e-9)
+    assert reflection((s * resistance or s) + 0j, end) >= left * (1 - 1e-9)
+    if not loss:
+        assert (resistance, left) == pytest.approx((abs(end.own), np.tan(0.5 * abs(np.angle(end.own)))), rel=1e-9)
 
 
 def test_the_closed_form_as_it_is_published():
@@ -91,6 +100,38 @@ def test_the_closed_form_as_it_is_published():
     mobility = omega / (STRIP.bending_stiffness * k**3)
     mobility *= 0.5 * np.sin(k * d) ** 2 - 0.25j * (1.0 - np.exp(-2 * k * d) - np.sin(2 * k * d))
     assert beam_impedance(STRIP, hertz, d) == pytest.approx(1.0 / mobility, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("support", "d", "turning"), [("pinned", 0.0171, False), ("free", 0.0, False), ("pinned", 0.0, True)]
+)
+@pytest.mark.parametrize("loss", [0.02, 0.1])
+def test_with_losses_a_device_takes_up_the_wave_and_the_conjugate_does_not(support, d, turning, loss):
+    """conj(Z_b) takes the most power and left 0.35 of the loss factor at a free end; nothing was told of it."""
+    beam = Beam(**SIZES, loss_factor=loss, supports=("clamped", support))
+    end = ending(beam, 3000.0, d, support, turning=turning)
+    own = beam_impedance(beam, 3000.0, d, support, turning=turning)
+    assert solved(beam, 3000.0, d, end.matched, support, turning) < 1e-7
+    left = solved(beam, 3000.0, d, own.conjugate(), support, turning)
+    assert left > 0.1 * loss
+    assert reflection(own.conjugate(), end) == pytest.approx(left, rel=1e-6)
+    if support == "free":
+        assert left == pytest.approx(0.354 * loss, rel=0.03)
+        assert end.matched == pytest.approx(1j * own * -1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(("ratio", "loss"), [(1.0, 0.1), (1.3, 0.02), (1.3, 0.1)])
+@pytest.mark.parametrize("turning", [False, True])
+def test_with_losses_the_exact_beam_has_the_reflection_at_the_device(ratio, loss, turning):
+    """What two waves fitted in the middle carry to the device, each by its complex wavenumber."""
+    beam, hertz, d = Beam(**SIZES, loss_factor=loss), 7000.0, 0.0171
+    end = ending(beam, hertz, d, turning=turning)
+    given = complex(ratio * end.own.real, -end.own.imag)
+    device = of_impedance(0.9 - d, given, 2.0 * np.pi * hertz, turning=turning)
+    field = field_with_devices(analytic_modes.solve_harmonic, beam, [PointForce(position=0.03)], hertz, [device])
+    waves = travelling_wave.measure(field, (0.3, 0.7), field.wavenumber).waves
+    there = waves.reflection * abs(np.exp(2j * waves.wavenumber * (0.9 - d - 0.5)))
+    assert there == pytest.approx(reflection(given, end), rel=1e-4)
 
 
 FREE = Beam(**SIZES, supports=("pinned", "free"))
@@ -122,10 +163,10 @@ def test_the_matched_device_knows_which_end_is_beyond_it(place, d):
 
 
 def test_a_resistance_off_by_a_factor_reflects_by_that_factor_alone():
-    own = beam_impedance(STRIP, 3000.0, 0.02)
+    end = ending(STRIP, 3000.0, 0.02)
     for s in (0.2, 0.9, 3.7):
-        device = complex(s * own.real, -own.imag)
-        assert reflection(device, own) == pytest.approx(abs(s - 1) / (s + 1), rel=1e-12)
+        device = complex(s * end.own.real, -end.own.imag)
+        assert reflection(device, end) == pytest.approx(abs(s - 1) / (s + 1), rel=1e-12)
 
 
 def test_a_device_on_a_support_is_refused_and_so_is_a_beam_that_is_not_uniform():

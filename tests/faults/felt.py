@@ -193,7 +193,7 @@ def ends_unsaid(patch):
 
 def a_dashpot_too_stiff(patch):
     true = absorber.best_dashpot
-    patch.setattr(absorber, "best_dashpot", lambda own: (1.1 * true(own)[0], true(own)[1]))
+    patch.setattr(absorber, "best_dashpot", lambda end: (1.1 * true(end)[0], true(end)[1]))
 
 
 def bends_of_no_shear(patch):

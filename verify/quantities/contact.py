@@ -15,6 +15,7 @@ from verify.quantities.kind import Arguments, AtFrequency, Quantity, Size
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
+    from verify.waves.absorber import Ending
 
 
 _WHOLE = "of the whole beam, driven by its other forces; half-infinite unless given"
@@ -136,27 +137,27 @@ def _restitution(a: Landing, scene: "Scene", bench: Workbench) -> float:
     return restitution(damping_ratio(a.mass, a.stiffness, a.damping))
 
 
-def _matched(a: Device, scene: "Scene", *, turning: bool = False) -> complex:
+def _ending(a: Device, scene: "Scene", *, turning: bool = False) -> "Ending":
     """Raises InputError off the beam, and on a support where a device does nothing."""
-    from verify.waves.absorber import matched_impedance
+    from verify.waves.absorber import ending
 
     if a.position >= scene.beam.length:
         raise InputError(f"position = {a.position!r} lies off the beam: give less than {scene.beam.length!r} m")
     hertz, support = drive_frequency(a, scene), scene.beam.supports[1]
-    return matched_impedance(scene.beam, hertz, a.position, support, turning=turning)
+    return ending(scene.beam, hertz, a.position, support, turning=turning)
 
 
 def _impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
-    return _matched(a, scene)
+    return _ending(a, scene).matched
 
 
 def _turning_impedance(a: Device, scene: "Scene", bench: Workbench) -> complex:
-    return _matched(a, scene, turning=True)
+    return _ending(a, scene, turning=True).matched
 
 
-def _device(a: Absorbing, scene: "Scene") -> complex:
-    """Its impedance, kg/s."""
-    matched, omega = _matched(a, scene, turning=a.turning), 2.0 * pi * drive_frequency(a, scene)
+def _device(a: Absorbing, scene: "Scene", matched: complex) -> complex:
+    """Its impedance, kg/s, where `matched` reflects nothing."""
+    omega = 2.0 * pi * drive_frequency(a, scene)
     if a.ratio is not None:
         return complex(a.ratio * matched.real, matched.imag)
     return complex(a.resistance or 0.0, omega * (a.mass or 0.0) - (a.stiffness or 0.0) / omega)
@@ -165,8 +166,9 @@ def _device(a: Absorbing, scene: "Scene") -> complex:
 def _reflection(a: Absorbing, scene: "Scene", bench: Workbench) -> float:
     from verify.waves.absorber import reflection
 
-    impedance, own = _device(a, scene), _matched(a, scene, turning=a.turning).conjugate()
-    return reflection(impedance, own) if a.model is None else _left_on_beam(a, scene, impedance)
+    end = _ending(a, scene, turning=a.turning)
+    impedance = _device(a, scene, end.matched)
+    return reflection(impedance, end) if a.model is None else _left_on_beam(a, scene, impedance)
 
 
 def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
@@ -195,13 +197,13 @@ def _left_on_beam(a: Absorbing, scene: "Scene", impedance: complex) -> float:
 
 def _needs_device(a: Device, scene: "Scene") -> tuple[()]:
     """Raise InputError where no device can stand."""
-    _matched(a, scene, turning=isinstance(a, Absorbing) and a.turning)
+    _ending(a, scene, turning=isinstance(a, Absorbing) and a.turning)
     return ()
 
 
 def _needs_turning(a: Device, scene: "Scene") -> tuple[()]:
     """The same against turning."""
-    _matched(a, scene, turning=True)
+    _ending(a, scene, turning=True)
     return ()
 
 
@@ -269,7 +271,7 @@ CONTACT_QUANTITIES: tuple[Quantity[Any], ...] = (
     Quantity(
         "wave.absorber_reflection",
         "1",
-        "Gamma that a device there leaves of a wave from the left: half-infinite beam, or a model's middle half.",
+        "Gamma that a device leaves of a wave from the left: there on a half-infinite beam, or a model's middle half.",
         Absorbing,
         "harmonic",
         _reflection,

@@ -133,14 +133,15 @@ def edges_error(phase: float) -> float:
 
 def absorbers_error(hertz: float) -> float:
     """Of what devices reflect: none where they match, least of all dashpots where the best one does."""
-    from verify.waves.absorber import beam_impedance, best_dashpot, matched_impedance, reflection
+    from verify.waves.absorber import best_dashpot, ending, matched_impedance, reflection
 
     worst = 0.0
     for support in ("pinned", "free"):
-        own = beam_impedance(STRIP, hertz, 0.031, support)
-        worst = max(worst, reflection(matched_impedance(STRIP, hertz, 0.031, support), own))
-        resistance, left = best_dashpot(own)
-        around = [abs(reflection(complex(resistance * part), own)) for part in (0.99, 1.0, 1.01)]
+        end = ending(STRIP, hertz, 0.031, support)
+        own = end.own
+        worst = max(worst, reflection(matched_impedance(STRIP, hertz, 0.031, support), end))
+        resistance, left = best_dashpot(end)
+        around = [abs(reflection(complex(resistance * part), end)) for part in (0.99, 1.0, 1.01)]
         exact = sqrt(((resistance - own.real) ** 2 + own.imag**2) / ((resistance + own.real) ** 2 + own.imag**2))
         worst = max(worst, abs(left - exact), abs(around[1] - exact), float(min(around) != around[1]))
     return worst
