@@ -5,9 +5,16 @@ import re
 import numpy as np
 import pytest
 
+from verify import load_scene
+from verify.judge.workbench import Workbench
 from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
 from verify.studies.axial_figures import axial_study
+from verify.studies.slider_figures import places_of
+from verify.studies.slider_movie import slider_movie
+from verify.studies.wave_charts import wave_charts
+from verify.studies.wave_figures import wave_study
+from verify.studies.work_precision import run_once
 
 STRIP = {
     "name": "captions",
@@ -43,3 +50,78 @@ def test_chains_are_told_to_lie_off_the_linear_one_by_what_was_found():
     assert [rigid, massless, stretching] == pytest.approx([off[n] for n in ("full", "transverse", "elastic")], rel=0.06)
     assert divided == pytest.approx(rms(lines["linear"] - lines["exact"]) / rms(lines["exact"]), rel=0.06)
     assert stretching > 1.15 * rigid
+
+
+SLIDER = {"mass": 2e-3, "mu": 0.05, "slope": 500.0, "position": 0.1, "coupling": "one-way"}
+
+
+def ride(speed):
+    """The words under a slider that starts along the strip with a speed, and its places."""
+    motion = {"duration": 0.01, "count": 20, "counts": [10, 20]}
+    scene = scene_of(slider=SLIDER | {"speed": speed}, motion=motion)
+    run = run_once(scene, "segment", 20, samples=400, at=places_of(scene, 20))
+    return slider_movie(Ran(run))[0].caption, run
+
+
+class Ran:
+    """A study by its one run."""
+
+    count = 20
+
+    def __init__(self, run):
+        self.subject = run
+
+
+def test_a_slider_that_goes_far_is_told_where_it_goes():
+    caption, run = ride(5.0)
+    low, high = map(float, re.search(r"between ([\d.]+) and ([\d.]+) mm", caption).groups())
+    assert (low, high) == pytest.approx((1e3 * run.position.min(), 1e3 * run.position.max()), rel=1e-3)
+    assert high - low == pytest.approx(50.0, rel=0.1)
+    assert "too little to be seen" not in caption
+
+
+def test_a_slider_that_hardly_moves_is_told_so():
+    caption, run = ride(0.0)
+    assert 0.0 < np.ptp(run.position) < 1e-4
+    assert "too little to be seen" in caption
+
+
+def waves(*overrides):
+    """Captions of the wave's charts by their ids, and the study."""
+    quick = ("wave.counts=[49,98]", "wave.frequency_hz=4200,4300,5", "wave.phase_deg=0,180,7")
+    scene = load_scene("paper-wave", (*quick, *overrides))
+    study = wave_study(scene, Workbench(scene.beam), scene.wave)
+    return {chart.id: chart.caption for chart in wave_charts(study)}, study
+
+
+@pytest.mark.parametrize("fibre", [0.0005, 0.02])
+def test_ellipses_are_as_flat_as_they_are(fibre):
+    """Of waves of 135.4 / m, by reflection wider and narrower: upright with half a millimetre, lying with 20."""
+    captions, study = waves(f"beam.extreme_fibre={fibre}")
+    ratios = [np.ptp(one.across) / np.ptp(one.up) for one in study.ellipses]
+    told = re.search(r"they are ([\d.]+)(?: to ([\d.]+))? times as wide as high", captions["wave-ellipses"])
+    low, high = float(told[1]), float(told[2] or told[1])
+    assert (low, high) == pytest.approx((min(ratios), max(ratios)), rel=5e-3)
+    assert np.sqrt(min(ratios) * max(ratios)) == pytest.approx(135.4 * fibre, rel=0.01)
+
+
+def test_models_are_told_to_lie_off_at_the_drive_and_at_their_best_by_what_was_found():
+    captions, study = waves()
+    exact, *others = study.rows
+    drive, best = map(float, re.findall(r"\d\.\de[+-]\d\d", captions["wave-sizes"]))
+    assert drive == pytest.approx(
+        max(abs(row.drive.standing_wave_ratio - exact.drive.standing_wave_ratio) for row in others), rel=0.06
+    )
+    assert best == pytest.approx(
+        max(abs(row.best.standing_wave_ratio - exact.best.standing_wave_ratio) for row in others), rel=0.06
+    )
+    assert ("errors of frequency" in captions["wave-sizes"]) is (best < 0.1 * drive)
+
+
+def test_models_that_are_as_far_off_at_their_best_are_not_called_wrong_in_frequency():
+    """Driven at a resonance's flank with much loss, a coarse chain has no wave that is nearly as pure."""
+    captions, study = waves("beam.loss_factor=0.2", "drive.frequency_hz=4200", "wave.counts=[32]")
+    exact, *others = study.rows
+    apart = [abs(row.drive.standing_wave_ratio - exact.drive.standing_wave_ratio) for row in others]
+    assert f"{max(apart):.1e}" in captions["wave-sizes"]
+    assert "spoil" not in captions["wave-sizes"]

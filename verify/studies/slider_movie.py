@@ -7,6 +7,7 @@ import numpy as np
 from verify.models.catalogue import bounding
 from verify.studies.chart import Axis, Chart, Line
 from verify.studies.charting import numbers
+from verify.words import metres_in_words
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
@@ -18,6 +19,8 @@ FRAMES = 96
 SLIDER, FRICTION = "#e8760c", "#d6427a"
 ARROW = 0.08
 """Length of the largest friction in the picture, of the beam's."""
+SEEN = 0.002
+"""Of the beam's length: a pixel or two of the picture."""
 
 
 def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
@@ -32,13 +35,24 @@ def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
             id="slider-moving",
             title=f"The ride, N = {study.count}",
             caption=f"Links straight from joint to joint. Pink: friction on the slider, {1e3 * largest:.3g} mN at its "
-            "longest. Along the beam the slider moves by too little to be seen; its way is charted above.",
+            f"longest. {_way_in_words(run)}",
             x=Axis("x, mm"),
             y=Axis("deflection, µm"),
             lines=_parts(run, kept, largest),
             frames=tuple(f"{1e3 * t:.3f} ms" for t in run.times[kept]),
             plays=True,
         ),
+    )
+
+
+def _way_in_words(run: "Motion") -> str:
+    """Where the slider goes along the beam, which is drawn to scale, and whether that can be seen."""
+    low, high = float(run.position.min()), float(run.position.max())
+    if high - low >= SEEN * float(run.points[-1]):
+        return f"Along the beam the slider stands between {1e3 * low:.4g} and {1e3 * high:.4g} mm, to scale."
+    return (
+        f"Along the beam the slider stands within {metres_in_words(high - low)}, too little to be seen; its way is "
+        "charted above."
     )
 
 
