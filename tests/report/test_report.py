@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
 
 from verify import run_scene
@@ -202,7 +203,7 @@ def test_the_report_of_a_wave_shows_envelopes_ellipses_map_and_the_motor_over_si
     assert lines == ["exact beam", "segments", "Hermite elements"]
     heat = charts["wave-map"]["map"]
     assert (len(heat["values"]), len(heat["values"][0])) == (91, 121)
-    assert "magnified" in wave_html
+    assert re.search(r"Drawn to scale they are 0.06\d+ to 0.07\d+ times as wide as high", wave_html)
     assert "The motor over sizes" in wave_html
     assert "Where to drive" in wave_html
 
@@ -393,6 +394,30 @@ def test_a_short_logarithmic_axis_has_several_ticks_and_zero_has_no_place_on_it(
     ticks = re.findall(r">(\d+)</text>", picture.svg)
     assert {"7", "10", "15"} <= set(ticks)
     assert 1e-8 < picture.y[0] < 1e-7
+
+
+@pytest.mark.parametrize("bars", [4, 14])
+def test_bars_of_long_names_keep_most_of_the_picture_and_their_ticks_stand_apart(bars):
+    from verify.report.drawing import WIDTH, drawn
+    from verify.studies.chart import Axis, Bars, Chart
+
+    names = tuple(f"division, segments, joints tensioned, attachment lever, {i}" for i in range(bars))
+    shown = Bars(names, (2e-14, *(3e-6,) * (bars - 2), 7e-3), ("#112233",) * bars, ("2.0e-14",) * bars)
+    picture = drawn(Chart(id="c", title="t", caption="", x=Axis("relative", log=True), y=Axis(""), bars=shown))
+    left, top, right, bottom = picture.box
+    assert right - left > 0.5 * WIDTH
+    assert bottom - top > 3 * 11.0 * bars  # three rows of words each
+    (low, high), said = picture.x, [power for power in range(-20, 3) if tick_of(power) in picture.svg]
+    places = [(left + (p - np.log10(low)) / np.log10(high / low) * (right - left)) for p in said]
+    assert len(said) >= 3
+    assert np.diff(places).min() > 30.0
+
+
+def tick_of(exponent):
+    """As a tick of a power of ten stands in a picture."""
+    from verify.report.drawing import power
+
+    return f">{power(10.0**exponent)}</text>"
 
 
 def test_shapes_are_those_of_the_scenes_theory():

@@ -1,26 +1,138 @@
-"""What captions of charts say is so on the scene at hand: under another load, law or surface they say something else."""
+"""Words under charts say what was found in this scene and no other."""
+
+import re
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify import load_scene
 from verify.attached import PointMass
+from verify.judge.workbench import Workbench
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.run.runner import run_scene, workbench_for
-from verify.run.tables import study_of
-from verify.scenes.scene import load_scene
-from verify.studies.axial_charts import _off
-from verify.studies.axial_figures import AxialFound, Departure, ForceRow
+from verify.scenes.checked import checked
+from verify.scenes.scene import scene_type
+from verify.slider import changed
+from verify.studies.axial_figures import axial_study
 from verify.studies.sensitivity import Sensitivity
 from verify.studies.sensitivity_figures import sensitivity
-from verify.studies.slider_movie import _way
+from verify.studies.slider_figures import places_of
+from verify.studies.slider_movie import slider_movie
+from verify.studies.wave_charts import wave_charts
+from verify.studies.wave_figures import wave_study
+from verify.studies.work_precision import run_once
 from verify.words import work_in_words
 
+STRIP = {
+    "name": "captions",
+    "title": "Pinned strip",
+    "beam": {"length": 0.4, "width": 0.015, "thickness": 0.0012, "youngs_modulus": 120e9, "density": 4400.0},
+    "drive": {
+        "frequency_hz": 900.0,
+        "force": [
+            {"position": 0.03, "amplitude": 3.0, "phase_deg": 20.0},
+            {"position": 0.35, "amplitude": 2.0, "phase_deg": 110.0},
+        ],
+    },
+}
 
-def charts_of(scene, study, *overrides):
-    """By their ids."""
-    found = study_of(load_scene(scene, overrides), study).run(lambda step: None)
-    return {chart.id: chart.caption for chart in found.charts()}
+
+def scene_of(**more):
+    return checked(STRIP | more, scene_type())
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def test_chains_are_told_to_lie_off_the_linear_one_by_what_was_found():
+    """Next to the resonance of axial waves links that stretch lie farther off than rigid ones."""
+    asked = {"count": 12, "forces": [10.0], "shown": 10.0, "duration": 2e-3}
+    scene = scene_of(axial_inertia=asked)
+    found = axial_study(scene, scene.axial_inertia)
+    caption = next(chart for chart in found.charts() if chart.id == "axial-models").caption
+    rigid, massless, stretching, divided = map(float, re.findall(r"\d\.\de[+-]\d\d", caption))
+    lines = {name: np.array(values) for name, values in found.lines.items()}
+    off = {name: rms(lines[name] - lines["linear"]) / rms(lines["linear"]) for name in lines}
+    assert [rigid, massless, stretching] == pytest.approx([off[n] for n in ("full", "transverse", "elastic")], rel=0.06)
+    assert divided == pytest.approx(rms(lines["linear"] - lines["exact"]) / rms(lines["exact"]), rel=0.06)
+    assert stretching > 1.15 * rigid
+
+
+SLIDER = {"mass": 2e-3, "mu": 0.05, "slope": 500.0, "position": 0.1, "coupling": "one-way"}
+
+
+def ride(speed):
+    """The words under a slider that starts along the strip with a speed, and its places."""
+    motion = {"duration": 0.01, "count": 20, "counts": [10, 20]}
+    scene = scene_of(slider=SLIDER | {"speed": speed}, motion=motion)
+    run = run_once(scene, "segment", 20, samples=400, at=places_of(scene, 20))
+    return slider_movie(Ran(run))[0].caption, run
+
+
+class Ran:
+    """A study by its one run."""
+
+    count = 20
+
+    def __init__(self, run):
+        self.subject = run
+
+
+def test_a_slider_that_goes_far_is_told_where_it_goes():
+    caption, run = ride(5.0)
+    low, high = map(float, re.search(r"between ([\d.]+) and ([\d.]+) mm", caption).groups())
+    assert (low, high) == pytest.approx((1e3 * run.position.min(), 1e3 * run.position.max()), rel=1e-3)
+    assert high - low == pytest.approx(50.0, rel=0.1)
+    assert "too little to be seen" not in caption
+
+
+def test_a_slider_that_hardly_moves_is_told_so():
+    caption, run = ride(0.0)
+    assert 0.0 < np.ptp(run.position) < 1e-4
+    assert "too little to be seen" in caption
+
+
+def waves(*overrides):
+    """Captions of the wave's charts by their ids, and the study."""
+    quick = ("wave.counts=[49,98]", "wave.frequency_hz=4200,4300,5", "wave.phase_deg=0,180,7")
+    scene = load_scene("paper-wave", (*quick, *overrides))
+    study = wave_study(scene, Workbench(scene.beam), scene.wave)
+    return {chart.id: chart.caption for chart in wave_charts(study)}, study
+
+
+@pytest.mark.parametrize("fibre", [0.0005, 0.02])
+def test_ellipses_are_as_flat_as_they_are(fibre):
+    """Of waves of 135.4 / m, by reflection wider and narrower: upright with half a millimetre, lying with 20."""
+    captions, study = waves(f"beam.extreme_fibre={fibre}")
+    ratios = [np.ptp(one.across) / np.ptp(one.up) for one in study.ellipses]
+    told = re.search(r"they are ([\d.]+)(?: to ([\d.]+))? times as wide as high", captions["wave-ellipses"])
+    low, high = float(told[1]), float(told[2] or told[1])
+    assert (low, high) == pytest.approx((min(ratios), max(ratios)), rel=5e-3)
+    assert np.sqrt(min(ratios) * max(ratios)) == pytest.approx(135.4 * fibre, rel=0.01)
+
+
+def test_models_are_told_to_lie_off_at_the_drive_and_at_their_best_by_what_was_found():
+    captions, study = waves()
+    exact, *others = study.rows
+    drive, best = map(float, re.findall(r"\d\.\de[+-]\d\d", captions["wave-sizes"]))
+    assert drive == pytest.approx(
+        max(abs(row.drive.standing_wave_ratio - exact.drive.standing_wave_ratio) for row in others), rel=0.06
+    )
+    assert best == pytest.approx(
+        max(abs(row.best.standing_wave_ratio - exact.best.standing_wave_ratio) for row in others), rel=0.06
+    )
+    assert ("errors of frequency" in captions["wave-sizes"]) is (best < 0.1 * drive)
+
+
+def test_models_that_are_as_far_off_at_their_best_are_not_called_wrong_in_frequency():
+    """Driven at a resonance's flank with much loss, a coarse chain has no wave that is nearly as pure."""
+    captions, study = waves("beam.loss_factor=0.2", "drive.frequency_hz=4200", "wave.counts=[32]")
+    exact, *others = study.rows
+    apart = [abs(row.drive.standing_wave_ratio - exact.drive.standing_wave_ratio) for row in others]
+    assert f"{max(apart):.1e}" in captions["wave-sizes"]
+    assert "spoil" not in captions["wave-sizes"]
 
 
 def test_modulus_and_density_move_a_bare_beam_by_half_and_a_laden_one_by_what_was_solved():
@@ -46,49 +158,10 @@ def test_modulus_and_density_move_a_bare_beam_by_half_and_a_laden_one_by_what_wa
 )
 def test_friction_is_said_to_hang_on_the_speed_between_slider_and_surface(law, said):
     scene = load_scene("paper-slider", ("motion.counts=[9, 13]", "motion.count=11", "motion.duration=6e-4"))
-    scene = replace(scene, gate=(), claim=(), readings=None, slider=replace(scene.slider, law=law))
+    scene = replace(scene, gate=(), claim=(), readings=None, slider=changed(scene.slider, law=law))
     caption = next(one.caption for one in run_scene(scene).found["motion"].charts() if one.id == "slider-force")
     assert said in caption
     assert "as soon as the surface moves" not in caption
-
-
-class Ride:
-    """A run by its places alone."""
-
-    points = np.linspace(0.0, 0.5, 50)
-
-    def __init__(self, *places):
-        self.position = np.array(places)
-
-
-def test_a_slider_that_goes_along_the_beam_is_not_said_to_stand():
-    assert _way(Ride(0.25, 0.2500002)).endswith("too little to be seen")
-    assert _way(Ride(0.1, 0.1999, 0.15)) == "Along the beam the slider moves over 99.9 mm"
-
-
-@pytest.mark.parametrize(("fibre", "slivers"), [(0.0005, True), (0.02, False)])
-def test_ellipses_that_lie_flat_are_no_slivers(fibre, slivers):
-    caption = charts_of("paper-wave", "wave", f"beam.extreme_fibre={fibre}")["wave-ellipses"]
-    assert ("slivers" in caption) == slivers
-    assert slivers or "times as wide as high" in caption
-
-
-def test_chains_are_told_how_far_they_lie_off_the_linear_one():
-    """Links that stretch may lie farther off than rigid ones."""
-    one = {"rms": 1e-4}
-    row = ForceRow(
-        force=10.0,
-        deflection_rms=1e-4,
-        size=1e-3,
-        linear=False,
-        full=Departure(at_end=1.24e-3, **one),
-        transverse=Departure(at_end=3e-5, **one),
-        elastic=Departure(at_end=2.3e-3, **one),
-        along=(1e-4, 2e-3),
-    )
-    found = AxialFound(rows=(row,), beside=(), times=(), lines={}, shown=10.0, count=20, duration=1e-3, x=0.1)
-    assert "rigid links 1.2e-03, without axial inertia 3.0e-05, links that stretch 2.3e-03" in _off(found)
-    assert _off(replace(found, shown=3.0)) == ""
 
 
 @pytest.mark.parametrize(

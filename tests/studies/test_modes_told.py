@@ -1,12 +1,14 @@
 """What the studies of modes say in words: against which theory a figure is, and why a column is empty."""
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import pytest
 
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench
+from verify.models.catalogue import MODELS
 from verify.scenes.scene import load_scene
+from verify.studies.charting import GREY, MEAN_COLOUR, OTHERS, PLATE, RAYLEIGH, TIMOSHENKO, other_line
 from verify.studies.convergence import Convergence
 from verify.studies.convergence_figures import Cell, ConvergenceFound, Row, _local_order, convergence
 from verify.studies.spectrum import Spectrum
@@ -117,6 +119,52 @@ def test_a_rule_that_is_refused_at_every_size_says_why_and_one_that_cannot_exist
     rules = convergence(Workbench(taut), Convergence(modes=(1,), counts=(15, 22))).tables()[-1]
     assert any(note.startswith("joints tensioned: ") and "leaves no stiffness" in note for note in rules.notes)
     assert "wall welded" not in [column.head for column in rules.columns]
+
+
+THEORIES = ("euler-bernoulli", "rayleigh", "timoshenko")
+
+
+def strokes(chart):
+    """Of every line with a name what it looks like."""
+    return {
+        one.name: (one.colour, one.dash, one.marker, all(one.hollow) and bool(one.hollow), one.width)
+        for one in chart.lines
+        if one.y
+    }
+
+
+def tube():
+    """A thick one with a body, so that walls, joints and attachments all tell."""
+    changes = ("beam.supports=clamped,free", "beam.mass=[{position=0.2, mass=0.3}]")
+    return Workbench(load_scene("thick-bar", changes).beam)
+
+
+def test_no_two_lines_of_a_chart_look_alike():
+    shown = spectrum(tube(), Spectrum(modes=3, count=13, theory=THEORIES, joints=("series", "tensioned"))).charts()
+    swept = Convergence(modes=(1,), counts=(9, 14), theory=THEORIES, joints=("series", "tensioned"))
+    charts = {chart.id: chart for chart in (*shown, *convergence(tube(), swept).charts())}
+    for name in ("mode-errors", "model-form", "convergence", "rules"):
+        looks = strokes(charts[name])
+        assert len(looks) >= 8
+        assert len(set(looks.values())) == len(looks), name
+
+
+def test_other_lines_look_unlike_each_other_when_colours_come_round_again():
+    lines = [other_line(i, f"{i}", (1.0, 2.0), (3.0, 1.0)) for i in range(4 * len(OTHERS))]
+    assert len({(one.colour, one.hollow, one.width) for one in lines}) == len(lines)
+    known = {model.colour for model in MODELS.values()} | {GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE}
+    assert not known & set(OTHERS)
+    rgb = [[int(one[i : i + 2], 16) for i in (1, 3, 5)] for one in (*known, *OTHERS)]
+    assert min(sum((a - b) ** 2 for a, b in zip(p, q, strict=True)) for p, q in combinations(rgb, 2)) > 30**2
+
+
+@pytest.mark.parametrize(("mode", "counts", "dips"), [(2, (12, 16, 20), True), (1, (5, 6), False)])
+def test_a_dip_is_explained_where_an_error_changes_its_sign(mode, counts, dips):
+    found = convergence(tube(), Convergence(modes=(mode,), counts=counts))
+    signs = [len({e > 0 for e in one.errors if e}) for one in found.rules]
+    assert (max(signs) > 1) is dips
+    chart = next(chart for chart in found.charts() if chart.id == "rules")
+    assert ("A dip is" in chart.caption) is dips
 
 
 STRIP = load_scene("free-free-bar").beam

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from verify.models.catalogue import MODELS
 from verify.models.naming import MEAN
 from verify.studies.chart import Axis, Chart, Line
-from verify.studies.charting import DASHES, MEAN_COLOUR, PALETTE, SYMBOLS, key, line
+from verify.studies.charting import DASHES, MEAN_COLOUR, SYMBOLS, key, line, other_line
 
 if TYPE_CHECKING:
     from verify.bench.found import BenchFound
@@ -60,23 +60,20 @@ def _style(i: int) -> dict[str, Any]:
 def _drawn(rows: "list[Row]", i: int, about: int, *, named: bool) -> Line:
     first = rows[0]
     by_error = sorted(rows, key=lambda row: -abs(row.error or 0.0))
-    return line(
-        first.method,
-        _colour(first, i),
-        [100.0 * abs(row.error or 0.0) for row in by_error],
-        [1e3 * (row.whole_s or 0.0) for row in by_error],
-        said=tuple(_told(row) for row in by_error),
-        keyed=named,
-        group=first.method,
-        **_style(about),
-    )
+    x = [100.0 * abs(row.error or 0.0) for row in by_error]
+    y = [1e3 * (row.whole_s or 0.0) for row in by_error]
+    said = tuple(_told(row) for row in by_error)
+    style: dict[str, Any] = {"said": said, "keyed": named, "group": first.method} | _style(about)
+    colour = _colour(first)
+    return line(first.method, colour, x, y, **style) if colour else other_line(i, first.method, x, y, **style)
 
 
-def _colour(row: "Row", i: int) -> str:
+def _colour(row: "Row") -> str:
+    """Of a mean and of a model as it is; none of a method that has none of its own."""
     if row.model == MEAN:
         return MEAN_COLOUR
     plain = not row.settings and row.model in MODELS
-    return MODELS[row.model].colour if plain else PALETTE[i % len(PALETTE)]
+    return MODELS[row.model].colour if plain else ""
 
 
 def _told(row: "Row") -> str:

@@ -2,7 +2,7 @@
 
 Rigid links cannot stretch, so that bending draws the tip in and takes the mass of the chain along: an inertia of
 relative size (kL)^2 <theta^2>, which grows with the square of the force, whatever the amplitude is in thicknesses.
-Links that stretch as the beam does (EA / l) keep a part of it.
+Links that stretch as the beam does (EA / l) have it too, less or more of it.
 """
 
 from math import ceil

@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from io import StringIO
 from math import floor, isfinite, log10, nan
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -28,6 +29,10 @@ CLOSEST = 27.0
 """Between two ticks that were chosen."""
 FEW, MANY = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
 """Times a power of ten: ticks of an axis that is short."""
+NAMED = 26
+"""Letters of a bar's name in a row; what is longer is broken, and the picture higher."""
+ROW = 13.0
+"""Height of a row of a bar's name, and of what stands below the bars."""
 SHORT = 0.2
 """Of all bars' span: words of a bar to the left that is shorter stand at its right, clear of the names."""
 _INK, _RULE, _PAPER = "#010203", "#010204", "#010205"
@@ -81,7 +86,7 @@ def drawn(chart: Chart) -> Drawing:
     from matplotlib.figure import Figure
 
     with mpl.rc_context(_SETTINGS | {"svg.hashsalt": chart.id}):
-        figure = Figure(figsize=(WIDTH / 72, HEIGHT / 72), dpi=72)
+        figure = Figure(figsize=(WIDTH / 72, _height(chart) / 72), dpi=72)
         FigureCanvasSVG(figure)
         axes = figure.add_axes((0.12, 0.15, 0.86, 0.83))
         if chart.map is not None:
@@ -166,10 +171,21 @@ def _gaps(values: Sequence[float | None]) -> list[float]:
     return [nan if value is None else value for value in values]
 
 
+def _height(chart: Chart) -> float:
+    """Of the picture: more where bars have names of several rows."""
+    rows = sum(name.count("\n") + 1.5 for name in _names(chart.bars)) if chart.bars is not None else 0.0
+    return max(HEIGHT, ROW * (rows + 4.0))
+
+
+def _names(bars: Bars) -> list[str]:
+    """Of bars, in rows that leave them the better part of the picture."""
+    return ["\n".join(wrap(name, NAMED)) for name in bars.names]
+
+
 def _bars(axes: "Axes", bars: Bars) -> None:
     places = range(len(bars.names))
     axes.barh(places, bars.values, color=bars.colours, height=0.72)
-    axes.set_yticks(places, bars.names, fontsize=FONT - 1)
+    axes.set_yticks(places, _names(bars), fontsize=FONT - 1)
     span = max(bars.values, default=0.0) - min(bars.values, default=0.0)
     for at, value, words in zip(places, bars.values, bars.words, strict=False):
         side = -1 if value < -SHORT * span else 1
@@ -276,15 +292,16 @@ def _settle(figure: "Figure", axes: "Axes") -> tuple[float, float, float, float]
     from matplotlib.backends.backend_svg import RendererSVG
 
     measuring: Any = RendererSVG
-    renderer = measuring(WIDTH, HEIGHT, StringIO())
+    height = 72.0 * float(figure.get_figheight())
+    renderer = measuring(WIDTH, height, StringIO())
     bars = [one for one in figure.axes if one is not axes]
     for _ in range(2 if axes.texts else 1):  # words at a bar's end go farther out as the axes shrink
         left, above, over, bottom, right = _margins(axes, bars, renderer)
-        wide, tall = (WIDTH - left - over) / WIDTH, (HEIGHT - bottom - above) / HEIGHT
-        axes.set_position((left / WIDTH, bottom / HEIGHT, wide, tall))
+        wide, tall = (WIDTH - left - over) / WIDTH, (height - bottom - above) / height
+        axes.set_position((left / WIDTH, bottom / height, wide, tall))
         for bar in bars:
-            bar.set_position(((WIDTH - right) / WIDTH, bottom / HEIGHT, 10.0 / WIDTH, tall))
-    return left, above, WIDTH - over, HEIGHT - bottom
+            bar.set_position(((WIDTH - right) / WIDTH, bottom / height, 10.0 / WIDTH, tall))
+    return left, above, WIDTH - over, height - bottom
 
 
 def _margins(axes: "Axes", bars: "list[Axes]", renderer: Any) -> tuple[float, float, float, float, float]:

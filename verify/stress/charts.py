@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from verify.stress.kind import Outcome, Points, exponent
 from verify.studies.chart import Axis, Bars, Chart, Line, Mark
-from verify.studies.charting import GREY, MEAN_COLOUR, PALETTE, line, plain_line
+from verify.studies.charting import GREY, MEAN_COLOUR, PALETTE, line, other_line, plain_line
 
 if TYPE_CHECKING:
     from verify.stress.figures import StressFound
@@ -85,11 +85,11 @@ def _textbook(name: str, colour: str, points: Points) -> Line:
 def _costs(unit: str, rows: list[Outcome]) -> Chart:
     lines: list[Line] = []
     for i, one in enumerate(rows):
-        colour = PALETTE[i % len(PALETTE)]
-        lines.append(line(f"{one.id}: N^{exponent(one.points):.2f}", colour, *zip(*one.points, strict=True)))
+        own = other_line(i, f"{one.id}: N^{exponent(one.points):.2f}", *zip(*one.points, strict=True))
+        lines.append(own)
         if one.beside_points:
             name = f"{one.textbook}: N^{exponent(one.beside_points):.2f}"
-            lines.append(_textbook(name, colour, one.beside_points))
+            lines.append(_textbook(name, own.colour, one.beside_points))
     what = "Memory" if unit == "MB" else "Time"
     return Chart(
         id=f"stress-{what.lower()}",

@@ -4,6 +4,8 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from msgspec.structs import replace
+
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Dash, Line, Marker, Numbers
 
@@ -14,7 +16,12 @@ GREY = "#8a8f98"
 MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE = "#2a9d5c", "#9b6bdf", "#d6427a", "#00a3a3"
 DASHES: tuple[Dash, ...] = ("solid", "dash", "dot", "dashdot", "longdash")
 PALETTE = ("#2a9d5c", "#d6427a", "#9b6bdf", "#b38a00", "#00a3a3", "#9a7450", "#6f7d8c")
-"""Of lines that are told from each other by nothing else."""
+"""Of a few lines that stand beside no model and no theory."""
+OTHERS = (
+    *("#a8a000", "#7a1fe8", "#7d6124", "#e01030", "#d418c4", "#3fbf1f"),
+    *("#e09482", "#18b4f0", "#9c2f22", "#cf93c2", "#9db578", "#1540d0"),
+)
+"""Of lines that stand beside models, theories and means, and are none of their colours."""
 SYMBOLS: tuple[Marker, ...] = ("circle", "square", "diamond", "triangle", "cross")
 BROAD = 4.0
 """Of a line that others lie on."""
@@ -39,6 +46,16 @@ def model_line(model: str, x: Iterable[Any], y: Iterable[Any], **more: Any) -> L
     """The line of a model, in its colour."""
     own = {"name": MODELS[model].title or MODELS[model].parts, "colour": MODELS[model].colour} | more
     return line(x=x, y=y, **own)
+
+
+def other_line(i: int, name: str, x: Iterable[Any], y: Iterable[Any], **more: Any) -> Line:
+    """The i-th of lines that are told from each other, from models and from theories by nothing but their strokes.
+
+    Where colours come round again markers are hollow, then strokes broad, then both.
+    """
+    turn, at = divmod(i, len(OTHERS))
+    own = line(name, OTHERS[at], x, y, **({"width": 3.2} if turn // 2 % 2 else {}) | more)
+    return replace(own, hollow=(True,) * len(own.x)) if turn % 2 else own
 
 
 def key(name: str, **style: Any) -> Line:

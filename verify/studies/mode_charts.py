@@ -1,6 +1,6 @@
 """Charts of modes: errors over mode number and size, the bracket, run time, material."""
 
-from itertools import groupby
+from itertools import groupby, pairwise
 from math import log, pi
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,6 @@ from verify.studies.charting import (
     DASHES,
     GREY,
     MEAN_COLOUR,
-    PALETTE,
     PLATE,
     RAYLEIGH,
     SYMBOLS,
@@ -25,6 +24,7 @@ from verify.studies.charting import (
     key,
     line,
     model_line,
+    other_line,
     percent,
     plain_line,
     sizes_axis,
@@ -69,12 +69,13 @@ def _variant_line(
     y: "Sequence[float | None]",
     **style: Any,
 ) -> Line:
-    """The line of a variant: its model's where there is one of it, else a colour of its own."""
+    """The line of a variant: its model's where it is the first of it, else one of its own."""
+    first = {variant.model: variant for variant in reversed(found.variants)}
+    others = [variant.label for variant in found.variants if variant != first[variant.model]]
     one = next(variant for variant in found.variants if variant.label == label)
-    kin = [variant for variant in found.variants if variant.model == one.model]
-    if len(kin) == 1 or kin[0] == one:
+    if label not in others:
         return model_line(one.model, x, y, name=one.title, **style)
-    return line(one.title, PALETTE[kin.index(one) % len(PALETTE)], x, y, **style)
+    return other_line(others.index(label), one.title, x, y, **style)
 
 
 def _rules(found: "ConvergenceFound") -> Chart:
@@ -82,18 +83,28 @@ def _rules(found: "ConvergenceFound") -> Chart:
     lines = []
     for i, one in enumerate(found.rules):
         y = percent(one.errors, size=True)
-        plain = line(one.variant.title, PALETTE[i % len(PALETTE)], one.counts, y)
-        lines.append(plain if one.variant.settings else model_line(one.variant.model, one.counts, y))
+        plain = not one.variant.settings
+        lines.append(
+            model_line(one.variant.model, one.counts, y) if plain else other_line(i, one.variant.title, one.counts, y)
+        )
     mode = found.rules[0].mode if found.rules else 0
     return Chart(
         id="rules",
         title=f"Every rule of the chain on this beam, mode {mode}",
-        caption="Walls, joints and attachments side by side. A dip is where an error changes its sign: after it the "
-        "error grows once more before it falls for good.",
+        caption="Walls, joints and attachments side by side." + (_DIP if _turns(found) else ""),
         x=sizes_axis("number of segments N", (n for one in found.rules for n in one.counts)),
         y=Axis("size of the frequency error, %", log=True),
         lines=tuple(lines),
     )
+
+
+_DIP = " A dip is where an error changes its sign, not where a rule is better."
+
+
+def _turns(found: "ConvergenceFound") -> bool:
+    """Whether the error of any rule has another sign at one size than at the one before."""
+    known = [[e for e in one.errors if e] for one in found.rules]
+    return any(a * b < 0.0 for errors in known for a, b in pairwise(errors))
 
 
 def _signed_errors(study: "SpectrumFound") -> Chart:

@@ -7,6 +7,7 @@ import numpy as np
 from verify.models.catalogue import bounding
 from verify.studies.chart import Axis, Chart, Line
 from verify.studies.charting import numbers
+from verify.words import metres_in_words
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
@@ -18,6 +19,8 @@ FRAMES = 96
 SLIDER, FRICTION = "#e8760c", "#d6427a"
 ARROW = 0.08
 """Length of the largest friction in the picture, of the beam's."""
+SEEN = 0.002
+"""Of the beam's length: a pixel or two of the picture."""
 
 
 def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
@@ -32,7 +35,7 @@ def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
             id="slider-moving",
             title=f"The ride, N = {study.count}",
             caption=f"Links straight from joint to joint. Pink: friction on the slider, {1e3 * largest:.3g} mN at its "
-            f"longest. {_way(run)}; its way is charted above.",
+            f"longest. {_way_in_words(run)}",
             x=Axis("x, mm"),
             y=Axis("deflection, µm"),
             lines=_parts(run, kept, largest),
@@ -42,16 +45,15 @@ def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
     )
 
 
-UNSEEN = 2e-3
-"""Of the beam's length: a shorter way is not seen."""
-
-
-def _way(run: "Motion") -> str:
-    """Whether the slider is seen to move along the beam."""
-    way = float(np.ptp(run.position))
-    if way < UNSEEN * float(run.points[-1] - run.points[0]):
-        return "Along the beam the slider moves by too little to be seen"
-    return f"Along the beam the slider moves over {1e3 * way:.3g} mm"
+def _way_in_words(run: "Motion") -> str:
+    """Where the slider goes along the beam, which is drawn to scale, and whether that can be seen."""
+    low, high = float(run.position.min()), float(run.position.max())
+    if high - low >= SEEN * float(run.points[-1]):
+        return f"Along the beam the slider stands between {1e3 * low:.4g} and {1e3 * high:.4g} mm, to scale."
+    return (
+        f"Along the beam the slider stands within {metres_in_words(high - low)}, too little to be seen; its way is "
+        "charted above."
+    )
 
 
 def _parts(run: "Motion", kept: "Array", largest: float) -> tuple[Line, ...]:

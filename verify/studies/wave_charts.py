@@ -11,6 +11,8 @@ from verify.studies.charting import BROAD, model_line, numbers, plain_line, size
 from verify.waves.operating_point import OFF
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from verify.studies.wave_figures import Ellipse, WaveFound
     from verify.waves.driven import Operation
     from verify.waves.operating_point import OperatingPoint
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
 _ELLIPSE, _POINT = "#2f80ed", "#e8760c"
 CLIPPED = 10.0
 """The largest standing-wave ratio that a map tells from larger ones."""
+TINY = 1e-300
+"""Metres: a point that does not rise at all is told as endlessly wide."""
+MOSTLY = 0.1
+"""Of a difference at the drive is left at the best frequency at most, where its frequency is called its cause."""
 
 
 def wave_charts(study: "WaveFound") -> tuple[Chart, ...]:
@@ -34,17 +40,6 @@ def magnification(ellipses: "tuple[Ellipse, ...]") -> float:
     return 0.42 * (ellipses[1].x - ellipses[0].x) / across
 
 
-SLIVER = 0.2
-"""Width over height up to which an ellipse is one."""
-
-
-def _drawn_to_scale(ratio: float) -> str:
-    """What ellipses so many times as wide as high look like."""
-    if ratio <= SLIVER:
-        return f"Drawn to scale they are slivers ({ratio:.3f} as wide as high)"
-    return f"They are {ratio:.3f} times as wide as high"
-
-
 def _damping(study: "WaveFound") -> str:
     return "Undamped. " if study.undamped else "With the beam's loss factor. "
 
@@ -55,8 +50,8 @@ def _envelopes(study: "WaveFound") -> Chart:
     return Chart(
         id="wave-envelopes",
         title=f"Envelope of the wave, N = {study.count}",
-        caption=_damping(study) + "A pure travelling wave has a flat envelope; ripples are reflection. Near the ends "
-        "the standing wave of each actuator remains.",
+        caption=_damping(study) + "On one section without losses a pure travelling wave has a flat envelope; "
+        "ripples are reflection. Next to forces and ends there is a part that decays.",
         x=Axis("x, mm"),
         y=Axis("amplitude, µm"),
         lines=tuple(_envelope(model, x, [1e6 * v for v in values]) for model, values in broad_first),
@@ -70,19 +65,24 @@ def _envelope(name: str, x: list[float], y: list[float]) -> Line:
 
 def _ellipses(study: "WaveFound") -> Chart:
     """Paths of surface points, drawn where they are; across enlarged against up, and saying so."""
-    across = max(max(map(abs, e.across)) for e in study.ellipses)
-    up = max(max(map(abs, e.up)) for e in study.ellipses)
     magnified = magnification(study.ellipses)
-    ratio = across / up
+    wide = [float(np.ptp(e.across) / max(np.ptp(e.up), TINY)) for e in study.ellipses]
     return Chart(
         id="wave-ellipses",
         title="Surface ellipses along the beam, exact field",
-        caption=f"{_drawn_to_scale(ratio)}: motion along the beam is magnified "
-        f"{magnified:.2g} times, across it the axis has its own scale. Dots: where each point is at t = 0.",
+        caption=f"Drawn to scale they are {_from_to(wide)} times as wide as high. Here motion along the beam is drawn "
+        f"{magnified:.2g} times as large, and across it the axis has its own scale. Dots: where each point is at "
+        "t = 0.",
         x=Axis("x, mm"),
         y=Axis("up, µm"),
         lines=tuple(one for e in study.ellipses for one in _path(e, magnified)),
     )
+
+
+def _from_to(values: list[float]) -> str:
+    """The least and the largest to three digits, or the one where they are alike."""
+    low, high = f"{min(values):.3g}", f"{max(values):.3g}"
+    return low if low == high else f"{low} to {high}"
 
 
 def _path(one: "Ellipse", magnified: float) -> tuple[Line, Line]:
@@ -184,16 +184,25 @@ def _sizes(study: "WaveFound") -> Chart:
 
 
 def _best_told(study: "WaveFound") -> str:
-    """What an error of frequency does; of a best frequency only where there is one."""
+    """How far models lie off at the drive and each at its best frequency; what that says of the cause, if it does."""
     from verify.studies.wave_figures import OffSearch
 
-    fixed = "A small error of frequency spoils the wave at a fixed drive"
+    exact, sized = study.rows[0], [row for row in study.rows if row.count]
+    drives = _largest([_apart(row.drive, exact.drive) for row in sized])
+    bests = _largest([_apart(row.known_best, exact.known_best) for row in sized])
+    told = [] if drives is None else [f"Models lie up to {drives:.1e} off at the drive's frequency"]
+    told += [] if bests is None else [f"up to {bests:.1e} each at its own best"]
+    cause = drives is not None and bests is not None and bests < MOSTLY * drives
+    words = ", ".join(told) + (": at the drive it is errors of frequency that spoil the wave." if cause else ".")
     off = sum(isinstance(row.best, OffSearch) for row in study.rows)
     if not off:
-        return (
-            f"{fixed}; driven at its own best frequency a coarse model carries nearly as pure a wave as the exact beam."
-        )
-    return f"{fixed}. Of {off} of {len(study.rows)} models no best frequency is known: the reflection falls {OFF}."
+        return words
+    return f"{words} Of {off} of {len(study.rows)} models no best frequency is known: the reflection falls {OFF}."
+
+
+def _largest(apart: "Sequence[float | None]") -> float | None:
+    """Of what is known and finite."""
+    return max((one for one in apart if one is not None and np.isfinite(one)), default=None)
 
 
 def _apart(one: "Operation | None", other: "Operation | None") -> float | None:

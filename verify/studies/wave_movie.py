@@ -29,7 +29,7 @@ def wave_movie(snapshots: "dict[str, Snapshot]", ellipses: "tuple[Ellipse, ...]"
         id="wave-moving",
         title=f"The wave over one period, N = {count}",
         caption="Links of the chain are drawn straight from joint to joint, elements by their ends. Pink: points of "
-        "the surface, whose motion along the beam is magnified as in the ellipses.",
+        "the surface, whose motion along the beam is drawn as large as in the ellipses.",
         x=Axis("x, mm"),
         y=Axis("deflection, µm"),
         lines=(*(_beam(name, snapshots[name]) for name in order), _surface(ellipses)),
