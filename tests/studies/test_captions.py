@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from packaged import last_of_each
 
 from verify import load_scene
 from verify.attached import PointMass
@@ -97,7 +98,7 @@ def test_a_slider_that_hardly_moves_is_told_so():
 def waves(*overrides):
     """Captions of the wave's charts by their ids, and the study."""
     quick = ("wave.counts=[49,98]", "wave.frequency_hz=4200,4300,5", "wave.phase_deg=0,180,7")
-    scene = load_scene("paper-wave", (*quick, *overrides))
+    scene = load_scene("paper-wave", last_of_each(*quick, *overrides))
     study = wave_study(scene, Workbench(scene.beam), scene.wave)
     return {chart.id: chart.caption for chart in wave_charts(study)}, study
 
