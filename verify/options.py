@@ -72,7 +72,8 @@ Face = Literal["upper", "lower"]
 """Of the beam, on which a foot is pressed. upper: from above, weight and preload together. lower: from below."""
 
 Start = Literal["rest", "steady"]
-"""How a beam stands when its motion begins. rest: straight and still. steady: in the steady state of its drive."""
+"""How a beam stands when its motion begins. rest: still, and straight but for the sag under a slider held on it.
+steady: in the steady state of its drive."""
 
 DriveKind = Literal["force", "displacement"]
 """What a drive imposes. force: newtons. displacement: metres, by the forces that it takes."""

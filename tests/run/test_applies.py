@@ -9,7 +9,7 @@ from verify.judge.workbench import Workbench
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate, quantity
 from verify.quantities.kind import WHAT_EXISTS
 from verify.report.plain import run_as_plain
-from verify.run.applies import LONGEST, not_applicable, report_name
+from verify.run.applies import LONGEST, not_applicable, report_name, that_change
 from verify.run.plan import plan_scene
 from verify.run.runner import run_scene, workbench_for
 from verify.scenes.scene import load_scene
@@ -128,3 +128,15 @@ def test_a_long_name_of_a_report_stays_short_and_its_own():
     names = [report_name(scene, (f"beam.supports={'pinned,' * 60}{end}",)) for end in ("free", "guided")]
     assert max(map(len, names)) <= LONGEST
     assert names[0] != names[1]
+
+
+def test_a_beam_of_its_own_length_is_no_other_beam():
+    """`--set beam.length=0.5` of a scene whose beam is 0.5 m long set every gate aside, and a run ended with none."""
+    own, other = "beam.length=0.5", "beam.thickness=0.0013"
+    assert that_change("paper", (own, "drive.frequency_hz=4276.0", other)) == (other,)
+    assert that_change("paper", ("gate.fem-order.expect=4.0", own)) == ("gate.fem-order.expect=4.0",)
+    assert that_change("paper", ("beam.supports=['pinned', 'pinned']", "beam.length=0.51")) == ("beam.length=0.51",)
+    gates = load_scene("paper").gate
+    scene = replace(load_scene("paper").bare, gate=tuple(one for one in gates if one.id == "drive-distance"))
+    (judged,) = run_scene(scene, overrides=that_change("paper", (own,))).gates
+    assert judged.applicable

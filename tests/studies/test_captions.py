@@ -9,6 +9,7 @@ from packaged import last_of_each
 
 from verify import load_scene
 from verify.attached import PointMass
+from verify.errors import WindowError
 from verify.judge.workbench import Workbench
 from verify.quantities.catalogue import QUANTITIES, arguments_of, evaluate
 from verify.run.runner import run_scene, workbench_for
@@ -179,3 +180,12 @@ def test_an_equilibrium_of_the_nonlinear_chain_is_no_closed_form(quantity, told)
     gate = next(one for one in scene.gate if one.quantity == quantity)
     evaluate(kind, arguments_of(kind, gate.arguments), scene, bench)
     assert work_in_words(len(bench.solves), bench.n_fields, bench.n_motions, bench.others) == told
+
+
+def test_a_wave_study_names_a_remedy_that_it_has():
+    """It reads the middle half of the beam, and has no window to choose."""
+    stepped = ["beam.section=[{length=0.33}, {length=0.17, thickness=0.002}]"]
+    with pytest.raises(
+        WindowError, match=r"leave \[wave\] out, and ask for figures by gates with a window of their own"
+    ):
+        run_scene(replace(load_scene("paper-wave", tuple(stepped)), gate=(), claim=()))

@@ -222,7 +222,12 @@ def test_the_study_tells_its_charts_and_what_it_takes_home():
         "envelopes",
     ]
     assert not any(chart.empty for chart in charts)
-    assert STRANGER.in_short().startswith("The reflection at 1730 Hz is 0 with the device and ")
+    start, end = STRANGER.places
+    place = 1e3 * (start + (end - start) / 4)
+    assert any(f"Read at {place:g} mm" in chart.caption for chart in charts)
+    assert any(f"read at {place:g} mm" in fact for fact in STRANGER.facts())
+    assert any(f"are read at {place:g} mm" in note for table in STRANGER.tables() for note in table.notes)
+    assert STRANGER.in_short().startswith(f"The reflection at 1730 Hz, read at {place:g} mm, is 0 with the")
     assert "37 Hz below it is " in STRANGER.in_short()
 
 

@@ -23,10 +23,11 @@ def plan(scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
 
     Example: `verify plan paper`
     """
+    from verify.run.applies import that_change
     from verify.run.plan import plan_scene
 
     asked = load(scene, overrides)
-    planned = plan_scene(asked, overrides)
+    planned = plan_scene(asked, that_change(scene, overrides))
     if as_json:
         import msgspec
 

@@ -60,11 +60,12 @@ def run(
 def _run_one(scene: str, overrides: tuple[str, ...], folder: Path | None, most: int, as_json: bool) -> None:
     """One scene, and what it says in full."""
     from verify.files import writable_folder
-    from verify.run.applies import report_name
+    from verify.run.applies import report_name, that_change
     from verify.run.runner import n_steps, run_scene
 
     asked = load(scene, overrides)
-    name = report_name(asked, overrides)
+    changes = that_change(scene, overrides)
+    name = report_name(asked, changes)
     if folder is not None:
         writable_folder(folder, "reports")
         if most:
@@ -72,7 +73,7 @@ def _run_one(scene: str, overrides: tuple[str, ...], folder: Path | None, most: 
 
             folder_for(folder, name)
     with progress(n_steps(asked), quiet=as_json) as step:
-        result = run_scene(asked, step, overrides)
+        result = run_scene(asked, step, changes)
     written = None
     if folder is not None:
         from verify.report.kept import keep

@@ -135,7 +135,7 @@ def _loaded(
     """Every scene once, in order: loaded, or why it cannot be. Two whose reports had one name are not both run."""
     from verify.cores import jobs
     from verify.report.suite import PAGE
-    from verify.run.applies import report_name
+    from verify.run.applies import report_name, that_change
     from verify.run.runner import n_steps
 
     taken = {PAGE.removesuffix(".html"): "the page of all scenes"}
@@ -143,7 +143,7 @@ def _loaded(
     for given in dict.fromkeys(names):
         try:
             scene = load(given, overrides)
-            name = report_name(scene, overrides)
+            name = report_name(scene, that_change(given, overrides))
             if (other := taken.setdefault(name.casefold(), f"that of {given}")) != f"that of {given}":
                 raise InputError(
                     f"name = {scene.name!r}: its report would take the place of {other}: give the scene another name"
@@ -219,9 +219,10 @@ def _ran(asked: Asked, say: Callable[[str], None]) -> Ran:
     from verify.report.kept import keep
     from verify.report.plain import run_as_plain
     from verify.report.suite import card_of
+    from verify.run.applies import that_change
     from verify.run.runner import run_scene
 
-    result = run_scene(asked.scene, say, asked.overrides)
+    result = run_scene(asked.scene, say, that_change(asked.given, asked.overrides))
     written = None
     if asked.folder is not None:
         line = command_line("run", (asked.given,), asked.overrides)

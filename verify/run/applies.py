@@ -10,6 +10,8 @@ from verify.quantities.catalogue import quantity
 from verify.quantities.kind import WHAT_EXISTS
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from verify.scenes.scene import Gate, Scene
 
 LONGEST = 180
@@ -21,6 +23,22 @@ def keys_set(overrides: tuple[str, ...]) -> tuple[str, ...]:
     """The keys of what `--set` changes of what exists: 'beam.length'."""
     keys = (text.partition("=")[0].strip() for text in overrides)
     return tuple(dict.fromkeys(key for key in keys if key.split(".")[0] in WHAT_EXISTS))
+
+
+def that_change(name_or_path: "str | Path", overrides: tuple[str, ...]) -> tuple[str, ...]:
+    """Overrides without those that set anew what a scene has anyway: a beam of the same length is no other beam."""
+    from verify.scenes.scene import load_scene
+
+    def alone(*given: str) -> "Scene | None":
+        try:
+            return load_scene(name_or_path, given)
+        except InputError:
+            return None
+
+    about = [text for text in overrides if keys_set((text,))]
+    own = alone() if about else None
+    idle = {text for text in about if own is not None and alone(text) == own}
+    return tuple(text for text in overrides if text not in idle)
 
 
 def not_applicable(scene: "Scene", overrides: tuple[str, ...]) -> dict[str, str]:

@@ -11,7 +11,7 @@ import msgspec
 from verify.errors import InputError
 from verify.judge.workbench import Solve, Workbench
 from verify.models.ahead import compiled_ahead
-from verify.run.applies import applicable, not_applicable
+from verify.run.applies import applicable, not_applicable, that_change
 from verify.run.asks import Ask, asks_of, studies_in_turn
 from verify.run.gates import GateResult, judge, set_aside
 from verify.run.kernels_asked import kernels_of, ready_first
@@ -71,6 +71,7 @@ def run_scene(
     InputError where the scene is wrong; a gate that fails or cannot be evaluated is in the result.
     """
     asked_scene = scene if isinstance(scene, Scene) else load_scene(scene, overrides)
+    overrides = overrides if isinstance(scene, Scene) else that_change(scene, overrides)
     start = perf_counter()
     aside = not_applicable(asked_scene, overrides)
     applying = applicable(asked_scene, overrides)

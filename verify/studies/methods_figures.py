@@ -222,6 +222,12 @@ class MethodsFound(Found, frozen=True, eq=False, kw_only=True):
     damping: str
     count: int
 
+    @property
+    def read_at(self) -> float:
+        """Metres: where reflections are read without a load, halfway from the force to the middle of both."""
+        start, end = self.places
+        return 0.75 * start + 0.25 * end
+
     def in_short(self) -> str:
         """The first of the facts."""
         from verify.studies.methods_told import short

@@ -26,7 +26,10 @@ def short(found: "MethodsFound") -> str:
     if not (driven.device and driven.forces):
         return ""
     device, forces = driven.device.reflection, driven.forces.reflection
-    at = f"The reflection at {found.hertz:g} Hz is {device:.2g} with the device and {forces:.2g} with two forces"
+    at = (
+        f"The reflection at {found.hertz:g} Hz, read at {1e3 * found.read_at:g} mm, is {device:.2g} with the device "
+        f"and {forces:.2g} with two forces"
+    )
     sides = [
         f"{row.what} it is {row.device.reflection:.2g} and {row.forces.reflection:.2g}"
         for row in off
@@ -44,7 +47,7 @@ def _frequency(found: "MethodsFound") -> Iterator[str]:
     """Which way bears the span better, where one does."""
     device, forces = (worst(found.frequencies, way) for way in WAYS)
     n, span = len(found.frequencies), f"within {found.span_hz:g} Hz of {found.hertz:g} Hz"
-    span = f"{span}, {n} frequencies, {found.damping}, nothing retuned"
+    span = f"{span}, {n} frequencies, {found.damping}, read at {1e3 * found.read_at:g} mm, nothing retuned"
     if device is None or forces is None:
         yield f"{span}: a frequency is a resonance of the undamped beam under two forces, where nothing is compared"
         return
@@ -156,7 +159,8 @@ def _beside(found: "MethodsFound") -> Table:
         ),
         rows=tuple(rows),
         notes=(
-            f"E{condition(found)[1:]}. Nothing is retuned. Power into the beam: of the force, and of device or second "
+            f"E{condition(found)[1:]}; reflections and waves are read at {1e3 * found.read_at:g} mm: with losses they "
+            "hang on the place. Nothing is retuned. Power into the beam: of the force, and of device or second "
             "force.",
             *([f"Slider {found.slider}."] if found.slider else []),
         ),

@@ -128,8 +128,9 @@ def _books(study: "SliderFound") -> tuple[Chart, ...]:
         Chart(
             id="slider-books",
             title=f"Where the energy went, N = {study.count}",
-            caption="From the start of the run to its end, segments. What the books miss is quadrature over a step; "
-            f"under one-way coupling the beam is not charged with friction: {_how(study)}.",
+            caption="From the start of the run to its end, segments; kinetic and elastic are what is in the beam at "
+            "the end, a sag under the slider that it had from the start with it. What the books miss is quadrature "
+            f"over a step; under one-way coupling the beam is not charged with friction: {_how(study)}.",
             x=Axis("energy, µJ"),
             y=Axis(""),
             bars=bars,

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 
 from verify.checks import Relative, check_number
-from verify.errors import InputError
+from verify.errors import InputError, WindowError
 from verify.models.catalogue import MODELS, discrete
 from verify.models.naming import Among, model_meta
 from verify.studies.convergence import Counts
@@ -83,7 +83,13 @@ class WaveStudy(Study[Wave, "WaveFound"]):
         assert scene.drive is not None
         MODELS["analytic"].check(scene.beam, 1, 0)
         places = [force.position for force in scene.forces]
-        check_window(scene.beam, places, scene.drive.frequency_hz, middle_half(scene.beam))
+        try:
+            check_window(scene.beam, places, scene.drive.frequency_hz, middle_half(scene.beam))
+        except WindowError as error:
+            raise WindowError(
+                f"wave reads the middle half of the beam, which does not suit it ({error}): leave [wave] out, and ask "
+                "for figures by gates with a window of their own"
+            ) from None
         bare = msgspec.structs.replace(scene.beam, mass=(), spring=())
         for model in discrete("solve_harmonic", scene.beam) if bare.uniform else ():
             for count in asked.counts:
@@ -109,4 +115,5 @@ class WaveStudy(Study[Wave, "WaveFound"]):
         """See `wave_study`."""
         from verify.studies.wave_figures import wave_study
 
+        self.check_run(asked, scene)
         return wave_study(scene, bench, asked, step)
