@@ -72,6 +72,52 @@ def test_a_gate_that_fails_now_is_told_first_and_is_the_status(kept, capsys):
     assert "1 verdict changed, none from pass to FAIL" in out
 
 
+CLAIMED = """
+[[claim]]
+id = "c1"
+source = "a table, row 2"
+quantity = "mode.frequency"
+arguments = { model = "analytic", mode = 2 }
+value = 49.9
+read = "stated"
+tolerance = 0.3
+[[claim]]
+id = "c2"
+source = "a table, row 3"
+quantity = "mode.frequency"
+arguments = { model = "analytic", mode = 3 }
+value = 113.0
+read = "stated"
+tolerance = 0.2
+"""
+
+
+def test_a_claim_that_held_and_fails_now_is_told_and_so_is_one_that_holds_again(kept, capsys, tmp_path):
+    """They are shown and not judged: the status is that of gates. One with the verdict that it had is not told."""
+    (tmp_path / "claimed.toml").write_text(DRAWN + CLAIMED)
+    before = kept(scene="claimed.toml")
+    stiffer = "beam.youngs_modulus=73e9"
+    after = kept(stiffer, "gate.second.expect=50.59834", scene="claimed.toml")
+    status, out = told(capsys, before, after)
+    assert status == 0
+    assert "holds c1," in out
+    assert "fails c1," in out
+    assert " c2," not in out
+    status, out = told(capsys, before, after, "--json")
+    claims = [one for one in json.loads(out)["scenes"][0]["said"] if one["what"] == "claims"]
+    assert [one["before"][:8] + one["after"][:8] for one in claims] == ["holds c1fails c1"]
+    assert "found +49.9 Hz" in claims[0]["before"]
+    assert "found +50.598 Hz" in claims[0]["after"]
+    _, out = told(capsys, after, before, "--json")
+    (back,) = [one for one in json.loads(out)["scenes"][0]["said"] if one["what"] == "claims"]
+    assert (back["before"][:8], back["after"][:8]) == ("fails c1", "holds c1")
+    _, out = told(capsys, before, kept(scene="claimed.toml"), "--json")
+    assert not json.loads(out)["scenes"][0]["said"]
+    _, out = told(capsys, kept(), before, "--json")
+    new = {one["after"][:8]: one["before"] for one in json.loads(out)["scenes"][0]["said"] if one["what"] == "claims"}
+    assert new == {"holds c1": None, "fails c2": None}
+
+
 def test_figures_in_which_verdicts_do_not_differ_are_told_with_their_difference(kept, capsys):
     status, out = told(capsys, kept(), kept("beam.length=0.610001", "gate.second.expect=49.90025"), "--json")
     (scene,) = json.loads(out)["scenes"]

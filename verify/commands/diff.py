@@ -15,7 +15,7 @@ BROKEN = 1
 @click.option("--to", "target", metavar="FILE.html", help="Write a page as well.")
 @json_alone
 def diff(before: str, after: str, target: str | None, as_json: bool) -> None:
-    """Say what changed from A to B: gates first, then what is said, versions, inputs.
+    """Say what changed from A to B: gates first, then claims and what is said, versions, inputs.
 
     Each is a run.json, the folder of a run, a folder of runs (its newest is taken) or a folder of reports (the newest
     of every name). Exit 1 where a gate that was held in A fails in B, whatever else changed.

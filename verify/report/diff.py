@@ -8,11 +8,12 @@ import msgspec
 from verify.report.document import Document
 from verify.report.kept import Kept
 from verify.run.gates import GateResult
-from verify.words import figure, number, seconds_in_words
+from verify.words import VERDICTS, figure, number, seconds_in_words
 
 WORDS = {True: "pass", False: "FAIL", None: "n/a"}
 """Verdicts of gates."""
 ABSENT = "–"
+_VERDICTS = set(VERDICTS.values())
 
 
 class GateChange(msgspec.Struct, frozen=True, kw_only=True):
@@ -73,7 +74,7 @@ class Difference(msgspec.Struct, frozen=True, kw_only=True):
     same: int
     """Gates of which nothing changed."""
     said: tuple[Change, ...]
-    """Answers and facts; one that stands in another's place beside it."""
+    """What holds and did not or the other way, answers and facts; one that stands in another's place beside it."""
     versions: tuple[Change, ...]
     inputs: tuple[Change, ...]
 
@@ -146,7 +147,7 @@ def difference(name: str, before: Document, after: Document) -> Difference:
         seconds=(before.seconds, after.seconds),
         gates=tuple(sorted(gates, key=lambda gate: (not gate.broken, gate.same_verdict))),
         same=len({gate.id for gate in (*before.gates, *after.gates)}) - len(gates),
-        said=(*_lines("answer", before.answers, after.answers), *_facts(before, after)),
+        said=(*_held(before, after), *_lines("answer", before.answers, after.answers), *_facts(before, after)),
         versions=tuple(_values(before.environment, after.environment)),
         inputs=tuple(_values(_inputs(before.problem.toml), _inputs(after.problem.toml))),
     )
@@ -163,6 +164,31 @@ def _gates(before: Iterable[GateResult], after: Iterable[GateResult]) -> Iterato
 
 def _judged(gate: GateResult) -> tuple[Any, ...]:
     return gate.passed, gate.measured, gate.expected, gate.share
+
+
+def _held(before: Document, after: Document) -> Iterator[Change]:
+    """Rows that hold or fail, as claims do, and have another verdict than before; None where a run has no such row."""
+    old, new = _judged_rows(before), _judged_rows(after)
+    for what, name in dict.fromkeys((*old, *new)):
+        one, other = old.get((what, name)), new.get((what, name))
+        if (one and one[0]) != (other and other[0]):
+            yield Change(what, *(f"{told[0]} {name}{told[1]}" if told else None for told in (one, other)))
+
+
+def _judged_rows(document: Document) -> dict[tuple[str, str], tuple[str, str]]:
+    """Rows that begin with a verdict, by their study and name: the verdict, and their figures by their heads."""
+    found = {}
+    for section in document.sections:
+        for table in section.tables:
+            for verdict, name, *rest in (row for row in table.rows if len(row) > 1 and row[0].text in _VERDICTS):
+                pairs = zip(table.heads[2:], rest, strict=True)
+                shown = (
+                    f"{head.text} {cell.text}"
+                    for head, cell in pairs
+                    if cell.side != "long" and cell.text not in ("", ABSENT)
+                )
+                found[section.name, name.text] = verdict.text, "".join(f", {one}" for one in shown)
+    return found
 
 
 def _facts(before: Document, after: Document) -> Iterator[Change]:

@@ -326,8 +326,6 @@ def at_equal_error(work: Work) -> Comparison | NotCompared:
 
 def _unfit(name: str, line: list[WorkRow], work: Work, due: int | None) -> NotCompared | None:
     """Why the errors of one model do not fall at the order that is due; None where they do."""
-    if due is None:
-        return NotCompared(why=f"nobody knows the order of the errors of {name}", remedy="compare their rows")
     if len(line) < 3:
         return NotCompared(why=too_few(len(line)), remedy="give three counts or more")
     if not all(row.run_ms_per_ms and row.set_up_ms for row in line):
@@ -349,14 +347,18 @@ def _astray(name: str, line: list[WorkRow], work: Work, due: int) -> NotCompared
             "step changes the exact beam's displacement",
             remedy="give a finer step (steps_per_period) or smaller counts",
         )
+    return _astray(name, line, due, f"{calmer}, or larger counts", span)
+
+
+def _astray(name: str, line: list[WorkRow], due: int | None, remedy: str, span: str) -> NotCompared | None:
+    """Where errors fall at another order than the one that is due, or nobody knows that; None where they do."""
+    if due is None:
+        return NotCompared(why=f"nobody knows the order of the errors of {name}", remedy="compare their rows")
     orders = [row.order for row in line[1:] if row.order is not None]
-    if any(abs(order - due) > ASTRAY for order in orders):
-        seen = ", ".join(f"{order:.1f}" for order in orders)
-        return NotCompared(
-            why=f"errors of {name} do not fall at order {due} but at {seen} ({span})",
-            remedy=f"{calmer}, or larger counts",
-        )
-    return None
+    if not any(abs(order - due) > ASTRAY for order in orders):
+        return None
+    seen = ", ".join(f"{order:.1f}" for order in orders)
+    return NotCompared(why=f"errors of {name} do not fall at order {due} but at {seen} ({span})", remedy=remedy)
 
 
 def _cost_at(line: list[WorkRow], error: float) -> Cost:
