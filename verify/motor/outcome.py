@@ -163,7 +163,13 @@ def ledger(riding: Riding, b: int) -> MotorLedger:
     assert before is not None
     kinetic = float(riding.energy()[b, 0] - before[b, 0])
     stored = float(sums[records.STORED] - before[b, 1])
-    names = {"across": records.ACROSS, "along": records.ALONG, "pressed": records.PRESSED, "pulled": records.PULLED}
+    names = {
+        "across": records.ACROSS,
+        "uphill": records.UPHILL,
+        "along": records.ALONG,
+        "pressed": records.PRESSED,
+        "pulled": records.PULLED,
+    }
     given = {name: float(sums[column]) for name, column in names.items()}
     rubbed, damped = float(sums[records.RUBBED]), float(sums[records.DAMPED])
     return MotorLedger(
