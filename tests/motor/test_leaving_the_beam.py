@@ -92,6 +92,7 @@ def test_running_feet_work_on_the_beam_what_the_beam_gains(face):
     assert books.on_beam == pytest.approx(gained, rel=2e-5)
     assert books.on_beam == pytest.approx(-books.across - books.along, rel=1e-9)
     assert abs(books.uphill) > 0.5 * gained
+    assert abs(books.residual) < 1e-6 * gained
 
 
 def test_a_slider_at_rest_goes_up_no_slope():

@@ -161,7 +161,7 @@ def ledger(riding: Riding, b: int) -> MotorLedger:
     """Where slider b's energy went."""
     sums, before = riding.feet.sums[b], riding.at_start
     assert before is not None
-    kinetic = float(riding.energy()[b, 0] - before[b, 0])
+    kinetic = float(riding.energy(0.0)[b, 0] - before[b, 0])
     stored = float(sums[records.STORED] - before[b, 1])
     names = {
         "across": records.ACROSS,
