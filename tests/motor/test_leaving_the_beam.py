@@ -99,3 +99,9 @@ def test_a_slider_at_rest_goes_up_no_slope():
     run = crossing(held_speed=0.0, duration=1e-3, amplitude=3.0)
     assert run.ledger.uphill == 0.0
     assert run.ledger.across != 0.0
+
+
+@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
+def test_a_beam_that_nothing_drives_is_told_so_in_place_of_an_infinite_size(coupling):
+    run = crossing(replace(SPRUNG, coupling=coupling), duration=1e-4)
+    assert run.notes[1] == f"coupling: {coupling}; the drive does not move the surface under the slider"
