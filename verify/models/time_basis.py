@@ -71,5 +71,5 @@ def check_held(beam: Beam) -> None:
     if beam.rigid_motions:
         raise InputError(
             f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), which a driven beam "
-            "would drift off in: clamp an end, or pin both"
+            "would drift off in: clamp an end, pin both, or give beam.spring"
         )

@@ -16,8 +16,9 @@ class MotorMargins(Value, frozen=True, kw_only=True):
     step: float
     """Natural frequency of the contact times the step, radians: from 2 on it grows without bound. Its square over
     24 is the error of a swing on the springs."""
-    sag: float
-    """Static deflection of the beam under what presses the slider on, metres; one way it is left out."""
+    sag: float | None
+    """Static deflection of the beam under what presses the slider on, metres; one way it is left out. None where that
+    would push away a beam that nothing holds."""
     sag_taken: bool
     """Whether the run has it."""
     chain: float | None
