@@ -39,12 +39,20 @@ def mapped(phi, r, epsilon, steps):
         (1.0, 1.2, 0.3),
         (3.0, -1.7, 2.0),  # slips from the start and sticks before the crest
         (3.0, -1.7, 3.0),
+        (2.0, 0.90803, 0.02),  # two short slips, a hundredth of the contact and less
+        (2.0, 0.9080602, 0.02),
+        (1.27, 0.75483, 0.4),
     ],
 )
 def test_a_layer_that_gives_way_carries_what_return_mapping_finds(phi, r, epsilon):
     coarse, fine = mapped(phi, r, epsilon, 4000), mapped(phi, r, epsilon, 8000)
     assert abs(coarse - fine) < 1e-3
     assert force(phi, r, epsilon) == pytest.approx(fine, abs=3.0 * abs(coarse - fine) + 1e-8)
+
+
+def test_the_no_load_speed_counts_a_short_slip():
+    """By return mapping in 2e6 steps."""
+    assert no_load_speed(1.27, 0.4) == pytest.approx(0.7548422402, rel=1e-9)
 
 
 @given(phi=ANGLES, r=SPEEDS, epsilon=GIVES)

@@ -148,6 +148,15 @@ def test_means_that_have_not_settled_are_told_with_what_to_do():
         no_load(case, periods=1440)
 
 
+def test_means_that_patience_has_ended_are_told_in_one_sentence():
+    case = bouncing(contact=SPRING)
+    one = replace(at_speed(case, 0.0, periods=48), unsettled=("force",))
+    said = figures.not_settled(case, one, ("force",), 23_040)
+    assert said.endswith(
+        ": set VERIFY_PATIENCE to more seconds, or give more slider.contact.damping or more slider.preload"
+    )
+
+
 def test_more_periods_leave_means_less_spread_and_within_what_was_told():
     case = hard(0.6, 40.0)
     few, many = at_speed(case, 0.0, periods=1440), at_speed(case, 0.0, periods=23_040)

@@ -3,7 +3,7 @@
 import pytest
 from msgspec.structs import replace
 
-from verify import Beam, Contact, Foot, InputError, PointForce, Slider, run_motor, simulate
+from verify import Beam, Contact, Foot, InputError, PointForce, PointSpring, Slider, run_motor, simulate
 from verify.motor.combine import combinations
 
 BEAM = Beam(length=0.31, width=0.013, thickness=0.0012, youngs_modulus=68e9, density=2650.0, loss_factor=0.01)
@@ -80,3 +80,34 @@ def test_a_beam_that_feels_its_slider_moves_it_otherwise_than_one_that_does_not(
     one, two = (run("fem", friction, "springs", shape, coupling) for coupling in ("one-way", "two-way"))
     assert abs(one.height[-1, 0] / two.height[-1, 0] - 1.0) > 1e-6
     assert one.speed[-1] != two.speed[-1]
+
+
+def _bar(**given):
+    """A bar of a motor, free at both ends unless something holds it."""
+    own = {"length": 0.06, "width": 0.006, "thickness": 0.002, "youngs_modulus": 105e9, "density": 8500.0}
+    return Beam(supports=("free", "free"), loss_factor=0.01, **own, **given)
+
+
+def test_a_slider_runs_one_way_on_the_steady_field_of_a_beam_that_nothing_holds():
+    """As on one that lies on soft springs, which have a sag; and alike on the exact beam."""
+    forces = (PointForce(position=0.008, amplitude=2.0), PointForce(position=0.052, amplitude=1.5, phase_deg=70.0))
+    contact = Contact(stiffness=5e6, damping=30.0)
+    slider = Slider(mass=2e-3, mu=0.3, slope=60.0, preload=8.0, position=0.031, coupling="one-way", contact=contact)
+    lying = _bar(spring=tuple(PointSpring(position=x, stiffness=10.0) for x in (0.0, 0.06)))
+    asked = {"slider": slider, "samples": 3}
+    exact = run_motor(_bar(), forces, 31e3, 1e-3, model="analytic", **asked)
+    assert abs(exact.travelled[-1]) > 5e-8
+    for model, count in (("segment", 31), ("fem", 40)):
+        free, held = (
+            run_motor(beam, forces, 31e3, 1e-3, model=model, count=count, **asked) for beam in (_bar(), lying)
+        )
+        assert free.motor_margins.sag is None
+        assert held.motor_margins.sag > 0.1
+        assert free.travelled == pytest.approx(held.travelled, rel=1e-5)
+        assert free.travelled == pytest.approx(exact.travelled, rel=5e-3)
+
+
+def test_a_beam_that_nothing_holds_is_refused_where_it_feels_its_slider():
+    slider = Slider(mass=2e-3, mu=0.3, preload=8.0, coupling="two-way", contact=Contact(stiffness=5e6))
+    with pytest.raises(InputError, match=r"beam.supports = \['free', 'free'\] leave 2 rigid .*give beam.spring"):
+        run_motor(_bar(), PointForce(position=0.008), 31e3, 1e-4, slider=slider, model="fem", count=17)

@@ -1,10 +1,14 @@
-"""A slider that runs off the beam: its books close and its state is of one instant, that of its last whole step."""
+"""A slider that runs along a cantilever and off it: what its feet work on the beam, how its books and its state end.
+
+They are those of its last whole step.
+"""
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
+from verify.motion.surface import basis_of
 from verify.motor.run import run_motor
 from verify.slider import Contact, Foot, Slider
 
@@ -69,3 +73,35 @@ def test_time_and_place_of_a_slider_that_left_are_of_one_instant(name):
     assert run.times[-1] < run.state.time
     if way is not None:
         assert way - 1.5 * SPEED * run.statistics.step_s < run.state.travelled <= way
+
+
+def held_energy(state):
+    """Of the undriven beam, kinetic and elastic, joules."""
+    omegas = basis_of(BEAM, "fem", 10, 80, "spline").omegas
+    return 0.5 * float(state.rates @ state.rates + (omegas * state.q) @ (omegas * state.q))
+
+
+@pytest.mark.parametrize("face", ["upper", "lower"])
+def test_running_feet_work_on_the_beam_what_the_beam_gains(face):
+    """Nothing drives it or damps it. A slope of up to 0.06 gives the feet as much again as the rise of the material."""
+    slider = replace(SPRUNG, foot=(replace(SPRUNG.foot[0], face=face),), gravity=0.0)
+    before = crossing(slider, duration=4e-4, step=6e-7, samples=2)
+    run = crossing(slider, duration=2.9e-3, step=6e-7, samples=2, continue_from=before)
+    books, gained = run.ledger, held_energy(run.state) - held_energy(before.state)
+    assert gained > 0.01
+    assert books.on_beam == pytest.approx(gained, rel=2e-5)
+    assert books.on_beam == pytest.approx(-books.across - books.along, rel=1e-9)
+    assert abs(books.uphill) > 0.5 * gained
+    assert abs(books.residual) < 1e-6 * gained
+
+
+def test_a_slider_at_rest_goes_up_no_slope():
+    run = crossing(held_speed=0.0, duration=1e-3, amplitude=3.0)
+    assert run.ledger.uphill == 0.0
+    assert run.ledger.across != 0.0
+
+
+@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
+def test_a_beam_that_nothing_drives_is_told_so_in_place_of_an_infinite_size(coupling):
+    run = crossing(replace(SPRUNG, coupling=coupling), duration=1e-4)
+    assert run.notes[1] == f"coupling: {coupling}; the drive does not move the surface under the slider"

@@ -9,6 +9,7 @@ contact over a crest; K. L. Johnson, Contact Mechanics (1985), section 8.3, of a
 """
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from math import acos, asin, atan, cos, pi, sin, sqrt
 
 from verify.checks import check_number
@@ -16,8 +17,8 @@ from verify.errors import InputError
 
 HALVINGS = 200
 """Of an interval around a root: until the middle is one of its ends, long before."""
-LOOKS = 64
-"""At which the end of sticking is looked for before it is narrowed down."""
+ROUNDING = 4e-15
+"""Of a stretch: one that has just stopped slipping is that near to its limit."""
 
 
 def pressed(s: float, phi: float) -> float:
@@ -124,28 +125,38 @@ def _stretches(phi: float, r: float, epsilon: float) -> Iterator[float]:
 
 def _sticks_at(s: float, r: float, slope: float, way: int) -> float:
     """The next s where the surface no longer outruns the layer at its limit: cos s + slope sin s = r."""
-    size = sqrt(1.0 + slope * slope)
-    if abs(r) > size:
-        return pi
-    middle, half = atan(slope), acos(r / size)
-    edges = (middle - half, middle + half, middle - half + 2.0 * pi, middle + half - 2.0 * pi)
 
     def turns(edge: float) -> bool:
         return way * (-sin(edge) + slope * cos(edge)) < 0.0
 
-    return min((edge for edge in edges if edge > s + 1e-12 and turns(edge)), default=pi)
+    return min((edge for edge in _even_at(r, slope) if edge > s + 1e-12 and turns(edge)), default=pi)
+
+
+def _even_at(r: float, slope: float) -> tuple[float, ...]:
+    """Where cos s + slope sin s = r, from -pi to pi and about it."""
+    size = sqrt(1.0 + slope * slope)
+    if abs(r) > size:
+        return ()
+    middle, half = atan(slope), acos(r / size)
+    return middle - half, middle + half, middle - half + 2.0 * pi, middle + half - 2.0 * pi
 
 
 def _slips_at(s: float, phi: float, r: float, epsilon: float, c: float) -> tuple[float, int]:
-    """(the next place where the stretch reaches its limit, which way it slips there); the end of contact where none."""
+    """(the next place where the stretch reaches its limit, which way it slips there); the end of contact where none.
+
+    The room that is left to it, either way, rises or falls all along between the places where it turns.
+    """
 
     def room(at: float, way: int) -> float:
         return epsilon * (cos(at) - cos(phi)) - way * (sin(at) - r * at + c)
 
-    step = (phi - s) / LOOKS
-    for k in range(1, LOOKS + 1):
-        before, after = s + (k - 1) * step, s + k * step
-        for way in (1, -1):
-            if room(after, way) < 0.0:
-                return _root(lambda at, way=way: room(at, way), before, after), way  # type: ignore[misc]
+    turns = sorted(at for way in (1, -1) for at in _even_at(r, way * epsilon) if s + 1e-12 < at < phi)
+    for before, after in pairwise((s, *turns, phi)):
+        reached = [
+            (_root(lambda at, way=way: room(at, way), before, after), way)  # type: ignore[misc]
+            for way in (1, -1)
+            if room(after, way) < -ROUNDING
+        ]
+        if reached:
+            return min(reached)
     return phi, 0

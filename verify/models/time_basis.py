@@ -75,5 +75,5 @@ def check_held(beam: Beam) -> None:
     if beam.rigid_motions:
         raise InputError(
             f"beam.supports = {list(beam.supports)!r} leave {beam.rigid_motions} rigid motion(s), in which a beam that "
-            "is driven or let go may drift off: clamp an end, or pin both"
+            "is driven or let go may drift off: clamp an end, pin both, or give beam.spring"
         )

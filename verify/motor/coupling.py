@@ -43,6 +43,8 @@ def coupled(slider: Slider, across: float, along: float | None) -> Coupling:
 
 def in_words(coupling: Coupling) -> str:
     """Both sizes."""
+    if np.isinf(coupling.normal_size):
+        return "the drive does not move the surface under the slider"
     along = "" if coupling.friction_size is None else f", its friction by {coupling.friction_size:.1e} of its speed"
     return f"all that presses the slider on moves the surface by {coupling.normal_size:.1e} of its motion{along}"
 

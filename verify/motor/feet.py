@@ -66,14 +66,14 @@ def feet_of(placed: Sequence[Placed]) -> Feet:
         state=np.zeros((len(feet), 4)),
         given=np.array([_given(placed[b].slider, foot) for b, foot in feet]),
         points=points,
-        touch=np.zeros((len(points), 13)),
+        touch=np.zeros((len(points), 14)),
         foot=_whole(np.repeat(np.arange(len(feet)), lengths)),
         owner=_whole(np.repeat(keeper, lengths)),
         first=np.searchsorted(np.repeat(keeper, lengths), np.arange(len(placed) + 1)).astype(np.int64),
         keeper=keeper,
         piece=_whole(np.zeros(len(points))),
         kick=np.zeros((len(feet), 2)),
-        sums=np.zeros((len(placed), 13)),
+        sums=np.zeros((len(placed), 14)),
     )
 
 
@@ -179,5 +179,5 @@ def fresh_log(samples: int, feet: Feet, rows: Array, every: int) -> Log:
         deflections=np.zeros((samples, len(rows))),
         events=np.zeros((EVENTS, 4)),
         tally=np.zeros(3, dtype=np.int64),
-        before=np.zeros((len(feet.body), 13)),
+        before=np.zeros((len(feet.body), 14)),
     )

@@ -27,6 +27,7 @@ from verify.motor.records import (
     PRESS,
     PRESSED,
     PUSH,
+    RAMP,
     SLOPE,
     SPRING,
     STIFF,
@@ -34,6 +35,7 @@ from verify.motor.records import (
     SURFACE,
     SURFACE_BEFORE,
     TURN,
+    UPHILL,
     Feet,
     Line,
     V,
@@ -65,6 +67,7 @@ def see(i: int, x: float, edge: float, length: float, v: float, half: float, lin
     above = (x - edge) / length
     at, level, slope, bend, rise, turn, along = material(feet.piece[i], above, length, lever, line)
     lift = image * (rise + slope * (v + lever * (turn + bend * v)))
+    touch[i, RAMP] = image * slope * (v + lever * bend * v)
     touch[i, SURFACE_BEFORE], touch[i, SURFACE] = touch[i, SURFACE], along
     touch[i, AT], touch[i, ABOVE], touch[i, SLOPE], touch[i, ANSWER], touch[i, LIFT] = at, above, slope, 0.0, lift
     touch[i, DEPTH] = inset + face * (image * level - state[foot, HEIGHT] - arm * state[foot, PITCH])
@@ -142,8 +145,10 @@ def kick(dt: float, feet: Feet) -> None:
             foot, b = feet.foot[i], feet.owner[i]
             given = feet.kick[foot, 0] + points[i, ARM] * feet.kick[foot, 1]
             closing = touch[i, CLOSING] - 0.5 * points[i, FACE] * given
-            work = dt * force * points[i, FACE] * touch[i, LIFT]
+            uphill = dt * force * points[i, FACE] * touch[i, RAMP]
+            work = dt * force * points[i, FACE] * touch[i, LIFT] - uphill
             sums[b, ACROSS] += work
+            sums[b, UPHILL] += uphill
             sums[b, DAMPED] += dt * (force - points[i, STIFF] * touch[i, DEPTH]) * closing
             sums[b, LIFTED] -= work
     for f in range(state.shape[0]):

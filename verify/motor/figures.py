@@ -268,11 +268,11 @@ def not_settled(case: MotorCase, found: AtSpeed, readings: Sequence[Reading], pe
         "shares": f"shares of contact and sticking +- {found.share_spread:.1g}",
         "powers": f"rubbed {found.rubbed:.4g} +- {found.power_spread:.1g} W",
     }
-    longer = "give more periods" if 2 * found.periods > periods else f"set {VARIABLE} to more seconds, give"
+    longer = "give more periods," if 2 * found.periods > periods else f"set {VARIABLE} to more seconds, or give"
     said = ", ".join(told[one] for one in readings if one in found.unsettled)
     return (
         f"periods = {found.periods!r}: at {found.speed:.6g} m/s the slider bounces and its means have not settled by "
-        f"then, {said}: {longer}, {_loss(slider)} or more slider.preload"
+        f"then, {said}: {longer} {_loss(slider)} or more slider.preload"
     )
 
 

@@ -35,6 +35,7 @@ from verify.motor.records import (
     PULL,
     PULLED,
     PUSH,
+    RAMP,
     RUB,
     RUBBED,
     SLOPE,
@@ -43,6 +44,7 @@ from verify.motor.records import (
     STUCK,
     SURFACE,
     TOUCHING,
+    UPHILL,
     Feet,
     Hard,
     Line,
@@ -76,7 +78,7 @@ def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Li
     _, level, slope, bend, rise, turn, along = material(piece, (x - edge) / length, length, half, line)
     touch[0, SURFACE], touch[0, SLOPE] = along, slope
     passed, square = v + half * (turn + bend * v), surface.drive.omega * surface.drive.omega
-    touch[0, LIFT] = rise + slope * passed
+    touch[0, LIFT], touch[0, RAMP] = rise + slope * passed, slope * (v + half * bend * v)
     feet.kick[0, 0] = -square * (level + half * slope * slope) + (2.0 * turn + bend * passed) * passed
     return level
 
@@ -130,8 +132,10 @@ def _land(rubbing: Rubbing, hard: Hard, feet: Feet, slope: float | None) -> floa
     rub = _suit(feet.riders[0, MU] * blow, ahead, feet.riders[0, INVERSE_MASS], slope)
     mean = body[0, V] + 0.5 * feet.riders[0, INVERSE_MASS] * rub
     body[0, V] += feet.riders[0, INVERSE_MASS] * rub
-    sums[0, ACROSS] += blow * touch[0, LIFT]
-    sums[0, LIFTED] -= blow * touch[0, LIFT]
+    uphill = blow * touch[0, RAMP]
+    sums[0, ACROSS] += blow * touch[0, LIFT] - uphill
+    sums[0, LIFTED] -= blow * touch[0, LIFT] - uphill
+    sums[0, UPHILL] += uphill
     sums[0, DAMPED] += 0.5 * blow * into * (1.0 - hard.restitution)
     sums[0, ALONG] += rub * touch[0, SURFACE]
     sums[0, RUBBED] += rub * (touch[0, SURFACE] - mean)
@@ -206,7 +210,7 @@ def _move_riding(
     gain = 0.5 * s * feet.riders[0, INVERSE_MASS]
     ahead, v = touch[0, SURFACE] - body[0, V] - gain * feet.riders[0, PULL], body[0, V]
     rub = _suit(feet.riders[0, MU] * push, ahead, gain, slope)
-    surface_mean = touch[0, SURFACE]
+    surface_mean, uphill = touch[0, SURFACE], s * push * touch[0, RAMP]
     after = v + 2.0 * gain * (feet.riders[0, PULL] + rub)
     stuck = slope is None and gain > 0.0 and abs(rub) < feet.riders[0, MU] * push
     x = body[0, X] + free * 0.5 * (v + after) * s
@@ -218,13 +222,14 @@ def _move_riding(
         rub = most if wanted > most else -most if wanted < -most else wanted
         after = v + 2.0 * gain * (feet.riders[0, PULL] + rub)
     mean, rise = 0.5 * (v + after), level - state[0, HEIGHT]
-    across = 0.5 * hard.mass * (touch[0, LIFT] ** 2 - state[0, CLIMB] ** 2) + hard.mass * hard.press * rise
+    across = 0.5 * hard.mass * (touch[0, LIFT] ** 2 - state[0, CLIMB] ** 2) + hard.mass * hard.press * rise - uphill
     body[0, X] += free * mean * s
     body[0, V] = after
     state[0, HEIGHT], state[0, CLIMB] = level, touch[0, LIFT]
     touch[0, PUSH], touch[0, RUB], touch[0, STUCK] = push, rub, 1.0 if stuck else 0.0
     sums[0, ACROSS] += across
     sums[0, LIFTED] -= across
+    sums[0, UPHILL] += uphill
     sums[0, PRESSED] -= hard.mass * hard.press * rise
     _book_riding(s, mean, surface_mean, feet)
     return True

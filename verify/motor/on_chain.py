@@ -85,7 +85,7 @@ def _ride(plan: Plan, given: GivenSurface, begun: tuple[float, float], progress:
     riding = Riding.fresh(plan.placed, plan.request, False)
     riding.log = riding.log._replace(every=stage.every, points=np.zeros((0, 0)))
     begin(plan, riding, ())
-    riding.look()
+    riding.look(stage.dt)
     riding.first = np.zeros(0)
     given = given._replace(edges=given.edges - plan.placed[0].start)
     riding.feet.piece[:] = np.clip(

@@ -162,9 +162,15 @@ def ledger(riding: Riding, b: int) -> MotorLedger:
     """Where slider b's energy went."""
     sums, before = riding.feet.sums[b], riding.at_start
     assert before is not None
-    kinetic = float(riding.energy()[b, 0] - before[b, 0])
+    kinetic = float(riding.energy(0.0)[b, 0] - before[b, 0])
     stored = float(sums[records.STORED] - before[b, 1])
-    names = {"across": records.ACROSS, "along": records.ALONG, "pressed": records.PRESSED, "pulled": records.PULLED}
+    names = {
+        "across": records.ACROSS,
+        "uphill": records.UPHILL,
+        "along": records.ALONG,
+        "pressed": records.PRESSED,
+        "pulled": records.PULLED,
+    }
     given = {name: float(sums[column]) for name, column in names.items()}
     rubbed, damped = float(sums[records.RUBBED]), float(sums[records.DAMPED])
     return MotorLedger(

@@ -44,8 +44,8 @@ class Plan(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     coupling: Coupling
     contact_rate: float
     """Natural frequency of the contact, rad/s."""
-    sag: float
-    """Static deflection under what presses, metres."""
+    sag: float | None
+    """Static deflection under what presses, metres; None of a beam that nothing holds."""
     margins: Margins
     """What the beam's own assumptions leave out."""
     notes: tuple[str, ...]

@@ -24,17 +24,20 @@ OFFSET, ARM, STIFF, DASHPOT, GRIP, FACE, IMAGE, INSET, WEIGHT = range(9)
 """Columns of `Feet.points`: place from the stage's x and from the middle of its foot, metres; stiffness, damping and
 stiffness along the surface; on which face, +1 or -1, and of which beam, +1 or -1 for the mirror image; how deep it
 sits in the straight beam at height 0, metres; 1/2 of a point between two beams, which stand for each other, else 1."""
-PUSH, RUB, SURFACE, SURFACE_BEFORE, DEPTH, STRETCH, AT, SLOPE, CLOSING, LIFT, STUCK, ANSWER, ABOVE = range(13)
+PUSH, RUB, SURFACE, SURFACE_BEFORE, DEPTH, STRETCH, AT, SLOPE, CLOSING, LIFT, STUCK, ANSWER, ABOVE, RAMP = range(14)
 """Columns of `Feet.touch`: normal force, friction on the stage, speed of the surface, now and a step before; how
 deep it is pressed in (below 0: the gap), how far it is stretched along; where on its piece the material under it lies,
 its slope; how fast the gap closes, how fast the surface rises, both without the foot's own kick; whether it sticks;
-what the step's forces give the beam of that closing; where on the piece the point itself is."""
+what the step's forces give the beam of that closing; where on the piece the point itself is; how much of that rise is
+a slope that the slider goes along."""
 (
-    ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED
-) = range(13)  # fmt: skip
+    ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED,
+    UPHILL,
+) = range(14)  # fmt: skip
 """Columns of `Feet.sums`: work of the surface across on the feet, along on the stage, of the pull and of what holds
 a speed, rubbed away, lost in dashpots, of what presses; integrals over time of friction, normal force, share of points
-that touch and stick; energy in the springs now; integral of the speed; work of the feet on the beam."""
+that touch and stick; energy in the springs now; integral of the speed; work of the feet on the beam, and of the slopes
+that a slider goes along on the feet."""
 KEPT_X, KEPT_V, KEPT_RUB, KEPT_PUSH, KEPT_TOUCHING, KEPT_STICKING, KEPT_RUBBED, KEPT_ALONG, KEPT_SURFACE = range(9)
 """Columns of `Log.kept`; friction, normal force, shares, works and the surface's speed under what touches are means, or
 sums, over the interval that ends there."""
@@ -73,7 +76,7 @@ class Feet(NamedTuple):
     points: Array
     """(points, 9)"""
     touch: Array
-    """(points, 13)"""
+    """(points, 14)"""
     foot: Indices
     """(points,), the foot of each."""
     owner: Indices
@@ -87,7 +90,7 @@ class Feet(NamedTuple):
     kick: Array
     """(feet, 2), what the step gives to height and pitch, m/s and 1/s."""
     sums: Array
-    """(sliders, 13)"""
+    """(sliders, 14)"""
 
 
 class Hard(NamedTuple):
@@ -153,4 +156,4 @@ class Log(NamedTuple):
     tally: Indices
     """(3,)"""
     before: Array
-    """(sliders, 13), the sums at the last sample."""
+    """(sliders, 14), the sums at the last sample."""

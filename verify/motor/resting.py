@@ -76,10 +76,15 @@ def press_apart(placed: Sequence[Placed], basis: TimeBasis, feet: Feet) -> None:
             feet.points[between, records.INSET] -= bent[between].mean()
 
 
-def sag_of(request: Request, placed: Sequence[Placed]) -> float:
-    """Largest static deflection under the net loads at the sliders, metres, by the first modes of the model."""
+def sag_of(request: Request, placed: Sequence[Placed]) -> float | None:
+    """Largest static deflection under the net loads at the sliders, metres, by the first modes of the model.
+
+    None where they would push away a beam that nothing holds.
+    """
     if not any(_net(one) for one in placed):
         return 0.0
+    if request.beam.rigid_motions:
+        return None
     basis = basis_of(request.beam, request.model, request.count, min(request.modes, SAGGING), "spline")
     places = np.array([one.start for one in placed])
     still = weighed(basis, placed)

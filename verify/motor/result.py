@@ -16,8 +16,9 @@ class MotorMargins(Value, frozen=True, kw_only=True):
     step: float
     """Natural frequency of the contact times the step, radians: from 2 on it grows without bound. Its square over
     24 is the error of a swing on the springs."""
-    sag: float
-    """Static deflection of the beam under what presses the slider on, metres; one way it is left out."""
+    sag: float | None
+    """Static deflection of the beam under what presses the slider on, metres; one way it is left out. None where that
+    would push away a beam that nothing holds."""
     sag_taken: bool
     """Whether the run has it."""
     chain: float | None
@@ -32,7 +33,10 @@ class MotorLedger(Value, frozen=True, kw_only=True):
     stored: float
     """Gained by the springs of the contact across the beam."""
     across: float
-    """Work of the rising surface on the feet."""
+    """Work of the rising surface on the feet, dw/dt of its material."""
+    uphill: float
+    """Work on the feet of the slopes that the slider goes along, N v w'. Nothing along the beam pays for it: friction
+    and `slider.pull` alone move a slider there."""
     along: float
     """Work of the surface's own motion along the beam on the slider."""
     pressed: float
@@ -75,7 +79,7 @@ class MotorState(Value, frozen=True, eq=False, kw_only=True):
     feet: Array
     """(feet, 4): height, its rate, pitch, its rate."""
     touch: Array
-    """(points, 13), as the compiled loop keeps them: forces, speeds and stretch of the last mid-step."""
+    """(points, 14), as the compiled loop keeps them: forces, speeds and stretch of the last mid-step."""
 
 
 class MotorRun(Ride, frozen=True, eq=False, kw_only=True):

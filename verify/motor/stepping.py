@@ -90,14 +90,17 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         feet.touch[:, records.DEPTH] = depth
         self.before[:, 0] = depth
 
-    def look(self) -> None:
-        """Remember how it stands before the first step."""
-        self.at_start, self.put_down = self.energy(), self.feet.state.copy()
+    def look(self, step: float) -> None:
+        """Remember how it stands before the first step, seconds."""
+        self.at_start, self.put_down = self.energy(step), self.feet.state.copy()
         self.set_off = self.feet.body.copy()
         self.pressed = self.feet.points[:, records.STIFF] * np.maximum(self.feet.touch[:, records.DEPTH], 0.0)
 
-    def energy(self) -> Array:
-        """(sliders, 2): kinetic and in the springs across now, joules; these at the depths that the touch says."""
+    def energy(self, step: float) -> Array:
+        """(sliders, 2): kinetic and in the springs across now, joules; these as the loop has them at the end of a step.
+
+        A run that goes on has depths of half a step before, which are drawn on; one put down at rest has its own.
+        """
         feet, p, touch = self.feet, self.feet.points, self.feet.touch
         found = np.zeros((len(self.placed), 2))
         found[:, 0] = 0.5 * np.array([one.slider.mass for one in self.placed]) * feet.body[:, records.V] ** 2
@@ -106,7 +109,9 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         )
         across = 0.5 * (masses * feet.state[:, records.CLIMB] ** 2 + inertias * feet.state[:, records.TURN] ** 2)
         np.add.at(found[:, 0], feet.keeper, across)
-        depth = np.maximum(touch[:, records.DEPTH], 0.0)
+        climb = feet.state[feet.foot, records.CLIMB] + p[:, records.ARM] * feet.state[feet.foot, records.TURN]
+        more = 0.5 * step * p[:, records.FACE] * (touch[:, records.LIFT] - climb)
+        depth = np.maximum(touch[:, records.DEPTH] + more, 0.0)
         np.add.at(found[:, 1], feet.owner, 0.5 * p[:, records.STIFF] * depth**2)
         return found
 
@@ -131,7 +136,7 @@ def run_stages(
         surface = _surface(stage, tables[i], z, riding.start)
         if i == 0:
             riding.first = stage.deflection(z, np.zeros(1), riding.points)[0]
-            riding.look()
+            riding.look(stage.dt)
             riding.feet.piece[:] = np.searchsorted(surface.edges[1:-1], riding.feet.points[:, records.OFFSET])
         riding.steps_before, riding.log.tally[records.STEP] = riding.steps, 0
         rows = np.ascontiguousarray(stage.rows(riding.points).T)
@@ -226,7 +231,7 @@ def _run_hard(
     if before[0, 0] == RIDES_FROM_HERE:
         added = hop_kernels.put(0.0, surface, feet, riding.rubbing, line)
         before[0, 0] = 1.0 if hard.press + added > 0.0 else -1.0
-        riding.look()
+        riding.look(stage.dt)
 
     def hop(steps: int) -> int:
         return hop_kernels.hop(steps, stage.dt, surface, feet, riding.rubbing, hard, line, before, riding.log)

@@ -195,6 +195,7 @@ def field_as_plain(one: "FieldFound") -> dict[str, Any]:
     plain: dict[str, Any] = msgspec.to_builtins(one)
     plain["curve"] = [at_speed_as_plain(at) for at in one.curve]
     plain["no_load"] = at_speed_as_plain(one.no_load) if one.no_load else None
-    plain["margins"]["sag"] = round(one.margins.sag, 12)  # loads that balance leave rounding
+    if one.margins.sag is not None:
+        plain["margins"]["sag"] = round(one.margins.sag, 12)  # loads that balance leave rounding
     plain["title"] = MODELS[one.model].title
     return plain
