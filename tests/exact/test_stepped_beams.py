@@ -233,7 +233,7 @@ def test_parts_follow_the_sections():
 
 
 def test_what_has_no_closed_form_is_refused_with_the_models_that_can():
-    with pytest.raises(InputError, match="use the fem or segment model"):
+    with pytest.raises(InputError, match="use exact_frequency_hz, the fem or segment model"):
         closed_forms.frequency_hz(STEPPED, 3)
     with pytest.raises(InputError, match="2 sections needs at least as many"):
         fem_beam.solve_modes(STEPPED, 1, 1)

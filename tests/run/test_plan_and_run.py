@@ -10,10 +10,11 @@ from verify.attached import PointSpring
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.motion import case
+from verify.quantities.catalogue import arguments_of, quantity
 from verify.report.terminal import print_plan
 from verify.run.asks import asks_of
 from verify.run.plan import plan_scene
-from verify.run.runner import n_steps, run_scene
+from verify.run.runner import n_steps, run_scene, workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import load_scene, packaged_scenes, scene_type
 from verify.studies.catalogue import STUDIES, asked_of
@@ -135,11 +136,29 @@ def test_a_slider_on_a_beam_that_the_exact_model_does_not_move_is_refused_by_its
     scene = replace(load_scene("paper-slider"), gate=(), claim=(), readings=None)
     held = replace(scene.beam, spring=(PointSpring(position=0.26, stiffness=321.0),))
     scene = replace(scene, beam=held)
-    (problem,) = plan_scene(scene).problems
+    plan = plan_scene(scene)
+    (problem,) = plan.problems
     assert problem.who == "motion"
     with pytest.raises(InputError, match=r"beam\.spring: the exact beam in time takes none") as refused:
         run_scene(scene)
     assert problem.why == str(refused.value)
+    untrue = [
+        one for one in plan.skipped if one.what in ("slider", "time stepping", "numba", "numpy, scipy, scikit-fem")
+    ]
+    assert not untrue, "asked for, if in vain"
+
+
+def test_what_a_slider_on_such_a_beam_is_told_to_ask_for_instead_runs():
+    scene = replace(load_scene("paper-slider"), gate=(), claim=(), readings=None)
+    held = replace(scene.beam, spring=(PointSpring(position=0.26, stiffness=321.0),))
+    (problem,) = plan_scene(replace(scene, beam=held)).problems
+    assert "leave [motion] out" in problem.why
+    assert "slider.displacement with model = 'fem' or 'segment', count and time" in problem.why
+    asked = quantity("slider.displacement")
+    for model in ("fem", "segment"):
+        given = arguments_of(asked, {"model": model, "count": 12, "time": 1e-3})
+        bare = replace(scene, beam=held, motion=None)
+        assert abs(float(asked.evaluate(given, bare, workbench_for(bare)))) > 0.0
 
 
 STRIP = {"length": 0.61, "width": 0.03, "thickness": 0.002, "youngs_modulus": 71e9, "density": 2710.0}

@@ -40,11 +40,13 @@ def check_uniform(beam: Beam) -> None:
     """Raise InputError where the beam is stepped or something stands on it, naming the models that can."""
     if beam.stepped:
         raise InputError(
-            f"beam.section: a beam of {len(beam.pieces)} sections has no closed form here, use the fem or segment model"
+            f"beam.section: a beam of {len(beam.pieces)} sections has no closed form here, use exact_frequency_hz, the "
+            "fem or segment model"
         )
     if beam.added:
         raise InputError(
-            f"beam.{beam.added[0]}: a beam with it has no closed form here, use the fem or segment model, or none of it"
+            f"beam.{beam.added[0]}: a beam with it has no closed form here, use exact_frequency_hz, the fem or segment "
+            "model, or none of it"
         )
 
 

@@ -23,9 +23,9 @@ MOST = 5000
 """Modes kept: their shapes are evaluated one by one."""
 
 
-def check_beam(beam: Beam) -> None:
-    """Raise InputError for a beam that `time_basis` does not take."""
-    beam.check_added("the exact beam in time", ("section", "mass"), "give model = 'fem' or 'segment'")
+def check_beam(beam: Beam, instead: str = "give model = 'fem' or 'segment'") -> None:
+    """Raise InputError for a beam that `time_basis` does not take, with what to do `instead`."""
+    beam.check_added("the exact beam in time", ("section", "mass"), instead)
     check_held(beam)
 
 

@@ -103,7 +103,14 @@ def _study_asks(scene: "Scene") -> Iterable[Ask]:
         try:
             study.check_run(asked, scene)
         except InputError as error:
-            yield Ask(kind="study", name=study.name, work=study.work_on(asked, scene), problem=str(error))
+            yield Ask(
+                kind="study",
+                name=study.name,
+                work=study.work_on(asked, scene),
+                models=study.models(asked, scene),
+                slides=study.slides,
+                problem=str(error),
+            )
             continue
         yield Ask(
             kind="study",
@@ -148,9 +155,13 @@ def check_per_cents(scene: "Scene", overrides: tuple[str, ...]) -> None:
 
 def kinds_of_work(asks: Iterable[Ask]) -> dict[Any, tuple[Ask, ...]]:
     """Asks without a problem by what is done for them."""
-    able = [ask for ask in asks if not ask.problem]
+    return every_work(ask for ask in asks if not ask.problem)
+
+
+def every_work(asks: Iterable[Ask]) -> dict[Any, tuple[Ask, ...]]:
+    """Asks by what is done, or would be, for them."""
     found: dict[Any, tuple[Ask, ...]] = {}
-    for ask in able:
+    for ask in asks:
         work = "closed form" if ask.closed_form else ask.work
         found[work] = (*found.get(work, ()), ask)
     return found

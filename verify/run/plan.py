@@ -8,7 +8,7 @@ from verify.errors import InputError
 from verify.judge.workbench import Key, Settings, merged, no_such_mode
 from verify.models.catalogue import MODELS
 from verify.run.applies import applicable, not_applicable
-from verify.run.asks import Ask, asks_of, kinds_of_work
+from verify.run.asks import Ask, asks_of, every_work, kinds_of_work
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.words import in_a_row
 
@@ -150,7 +150,7 @@ def _chosen(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
     if not scene.forces or not scene.beam.uniform or scene.devices:
         return ()
     chosen: list[tuple[str, str]] = []
-    if scene.slider is not None and any(ask.slides for ask in asks):
+    if scene.slider is not None and any(ask.slides and not ask.problem for ask in asks):
         from verify.run.choices import slider_choices
 
         chosen += slider_choices(scene)
@@ -165,8 +165,8 @@ def skipped_by(scene: "Scene") -> tuple[Choice, ...]:
 
 
 def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
-    """What this scene leaves out, with the reason."""
-    work, left = kinds_of_work(asks), []
+    """What this scene leaves out, with the reason; what is asked for and cannot run is not left out."""
+    work, left = every_work(asks), []
     if not set(work) - {"closed form"}:
         left.append(Choice("numpy, scipy, scikit-fem", "nothing asked needs a discrete model: closed forms only"))
     else:

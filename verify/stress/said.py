@@ -50,8 +50,8 @@ def damping_error(number: float) -> float:
     wrong, model = 0, ("segment", "analytic")[int(number)]
     for start, loss, ratio, *said in DAMPINGS:
         more: dict[str, Any] = {} if ratio is None else {"modal_damping": ratio}
-        more |= {"start": start, "count": None if number else 6}
-        run = simulate(replace(STRIP, loss_factor=loss), FORCES, 37.0, 1e-3, model=model, modes=4, samples=3, **more)
+        more |= {"start": start, "modes": 4} if number else {"start": start, "count": 6}
+        run = simulate(replace(STRIP, loss_factor=loss), FORCES, 37.0, 1e-3, model=model, samples=3, **more)
         told = [note.removeprefix("damping: ") for note in run.notes if note.startswith("damping: ")]
         wrong += told != ([said[int(number)]] if said[int(number)] else [])
     return float(wrong)
@@ -79,7 +79,7 @@ def margins_error(parts: float) -> float:
     mu = mode * pi / COUNT
     found = {
         model: simulate(
-            STRIP, FORCES, HERTZ, 1e-3, model=model, count=count, modes=9, start="steady", samples=3
+            STRIP, FORCES, HERTZ, 1e-3, model=model, count=count, modes=None if count else 9, start="steady", samples=3
         ).margins
         for model, count in (("segment", COUNT), ("fem", COUNT), ("analytic", None))
     }
@@ -151,7 +151,7 @@ def steps_error(step: float) -> float:
 
     slider, omega = Slider(mass=0.004, mu=0.4, position=0.3, slope=300.0), 2.0 * pi * HERTZ
     given = [Watched((), 3, one, 100, False) for one in (None, step)]
-    how = (Driven(STRIP, FORCES, HERTZ, 0.01), Modelled("fem", 13, 26, 0.0), Started("rest", 0.0, (), None))
+    how = (Driven(STRIP, FORCES, HERTZ, 0.01), Modelled("fem", 13, None, 0.0), Started("rest", 0.0, (), None))
     free, kept = (requested(*how, watched, slider) for watched in given)
     basis = MODELS["fem"].time_basis(STRIP, 13, 26, "spline")
     stages = stages_from_rest(basis, FORCES, omega, 0.0, kept.pieces, 0.0)

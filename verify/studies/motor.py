@@ -153,7 +153,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
 
         assert scene.drive is not None
         if "analytic" in asked.linear or CHAIN in asked.models:
-            check_beam(scene.beam)
+            check_beam(scene.beam, "take analytic and chain out of motor.models")
         for model in asked.linear:
             if MODELS[model].sized:
                 MODELS[model].check_carried(scene.beam, asked.count, scene.drive.frequency_hz)
@@ -205,6 +205,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         """See `motor_study`."""
         from verify.studies.motor_figures import motor_study
 
+        self._check_models(asked, scene)
         return motor_study(scene, asked, step)
 
 
