@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from other_models import links_without_inertia, lumped_elements, lumped_rod, printed_chain, rigid_links
 
+from verify import analytic_modes
 from verify.cli import status_of
 from verify.elements.linear import solve_modes as fem_modes
 from verify.errors import InputError
@@ -42,6 +43,10 @@ def told(tmp_path):
 
 def recorded(name, of, **asked):
     return compare(scene(of), Asked(frequencies=DATA / name, **asked)).plain()
+
+
+def analytic_hz(beam, n):
+    return analytic_modes.solve_modes(beam, n).frequencies_hz
 
 
 def kinds(found):
@@ -339,6 +344,29 @@ def test_other_supports_are_recognised(told):
     assert kinds(found) == ["supports"]
     assert "pinned-clamped beam" in found["answer"]
     assert "None of the known family fits" in found["answer"]
+
+
+@pytest.mark.parametrize("ends", [("clamped", "free"), ("free", "clamped"), ("guided", "pinned")])
+def test_a_list_that_leaves_the_beam_halfway_is_not_told_to_be_held_otherwise(told, ends):
+    """The scene is held so: "and the scene's is not held so" was said of it, and failed the gate of the list."""
+    held = f'beam.supports=["{ends[0]}","{ends[1]}"]'
+    beam = scene("steel-cantilever", held).beam
+    given = analytic_hz(beam, 8) * [1, 1, 1, 1, 1.06, 0.95, 1.08, 0.9]
+    found = told(given, overrides=(held,))
+    assert kinds(found) == ["leaving"]
+    assert "within 0.01 % of those of the scene's beam, and number 5 is the first" in found["answer"]
+    assert "+6.0000 % off" in found["answer"]
+    assert {gate["id"]: gate["passed"] for gate in found["gates"]} == {"list": True, "identified": False}
+
+
+@pytest.mark.parametrize("ends", [("clamped", "pinned"), ("pinned", "clamped")])
+def test_other_supports_of_a_beam_with_a_body_are_recognised_from_either_side(told, ends):
+    """With a body off the middle the mirror image is another beam, and was never looked at."""
+    body = "beam.mass=[{position=0.11, mass=0.4}]"
+    other = scene("steel-cantilever", body, f'beam.supports=["{ends[0]}","{ends[1]}"]').beam
+    found = told(analytic_hz(other, 8) * 1.001 ** np.arange(8), overrides=(body,))
+    assert kinds(found)[-1] == "supports"
+    assert f"of a {'-'.join(ends)} beam, and the scene's is not held so" in found["answer"]
 
 
 def test_random_frequencies_are_none_of_the_family(told):

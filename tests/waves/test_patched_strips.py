@@ -72,6 +72,22 @@ def test_a_window_over_a_patch_is_refused_and_one_beside_it_is_not():
     assert figure("wave.standing_wave_ratio", model="analytic", window=[0.06, 0.25]) > 1.0
 
 
+def test_a_window_on_another_section_is_told_how_the_beam_can_be_written():
+    """The same beam and window are measured where that section is the beam's own; nothing said so."""
+    from verify import analytic_modes, travelling_wave
+    from verify.beam import PointForce
+
+    sections = (Section(length=0.2, thickness=0.001), Section(length=0.3, thickness=0.002))
+    sizes = {"length": 0.5, "width": 0.02, "youngs_modulus": 70e9, "density": 2700.0, "section": sections}
+    forces = [PointForce(position=0.22), PointForce(position=0.46, phase_deg=90.0)]
+    thin, thick = (analytic_modes.solve_harmonic(Beam(thickness=of, **sizes), forces, 4276.0) for of in (0.001, 0.002))
+    with pytest.raises(WindowError, match=r"on the beam's own, or give the beam that section's sizes as its own$"):
+        travelling_wave.measure(thin, (0.26, 0.4))
+    with pytest.raises(WindowError, match=r"choose a window on the beam's own$"):
+        travelling_wave.measure(analytic_modes.solve_harmonic(thin.beam, forces[1:], 4276.0), (0.15, 0.4))
+    assert 0.0 < travelling_wave.measure(thick, (0.26, 0.4)).reflection < 1.0
+
+
 def test_losses_of_patches_are_in_no_power_balance():
     with pytest.raises(InputError, match=r"beam\.section: a power balance takes none"):
         figure("wave.power_imbalance", model="analytic")

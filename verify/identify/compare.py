@@ -1,7 +1,8 @@
 """Somebody's model of a scene's beam compared: read, paired, identified, sized, judged."""
 
-from collections.abc import Sequence
-from itertools import combinations_with_replacement
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from itertools import product
 from pathlib import Path
 from time import perf_counter
 from typing import get_args
@@ -27,6 +28,7 @@ from verify.models.arrays import Array
 from verify.options import Support
 from verify.patience import check_work
 from verify.scenes.scene import Scene
+from verify.words import percent
 
 SPARE = 4
 """Modes beyond the list that candidates are solved for: as many may be missing from it."""
@@ -219,23 +221,48 @@ def _of_list(beam: Beam, found: Identified, data: Data) -> tuple[Found, ...]:
 
 
 def _of_supports(scene: Scene, found: Identified, data: Data) -> tuple[Found, ...]:
-    """Other supports whose exact frequencies the lower half of an unexplained list is near to."""
-    if found.best.residual <= CREDIBLE:
-        return ()
+    """The supports whose exact frequencies the lower half of an unexplained list is nearest to, the scene's or others.
+
+    Of the scene's own, where the list leaves them.
+    """
     n = max(min(len(data.listed) // 2, 6), 2)
-    near: dict[tuple[Support, Support], float] = {}
-    for supports in combinations_with_replacement(get_args(Support), 2):
-        try:
-            other = exact_hz(msgspec.structs.replace(scene.beam, supports=supports), n)
-        except InputError:  # something on the beam stands where these supports hold it
-            continue
-        near[supports] = float(abs(np.log(data.listed[:n] / other)).max()) if len(data.listed) >= n else np.inf
-    best = min(near, key=lambda one: near[one], default=None)
-    if best is None or near[best] > CREDIBLE:
+    if found.best.residual <= CREDIBLE or len(data.listed) < n:
         return ()
-    within = f"within {max(100.0 * near[best], 0.01):.2g} % of those of a {'-'.join(best)} beam"
-    words = f"the first {n} frequencies lie {within}, and the scene's is not held so"
-    return (Found(kind="supports", words=words),)
+    own = exact_hz(scene.beam, len(data.listed))
+    near = {scene.beam: _apart(data.listed[:n], own[:n])}
+    for other in _held_otherwise(scene.beam):
+        with suppress(InputError):  # something on the beam stands where these supports hold it
+            near[other] = _apart(data.listed[:n], exact_hz(other, n))
+    best = min(near, key=lambda one: near[one])
+    if near[best] > CREDIBLE:
+        return ()
+    within = f"the first {n} frequencies lie within {max(100.0 * near[best], 0.01):.2g} % of those of"
+    if best != scene.beam:
+        words = f"{within} a {'-'.join(best.supports)} beam, and the scene's is not held so"
+        return (Found(kind="supports", words=words),)
+    leaving = np.flatnonzero(abs(np.log(data.listed / own)) > CREDIBLE)
+    if not len(leaving):
+        return ()
+    first = int(leaving[0])
+    words = f"{within} the scene's beam, and number {first + 1} is the first that leaves it"
+    off = percent(float(data.listed[first] / own[first] - 1.0))
+    return (Found(kind="leaving", words=f"{words}, {off} off", wrong=False),)
+
+
+def _apart(listed: Array, exact: Array) -> float:
+    """The largest ratio of frequencies, as a logarithm."""
+    return float(abs(np.log(listed / exact)).max())
+
+
+def _held_otherwise(beam: Beam) -> Iterator[Beam]:
+    """The beam on every other pair of supports; one of two that are each other's mirror image."""
+    seen = {beam}
+    for supports in product(get_args(Support), repeat=2):
+        with suppress(InputError):
+            other = msgspec.structs.replace(beam, supports=supports)
+            if other not in seen and other.mirrored() not in seen:
+                seen.add(other)
+                yield other
 
 
 def _rows(data: Data, found: Identified, exact: Array, likeness: dict[int, float], elastic: Elastic) -> tuple[Row, ...]:

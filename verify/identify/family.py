@@ -71,7 +71,7 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
     """Of a chain: links, points, joints; of elements: consistent, lumped, lumped-rotary, hrz, linear, linear-lumped."""
     theory: str = "euler-bernoulli"
     order: int | None = None
-    """With which its frequencies converge on this beam; None of the exact beam."""
+    """With which its frequencies converge on this beam; None of the exact beam, and where nobody says."""
     attachment: str | None = None
     """lever of a chain whose links carry point masses and springs as rigid bodies do; None of others."""
     shearing: bool = False
@@ -97,8 +97,13 @@ class Candidate(msgspec.Struct, frozen=True, kw_only=True):
         if self.model == EXACT:
             return f"Your frequencies are those of {self.words}"
         if self.model == ELEMENTS:
-            return f"Your model is one of {self.words}, order {self.order}"
-        return f"Your {'rod' if self.shearing else 'chain'} {self._clauses()}, order {self.order}"
+            return f"Your model is one of {self.words}{self._ordered}"
+        return f"Your {'rod' if self.shearing else 'chain'} {self._clauses()}{self._ordered}"
+
+    @property
+    def _ordered(self) -> str:
+        """Its order, where one is due."""
+        return f", order {self.order}" if self.order else ""
 
     def _clauses(self) -> str:
         """What makes a chain this one and no other: of the links' own inertia only where there is no more to say."""
@@ -145,18 +150,17 @@ def _chains(beam: Beam) -> Iterator[Candidate]:
             order = _order(beam, wall, joints, theory)
             yield Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", theory=theory, order=order)
     if told_by_lever(beam):
-        turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
         for joints, wall in product(rules, [wall for wall in walls if wall in (None, "half", "gregory")]):
-            order = min(_order(beam, wall, joints), 1 if turning else 2)
+            order = _order(beam, wall, joints, attachment="lever")
             yield Candidate(model=CHAIN, wall=wall, joints=joints, mass="links", attachment="lever", order=order)
     plain = [wall for wall in walls if wall in (None, "half", "gregory", "full", "rigid")]
     for mass, wall in product(("points", "joints"), plain):
-        order = min(_order(beam, wall, "series"), 2)
+        order = min(_order(beam, wall, "series") or 2, 2)
         yield Candidate(model=CHAIN, wall=wall, joints="series", mass=mass, order=order)
     for wall in plain:
         if wall == "gregory":
             continue
-        order = min(_order(beam, wall, "series"), 2)
+        order = min(_order(beam, wall, "series") or 2, 2)
         yield Candidate(
             model=CHAIN, wall=wall, joints="series", mass="joints", theory="timoshenko", order=order, shearing=True
         )
@@ -173,13 +177,12 @@ def inner_places(beam: Beam) -> tuple[float, ...]:
     return tuple(sorted(place / beam.length for place in places if 0.0 < place < beam.length))
 
 
-def _order(beam: Beam, wall: str | None, joints: str, theory: str = "euler-bernoulli") -> int:
-    """Of links with their own inertia: the wall's; at most 2 over a step, under tension, of a thick beam; printed 1."""
-    order = _WALL_ORDERS[wall] if wall else 4
-    if joints == "printed":
-        return 1
-    thick = theory != "euler-bernoulli"
-    return min(order, 2) if thick or beam.stepped or (beam.tension and joints != "tensioned") else order
+def _order(
+    beam: Beam, wall: str | None, joints: str, theory: str = "euler-bernoulli", attachment: str = "reciprocal"
+) -> int | None:
+    """Of links with their own inertia: at most the wall's, and as the package's own chain has it on this beam."""
+    known = MODELS[CHAIN].order(beam, joints=joints, theory=theory, attachment=attachment)
+    return None if known is None else min(known, _WALL_ORDERS[wall] if wall else 4)
 
 
 def _elements(beam: Beam) -> Iterator[Candidate]:

@@ -22,7 +22,8 @@ class Found(msgspec.Struct, frozen=True, kw_only=True):
     """Something about a list that is to be told."""
 
     kind: str
-    """unit, scale, clamp, causes, missing, extra, twice, rigid, swapped, count, supports, twin, unlike, unsearched."""
+    """What it is about: unit, scale, clamp, causes, missing, extra, twice, rigid, swapped, count, supports, leaving,
+    twin, unlike or unsearched."""
     words: str
     """A sentence without its full stop."""
     wrong: bool = True

@@ -1,7 +1,6 @@
 """The three models that come with the package, as the registry holds them: verbs, words, and the laws known of them."""
 
 from collections.abc import Sequence
-from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from verify.models.kind import Model
@@ -195,23 +194,11 @@ class Segments(Discrete):
     def order(self, beam: "Beam", **settings: Any) -> int | None:
         """4 on equal links between pinned, guided, free and Gregory's ends; less by each rule that is of a lower one.
 
-        As measured and derived in `segments.loaded` and `segments.attached`, and held in their tests.
+        As measured and derived in `segments.orders`, `.loaded` and `.attached`, and held in their tests.
         """
-        from verify.segments.links import elastic_ends
+        from verify.segments.orders import order_of
 
-        orders = [4]
-        orders += [1] * (settings.get("joints") == "printed" and beam.stepped)
-        orders += [2] * (bool(beam.section) or settings.get("grading", 1.0) != 1.0)
-        if "clamped" in beam.supports or any(elastic_ends(beam, settings.get("attachment", "reciprocal"))):
-            orders.append({"half": 2, "welded": 2, "third-order": 3}.get(settings.get("wall", ""), 4))
-        thick = settings.get("theory", "euler-bernoulli") != "euler-bernoulli"
-        orders += [2] * (bool(beam.tension or thick) and settings.get("joints") != "tensioned")
-        orders += [2] * (settings.get("theory") == "timoshenko" and bool(beam.mass or beam.spring))
-        orders += [1] * _turns_at_a_step(beam)
-        if settings.get("attachment") == "lever" and (beam.mass or beam.spring):
-            turning = any(m.rotary_inertia for m in beam.mass) or any(s.rotational for s in beam.spring)
-            orders.append(1 if turning else 2)
-        return min(orders)
+        return order_of(beam, **settings)
 
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """All its modes."""
@@ -219,13 +206,6 @@ class Segments(Discrete):
 
         assert count is not None
         return time_basis(beam, count, line=line)  # type: ignore[arg-type]
-
-
-def _turns_at_a_step(beam: "Beam") -> bool:
-    """Whether a body or a spring turns where sections meet: a chain bends on one side of it as on the other."""
-    ends = list(accumulate(piece.length for piece in beam.pieces[:-1]))
-    turning = [m.position for m in beam.mass if m.rotary_inertia] + [s.position for s in beam.spring if s.rotational]
-    return any(abs(place - end) < 1e-9 * beam.length for place in turning for end in ends)
 
 
 class Elements(Discrete):

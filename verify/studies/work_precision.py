@@ -330,16 +330,11 @@ def _unfit(name: str, line: list[WorkRow], work: Work, due: int | None) -> NotCo
         return NotCompared(why=too_few(len(line)), remedy="give three counts or more")
     if not all(row.run_ms_per_ms and row.set_up_ms for row in line):
         return NotCompared(why=f"a time of {name} is below the resolution of the clock", remedy="give larger counts")
-    return _astray(name, line, work, due)
-
-
-def _astray(name: str, line: list[WorkRow], work: Work, due: int) -> NotCompared | None:
-    """Why errors jump, lie too near the step's own, or fall at another order; None where they do not."""
     low, high = min(row.error for row in line), max(row.error for row in line)
     span = f"between {100 * low:+.3g} % and {100 * high:+.3g} %"
-    calmer = "give a longer soft start, a smaller slope K or a finer step (steps_per_period)"
+    calmer = "give a longer soft start, a smaller slope K or a finer step (steps_per_period), or larger counts"
     if low <= 0.0 <= high:
-        return NotCompared(why=f"errors of {name} jump {span}", remedy=f"{calmer}, or larger counts")
+        return NotCompared(why=f"errors of {name} jump {span}", remedy=calmer)
     least, floor = abs(line[-1].error), work.step_floor
     if least < ABOVE_FLOOR * floor:
         return NotCompared(
@@ -347,7 +342,7 @@ def _astray(name: str, line: list[WorkRow], work: Work, due: int) -> NotCompared
             "step changes the exact beam's displacement",
             remedy="give a finer step (steps_per_period) or smaller counts",
         )
-    return _astray(name, line, due, f"{calmer}, or larger counts", span)
+    return _astray(name, line, due, calmer, span)
 
 
 def _astray(name: str, line: list[WorkRow], due: int | None, remedy: str, span: str) -> NotCompared | None:

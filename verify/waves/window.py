@@ -1,6 +1,7 @@
 """Whether a window of a beam suits what drives it: two waves of one length alone, enough of them, not too many."""
 
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 
@@ -25,6 +26,14 @@ def _own_section(beam: Beam, start: float, end: float) -> bool:
             return False
         left = right
     return True
+
+
+def _one_section(beam: Beam, start: float, end: float) -> bool:
+    """Whether a stretch lies on sections that are alike, whichever is written as the beam's own."""
+    slack, ends = 1e-9 * beam.length, list(accumulate(piece.length for piece in beam.pieces))
+    spans = zip([0.0, *ends[:-1]], ends, beam.pieces, strict=True)
+    there = [piece for left, right, piece in spans if left < end - slack and right > start + slack]
+    return all(getattr(piece, of) == getattr(there[0], of) for piece in there for of in _OF_WAVES)
 
 
 def check_window(
@@ -53,9 +62,10 @@ def check_window(
             "it, choose a window without one"
         )
     if not _own_section(beam, start, end):
+        remedy = ", or give the beam that section's sizes as its own" if _one_section(beam, start, end) else ""
         raise WindowError(
             f"window = {told} holds a beam.section other than the beam's own: waves of one length run along "
-            "one section, choose a window on the beam's own"
+            f"one section, choose a window on the beam's own{remedy}"
         )
     places = sorted(places)
     inside = [p for p in places if start < p < end]
