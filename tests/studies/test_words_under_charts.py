@@ -10,7 +10,7 @@ from verify.judge.workbench import Workbench
 from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
 from verify.studies.axial_figures import axial_study
-from verify.studies.slider_figures import places_of
+from verify.studies.slider_figures import places_of, slider_study
 from verify.studies.slider_movie import slider_movie
 from verify.studies.wave_charts import wave_charts
 from verify.studies.wave_figures import wave_study
@@ -125,3 +125,13 @@ def test_models_that_are_as_far_off_at_their_best_are_not_called_wrong_in_freque
     apart = [abs(row.drive.standing_wave_ratio - exact.drive.standing_wave_ratio) for row in others]
     assert f"{max(apart):.1e}" in captions["wave-sizes"]
     assert "spoil" not in captions["wave-sizes"]
+
+
+def test_the_mean_speed_of_a_ride_is_told_and_no_swing():
+    """A slider that starts with a speed is carried by no swing of the surface."""
+    motion = {"duration": 0.004, "count": 20, "counts": [10, 20]}
+    found = slider_study(scene_of(slider=SLIDER | {"speed": -3.0}, motion=motion))
+    caption = next(chart.caption for chart in found.charts() if chart.id == "slider-speeds")
+    told = float(re.search(r"at ([^ ]+) mm/s", caption)[1])
+    assert told == pytest.approx(1e3 * found.subject.displacement / 0.004, rel=1e-2)
+    assert told == pytest.approx(-3e3, rel=0.05)
