@@ -19,7 +19,7 @@ from verify.slider import changed
 from verify.studies.axial_figures import axial_study
 from verify.studies.sensitivity import Sensitivity
 from verify.studies.sensitivity_figures import sensitivity
-from verify.studies.slider_figures import places_of
+from verify.studies.slider_figures import places_of, slider_study
 from verify.studies.slider_movie import slider_movie
 from verify.studies.wave_charts import wave_charts
 from verify.studies.wave_figures import wave_study
@@ -189,3 +189,13 @@ def test_a_wave_study_names_a_remedy_that_it_has():
         WindowError, match=r"leave \[wave\] out, and ask for figures by gates with a window of their own"
     ):
         run_scene(replace(load_scene("paper-wave", tuple(stepped)), gate=(), claim=()))
+
+
+def test_the_mean_speed_of_a_ride_is_told_and_no_swing():
+    """A slider that starts with a speed is carried by no swing of the surface."""
+    motion = {"duration": 0.004, "count": 20, "counts": [10, 20]}
+    found = slider_study(scene_of(slider=SLIDER | {"speed": -3.0}, motion=motion))
+    caption = next(chart.caption for chart in found.charts() if chart.id == "slider-speeds")
+    told = float(re.search(r"at ([^ ]+) mm/s", caption)[1])
+    assert told == pytest.approx(1e3 * found.subject.displacement / 0.004, rel=1e-2)
+    assert told == pytest.approx(-3e3, rel=0.05)
