@@ -911,12 +911,6 @@ DEAD = [
     ),
     Dead(
         "wave.absorber_reflection",
-        "beam.* drive.frequency_hz arguments.frequency_hz arguments.position arguments.turning",
-        "|s - 1|/(s + 1) of a resistance off by a factor s, of any beam",
-        lambda asked: half_infinite(asked) and asked.arguments.get("ratio") is not None,
-    ),
-    Dead(
-        "wave.absorber_reflection",
         "beam.width",
         "of beam and device alike, which is matched to it",
         lambda asked: asked.arguments.get("ratio") is not None,
