@@ -44,8 +44,13 @@ def nearest_mode(beam: Beam, drive_hz: float) -> int:
 
 
 def model_form(beam: Beam, drive_hz: float) -> float | None:
-    """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1; None without closed form."""
+    """Timoshenko's frequency over Euler-Bernoulli's at the mode nearest the drive, less 1.
+
+    None without closed form, and of a section given plainly whose shear stiffness or rotary inertia nobody has said.
+    """
     if beam.supports != ("pinned", "pinned") or not beam.uniform:
+        return None
+    if any(piece.shear_stiffness is None or piece.rotary_inertia is None for piece in beam.pieces):
         return None
     mode = nearest_mode(beam, drive_hz)
     return frequency_hz(beam, mode, "timoshenko") / frequency_hz(beam, mode) - 1.0
