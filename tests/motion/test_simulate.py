@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.motion import stepping as slider_run
 from verify.motion.records import SLIPS
 from verify.motion.simulate import simulate
-from verify.slider import Slider
+from verify.slider import Slider, changed
 
 LITERAL = str.maketrans({sign: "\\" + sign for sign in "()[]"})
 """Of what a message is matched by: brackets are what they are."""
@@ -109,7 +109,7 @@ def test_a_real_interrupt_inside_the_compiled_loop_finds_the_books_closed(monkey
 @pytest.mark.parametrize("coupling", ["one-way", "two-way"])
 @pytest.mark.parametrize("law", ["tanh", "coulomb"])
 def test_a_run_with_a_slider_continues(law, coupling):
-    slider = msgspec.structs.replace(LIGHT, law=law, coupling=coupling, mass=0.2)
+    slider = changed(LIGHT, law=law, coupling=coupling, mass=0.2)
     asked = {"slider": slider, "samples": 11, "step": 1e-6, "ledger": False}
     whole = slid(2e-3, **asked)
     begun = slid(0.8e-3, **asked)
@@ -130,7 +130,7 @@ def test_a_slider_put_on_a_beam_that_moves_already_starts_where_it_says():
 
 
 def test_a_slider_at_rest_on_a_beam_at_rest_sticks_from_the_start():
-    slider = msgspec.structs.replace(LIGHT, law="coulomb", mu=0.03)
+    slider = changed(LIGHT, law="coulomb", mu=0.03)
     found = slid(2e-3, slider, soft_start_periods=1.0, samples=2001, ledger=False)
     assert found.events[0, 1] == SLIPS
     before = (found.times > 0) & (found.times < found.events[0, 0])
@@ -202,7 +202,7 @@ def test_bad_input_is_refused_in_one_sentence(asked, message):
         ({"position": np.nan}, "slider.position = nan"),
         ({"gravity": 0.0}, "presses on nothing"),
         ({"preload": -1.0}, "slider.preload = -1.0"),
-        ({"law": "coulomb", "mu_static": 0.1}, "slider.mu_static = 0.1"),
+        ({"law": "coulomb", "slope": None, "mu_static": 0.1}, "slider.mu_static = 0.1"),
         ({"mu_static": 0.4}, "never sticks"),
         ({"law": "columb"}, "did you mean 'coulomb'"),
         ({"coupling": "twoway"}, "did you mean 'two-way'"),

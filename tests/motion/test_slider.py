@@ -11,7 +11,7 @@ from verify.motion.pure_wave import terminal_speed
 from verify.motion.records import SLIPS, STICKS
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of
-from verify.slider import Slider
+from verify.slider import Slider, changed
 
 HEAVY = Slider(mass=0.4, mu=0.3, slope=300.0, position=0.19, coupling="two-way", normal="massless")
 PAPER = Beam(length=0.5, width=0.02, thickness=0.001, youngs_modulus=70e9, density=2700.0)
@@ -65,7 +65,7 @@ def test_the_energy_books_close_with_the_step(coupling, order, law, zeta):
 
     Two-way the beam's motion has a kink where friction turns over: order 2.
     """
-    slider = replace(HEAVY, coupling=coupling, law=law, mu=0.05)
+    slider = changed(HEAVY, coupling=coupling, law=law, mu=0.05)
     runs = [slid(slider, steps, modal_damping=zeta) for steps in (120, 240, 480)]
     work = [abs(m.ledger.residual) / m.ledger.work_in for m in runs]
     assert work[-1] < 3e-6
@@ -104,7 +104,7 @@ def test_friction_alone_is_rubbed_off_from_a_slider_that_follows(coupling):
 @pytest.mark.parametrize("law", ["tanh", "coulomb"])
 def test_impulse_and_power_of_friction_are_its_own(law):
     """The slider's m dv the integral of F dt; F v_rel <= 0 at all times; |F| <= mu m g."""
-    m = slid(replace(HEAVY, law=law, coupling="one-way", mu=0.05), steps=2000, samples=4001)
+    m = slid(changed(HEAVY, law=law, coupling="one-way", mu=0.05), steps=2000, samples=4001)
     limit = 0.05 * 0.4 * 9.81
     assert np.all(m.friction * (m.speed - m.surface_speed) <= 1e-15)
     assert abs(m.friction).max() <= limit * (1 + 1e-12)
@@ -131,7 +131,7 @@ def test_two_way_tends_to_one_way_as_the_mass_goes_and_the_choice_goes_by_size()
 def test_steep_tanh_tends_to_coulomb():
     """The distance to it falls with 1/K."""
     slider = replace(HEAVY, coupling="one-way")
-    exact = slid(replace(slider, law="coulomb"), steps=3000).speed[-1]
+    exact = slid(changed(slider, law="coulomb"), steps=3000).speed[-1]
     off = [abs(slid(replace(slider, slope=k), steps=3000).speed[-1] / exact - 1) for k in (1e5, 1e6, 1e7)]
     assert off[0] / off[1] == pytest.approx(10.0, rel=0.3)
     assert off[1] / off[2] == pytest.approx(10.0, rel=0.3)
@@ -143,7 +143,7 @@ def test_steep_tanh_tends_to_coulomb():
 )
 def test_a_slider_at_rest_on_a_beam_that_feels_it_holds_on_to_static_friction(model, size):
     """However many modes a step leaves unresolved; what it gives in a step never exceeds it, and in slip is mu N."""
-    slider = replace(HEAVY, law="coulomb", mu=0.3, mu_static=0.55, normal="massless", coupling="two-way")
+    slider = changed(HEAVY, law="coulomb", mu=0.3, mu_static=0.55, normal="massless", coupling="two-way")
     m = slid(slider, model=model, samples=6001, modal_damping=0.01, **size)
     full = slider.normal_force
     assert 0.53 * full < abs(m.friction).max() <= 0.55 * full * (1 + 1e-9)
@@ -154,7 +154,7 @@ def test_a_slider_at_rest_on_a_beam_that_feels_it_holds_on_to_static_friction(mo
 
 def test_a_sticking_slider_rides_on_the_surface_and_its_slips_are_located():
     """Its v is the surface's to the last digit; slip times converge with order 2 in the step."""
-    slider = replace(HEAVY, law="coulomb", coupling="one-way", mu=0.05)
+    slider = changed(HEAVY, law="coulomb", coupling="one-way", mu=0.05)
     m = slid(slider, steps=400, samples=2001)
     kinds, times = m.events[:, 1], m.events[:, 0]
     assert kinds[0] == SLIPS
@@ -282,7 +282,7 @@ def test_a_follower_that_gathers_speed_within_a_step_meets_the_convective_terms_
 @pytest.mark.parametrize("turned", [0.0, 180.0])
 def test_a_slider_that_the_surface_leaves_at_once_slips_from_the_start_and_no_event_is_noted(turned):
     """At rest on a beam at rest under step loads, whichever way they throw its surface."""
-    slider = replace(HEAVY, coupling="one-way", law="coulomb", mu=1e-3)
+    slider = changed(HEAVY, coupling="one-way", law="coulomb", mu=1e-3)
     forces = tuple(replace(f, phase_deg=f.phase_deg + turned) for f in FORCES)
     run = simulate(STRIP, forces, FREQUENCY, 1e-3, model="segment", count=6, slider=slider, samples=2)
     assert len(run.events) == 0

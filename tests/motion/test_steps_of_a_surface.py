@@ -18,7 +18,7 @@ from verify.motor.case import MotorCase
 from verify.motor.figures import at_speed, crest_speed
 from verify.motor.run import run_motor, run_motors
 from verify.section import Section
-from verify.slider import Contact, Foot, Slider
+from verify.slider import Contact, Foot, Slider, changed
 from verify.waves.medium import Medium
 
 THIN, THICK, STEP = 0.0011, 0.0029, 0.137
@@ -251,7 +251,7 @@ def test_a_motors_margins_are_those_of_the_section_under_it():
     springs = Contact(stiffness=9e4, tangential_stiffness=4e4)
 
     def margins(beam):
-        slider = replace(STANDS, contact=springs, law="coulomb")
+        slider = changed(STANDS, contact=springs, law="coulomb")
         run = run_motor(beam, FORCES, HERTZ, 2.0 / HERTZ, slider=slider, count=COUNT)
         return run.motor_margins, run.coupling
 

@@ -49,7 +49,7 @@ def run_of(name, step, **asked):
         mass=MASS,
         mu=0.3,
         law="tanh" if "slope" in given else "coulomb",
-        slope=given.get("slope", 1.0),
+        slope=given.get("slope"),
         gravity=0.0,
         preload=LOAD,
         position=START,

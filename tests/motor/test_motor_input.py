@@ -118,9 +118,15 @@ def test_verbs_of_a_slider_that_never_leaves_refuse_one_that_may():
 
 def test_sliders_on_one_beam_rub_and_are_coupled_alike():
     one = a_slider(position=0.1)
-    for other, field in (({"law": "tanh"}, "law"), ({"coupling": "two-way"}, "coupling"), ({"slope": 2.0}, "slope")):
+    smooth = a_slider(position=0.1, law="tanh", slope=3.0)
+    for first, other, field in (
+        (one, {"law": "tanh"}, "law"),
+        (one, {"coupling": "two-way"}, "coupling"),
+        (smooth, {"law": "tanh", "slope": 2.0}, "slope"),
+    ):
+        both = [first, a_slider(position=0.2, **other)]
         with pytest.raises(InputError, match=rf"slider\.{field} differs"):
-            run_motors(BEAM, FORCES, 3130.0, 1e-4, sliders=[one, a_slider(position=0.2, **other)], model="fem", count=9)
+            run_motors(BEAM, FORCES, 3130.0, 1e-4, sliders=both, model="fem", count=9)
     with pytest.raises(InputError, match="sliders is empty"):
         run_motors(BEAM, FORCES, 3130.0, 1e-4, sliders=[], model="fem", count=9)
 

@@ -57,7 +57,7 @@ def run_of(name, step):
         mass=MASS,
         mu=0.2,
         law="tanh" if "slope" in given else "coulomb",
-        slope=given.get("slope", 1.0),
+        slope=given.get("slope"),
         gravity=0.0,
         preload=LOAD,
         preload_stiffness=given.get("load_stiffness", 0.0),

@@ -8,7 +8,7 @@ from peer_cases import FORCES, FREQUENCY
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.peers.case import case_of, sled_of, surface_speed
-from verify.slider import Slider
+from verify.slider import Slider, changed
 
 SLIDER = Slider(mass=1e-3, mu=0.2, preload=0.4, position=0.31, coupling="one-way")
 
@@ -53,7 +53,7 @@ def test_what_the_peers_chain_is_not_is_refused_by_name(titanium_strip, change, 
 def test_a_slider_that_does_more_is_refused_by_name(titanium_strip, change):
     ((field, word),) = change.items()
     with pytest.raises(InputError, match=f"slider.{field} = '{word}'"):
-        sled_of(titanium_strip, msgspec.structs.replace(SLIDER, **change))
+        sled_of(titanium_strip, changed(SLIDER, **change))
 
 
 def test_a_sled_is_pressed_on_by_weight_and_preload(titanium_strip):

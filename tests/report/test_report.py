@@ -7,6 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from packaged import last_of_each
 
 from verify import run_scene
 from verify.report.document import environment
@@ -221,9 +222,8 @@ def small_study(*overrides):
     from verify.judge.workbench import Workbench
     from verify.studies.wave_figures import wave_study
 
-    scene = load_scene(
-        "paper-wave", ("wave.counts=[49]", "wave.frequency_hz=4200,4300,11", "wave.phase_deg=0,180,13", *overrides)
-    )
+    quick = ("wave.counts=[49]", "wave.frequency_hz=4200,4300,11", "wave.phase_deg=0,180,13")
+    scene = load_scene("paper-wave", last_of_each(*quick, *overrides))
     return wave_study(scene, Workbench(scene.beam), scene.wave)
 
 

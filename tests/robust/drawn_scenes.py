@@ -178,8 +178,11 @@ class Drawn:
         return draw.table(
             mass=(100, self.mass * draw.decade(-6, 0)),
             mu=(100, draw.decade(-2, 0.5)),
-            slope=(60, lambda: draw.decade(-1, 5)),
-            **draw.one({}, {"law": (100, "tanh")}, {"law": (100, "coulomb"), "mu_static": (30, draw.decade(0.5, 1))}),
+            **draw.one(
+                {"slope": (60, lambda: draw.decade(-1, 5))},
+                {"slope": (60, lambda: draw.decade(-1, 5)), "law": (100, "tanh")},
+                {"slope": (5, 310.0), "law": (100, "coulomb"), "mu_static": (30, draw.decade(0.5, 1))},
+            ),
             position=(40, self._place),
             speed=(20, lambda: draw.one(0.0, 1e-3, -0.4)),
             preload=(20, lambda: draw.decade(-4, 2)),
