@@ -1440,3 +1440,19 @@ def test_the_base_has_every_part_that_a_scene_can_have():
     assert set(BASE) | {"title", "description", "axial_inertia", "readings", "methods", "bench", "stress", "motor"} == {
         f.name for f in msgspec.structs.fields(scene_type())
     }
+
+
+@pytest.mark.parametrize("wrong", [float("nan"), float("inf"), float("-inf")])
+def test_a_number_that_is_none_is_refused_by_its_name(wrong):
+    """Of every argument that takes a number: a slider held at a speed that is none was told to have diverged."""
+    asked = 0
+    for name, found in QUANTITIES.items():
+        for case in CASES.get(name, [])[:1]:
+            for argument, value in case.arguments.items():
+                if isinstance(value, float):
+                    asked += 1
+                    with pytest.raises(InputError, match=rf"^{argument} = -?(nan|inf): give a finite number$"):
+                        arguments_of(found, {**case.arguments, argument: wrong})
+    assert asked > 60
+    with pytest.raises(InputError, match=r"^speed = nan: give a finite number$"):
+        arguments_of(QUANTITIES["slider.force_speed"], {"model": "analytic", "speed": float("nan")})

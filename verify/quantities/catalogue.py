@@ -65,7 +65,16 @@ def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
             among.check(name, field)
         elif field not in data and set(data) <= set(kinds) and _is_required(found.arguments, field):
             raise InputError(f"{field} is missing: give one of {', '.join(among.names())}")
+    for name, value in data.items():
+        _check_finite(name, value)
     return checked(data, found.arguments)
+
+
+def _check_finite(name: str, value: Any) -> None:
+    """Raise InputError for a number, alone or in a list, that is none or endless: no figure is of one."""
+    for one in value if isinstance(value, list) else [value]:
+        if isinstance(one, float) and not isfinite(one):
+            raise InputError(f"{name} = {value!r}: give a finite number")
 
 
 def _is_required(kind: type[Arguments], name: str) -> bool:
