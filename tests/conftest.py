@@ -1,6 +1,7 @@
 """Beams that no test value is symmetric in, and a way to plant faults."""
 
 import os
+import signal
 import sys
 
 import packaged
@@ -17,6 +18,8 @@ for library in (
     "OMP",
 ):  # as the command line has it: matrices are small, and workers share the cores
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as of a shell's job in the background, which children inherit
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # a thousand command lines would each read all sources anew
 
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -173,6 +173,21 @@ def test_a_beam_seen_from_the_other_side_has_the_same_frequencies(made):
         assert there[name](3).frequencies_hz == pytest.approx(here[name](3).frequencies_hz, rel=within), name
 
 
+@pytest.mark.parametrize("n", [60, 61])
+def test_a_spring_six_links_from_a_guided_end_with_a_mass_feels_it_from_either_side(n):
+    """The case that was drawn: at the right end the mass was taken for one link farther off than at the left."""
+    beam = Beam(
+        length=L,
+        bending_stiffness=EI,
+        mass_per_length=RHO_A,
+        supports=("pinned", "guided"),
+        mass=(PointMass(position=L, mass=RHO_A * L),),
+        spring=(PointSpring(position=0.90625 * L, stiffness=95.0),),
+    )
+    here, there = (segments.solve_modes(one, 3, n).frequencies_hz for one in (beam, beam.mirrored()))
+    assert there == pytest.approx(here, rel=1e-12)
+
+
 FIELDS = {
     "exact": (exact_fields.solve_harmonic, ()),
     "elements": (elements.solve_harmonic, (24,)),

@@ -106,10 +106,15 @@ def _groups(chain: Chain, places: Array) -> Iterator[Indices]:
         inside |= (places == end) & (support == "guided")
     rows = np.unique(np.where(inside, np.round(places, 9), np.inf), return_index=True)[1]
     rows = rows[inside[rows]]
-    links = np.floor(places[rows]).astype(int)
-    for group in np.split(rows, np.flatnonzero(np.diff(links) >= _BEFORE + _AFTER) + 1):
-        if len(group) and near(np.floor(places[group]).astype(int), n):
+    links = _links_under(places, n)
+    for group in np.split(rows, np.flatnonzero(np.diff(links[rows]) >= _BEFORE + _AFTER) + 1):
+        if len(group) and near(links[group], n):
             yield group
+
+
+def _links_under(places: Array, n: int) -> Indices:
+    """The links that places (p,) stand on, (p,): on the last one at the right end, as on the first at the left."""
+    return np.minimum(np.floor(places).astype(np.int64), n - 1)
 
 
 def _stretch(chain: Chain, places: Array, end: int) -> _Stretch | None:
