@@ -65,9 +65,10 @@ def arguments_of(found: Quantity[A], given: dict[str, Any]) -> A:
             among.check(name, field)
         elif field not in data and set(data) <= set(kinds) and _is_required(found.arguments, field):
             raise InputError(f"{field} is missing: give one of {', '.join(among.names())}")
-    for name, value in data.items():
+    made = checked(data, found.arguments)
+    for name, value in data.items():  # types and bounds of their own let some through
         _check_finite(name, value)
-    return checked(data, found.arguments)
+    return made
 
 
 def _check_finite(name: str, value: Any) -> None:
