@@ -18,10 +18,11 @@ from verify.options import REFERENCES, DriveKind, Reference, Start
 from verify.scenes.checked import checked
 from verify.scenes.claims import Claim
 from verify.scenes.given import as_meant, type_at_key
+from verify.scenes.overrides import forget_what_is_no_more, set_twice
 from verify.scenes.problems import MOST, problems
 from verify.scenes.sections import ON_WHAT_EXISTS, SECTIONS
 from verify.scenes.toml import override, read_toml
-from verify.slider import OF_ONE_LAW, Slider
+from verify.slider import Slider
 
 PACKAGED = Path(__file__).parent
 STARTER = PACKAGED / "starter.toml"
@@ -363,48 +364,15 @@ def tables_of(name_or_path: str | Path, overrides: tuple[str, ...] = ()) -> dict
     if not isinstance(overrides, tuple | list) or not all(isinstance(text, str) for text in overrides):
         raise InputError(f"overrides = {overrides!r}: give a list of 'key=value' words")
     data = read_toml(scene_path(str(name_or_path)))
-    wrong = _twice(overrides)
+    wrong = set_twice(overrides)
     for assignment in overrides:
         try:
             override(data, assignment, _meant)
         except InputError as error:
             wrong += error.sentences
     raise_all(wrong, MOST)
-    _forget_references(data, overrides)
-    _forget_other_law(data, overrides)
+    forget_what_is_no_more(data, overrides)
     return data
-
-
-def _forget_other_law(data: dict[str, Any], overrides: Iterable[str]) -> None:
-    """Leave out, in place, what a slider has of another law than the one that was set, unless it was set as well."""
-    keys, slider = {text.partition("=")[0].strip() for text in overrides}, data.get("slider")
-    if "slider.law" in keys and isinstance(slider, dict):
-        for law, name in OF_ONE_LAW.items():
-            if slider["law"] != law and f"slider.{name}" not in keys:
-                slider.pop(name, None)
-
-
-def _twice(overrides: Iterable[str]) -> list[str]:
-    """A sentence for every key that is set more than once."""
-    values: dict[str, list[str]] = {}
-    for text in overrides:
-        key, _, value = text.partition("=")
-        values.setdefault(key.strip(), []).append(value.strip())
-    return [f"{key} is set to {' and to '.join(each)}: set it once" for key, each in values.items() if len(each) > 1]
-
-
-def _forget_references(data: dict[str, Any], overrides: Iterable[str]) -> None:
-    """Leave out, in place, what gates say of references to expectations that were set, unless it was set as well."""
-    keys = {text.partition("=")[0].strip() for text in overrides}
-    gates = data.get("gate") if any(key.startswith("gate.") for key in keys) else None
-    for i, gate in enumerate(gates if isinstance(gates, list) else ()):
-        if not isinstance(gate, dict):
-            continue
-        names = (f"gate.{i}", f"gate.{gate.get('id', i)}")
-        set_here = {key.rpartition(".")[2] for key in keys if key.rpartition(".")[0] in names}
-        if set_here & {"expect", "at_least", "at_most"} and "reference" not in set_here:
-            for name in ("reference", "uncertainty", "source"):
-                gate.pop(name, None)
 
 
 def _meant(value: Any, key: str) -> Any:
