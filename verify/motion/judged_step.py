@@ -16,9 +16,12 @@ from verify.motion.sound_books import Excess
 from verify.motion.step_size import stepped
 from verify.motion.surface import Stage
 
-STANDS = 0.01
-"""Of the displacement, and of the longest way: runs that lie no further apart in steps of dt and 2 dt are one."""
-LOOKS = 32
+KNOWN = 0.01
+"""Of the displacement, and of the longest way: what moves more with its step is not known."""
+STANDS = 0.4 * KNOWN
+"""What halving the step may move at last: where errors fall as dt^(1/2), the slowest seen of sliders that stick and slip,
+2.4 times as much is left."""
+LOOKS = 16
 """Samples at least by which two runs are compared: at one alone, runs that are far apart may meet."""
 HALVINGS = 4
 """Of the step at most: sixteen times the work."""
@@ -64,8 +67,10 @@ def until_it_stands(
             break
         if number and ran[-1].excess is None and moved(ran[-2].motion, ran[-1].motion) <= STANDS:
             break
-    progress(1.0)
-    return _thinned(_with_cost(ran), closer)
+    found = _thinned(_with_cost(ran), closer)
+    if not found.motion.statistics.interrupted:
+        progress(1.0)
+    return found
 
 
 def _layouts(stages: list[Stage], closer: int) -> Iterator[list[Stage]]:
@@ -90,7 +95,7 @@ def moved(coarse: Motion, fine: Motion) -> float:
     Infinite where one run ended otherwise, or another time, than the other; 0 where neither moved.
     """
     ends = coarse.end.time, fine.end.time
-    if coarse.statistics.finished != fine.statistics.finished or abs(ends[0] - ends[1]) > STANDS * ends[1]:
+    if coarse.statistics.finished != fine.statistics.finished or abs(ends[0] - ends[1]) > KNOWN * ends[1]:
         return float("inf")
     n = min(len(coarse.travelled), len(fine.travelled))
     apart, way = abs(coarse.travelled[:n] - fine.travelled[:n]), abs(fine.travelled[:n])
@@ -131,4 +136,4 @@ def _said(part: float, dt: float) -> str:
     """How far the way of a slider stands in steps of dt, seconds."""
     told = f"the slider's way moves by {100.0 * part:.2g} %" if np.isfinite(part) else "the run ends otherwise"
     said = f"step: from steps of {2.0 * dt:.3g} s to {dt:.3g} s {told}"
-    return said if part <= STANDS else f"{said}; give a shorter step, and halve it until what you read stands"
+    return said if part <= KNOWN else f"{said}; give a shorter step, and halve it until what you read stands"
