@@ -19,8 +19,8 @@ from verify.motion.surface import Stage
 KNOWN = 0.01
 """Of the displacement, and of the longest way: what moves more with its step is not known."""
 STANDS = 0.4 * KNOWN
-"""What halving the step may move at last: where errors fall as dt^(1/2), the slowest seen of sliders that stick and slip,
-2.4 times as much is left."""
+"""What halving the step may move at last: where errors fall as dt^(1/2), the slowest seen of sliders that stick, 2.4
+times as much is left."""
 LOOKS = 16
 """Samples at least by which two runs are compared: at one alone, runs that are far apart may meet."""
 HALVINGS = 4
