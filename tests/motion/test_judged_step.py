@@ -93,8 +93,8 @@ def test_a_way_that_does_not_stand_is_said_and_refused_as_a_figure(monkeypatch, 
     asked = {"model": "fem", "count": 37, "time": 10.0 / HERTZ}
     scene = load_scene(tmp_path / "steel.toml")
     with pytest.raises(InputError, match=r"^step, which is not given: in steps of .* is not known to 1 %"):
-        with_slider(SliderInTime(**asked), scene, Workbench())
-    assert with_slider(SliderInTime(**asked, step=1e-7), scene, Workbench()).displacement != 0.0
+        with_slider(SliderInTime(**asked), scene, Workbench(scene.beam))
+    assert with_slider(SliderInTime(**asked, step=1e-7), scene, Workbench(scene.beam)).displacement != 0.0
 
 
 def test_a_slider_that_leaves_at_another_time_has_not_been_confirmed():
