@@ -13,8 +13,9 @@ from verify import Beam, InputError, PointMass, PointSpring, Section, fem_beam, 
 from verify.elements import stacks as of_elements
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
-from verify.models import band_stack, sweeps
+from verify.models import band_stack, stacks, sweeps
 from verify.models.eigen import lowest
+from verify.models.isolated import isolated
 from verify.models.stacks import grounded, judged, lowest_of_each
 from verify.options import SUPPORTS
 from verify.segments import stacks as of_segments
@@ -177,6 +178,29 @@ def test_stepped_beams_settle_in_their_stack(alone, model, supports, n_masses, n
     assert 1 <= len(alone) <= 4
 
 
+@pytest.mark.parametrize("supports", [(a, b) for i, a in enumerate(SUPPORTS) for b in SUPPORTS[i:]])
+@pytest.mark.parametrize("more", [{}, {"tension": 9.0, "foundation": 170.0}])
+def test_many_modes_of_chains_are_told_apart_by_counts_alone(alone, monkeypatch, supports, more):
+    monkeypatch.setattr(stacks, "_projected", None)
+    beams = many(47, 10, supports, n_sections=3, **more)
+    found = segment_model.sweep_modes(beams, 21, 49)
+    assert len(alone) == 1
+    each = [segment_model.solve_modes(beam, 21, 49).frequencies_hz for beam in beams]
+    assert found == pytest.approx(np.array(each), rel=3e-14)
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.tuples(*[st.sampled_from(SUPPORTS)] * 2), st.integers(12, 25), st.integers(43, 60))
+def test_shifts_from_counts_stand_at_the_modes_of_any_stepped_beams(seed, supports, n_modes, count):
+    """To a hundredth of their distance; the first, below which there is no count, may stand farther off."""
+    stack, _, pencils = stacked("segment", many(seed, 5, supports, n_sections=3), 1, count)
+    with np.errstate(all="ignore"):
+        shifts = isolated(stack.stiffness, stack.mass, stack.rigid_modes, n_modes) ** 0.25
+    roots = np.array([lowest(pencil, n_modes + 1).values for pencil in pencils]).T ** 0.25
+    apart = np.minimum(np.diff(roots, axis=0)[1:], np.diff(roots[:-1], axis=0))
+    assert (abs(shifts - roots[:-1])[1:] < 0.01 * apart).all()
+
+
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("supports", [("guided", "pinned"), ("free", "free"), ("clamped", "free")])
 @pytest.mark.parametrize(("n_masses", "n_springs"), [(0, 0), (2, 0), (1, 2)])
@@ -223,7 +247,11 @@ def told(stack, pencils, modes, start, top=None):
     vectors = np.array([pair.vectors[:, [mode - 1 for mode in modes]] for pair in pairs])
     between = [0.5 * (pair.values[max(modes) - 1] + pair.values[max(modes)]) for pair in pairs]
     top = np.array(between) if top is None else top
-    return judged(stack, grounded(stack, start), np.moveaxis(vectors, 0, -1), top)
+    return judged_of(stack, start, np.moveaxis(vectors, 0, -1), top)
+
+
+def judged_of(stack, start, vectors, top):
+    return judged(stack, grounded(stack, start), vectors, band_stack.product(stack.mass, vectors), top)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -249,7 +277,7 @@ def test_a_vector_that_is_not_home_does_not_settle(model):
     for share, home in ((0.0, True), (1e-5, False)):
         mixed = vectors[:, :3].copy()
         mixed[:, 1] += share * vectors[:, 4]
-        assert (judged(stack, grounded(stack, start), mixed, top)[1] == home).all()
+        assert (judged_of(stack, start, mixed, top)[1] == home).all()
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -375,6 +403,10 @@ def test_bands_are_their_matrices(n, width, seed):
     count, grown = band_stack.count_below(bands, weights, shift)
     lower = np.linalg.inv(np.linalg.cholesky(mass))
     values = np.linalg.eigvalsh(lower @ stiffness @ np.swapaxes(lower, 1, 2))
+    told, logs = band_stack.tally(bands, weights, np.array([shift, 0.7 - shift]))
+    assert (told[0] == count).all()
+    wanted = np.linalg.slogdet(stiffness - shift[:, None, None] * mass)[1]
+    assert logs[0, grown.max(axis=0) < 1e3] == pytest.approx(wanted[grown.max(axis=0) < 1e3], abs=1e-9)
     sure = abs(values - shift[:, None]).min(axis=1) > 1e-13 * grown.max(axis=0)
     assert (grown >= abs((bands - shift * weights)[:, 0]) - 1e-12 * grown).all()
     assert (count[sure] == (values < shift[:, None]).sum(axis=1)[sure]).all()
