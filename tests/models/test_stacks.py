@@ -178,14 +178,15 @@ def test_stepped_beams_settle_in_their_stack(alone, model, supports, n_masses, n
     assert 1 <= len(alone) <= 4
 
 
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("supports", [(a, b) for i, a in enumerate(SUPPORTS) for b in SUPPORTS[i:]])
 @pytest.mark.parametrize("more", [{}, {"tension": 9.0, "foundation": 170.0}])
-def test_many_modes_of_chains_are_told_apart_by_counts_alone(alone, monkeypatch, supports, more):
+def test_many_modes_are_told_apart_by_counts_alone(alone, monkeypatch, model, supports, more):
     monkeypatch.setattr(stacks, "_projected", None)
     beams = many(47, 10, supports, n_sections=3, **more)
-    found = segment_model.sweep_modes(beams, 21, 49)
+    found = MODELS[model].sweep_modes(beams, 21, 49)
     assert len(alone) == 1
-    each = [segment_model.solve_modes(beam, 21, 49).frequencies_hz for beam in beams]
+    each = [MODELS[model].solve_modes(beam, 21, 49).frequencies_hz for beam in beams]
     assert found == pytest.approx(np.array(each), rel=3e-14)
 
 

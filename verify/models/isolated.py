@@ -25,7 +25,7 @@ _GRID = 2
 _NEWTON = 4
 _ROUNDS = 8
 """Of false position at most: 0.01 of a distance after the cubic, 1e-4 after one, 1e-7 after two."""
-_NEAR = 3e-4
+_NEAR = 3e-5
 """Of a distance: what has moved less in a round is as near as a shift has to be."""
 _ENDLESS = 300.0
 """Logarithm of a number that is as good as endless."""

@@ -22,11 +22,11 @@ _COLUMNS = 2000
 """Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
 _LEVEL = 1e-3
 """Of the highest value carried along: the least that is inverted, so that vectors stay apart in one step."""
-_STILL = 3e-8
+_STILL = 3e-9
 """Of a value: a residual that a step need not lower."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
-_MANY, _NARROW = 12, 3
+_MANY, _NARROW = 12, 4
 """Modes from which on, and diagonals up to which, counts tell where values lie in less time than a projection."""
 _UNLIKE = 1e6
 """Of K_ii / M_ii."""
