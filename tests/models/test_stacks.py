@@ -1,5 +1,6 @@
 """Beams solved side by side have the values that each has alone, or are left to be solved alone: none on trust."""
 
+import sys
 from time import process_time
 
 import mpmath as mp
@@ -9,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import Beam, InputError, PointMass, PointSpring, Section, fem_beam, segment_model
+from verify import Beam, InputError, PointMass, PointSpring, Section, cores, fem_beam, segment_model
 from verify.elements import stacks as of_elements
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
@@ -366,6 +367,26 @@ def test_beams_of_several_layouts_come_back_in_their_order(model):
     module = MODELS[model]
     each = np.array([module.solve_modes(beam, 3, 27).frequencies_hz for beam in beams])
     assert module.sweep_modes(beams, 3, 27) == pytest.approx(each, rel=1e-12)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="work is shared where the system forks safely")
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
+def test_several_cores_give_every_digit_that_one_gives(monkeypatch, model, theory):
+    """In stacks, and of beams that are taken one by one."""
+    beams = [replace(beam, shear_stiffness=2e3) for beam in thick(many(53, 24, n_sections=1, n_masses=1))]
+    beams = [replace(b, section=(), rotary_inertia=3e-4, mass=()) for b in beams[:3]] + beams
+    found, began, plain = [], [], cores.start
+    monkeypatch.setattr(cores, "start", lambda *given: began.append(1) or plain(*given))
+    for name in ("MODES_WORTH", "UNKNOWNS_WORTH"):
+        monkeypatch.setattr(sweeps, name, 0)
+    monkeypatch.setattr(sweeps, "MODES_TOGETHER", 40)
+    for n_jobs in (1, 2, 3):
+        monkeypatch.setenv("VERIFY_JOBS", str(n_jobs))
+        found.append(MODELS[model].sweep_modes(beams, 5, 30, theory=theory))
+        assert bool(began) == (n_jobs > 1)
+    assert np.array_equal(found[0], found[1])
+    assert np.array_equal(found[0], found[2])
 
 
 @pytest.mark.parametrize("model", MODELS)
