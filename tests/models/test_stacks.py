@@ -457,11 +457,12 @@ def seconds(job):
         ({"tension": 9.0}, {}, 5, 4.0),
         ({"foundation": 170.0}, {"grading": 2.0}, 5, 4.0),
         ({}, {"theory": "rayleigh"}, 5, 4.0),
-        ({"n_masses": 1}, {}, 20, 2.0),
+        ({}, {}, 20, 2.0),
+        ({"n_masses": 1}, {}, 20, 2.5),
     ],
 )
 def test_many_stepped_beams_take_a_fraction_of_a_loops_time(model, layout, chosen, n_modes, least):
-    """Ten to thirty times faster where nothing else runs, of 20 modes five; less than half of it is asked for."""
+    """Ten to thirty times faster where nothing else runs, of 20 modes five to ten; about half of it is asked for."""
     beams = thick(many(29, 160, ("clamped", "free"), n_sections=3, **layout))
     module, some, ratios = MODELS[model], beams[:40], []
     module.sweep_modes(beams, n_modes, 49, **chosen)
