@@ -22,7 +22,7 @@ _COLUMNS = 2000
 """Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
 _LEVEL = 1e-3
 """Of the highest value carried along: the least that is inverted, so that vectors stay apart in one step."""
-_STILL = 3e-9
+_STILL = 1e-9
 """Of a value: a residual that a step need not lower."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
