@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from verify.cores import for_each, start
+from verify.cores import at_once, for_each, start
 from verify.errors import InputError
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="work is shared where the system forks safely")
@@ -39,8 +39,20 @@ def test_results_come_in_order_whoever_is_done_first(monkeypatch, n_jobs):
     assert children() == "none"
 
 
+@pytest.mark.parametrize("n_jobs", [1, 2, 3, 40])
+def test_what_is_done_at_once_is_shared_with_here_and_comes_in_order(monkeypatch, n_jobs):
+    monkeypatch.setenv("VERIFY_JOBS", str(n_jobs))
+    found = at_once(lambda item: (item**0.5, os.getpid()), range(7))
+    assert [root for root, _ in found] == [item**0.5 for item in range(7)]
+    assert found[0][1] == os.getpid()
+    assert len({process for _, process in found}) == min(n_jobs, 7)
+    assert at_once(abs, []) == []
+    assert children() == "none"
+
+
+@pytest.mark.parametrize("share", [at_once, lambda work, items: for_each(work, items, lambda number: None)])
 @pytest.mark.parametrize("n_jobs", [1, 2, 5])
-def test_of_several_refusals_the_first_is_raised_as_it_is(monkeypatch, n_jobs):
+def test_of_several_refusals_the_first_is_raised_as_it_is(monkeypatch, share, n_jobs):
     monkeypatch.setenv("VERIFY_JOBS", str(n_jobs))
 
     def work(item):
@@ -50,7 +62,7 @@ def test_of_several_refusals_the_first_is_raised_as_it_is(monkeypatch, n_jobs):
         return item
 
     with pytest.raises(InputError, match=r"^item = 3 is no good"):
-        for_each(work, range(12), lambda number: None)
+        share(work, range(12))
     assert children() == "none"
 
 

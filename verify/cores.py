@@ -44,6 +44,38 @@ def for_each(work: Callable[[Item], Result], items: Sequence[Item], tell: Callab
         _gather(children, found, tell)
     finally:
         _end(children)
+    return _in_order(work, items, found, tell)
+
+
+def at_once(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+    """`work` of every item, in their order: a share here, the others in `jobs` - 1 processes, likewise (`for_each`)."""
+    n = min(jobs(), len(items))
+    if n < 2 or sys.platform != "linux":
+        return [work(item) for item in items]
+    found: dict[int, Result | Exception] = {}
+    children: dict[int, tuple[int, BinaryIO]] = {}
+    try:
+        for part in range(1, n):
+            _begin(work, items, range(part, len(items), n), children)
+        for index in range(0, len(items), n):
+            try:
+                found[index] = work(items[index])
+            except Exception as error:
+                found[index] = error
+                break
+        _gather(children, found, lambda _: None)
+    finally:
+        _end(children)
+    return _in_order(work, items, found, lambda _: None)
+
+
+def _in_order(
+    work: Callable[[Item], Result],
+    items: Sequence[Item],
+    found: dict[int, Result | Exception],
+    tell: Callable[[int], None],
+) -> list[Result]:
+    """What was found of all items; what is missing is done here. Raises what `work` raised of the first."""
     for index, item in enumerate(items):
         if index not in found:
             found[index] = _told(tell, len(found) + 1, work(item))

@@ -1,5 +1,6 @@
 """Beams solved side by side have the values that each has alone, or are left to be solved alone: none on trust."""
 
+import sys
 from time import process_time
 
 import mpmath as mp
@@ -9,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from verify import Beam, InputError, PointMass, PointSpring, Section, fem_beam, segment_model
+from verify import Beam, InputError, PointMass, PointSpring, Section, cores, fem_beam, segment_model
 from verify.elements import stacks as of_elements
 from verify.elements.mesh import build_elements
 from verify.elements.pencil import element_pencil
-from verify.models import band_stack, sweeps
+from verify.models import band_stack, stacks, sweeps
 from verify.models.eigen import lowest
+from verify.models.isolated import isolated
 from verify.models.stacks import grounded, judged, lowest_of_each
 from verify.options import SUPPORTS
 from verify.segments import stacks as of_segments
@@ -178,6 +180,38 @@ def test_stepped_beams_settle_in_their_stack(alone, model, supports, n_masses, n
 
 
 @pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("supports", [(a, b) for i, a in enumerate(SUPPORTS) for b in SUPPORTS[i:]])
+@pytest.mark.parametrize("more", [{}, {"tension": 9.0, "foundation": 170.0}])
+def test_many_modes_are_told_apart_by_counts_alone(alone, monkeypatch, model, supports, more):
+    monkeypatch.setattr(stacks, "_projected", None)
+    beams = many(47, 10, supports, n_sections=3, **more)
+    found = MODELS[model].sweep_modes(beams, 21, 49)
+    assert len(alone) == 1
+    each = [MODELS[model].solve_modes(beam, 21, 49).frequencies_hz for beam in beams]
+    assert found == pytest.approx(np.array(each), rel=3e-14)
+
+
+def test_no_high_mode_of_thick_beams_is_lost():
+    """They lie closer the higher they are, so that one count tells too short a grid."""
+    beams = thick(many(29, 192, ("clamped", "free"), n_sections=3))
+    stack = of_segments.chain_stack(beams, 49, CHAIN | {"theory": "rayleigh"})
+    with np.errstate(all="ignore"):
+        assert np.isfinite(isolated(stack.stiffness, stack.mass, stack.rigid_modes, 21)).all()
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.tuples(*[st.sampled_from(SUPPORTS)] * 2), st.integers(12, 25), st.integers(43, 60))
+def test_shifts_from_counts_stand_at_the_modes_of_any_stepped_beams(seed, supports, n_modes, count):
+    """To a hundredth of their distance; the first, below which there is no count, may stand farther off."""
+    stack, _, pencils = stacked("segment", many(seed, 5, supports, n_sections=3), 1, count)
+    with np.errstate(all="ignore"):
+        shifts = isolated(stack.stiffness, stack.mass, stack.rigid_modes, n_modes) ** 0.25
+    roots = np.array([lowest(pencil, n_modes + 1).values for pencil in pencils]).T ** 0.25
+    apart = np.minimum(np.diff(roots, axis=0)[1:], np.diff(roots[:-1], axis=0))
+    assert (abs(shifts - roots[:-1])[1:] < 0.01 * apart).all()
+
+
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("supports", [("guided", "pinned"), ("free", "free"), ("clamped", "free")])
 @pytest.mark.parametrize(("n_masses", "n_springs"), [(0, 0), (2, 0), (1, 2)])
 @pytest.mark.parametrize(
@@ -223,7 +257,11 @@ def told(stack, pencils, modes, start, top=None):
     vectors = np.array([pair.vectors[:, [mode - 1 for mode in modes]] for pair in pairs])
     between = [0.5 * (pair.values[max(modes) - 1] + pair.values[max(modes)]) for pair in pairs]
     top = np.array(between) if top is None else top
-    return judged(stack, grounded(stack, start), np.moveaxis(vectors, 0, -1), top)
+    return judged_of(stack, start, np.moveaxis(vectors, 0, -1), top)
+
+
+def judged_of(stack, start, vectors, top):
+    return judged(stack, grounded(stack, start), vectors, band_stack.product(stack.mass, vectors), top)
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -249,7 +287,7 @@ def test_a_vector_that_is_not_home_does_not_settle(model):
     for share, home in ((0.0, True), (1e-5, False)):
         mixed = vectors[:, :3].copy()
         mixed[:, 1] += share * vectors[:, 4]
-        assert (judged(stack, grounded(stack, start), mixed, top)[1] == home).all()
+        assert (judged_of(stack, start, mixed, top)[1] == home).all()
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -339,6 +377,26 @@ def test_beams_of_several_layouts_come_back_in_their_order(model):
     assert module.sweep_modes(beams, 3, 27) == pytest.approx(each, rel=1e-12)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="work is shared where the system forks safely")
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
+def test_several_cores_give_every_digit_that_one_gives(monkeypatch, model, theory):
+    """In stacks, and of beams that are taken one by one."""
+    beams = [replace(beam, shear_stiffness=2e3) for beam in thick(many(53, 24, n_sections=1, n_masses=1))]
+    beams = [replace(b, section=(), rotary_inertia=3e-4, mass=()) for b in beams[:3]] + beams
+    found, began, plain = [], [], cores.start
+    monkeypatch.setattr(cores, "start", lambda *given: began.append(1) or plain(*given))
+    for name in ("MODES_WORTH", "UNKNOWNS_WORTH"):
+        monkeypatch.setattr(sweeps, name, 0)
+    monkeypatch.setattr(sweeps, "MODES_TOGETHER", 40)
+    for n_jobs in (1, 2, 3):
+        monkeypatch.setenv("VERIFY_JOBS", str(n_jobs))
+        found.append(MODELS[model].sweep_modes(beams, 5, 30, theory=theory))
+        assert bool(began) == (n_jobs > 1)
+    assert np.array_equal(found[0], found[1])
+    assert np.array_equal(found[0], found[2])
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_a_beam_that_is_refused_among_many_is_named_by_its_index(model):
     module, beams = MODELS[model], many(23, 12, n_sections=3)
@@ -375,6 +433,10 @@ def test_bands_are_their_matrices(n, width, seed):
     count, grown = band_stack.count_below(bands, weights, shift)
     lower = np.linalg.inv(np.linalg.cholesky(mass))
     values = np.linalg.eigvalsh(lower @ stiffness @ np.swapaxes(lower, 1, 2))
+    told, logs = band_stack.tally(bands, weights, np.array([shift, 0.7 - shift]))
+    assert (told[0] == count).all()
+    wanted = np.linalg.slogdet(stiffness - shift[:, None, None] * mass)[1]
+    assert logs[0, grown.max(axis=0) < 1e3] == pytest.approx(wanted[grown.max(axis=0) < 1e3], abs=1e-9)
     sure = abs(values - shift[:, None]).min(axis=1) > 1e-13 * grown.max(axis=0)
     assert (grown >= abs((bands - shift * weights)[:, 0]) - 1e-12 * grown).all()
     assert (count[sure] == (values < shift[:, None]).sum(axis=1)[sure]).all()
@@ -403,11 +465,12 @@ def seconds(job):
         ({"tension": 9.0}, {}, 5, 4.0),
         ({"foundation": 170.0}, {"grading": 2.0}, 5, 4.0),
         ({}, {"theory": "rayleigh"}, 5, 4.0),
-        ({"n_masses": 1}, {}, 20, 2.0),
+        ({}, {}, 20, 2.0),
+        ({"n_masses": 1}, {}, 20, 2.5),
     ],
 )
 def test_many_stepped_beams_take_a_fraction_of_a_loops_time(model, layout, chosen, n_modes, least):
-    """Ten to thirty times faster where nothing else runs, of 20 modes five; less than half of it is asked for."""
+    """Ten to thirty times faster where nothing else runs, of 20 modes five to ten; about half of it is asked for."""
     beams = thick(many(29, 160, ("clamped", "free"), n_sections=3, **layout))
     module, some, ratios = MODELS[model], beams[:40], []
     module.sweep_modes(beams, n_modes, 49, **chosen)

@@ -146,9 +146,9 @@ class LineBasis(CellBasis):  # type: ignore[misc]
 
 
 def line_basis(nodes: Array) -> LineBasis:
-    """Hermite elements between nodes, (N + 1,) ascending, or of many lines, (lines, N + 1), one after another."""
-    number = np.arange(nodes.size).reshape(nodes.shape)
-    line = Line(nodes.reshape(1, -1), np.array([number[..., :-1].ravel(), number[..., 1:].ravel()]))
+    """Hermite elements between nodes, (N + 1,) ascending."""
+    number = np.arange(len(nodes))
+    line = Line(nodes[None], np.array([number[:-1], number[1:]]))
     return LineBasis(line, HermiteLine(), mapping=MappingAffine(line), quadrature=_MIDDLE)
 
 

@@ -80,16 +80,6 @@ def _made(nodes: Array, shear: bool) -> Any:
     return line_basis(nodes)
 
 
-def basis_of_lines(nodes: Array) -> Any:
-    """scikit-fem's basis of Hermite elements on lines that do not touch, between nodes (lines, N + 1) ascending.
-
-    Degrees of freedom are those of the first line, then of the second, and so on.
-    """
-    from verify.elements.element import line_basis
-
-    return line_basis(nodes)
-
-
 def free_unknowns(basis: Any, supports: tuple[str, str]) -> Indices:
     """Which degrees of freedom the supports leave, (n,) ascending."""
     left, right = supports

@@ -1,12 +1,11 @@
 """Elements of many beams of one layout as one stack of pencils: what `element_pencil` has, the beam's axis last.
 
-scikit-fem assembles all of them at once, as elements between the nodes of lines that do not touch.
+scikit-fem assembles an element of length one; those of all beams differ from it by their lengths and properties alone.
 """
 
 from collections.abc import Callable, Hashable, Sequence
-from functools import partial
+from functools import cache, partial
 from itertools import accumulate
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -15,7 +14,7 @@ from verify.beam import Beam
 from verify.elements.added import SAME_PLACE
 from verify.elements.curvatures import axial_weights, curvature_loads, element_curvatures, weights_beside
 from verify.elements.cuts import stretches
-from verify.elements.mesh import basis_of_lines, free_unknowns, mass_matrix, slope_matrix, stiffness_matrix
+from verify.elements.mesh import basis_between, free_unknowns, mass_matrix, slope_matrix, stiffness_matrix
 from verify.models.arrays import Array, Indices
 from verify.models.band_stack import of_unknowns
 from verify.models.division import ManyParts, divide_each
@@ -24,6 +23,8 @@ from verify.section import Piece
 
 _REACH = 4
 """Diagonals of elements, the main one among them."""
+_ONE = np.array([0.0, 1.0])
+"""The nodes of an element of length one."""
 
 
 class _Strained(msgspec.Struct, frozen=True, eq=False):
@@ -70,23 +71,22 @@ def element_stack(beams: Sequence[Beam], n_elements: int, grading: float, theory
     there = bool(first.mass or first.spring)
     pieces = [stretches(beam) if there else beam.pieces for beam in beams]
     parts = divide_each(beams, n_elements, pieces, grading)
-    basis, lengths = basis_of_lines(parts.nodes.T), np.diff(parts.nodes, axis=0)
-    stiffness = _bands(stiffness_matrix(basis, parts.stiffnesses.T.ravel()), len(beams))
-    mass = _bands(mass_matrix(basis, parts.masses_per_length.T.ravel()), len(beams))
+    lengths = np.diff(parts.nodes, axis=0)
+    stiffness = _bands(_bending(), lengths, parts.stiffnesses / lengths**3)
+    mass = _bands(_inertia(), lengths, parts.masses_per_length * lengths)
     if theory == "rayleigh":
         rotary = np.array([[piece.rotary_inertia for piece in each] for each in pieces]).T
         own = parts.of_pieces(rotary) / (np.array([beam.mass_per_length for beam in beams]) * parts.unit**2)
-        mass += _bands(slope_matrix(basis, own.T.ravel()), len(beams))
+        mass += _bands(_slopes(), lengths, own / lengths)
     strained = [_curved(lengths, weights_beside(lengths, stiffness[:-2, 2]))]
     scale = parts.unit**2 / np.array([beam.bending_stiffness for beam in beams])
     if first.tension:
-        force = np.broadcast_to(np.array([beam.tension for beam in beams]) * scale, lengths.shape)
-        pulled = _bands(slope_matrix(basis, force.T.ravel()), len(beams))
+        pulled = _bands(_slopes(), lengths, np.array([beam.tension for beam in beams]) * scale / lengths)
         stiffness += pulled
         strained.append(_pulled(lengths, axial_weights(lengths, pulled[:-2, 2], pulled[:-3, 3])))
     if first.foundation:
         ground = np.broadcast_to(np.array([beam.foundation for beam in beams]) * parts.unit**2 * scale, lengths.shape)
-        stiffness += _bands(mass_matrix(basis, ground.T.ravel()), len(beams))
+        stiffness += _bands(_inertia(), lengths, ground * lengths)
         strained.append(_grounded(lengths, ground))
     if there:
         _add_masses(beams, parts, mass)
@@ -181,16 +181,41 @@ def _held(n_values: int, places: Indices, stiffness: Array) -> _Strained:
 
 def _free(supports: tuple[str, str], n_elements: int) -> Indices:
     """Degrees of freedom that the supports leave of one beam."""
-    return free_unknowns(basis_of_lines(np.arange(n_elements + 1.0)[None]), supports)
+    return free_unknowns(basis_between(np.arange(n_elements + 1.0)), supports)
 
 
-def _bands(matrix: Any, n_beams: int) -> Array:
-    """What is assembled of all beams as bands over all degrees of freedom of each, (2N + 2, 4, n_beams)."""
-    size = matrix.shape[0]
-    found = np.zeros((_REACH, size))
-    for above in range(_REACH):
-        found[above, : size - above] = matrix.diagonal(above)
-    return np.ascontiguousarray(found.reshape(_REACH, n_beams, -1).transpose(2, 0, 1))
+@cache
+def _bending() -> Array:
+    """Of an element of length one, (4, 4); kept, for reading alone."""
+    return np.asarray(stiffness_matrix(basis_between(_ONE), _ONE[1:]).toarray())
+
+
+@cache
+def _inertia() -> Array:
+    """Likewise."""
+    return np.asarray(mass_matrix(basis_between(_ONE), _ONE[1:]).toarray())
+
+
+@cache
+def _slopes() -> Array:
+    """Likewise."""
+    return np.asarray(slope_matrix(basis_between(_ONE), _ONE[1:]).toarray())
+
+
+def _bands(one: Array, lengths: Array, weights: Array) -> Array:
+    """Elements of these lengths, (N, n_beams), as bands over all degrees of freedom of each beam, (2N + 2, 4, n_beams).
+
+    `one` is what an element of length one has, `weights`, likewise, what those of deflections have of that. Slopes have
+    a length more each.
+    """
+    n, n_beams = lengths.shape
+    found = np.zeros((2 * n + 2, _REACH, n_beams))
+    by_slopes = (weights, weights * lengths, weights * lengths**2)
+    for row in range(_REACH):
+        for column in range(row, _REACH):
+            share = one[row, column] * by_slopes[row % 2 + column % 2]
+            found[row : row + 2 * n : 2, column - row] += share
+    return found
 
 
 def _add(bands: Array, places: Indices, weights: Array) -> None:

@@ -11,6 +11,10 @@ from verify.models.arrays import Array, Indices
 
 _NEAR = 32768
 """Numbers that a product takes at once."""
+_TALLIED = 8000
+"""Shifts of matrices that are counted at once."""
+_ROWS = 16
+"""Pivots whose product is a number of ordinary size."""
 
 
 def of_unknowns(bands: Array, free: Indices) -> Array:
@@ -99,3 +103,43 @@ def count_below(stiffness: Array, mass: Array, shifts: Array) -> tuple[Indices, 
     for a in range(min(w, n - 1)):
         grown[1 + a :] += lower[: n - 1 - a, a] ** 2 * sizes[: n - 1 - a]
     return np.asarray((pivots < 0.0).sum(axis=0)), grown
+
+
+def tally(stiffness: Array, mass: Array, shifts: Array) -> tuple[Indices, Array]:
+    """(how many eigenvalues of K v = lambda M v lie below shifts, log |det(K - shift M)|), (k, c) both.
+
+    As `triangles` goes, but of a row no more is kept than the next ones take.
+    """
+    at_once = max(_TALLIED // mass.shape[2], 1)
+    found = [_tallied(stiffness, mass, shifts[first : first + at_once]) for first in range(0, len(shifts), at_once)]
+    below, logs = (np.concatenate(each) for each in zip(*found, strict=True))
+    return below, logs
+
+
+def _tallied(stiffness: Array, mass: Array, shifts: Array) -> tuple[Indices, Array]:
+    """The same of some of the shifts."""
+    n, width, _ = mass.shape
+    rows = [np.empty((width, *shifts.shape)) for _ in range(width)]
+    shares, taken = np.empty_like(rows[0][1:]), np.empty_like(rows[0][1:])
+    negative, below = np.empty(shifts.shape, dtype=bool), np.zeros(shifts.shape, dtype=np.uint8)
+    product, logs = np.ones_like(shifts), np.zeros_like(shifts)
+    for i in range(-width, n):
+        own = rows[i % width]
+        if i >= 0:
+            np.signbit(own[0], out=negative)
+            below += negative.view(np.uint8)
+            product *= own[0]
+            if i % _ROWS == _ROWS - 1 or i == n - 1:
+                logs += np.log(abs(product))
+                product[...] = 1.0
+            np.divide(own[1:], own[0], out=shares)
+            for a in range(width - 1):
+                left, part = rows[(i + 1 + a) % width][: width - 1 - a], taken[: width - 1 - a]
+                np.multiply(shares[a], own[1 + a :], out=part)
+                left -= part
+        if (entering := i + width) < n:
+            np.multiply(mass[entering, :, None], -shifts, out=own)
+            own += stiffness[entering, :, None]
+        else:
+            own[...] = 0.0
+    return below.astype(np.intp), logs

@@ -1,9 +1,10 @@
 """The lowest eigenvalues of many small pencils of one layout at once, each as certain as if it had been solved alone.
 
 Vectors of a pencil that is alike are taken to all others by a step of inverse iteration and a Rayleigh-Ritz problem
-of a few unknowns, then by Rayleigh quotient iteration, each mode of each pencil with its own shift. What comes out is
-not trusted but judged: by residuals of the factored K, by the gaps between the values, and by a count of the
-eigenvalues below the last, which finds a mode that was missed. What does not pass is left to who asks.
+of a few unknowns, then by Rayleigh quotient iteration, each mode of each pencil with its own shift. Where modes are
+many and bands narrow, counts tell the shifts (`isolated`) and any vector is taken to them. What comes out is not
+trusted but judged: by residuals of the factored K, by the gaps between the values, and by a count of the eigenvalues
+below the last, which finds a mode that was missed. What does not pass is left to who asks.
 """
 
 from collections.abc import Callable
@@ -13,6 +14,7 @@ import numpy as np
 
 from verify.models.arrays import Array, BoolArray
 from verify.models.band_stack import count_below, product, solution, triangles
+from verify.models.isolated import isolated
 
 _STEPS = 4
 """Of Rayleigh quotient iteration at most: each triples the digits of a vector."""
@@ -20,10 +22,12 @@ _COLUMNS = 2000
 """Modes of beams that are solved for at once: few enough that their triangles stay near the processor."""
 _LEVEL = 1e-3
 """Of the highest value carried along: the least that is inverted, so that vectors stay apart in one step."""
-_STILL = 1e-5
-"""Relative: what has moved less in a step has come home in it."""
+_STILL = 1e-9
+"""Of a value: a residual that a step need not lower."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
+_MANY, _NARROW = 12, 4
+"""Modes from which on, and diagonals up to which, counts tell where values lie in less time than a projection."""
 _UNLIKE = 1e6
 """Of K_ii / M_ii."""
 _APART = 1e-6
@@ -86,8 +90,12 @@ def lowest_of_each(stack: PencilStack, n_modes: int, start: Array, n_inverted: i
     """
     with np.errstate(all="ignore"):
         ground = grounded(stack, start)
-        values, vectors = _projected(stack, ground, n_modes, start, n_inverted)
-        return judged(stack, ground, _homed(stack, values[:-1], vectors), 0.5 * (values[-2] + values[-1]))
+        if n_modes >= _MANY and stack.mass.shape[1] <= _NARROW and n_inverted == 1:
+            values = isolated(stack.stiffness, stack.mass, stack.rigid_modes, n_modes + 1)
+            vectors = start[:, stack.rigid_modes : stack.rigid_modes + n_modes, None]
+        else:
+            values, vectors = _projected(stack, ground, n_modes, start, n_inverted)
+        return judged(stack, ground, *_homed(stack, values[:-1], vectors), 0.5 * (values[-2] + values[-1]))
 
 
 def grounded(stack: PencilStack, start: Array) -> Ground:
@@ -98,12 +106,13 @@ def grounded(stack: PencilStack, start: Array) -> Ground:
     return Ground(tau[0], triangles(stack.stiffness, stack.mass, -tau))
 
 
-def judged(stack: PencilStack, ground: Ground, vectors: Array, top: Array) -> tuple[Array, BoolArray]:
-    """(the values of vectors (n, k, n_beams), ascending, (k, n_beams); which of the beams have settled (n_beams,)).
+def judged(stack: PencilStack, ground: Ground, vectors: Array, carried: Array, top: Array) -> tuple[Array, BoolArray]:
+    """(the values of vectors V, ascending, (k, n_beams); which of the beams have settled (n_beams,)).
 
-    `top`, (n_beams,), is where there is thought to be none between the last value and the next.
+    V and `carried`, M V, are (n, k, n_beams); `top`, (n_beams,), is where there is thought to be none between the last
+    value and the next.
     """
-    strains, carried = stack.strain(vectors), product(stack.mass, vectors)
+    strains = stack.strain(vectors)
     squares = _over_unknowns(vectors, carried)
     masses = stack.masses(vectors) if stack.masses else squares
     forces = stack.springs[:, None] * strains
@@ -190,36 +199,49 @@ def _rows(vectors: Array) -> Array:
     return np.ascontiguousarray(vectors.transpose(2, 1, 0))
 
 
-def _homed(stack: PencilStack, values: Array, vectors: Array) -> Array:
-    """Vectors (n, k, n_beams) by Rayleigh quotient iteration of every mode of every beam until its value stands still.
+def _homed(stack: PencilStack, values: Array, vectors: Array) -> tuple[Array, Array]:
+    """(V, M V) (n, k, n_beams) by Rayleigh quotient iteration of every mode of every beam, from vectors of all or each.
 
     B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
     """
-    vectors, moved = _stepped(stack.stiffness, stack.mass, values, vectors)
+    pair, values, residuals = _stepped(stack.stiffness, stack.mass, values, product(stack.mass, vectors), vectors)
     for _ in range(_STEPS - 1):
-        values = values + moved
-        mode, beam = np.nonzero(abs(moved) > _STILL * values)
+        mode, beam = np.nonzero(residuals > _STILL * values)
         if not len(mode):
             break
         stiffness, mass = (np.take(bands, beam, axis=2) for bands in (stack.stiffness, stack.mass))
-        found, step = _stepped(stiffness, mass, values[mode, beam][None], vectors[:, None, mode, beam])
-        vectors[:, mode, beam] = found[:, 0]
-        moved = np.zeros_like(values)
-        moved[mode, beam] = step[0]
-    return vectors
+        own = [each[:, None, mode, beam] for each in pair]
+        found, at, left = _stepped(stiffness, mass, values[mode, beam][None], own[1], own[0])
+        for each, one in zip(pair, found, strict=True):
+            each[:, mode, beam] = one[:, 0]
+        residuals = np.zeros_like(values)
+        values[mode, beam], residuals[mode, beam] = at[0], left[0]
+    return pair
 
 
-def _stepped(stiffness: Array, mass: Array, values: Array, vectors: Array) -> tuple[Array, Array]:
-    """A step of it: vectors (n, k, c), v^T M v = 1, and by how much the values (k, c) move."""
+def _stepped(
+    stiffness: Array, mass: Array, values: Array, loads: Array, vectors: Array
+) -> tuple[tuple[Array, Array], Array, Array]:
+    """A step of it from vectors V and M V, (n, k, c) or of all alike: (V, M V), v^T M v = 1, values, residuals (k, c).
+
+    What is left of (K - value M) v is told in the norm of M^-1 by V before and after.
+    """
     at_once = max(_COLUMNS // values.shape[1], 1)
-    found, moved = np.empty_like(vectors), np.empty_like(values)
+    found, heavy = (np.empty((len(mass), *values.shape)) for _ in range(2))
+    quotients, residuals = np.empty_like(values), np.empty_like(values)
     for first in range(0, len(values), at_once):
         some = slice(first, first + at_once)
-        load = product(mass, vectors[:, some])
-        pivots, lower = triangles(stiffness, mass, values[some])
+        load, shifts = loads[:, some], values[some]
+        pivots, lower = triangles(stiffness, mass, shifts)
         pivots[pivots == 0.0] = _NEXT_TO_NOTHING  # at an eigenvalue to the last digit
         part = solution(pivots, lower, load.reshape(len(load), 1, -1)).reshape(load.shape)
-        squares = _over_unknowns(part, product(mass, part))
-        moved[some] = _over_unknowns(part, load) / squares
-        np.divide(part, np.sqrt(squares), out=found[:, some])
-    return found, moved
+        carried = product(mass, part)
+        squares = _over_unknowns(part, carried)
+        moved = _over_unknowns(part, load) / squares
+        before = _over_unknowns(vectors[:, some], load) / squares
+        residuals[some] = np.sqrt(np.maximum(before - moved * moved, 0.0))
+        quotients[some] = shifts + moved
+        size = 1.0 / np.sqrt(squares)
+        np.multiply(part, size, out=found[:, some])
+        np.multiply(carried, size, out=heavy[:, some])
+    return (found, heavy), quotients, residuals

@@ -11,9 +11,10 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.cores import at_once
 from verify.errors import InputError
 from verify.field_docs import Value
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
 from verify.models.eigen import distance_answered, forced_response, lowest, probe
 from verify.models.fields import RESONANCE, HarmonicField, check_forces, check_frequencies
@@ -29,10 +30,13 @@ LEAST = 8
 """Beams of one layout from which on a stack takes less time than each by itself."""
 MOST_IN_STACK = 4_000_000
 """Numbers in the vectors of a stack."""
-TOGETHER = 384
-"""Beams in a stack at most: enough to fill numpy's loops, few enough to stay near the processor."""
+TOGETHER, MODES_TOGETHER = 256, 4000
+"""Beams in a stack, and modes of them, at most: enough to fill numpy's loops, few enough to share among cores."""
+MODES_WORTH, UNKNOWNS_WORTH = 4000, 2000
+"""Modes in stacks, and unknowns of beams alone, that take longer than a process does to begin: 20 ms."""
 FIELD = "frequencies_hz"
 Found = TypeVar("Found")
+Item = TypeVar("Item")
 
 
 class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
@@ -216,9 +220,14 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     groups = _groups(sorted(set(leaders)), beams, model.layout)
     made = _made([group[0] for group in groups], beams, model)
     rows = _stacks(groups, beams, n_modes, model, made)
-    for i in sorted(set(leaders) - set(rows)):
+    alone = sorted(set(leaders) - set(rows))
+
+    def solved(i: int) -> Array:
         pencil, _ = made[i] if i in made else model.make(beams[i])
-        rows[i] = lowest(pencil, n_modes).values
+        return lowest(pencil, n_modes).values
+
+    worth = len(alone) * made[groups[0][0]][0].n >= UNKNOWNS_WORTH
+    rows |= zip(alone, _shared(solved, alone, worth), strict=True)
     units = {i: made[group[0]][1] / beams[group[0]].length for group in groups for i in group}
     lengths = [units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)]
     scales = [beam.wave_constant / (2.0 * pi) / unit**2 for beam, unit in zip(beams, lengths, strict=True)]
@@ -249,21 +258,56 @@ def _stacks(
     made: dict[int, tuple[FactoredPencil, float]],
 ) -> dict[int, Array]:
     """The lowest values, (n_modes,) each, of the beams that settled in a stack, by index."""
+    starts = {group[0]: start for group in groups if (start := _start(group, n_modes, *made[group[0]]))}
     found: dict[int, Array] = {}
-    for group in groups:
-        pencil = made[group[0]][0]
-        tried = carried_along(n_modes, pencil.n - pencil.rigid_modes)
-        if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or not tried:
-            continue
+
+    def solved(part: _Part) -> tuple[Array, BoolArray]:
         _keep_memory()
-        every = np.hstack([pencil.rigid, lowest(pencil, max(tried)[0]).vectors])
-        for n_carried, n_inverted in tried:
-            start = every[:, : pencil.rigid_modes + n_carried]
-            for part in _parts([i for i in group if i not in found], start.size):
-                stack = model.stack([beams[i] for i in part])
-                values, settled = lowest_of_each(stack, n_modes, start, n_inverted)
-                found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
+        return lowest_of_each(model.stack([beams[i] for i in part.which]), n_modes, part.start, part.n_inverted)
+
+    for attempt in range(2):
+        parts = [
+            part
+            for group in groups
+            if group[0] in starts
+            for part in _parts([i for i in group if i not in found], n_modes, starts[group[0]], attempt)
+        ]
+        worth = n_modes * sum(len(part.which) for part in parts) >= MODES_WORTH
+        for part, (values, settled) in zip(parts, _shared(solved, parts, worth), strict=True):
+            found |= {i: row for i, row, sure in zip(part.which, values.T, settled, strict=True) if sure}
     return found
+
+
+def _shared(work: Callable[[Item], Found], items: Sequence[Item], worth: bool) -> list[Found]:
+    """`work` of every item, on several cores where that is `worth` a process."""
+    return at_once(work, items) if worth else [work(item) for item in items]
+
+
+class _Start(msgspec.Struct, frozen=True, eq=False):
+    """What the stacks of a group start from."""
+
+    vectors: Array
+    """(n, k), of its first beam, rigid motions first."""
+    rigid_modes: int
+    tried: tuple[tuple[int, int], ...]
+    """As `carried_along` has them."""
+
+
+class _Part(msgspec.Struct, frozen=True, eq=False):
+    """Beams of one layout that are solved as one stack."""
+
+    which: list[int]
+    start: Array
+    n_inverted: int
+
+
+def _start(group: list[int], n_modes: int, pencil: FactoredPencil, unit: float) -> _Start | None:
+    """Of a group that is worth a stack, whose first beam has this pencil."""
+    tried = carried_along(n_modes, pencil.n - pencil.rigid_modes)
+    if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or not tried:
+        return None
+    vectors = np.hstack([pencil.rigid, lowest(pencil, max(tried)[0]).vectors])
+    return _Start(vectors, pencil.rigid_modes, tried)
 
 
 def _keep_memory() -> None:
@@ -274,13 +318,18 @@ def _keep_memory() -> None:
     np.empty(31 * 2**20, dtype=np.uint8)
 
 
-def _parts(group: list[int], each: int) -> list[list[int]]:
-    """A group in equal parts of `TOGETHER` and `MOST_IN_STACK` at most, a beam having `each`; none of a small one."""
+def _parts(group: list[int], n_modes: int, start: _Start, attempt: int) -> list[_Part]:
+    """A group in equal parts of `TOGETHER`, `MODES_TOGETHER` and `MOST_IN_STACK` at most; none of a small one.
+
+    However many cores there are: how they are cut may show in a last digit.
+    """
     if len(group) < LEAST:
         return []
-    most = min(TOGETHER, max(MOST_IN_STACK // each, LEAST))
+    n_carried, n_inverted = start.tried[attempt]
+    vectors = start.vectors[:, : start.rigid_modes + n_carried]
+    most = min(TOGETHER, max(min(MOST_IN_STACK // vectors.size, MODES_TOGETHER // n_modes), LEAST))
     size = ceil(len(group) / ceil(len(group) / most))
-    return [group[first : first + size] for first in range(0, len(group), size)]
+    return [_Part(group[first : first + size], vectors, n_inverted) for first in range(0, len(group), size)]
 
 
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:

@@ -19,10 +19,11 @@ Schoenemann, Psychometrika 31 (1966)).
 No moment reaches a free or a pinned end: there q is s, s^2 or s, s^3 of the distance s, and 1, s^2 at a guided one.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.models.arrays import Array, BoolArray, Indices
 from verify.segments.attached import felt_at, is_mended, places_on
@@ -38,14 +39,16 @@ _POWERS = {"pinned": (1, 3), "free": (1, 2), "guided": (0, 2)}
 _PARABOLA = (0, 1, 2)
 _RIGHT = 1e-7
 """What is so near to what it should be stays as it is."""
+_TIE = 1e-10
+"""Of what the weights are to be near: added to it, it settles which way to go where two are as near."""
 _ABOUT = 0.05
 
 
 class _Stretch(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """The joints around bodies that stand near each other, told from the nearer end, in links."""
+    """The joints around bodies that stand near each other, told from the nearer end, in links, of m chains."""
 
     places: Array
-    """(p,), from joint `origin`, ascending or descending."""
+    """(m, p), from joint `origin`, ascending or descending."""
     origin: int
     first: int
     """The first joint whose moments may be chosen, from joint 0."""
@@ -54,7 +57,7 @@ class _Stretch(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     powers: tuple[int, ...]
     """Of moments from far away, over the distance from `origin`."""
     weights: Array
-    """(beyond - first,), c_k in what a joint inside has."""
+    """(m, beyond - first), c_k in what a joint inside has."""
 
     @property
     def joints(self) -> Array:
@@ -65,6 +68,22 @@ class _Stretch(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def edge(self) -> float:
         """The first after them, from `origin`."""
         return float(self.beyond - self.origin)
+
+
+class _Crowd(msgspec.Struct, frozen=True, eq=False):
+    """Bodies of one chain that stand near each other or an end."""
+
+    rows: Indices
+    """Which of its bodies, one of each place."""
+    end: int
+    """The nearer one, 0 or 1."""
+    stretch: _Stretch
+
+    @property
+    def layout(self) -> Hashable:
+        """What crowds have in common whose weights are found at once."""
+        stretch = self.stretch
+        return (len(self.rows), self.end, stretch.origin, stretch.first, stretch.beyond, stretch.powers)
 
 
 def felt_together(chain: Chain, positions: Sequence[float], rule: str) -> tuple[Array, Array]:
@@ -78,18 +97,34 @@ def felt_together(chain: Chain, positions: Sequence[float], rule: str) -> tuple[
         return felt, turned
     places = np.array(positions, dtype=float) / chain.unit
     links, on, _ = places_on(np.broadcast_to(chain.lengths[:, None], (n, len(places))), places)
-    places = links + on
-    for rows in _groups(chain, places):
-        end = int(places[rows].mean() > 0.5 * n)
-        step = -1 if end else 1
-        stretch = _stretch(chain, places[rows], end)
-        if stretch is None:
-            continue
-        found = _mended(stretch, felt[rows, ::step], turned[rows, ::step])
-        for row, one, other in zip(rows, *found, strict=True):
-            alike = abs(places - places[row]) < 1e-9
-            felt[alike, ::step], turned[alike, ::step] = one, other
+    mend_each([chain], (links + on)[None], felt[None], turned[None])
     return felt, turned
+
+
+def mend_each(chains: Sequence[Chain], places: Array, felt: Array, turned: Array) -> None:
+    """Mend the weights of the bodies of m chains that have each alone, (m, p, N + 1) and (m, p, N), in place.
+
+    Places, (m, p), are told in links. What crowds have in common is solved once for all of them.
+    """
+    alike: dict[Hashable, list[tuple[int, _Crowd]]] = {}
+    for number, (chain, own) in enumerate(zip(chains, places, strict=True)):
+        for crowd in _crowds(chain, own):
+            alike.setdefault(crowd.layout, []).append((number, crowd))
+    for members in alike.values():
+        numbers = np.array([number for number, _ in members])
+        rows, step = np.array([crowd.rows for _, crowd in members]), -1 if members[0][1].end else 1
+        stretch = replace(
+            members[0][1].stretch,
+            places=np.concatenate([crowd.stretch.places for _, crowd in members]),
+            weights=np.concatenate([crowd.stretch.weights for _, crowd in members]),
+        )
+        across = numbers[:, None], rows
+        mended = _mended(stretch, felt[across][..., ::step], turned[across][..., ::step])
+        for which, number in enumerate(numbers):
+            for place, row in enumerate(rows[which]):
+                same = abs(places[number] - places[number, row]) < 1e-9
+                for weights, found in zip((felt, turned), mended, strict=True):
+                    weights[number, same, ::step] = found[which, place]
 
 
 def near(links: Indices, n: int) -> BoolArray:
@@ -97,6 +132,15 @@ def near(links: Indices, n: int) -> BoolArray:
     ordered = np.sort(links, axis=0)
     ends = (links < _WALL + _BEFORE) | (links >= n - _WALL - _BEFORE)
     return np.asarray(ends.any(axis=0) | (np.diff(ordered, axis=0) < _BEFORE + _AFTER).any(axis=0))
+
+
+def _crowds(chain: Chain, places: Array) -> Iterator[_Crowd]:
+    """Bodies at places (p,) of a chain that may be mended."""
+    for rows in _groups(chain, places):
+        end = int(places[rows].mean() > 0.5 * chain.n_segments)
+        stretch = _stretch(chain, places[rows], end)
+        if stretch is not None:
+            yield _Crowd(rows, end, stretch)
 
 
 def _groups(chain: Chain, places: Array) -> Iterator[Indices]:
@@ -134,32 +178,45 @@ def _stretch(chain: Chain, places: Array, end: int) -> _Stretch | None:
     at_end = first <= 1 and int(places.min()) - _BEFORE <= first
     origin = 0 if at_end else first
     powers = _PARABOLA if not at_end or chain.elastic[end] else _POWERS.get(support, _PARABOLA)
-    return _Stretch(places=places - origin, origin=origin, first=first, beyond=beyond, powers=powers, weights=weights)
+    return _Stretch(
+        places=places[None] - origin, origin=origin, first=first, beyond=beyond, powers=powers, weights=weights[None]
+    )
 
 
 def _mended(stretch: _Stretch, felt: Array, turned: Array) -> tuple[Array, Array]:
-    """Weights (p, N + 1) and (p, N), from the nearer end, with the products of their bodies on the beam."""
-    roots = np.sqrt(stretch.weights)[:, None]
+    """Weights (m, p, N + 1) and (m, p, N), from the nearer end, with the products of their bodies on the beam."""
+    roots = np.sqrt(stretch.weights)[..., None]
     far = roots * stretch.joints[:, None] ** np.array(stretch.powers)
     seen, products = _of_far(stretch), _of_each_other(stretch)
     alone = roots * _moments(stretch, felt, turned)
-    if max(abs(far.T @ alone - seen).max(), abs(alone.T @ alone - products).max()) < _RIGHT:
+    lack = (abs(_turned(far) @ alone - seen), abs(_turned(alone) @ alone - products))
+    right = np.maximum(*(each.max(axis=(1, 2)) for each in lack)) < _RIGHT
+    if right.all():
         return felt, turned
     basis, triangle = np.linalg.qr(far, mode="complete")
     n_far = len(stretch.powers)
-    least, rest = basis[:, :n_far] @ np.linalg.solve(triangle[:n_far].T, seen), basis[:, n_far:]
-    values, vectors = np.linalg.eigh(products - least.T @ least)
-    lacking = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
-    left, _, right = np.linalg.svd(rest.T @ alone @ lacking, full_matrices=False)
-    return _of_moments(stretch, (least + rest @ (left @ right) @ lacking) / roots, felt.shape[1])
+    least, rest = basis[..., :n_far] @ np.linalg.solve(_turned(triangle[:, :n_far]), seen), basis[..., n_far:]
+    values, vectors = np.linalg.eigh(products - _turned(least) @ least)
+    lacking = (vectors * np.sqrt(np.maximum(values, 0.0))[:, None]) @ _turned(vectors)
+    aligned = _turned(rest) @ alone @ lacking
+    aligned += _TIE * abs(aligned).max(axis=(1, 2), keepdims=True) * np.eye(*aligned.shape[1:])
+    left, _, after = np.linalg.svd(aligned, full_matrices=False)
+    found = _of_moments(stretch, (least + rest @ (left @ after) @ lacking) / roots, felt.shape[2])
+    stays = right[:, None, None]
+    return np.where(stays, felt, found[0]), np.where(stays, turned, found[1])
+
+
+def _turned(matrices: Array) -> Array:
+    """Each of (m, i, j) transposed."""
+    return matrices.swapaxes(1, 2)
 
 
 def _of_far(stretch: _Stretch) -> Array:
-    """Integrals of M q less what joints from `edge` on have of them, (powers, 2 p): of forces, then of couples."""
-    x, b, p = stretch.places, stretch.edge, np.array(stretch.powers, dtype=float)[:, None]
+    """Integrals of M q less what joints from `edge` on have of them, (m, powers, 2 p): of forces, then of couples."""
+    x, b, p = stretch.places[:, None], stretch.edge, np.array(stretch.powers, dtype=float)[:, None]
     couples = (b ** (p + 1) - x ** (p + 1)) / (p + 1)
     forces = (b ** (p + 2) - x ** (p + 2)) / (p + 2) - x * couples
-    return np.hstack([forces - _beyond(b, p + 1) + x * _beyond(b, p), couples - _beyond(b, p)])
+    return np.concatenate([forces - _beyond(b, p + 1) + x * _beyond(b, p), couples - _beyond(b, p)], axis=2)
 
 
 def _beyond(b: float, p: Array) -> Array:
@@ -168,37 +225,37 @@ def _beyond(b: float, p: Array) -> Array:
 
 
 def _of_each_other(stretch: _Stretch) -> Array:
-    """Integrals of M N less what joints from `edge` on have of them, (2 p, 2 p): of forces, then of couples."""
+    """Integrals of M N less what joints from `edge` on have of them, (m, 2 p, 2 p): of forces, then of couples."""
     to_edge = stretch.edge - stretch.places
-    one, other, cut = to_edge[:, None], to_edge[None], np.minimum.outer(to_edge, to_edge)
-    product, total = one * other, one + other
+    one, other = to_edge[:, :, None], to_edge[:, None]
+    cut, product, total = np.minimum(one, other), one * other, one + other
     forces = product * cut - total * cut**2 / 2.0 + cut**3 / 3.0 - product / 2.0 + total / 12.0
     mixed = one * cut - cut**2 / 2.0 - one / 2.0 + 1.0 / 12.0 + 0.0 * other
-    return np.block([[forces, mixed], [mixed.T, cut - 0.5]])
+    return np.block([[forces, mixed], [_turned(mixed), cut - 0.5]])
 
 
 def _moments(stretch: _Stretch, felt: Array, turned: Array) -> Array:
-    """Moments of weights in the joints that may be chosen, (joints, 2 p), of forces, then of couples."""
-    window = np.arange(stretch.first, min(stretch.beyond + 8, felt.shape[1]))
+    """Moments of weights in the joints that may be chosen, (m, joints, 2 p), of forces, then of couples."""
+    window = np.arange(stretch.first, min(stretch.beyond + 8, felt.shape[2]))
     joints = window[: stretch.beyond - stretch.first]
     ahead = np.maximum(window[:, None] - joints, 0)
-    forces = stretch.joints[:, None] - stretch.places + (felt[:, window] @ ahead).T
-    links = window[window < turned.shape[1]]
-    couples = 1.0 - (turned[:, links] @ (links[:, None] >= joints)).T
-    return np.hstack([forces, couples])
+    forces = stretch.joints[:, None] - stretch.places[:, None] + _turned(felt[..., window] @ ahead)
+    links = window[window < turned.shape[2]]
+    couples = 1.0 - _turned(turned[..., links] @ (links[:, None] >= joints))
+    return np.concatenate([forces, couples], axis=2)
 
 
 def _of_moments(stretch: _Stretch, moments: Array, n_joints: int) -> tuple[Array, Array]:
-    """Weights (p, N + 1) and (p, N) of moments (joints, 2 p): changes of the links' forces, and of moments."""
-    p, first, beyond = len(stretch.places), stretch.first, stretch.beyond
+    """Weights (m, p, N + 1) and (m, p, N) of moments (m, joints, 2 p): changes of links' forces, and of moments."""
+    (m, p), first, beyond = stretch.places.shape, stretch.first, stretch.beyond
     begin = max(first - 1, 0)
-    every = np.zeros((2 * p, beyond + 2 - begin))
-    every[:, first - begin : beyond - begin] = moments.T
+    every = np.zeros((m, 2 * p, beyond + 2 - begin))
+    every[..., first - begin : beyond - begin] = _turned(moments)
     ahead = np.arange(2.0) + stretch.edge
-    every[:p, beyond - begin :] = ahead - stretch.places[:, None]
-    every[p:, beyond - begin :] = 1.0
+    every[:, :p, beyond - begin :] = ahead - stretch.places[..., None]
+    every[:, p:, beyond - begin :] = 1.0
     across = np.diff(every)
-    felt, turned = np.zeros((p, n_joints)), np.zeros((p, n_joints - 1))
-    felt[:, begin : beyond + 1] = np.diff(across[:p], prepend=0.0)
-    turned[:, begin:beyond] = across[p:, :-1]
+    felt, turned = np.zeros((m, p, n_joints)), np.zeros((m, p, n_joints - 1))
+    felt[..., begin : beyond + 1] = np.diff(across[:, :p], prepend=0.0)
+    turned[..., begin:beyond] = across[:, p:, :-1]
     return felt, turned

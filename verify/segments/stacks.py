@@ -13,7 +13,7 @@ from verify.models.band_stack import of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
 from verify.segments.attached import felt_at, is_mended, mended, places_on
-from verify.segments.crowded import felt_together, near
+from verify.segments.crowded import mend_each, near
 from verify.segments.links import Chain, elastic_ends, joint_compliance, link_inertia
 from verify.segments.walls import wall_factors
 
@@ -170,23 +170,23 @@ def _where_felt(
 ) -> tuple[Array, Array]:
     """Where bodies are felt (`felt_together`), (bodies, N + 1, n_beams) and (bodies, N, n_beams)."""
     n, n_beams = chains.lengths.shape
-    felt, turned, standing = [], [], []
     positions = np.array([_positions_of(beam) for beam in beams]).T
-    for row in positions:
-        links, on, even = places_on(chains.lengths, row / unit)
+    felt, turned = np.zeros((n_beams, len(positions), n + 1)), np.zeros((n_beams, len(positions), n))
+    standing, on = np.zeros(positions.shape, dtype=np.intp), np.zeros(positions.shape)
+    for body, row in enumerate(positions):
+        standing[body], on[body], even = places_on(chains.lengths, row / unit)
         at_once = even & is_mended(attachment, n)
-        deflections, turns = np.zeros((n_beams, n + 1)), np.zeros((n_beams, n))
-        deflections[at_once], turns[at_once] = mended(beams[0].supports, n, links[at_once], on[at_once])
+        felt[at_once, body], turned[at_once, body] = mended(
+            beams[0].supports, n, standing[body, at_once], on[body, at_once]
+        )
         for j in map(int, np.flatnonzero(~at_once)):
-            (deflections[j],), (turns[j],) = felt_at(_chain_of(beams[j], chains, j), [float(row[j])], attachment)
-        felt.append(deflections.T)
-        turned.append(turns.T)
-        standing.append(links)
-    found = np.array(felt), np.array(turned)
-    for j in map(int, np.flatnonzero(near(np.array(standing), n) & is_mended(attachment, n))):
-        chain = replace(_chain_of(beams[j], chains, j), elastic=elastic)
-        found[0][:, :, j], found[1][:, :, j] = felt_together(chain, positions[:, j].tolist(), attachment)
-    return found
+            (felt[j, body],), (turned[j, body],) = felt_at(_chain_of(beams[j], chains, j), [float(row[j])], attachment)
+    crowded = np.flatnonzero(near(standing, n) & is_mended(attachment, n))
+    some = [replace(_chain_of(beams[j], chains, j), elastic=elastic) for j in map(int, crowded)]
+    mended_felt, mended_turned = felt[crowded], turned[crowded]
+    mend_each(some, (standing + on).T[crowded], mended_felt, mended_turned)
+    felt[crowded], turned[crowded] = mended_felt, mended_turned
+    return np.ascontiguousarray(felt.transpose(1, 2, 0)), np.ascontiguousarray(turned.transpose(1, 2, 0))
 
 
 def _chain_of(beam: Beam, chains: Chains, index: int) -> Chain:
