@@ -22,8 +22,10 @@ from verify.judge import compare, crossing
 from verify.models import division, driven_pencil, eigen, kind, spline, underfoot
 from verify.models.catalogue import MODELS
 from verify.motion import free_vibration, request, rigid_surface, validity
+from verify.motion.stepping import Sliding
 from verify.motor import feet as motor_feet
 from verify.motor import stepping as motor_stepping
+from verify.segments import crowded
 from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
@@ -434,6 +436,15 @@ def points_a_little_farther_apart(patch):
     patch.setattr(motor_feet, "arms", lambda foot: 1.01 * true(foot))
 
 
+def bodies_felt_as_if_each_stood_alone(patch):
+    patch.setattr(crowded, "_mended", lambda stretch, felt, turned: (felt, turned))
+
+
+def surfaces_that_fall_a_little_faster(patch):
+    true = Sliding.fall.fget
+    patch.setattr(Sliding, "fall", property(lambda self: (1.0 + 1e-6) * true(self)))
+
+
 def blows_that_throw_a_little_higher(patch):
     true = motor_stepping.hard_of
 
@@ -457,6 +468,8 @@ FAULTS = {
         slopes_a_little_steeper: {"slopes-of-a-field"},
         points_a_little_farther_apart: {"feet-written-out", "works-of-feet"},
         blows_that_throw_a_little_higher: {"hard-points-thrown"},
+        bodies_felt_as_if_each_stood_alone: {"crowds-on-a-cantilever"},
+        surfaces_that_fall_a_little_faster: {"nearest-to-lifting-off"},
         assembled_instead_of_factored: {
             "segments-parts",
             "elements-parts",

@@ -99,6 +99,12 @@ def transient(**more: object) -> Ask:
     return lambda: problems.transient(CANTILEVER, FORCES, HERTZ, (1e-5,), LINKS, **more)  # type: ignore[arg-type]
 
 
+def leaving(start: float, links: int, speed: float = -0.01) -> Ask:
+    """A slider that starts somewhere on a chain of so many links with a speed."""
+    slider = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=start, speed=speed)
+    return lambda: ride.ride_from_rest(STRIP, FORCES, HERTZ, slider, links, 4e-3, step=2e-4)
+
+
 ROWS: tuple[Row, ...] = (
     refusals(
         "refused-chains",
@@ -241,8 +247,14 @@ ROWS: tuple[Row, ...] = (
             "slider.coupling = 'auto'",
             lambda: ride.ride_from_rest(CANTILEVER, FORCES, HERTZ, SLIDER, LINKS, 1e-4, step=1e-5),
         ),
+        Case("the slider left the piece of the chain it began on", leaving(0.365, 24), leaving(0.365, 25)),
+        Case(
+            "the slider left the piece of the chain it began on after 0.0",
+            leaving(0.325, 25, -3.0),
+            leaving(0.325, 3, -3.0),
+        ),
         Case("time = 1.0 s would keep", lambda: check_kept(1e9, LINKS, "time = 1.0 s")),
         Case("time = 2 s takes", lambda: refuse_work(1001.0, 1000.0, 2.0), lambda: refuse_work(1000.0, 1000.0, 2.0)),
-        kernels=warm.accelerations,
+        kernels=warm.rigid,
     ),
 )

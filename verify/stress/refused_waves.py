@@ -98,7 +98,7 @@ ROWS: tuple[Row, ...] = (
         Case("device.dashpot = -1.0", lambda: Device(position=0.1, dashpot=-1.0)),
         Case(
             "position = 0.74",
-            lambda: matched_device(STRIP, HERTZ, 0.74),
+            lambda: matched_device(STRIP, HERTZ, 0.7301),
             lambda: matched_device(STRIP, HERTZ, 0.72),
         ),
         Case(
