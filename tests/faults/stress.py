@@ -21,7 +21,7 @@ from verify.exact import modes as exact_modes
 from verify.judge import compare, crossing
 from verify.models import division, driven_pencil, eigen, kind, spline, underfoot
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, request, rigid_surface, validity
+from verify.motion import free_vibration, friction_kernels, request, rigid_surface, validity
 from verify.motion.stepping import Sliding
 from verify.motor import feet as motor_feet
 from verify.motor import stepping as motor_stepping
@@ -445,6 +445,11 @@ def surfaces_that_fall_a_little_faster(patch):
     patch.setattr(Sliding, "fall", property(lambda self: (1.0 + 1e-6) * true(self)))
 
 
+def friction_of_a_step_a_billionth_larger(patch):
+    true = friction_kernels.tanh_speed_change
+    patch.setattr(friction_kernels, "tanh_speed_change", lambda *given: (1.0 + 1e-9) * true(*given))
+
+
 def blows_that_throw_a_little_higher(patch):
     true = motor_stepping.hard_of
 
@@ -468,6 +473,7 @@ FAULTS = {
         slopes_a_little_steeper: {"slopes-of-a-field"},
         points_a_little_farther_apart: {"feet-written-out", "works-of-feet"},
         blows_that_throw_a_little_higher: {"hard-points-thrown"},
+        friction_of_a_step_a_billionth_larger: {"friction-in-one-step"},
         bodies_felt_as_if_each_stood_alone: {"crowds-on-a-cantilever"},
         surfaces_that_fall_a_little_faster: {"nearest-to-lifting-off"},
         assembled_instead_of_factored: {

@@ -334,5 +334,6 @@ ROWS: tuple[Row, ...] = (
             lambda: problems._check_height(0.11, build_system(STRIP, 4)),
             lambda: problems._check_height(0.07, build_system(STRIP, 4)),
         ),
+        Case("amplitude: the middle would stand 0 m off", raised(0.0), raised(1e-9)),
     ),
 )

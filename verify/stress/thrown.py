@@ -1,7 +1,7 @@
 """A hard point thrown by one place of a wave, against parabolas between roots of the wave and blows by hand."""
 
 from collections.abc import Iterator
-from math import asin, cos, pi, sin, tanh
+from math import asin, copysign, cos, pi, sin, tanh
 from typing import Any
 
 import numpy as np
@@ -16,40 +16,39 @@ from verify.stress.kind import Floor, Row
 AT, TURNS, MASS = 0.2437, 6.3, 2.3e-3
 SMALL = 1e-10
 """Metres: a wave so flat that what is of second order in it is lost."""
-HARD: tuple[tuple[float, float, float | None, float | None, float], ...] = (
-    (1.9, 0.4, None, None, -0.3),
-    (1.5, 0.0, None, -3.0, 0.0),
-    (2.3, 0.5, 2.0, 0.6, 0.0),
-    (0.7, 0.3, 1.5, -0.4, 0.0),
+HARD: tuple[tuple[float, float, float, float | None, float | None, float], ...] = (
+    (1.9, 0.4, 0.02, None, None, -6.0),
+    (1.5, 0.0, 0.02, None, -3.0, 0.0),
+    (2.3, 0.5, 0.02, 2.0, 0.6, 0.0),
+    (0.7, 0.3, 0.02, 1.5, -0.4, 0.0),
+    (1.9, 0.4, 0.3, None, None, 24.0),
 )
-"""How much harder the surface throws than the load presses; restitution; slope of tanh friction and the speed that the
-point is held at, both over the surface's own; its speed at first where nothing holds it."""
+"""How much harder the surface throws than the load presses; restitution; mu; slope of tanh friction and the speed that
+the point is held at, both over the surface's own; its speed at first, likewise, where nothing holds it."""
 
 
 class Thrown:
     """A point over one place of a surface that rises as A cos(theta): impulses and works so far, landings, leavings."""
 
     def __init__(self, number: int, omega: float, deflection: complex, slope: complex) -> None:
-        self.ratio, self.restitution, steep, held, speed = HARD[number]
+        self.ratio, self.restitution, self.mu, steep, held, speed = HARD[number]
         self.omega, self.size, self.lead = omega, abs(deflection), float(np.angle(deflection))
         self.along = -1j * omega * STRIP.surface_distance * slope / np.exp(1j * self.lead)
         self.press = self.size * omega**2 / self.ratio
         self.steep = None if steep is None else steep / abs(self.along)
-        self.held, self.v = held is not None, (speed if held is None else held) * 20.0 * abs(self.along)
-        self.v = self.v if held is None else held * abs(self.along)
-        self.mu, self.push, self.rub, self.lost, self.events = 0.02, 0.0, 0.0, 0.0, list[tuple[float, float]]()
+        self.held, self.v = held is not None, (speed if held is None else held) * abs(self.along)
+        self.push, self.rub, self.lost, self.events = 0.0, 0.0, 0.0, list[tuple[float, float]]()
         self.rubbed, self.z, self.climb = 0.0, 0.0, 0.0
 
-    def share(self, theta: float) -> float:
-        """Of friction's limit that acts."""
-        ahead = float((self.along * np.exp(1j * theta)).real) - self.v
-        return tanh(self.steep * ahead) if self.steep else 1.0 if ahead > 0.0 else -1.0
-
     def strike(self, theta: float, push: float) -> None:
-        """An impulse across, over the mass."""
-        rub = self.mu * push * self.share(theta)
+        """An impulse across, over the mass; friction does not drive the point beyond the surface's speed."""
+        ahead, most = float((self.along * np.exp(1j * theta)).real) - self.v, self.mu * push
+        if self.steep:
+            rub = most * tanh(self.steep * ahead)
+        else:
+            rub = copysign(most, ahead) if self.held else min(max(ahead, -most), most)
         after = self.v if self.held else self.v + rub
-        self.rubbed += rub * (float((self.along * np.exp(1j * theta)).real) - 0.5 * (self.v + after))
+        self.rubbed += rub * (ahead - 0.5 * (after - self.v))
         self.push, self.rub, self.v = self.push + push, self.rub + rub, after
 
     def ride(self, theta: float, end: float) -> None:
