@@ -60,7 +60,7 @@ def standing_error(load: float) -> float:
 
 
 def giving_error(epsilon: float) -> float:
-    """Of forces through a layer that gives way, against its stretch followed in 8000 steps, whatever touches and slips.
+    """Of forces through a layer that gives way, against its stretch followed in 3000 steps, whatever touches and slips.
 
     A spring goes on with the surface as far as friction there lets it, and never further.
     """
@@ -68,7 +68,7 @@ def giving_error(epsilon: float) -> float:
 
     pairs = [(phi, r) for phi in (0.4, 1.3, 2.2, 3.1) for r in (-1.4, -0.3, 0.25, 0.8, 1.3)]
     phi, r = np.array(pairs).T
-    places, stretch, total = np.linspace(-1.0, 1.0, 8001)[:, None] * phi, np.zeros(len(phi)), np.zeros(len(phi))
+    places, stretch, total = np.linspace(-1.0, 1.0, 3001)[:, None] * phi, np.zeros(len(phi)), np.zeros(len(phi))
     limits = epsilon * (np.cos(places) - np.cos(phi))
     for before, after, most in zip(places[:-1], places[1:], limits[1:], strict=True):
         passed = np.sin(after) - np.sin(before) - r * (after - before)
@@ -169,7 +169,7 @@ ROWS: tuple[Row, ...] = (
     Floor(
         id="layers-that-give",
         title="Forces through layers that give way along the surface, half touching or nearly all of a wave, any speed",
-        why="contact/layer.py: stretches of sticking and slipping by closed forms; 8000 steps miss 1e-6 at turns.",
+        why="contact/layer.py: stretches of sticking and slipping by closed forms; 3000 steps miss 1e-6 at turns.",
         along="epsilon",
         at=(0.07, 0.4, 2.5),
         promise=1e-5,
