@@ -450,6 +450,11 @@ def friction_of_a_step_a_billionth_larger(patch):
     patch.setattr(friction_kernels, "tanh_speed_change", lambda *given: (1.0 + 1e-9) * true(*given))
 
 
+def feet_without_their_preload_spring(patch):
+    true = motor_feet._given
+    patch.setattr(motor_feet, "_given", lambda *given: (*true(*given)[:3], 0.0))
+
+
 def blows_that_throw_a_little_higher(patch):
     true = motor_stepping.hard_of
 
@@ -472,6 +477,7 @@ FAULTS = {
         rigid_motions_counted_among_modes: {"a-model-from-outside"},
         slopes_a_little_steeper: {"slopes-of-a-field"},
         points_a_little_farther_apart: {"feet-written-out", "works-of-feet"},
+        feet_without_their_preload_spring: {"feet-that-stick"},
         blows_that_throw_a_little_higher: {"hard-points-thrown"},
         friction_of_a_step_a_billionth_larger: {"friction-in-one-step"},
         bodies_felt_as_if_each_stood_alone: {"crowds-on-a-cantilever"},

@@ -222,6 +222,31 @@ def works_error(number: float) -> float:
     return float(max(*off, abs(books.residual) / largest))
 
 
+def rest_error(share: float) -> float:
+    """Of feet on a beam at rest, pulled along by a share of mu N: they stay, friction is the pull, points share it.
+
+    They stand where springs and what presses them on by its own stiffness balance. Over mu N, over the
+    load, over the depth.
+    """
+    from verify.motor.run import run_motor
+
+    limit = START.mu * START.preload
+    plain = Contact(stiffness=2.7e5)
+    slider = replace(START, law="coulomb", slope=None, speed=0.0, pull=share * limit, contact=plain)
+    still = tuple(replace(one, amplitude=0.0) for one in FORCES)
+    given: dict[str, Any] = {"model": "fem", "count": PARTS, "modal_damping": RATIO, "start": "rest", "samples": 3}
+    run = run_motor(BAR, still, HERTZ, PERIOD, slider=slider, **given)
+    press = Standing(slider, None).press
+    heights = press / (2.7e5 + 3e3)
+    off = [abs(run.height[-1] - heights).max() / abs(heights).max(), abs(float(run.speed[-1])) * slider.mass / limit]
+    carried = 2.7e5 * abs(heights)
+    pressures = np.repeat(carried / (2.0, 1.0), (2, 1))
+    off += [abs(run.pressures[-1] - pressures).max() / pressures.max()]
+    off += [abs(float(run.normal_force[-1]) / carried.sum() - 1.0), abs(float(run.friction[-1]) + slider.pull) / limit]
+    off += [abs(float(run.stuck_share[-1]) - 1.0), abs(float(run.contact_share[-1]) - 1.0)]
+    return float(max(*off, abs(run.ledger.rubbed) / limit))
+
+
 def _loops() -> Iterator[Call]:
     from verify.motor import warm
 
@@ -249,6 +274,15 @@ ROWS: tuple[Row, ...] = (
         at=(0.0, 2.0, 5.0),
         promise=3e-4,
         error=works_error,
+        kernels=_loops,
+    ),
+    _row(
+        id="feet-that-stick",
+        title="Feet on a beam at rest, pulled along by less than friction holds: forces, heights, shares",
+        why="motor/rub_kernels.py: points that stick share what is left; springs in a row carry the load to rounding.",
+        at=(0.1, -0.6, 0.95),
+        promise=1e-10,
+        error=rest_error,
         kernels=_loops,
     ),
 )
