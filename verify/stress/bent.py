@@ -12,6 +12,7 @@ from math import cos, sin
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.chain import warm
 from verify.chain.bending import bend
 from verify.chain.departure import Driven, along_the_beam
 from verify.chain.dynamics import at_rest
@@ -151,6 +152,7 @@ ROWS: tuple[Row, ...] = (
         at=(0.0, 1.0),
         promise=1e-9,
         error=along_error,
+        kernels=warm.accelerations,
     ),
     Refusal(
         id="pushed-along-alone",

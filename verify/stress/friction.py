@@ -145,6 +145,13 @@ def _belt(law: str) -> Iterator[Call]:
     return on_belt(law)
 
 
+def _step() -> Iterator[Call]:
+    """One step of tanh friction by itself."""
+    from verify.motion.friction_kernels import tanh_speed_change
+
+    yield tanh_speed_change, (0.0, 0.0, 1.0, 1.0, 1.0)
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="friction-slope",
@@ -181,7 +188,7 @@ ROWS: tuple[Row, ...] = (
         at=(1e-3, 0.3, 4.0, 30.0),
         promise=1e-10,
         error=step_error,
-        kernels=partial(_belt, "tanh"),
+        kernels=_step,
     ),
     Floor(
         id="friction-comes-to-rest",

@@ -1,6 +1,6 @@
 """What the nonlinear chain refuses: chains that are none, and motions of it that are not begun."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace as changed
 from math import nan
 
@@ -11,6 +11,7 @@ from verify.beam import Beam, PointForce
 from verify.chain import bending, dynamics, problems, ride, splitting, stepping, stretching, warm
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.chain.work import check_kept, refuse_work
+from verify.models.compiling import Call
 from verify.slider import Slider
 from verify.stress.beams import PLAIN, STEPPED, STRIP, held
 from verify.stress.kind import Row
@@ -103,6 +104,14 @@ def leaving(start: float, links: int, speed: float = -0.01) -> Ask:
     """A slider that starts somewhere on a chain of so many links with a speed."""
     slider = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=start, speed=speed)
     return lambda: ride.ride_from_rest(STRIP, FORCES, HERTZ, slider, links, 4e-3, step=2e-4)
+
+
+def _loops() -> Iterator[Call]:
+    """Of a chain, and of a slider that goes on it."""
+    from verify.motion.warm import on_chain
+
+    yield from warm.rigid()
+    yield from on_chain("tanh")
 
 
 ROWS: tuple[Row, ...] = (
@@ -255,6 +264,6 @@ ROWS: tuple[Row, ...] = (
         ),
         Case("time = 1.0 s would keep", lambda: check_kept(1e9, LINKS, "time = 1.0 s")),
         Case("time = 2 s takes", lambda: refuse_work(1001.0, 1000.0, 2.0), lambda: refuse_work(1000.0, 1000.0, 2.0)),
-        kernels=warm.rigid,
+        kernels=_loops,
     ),
 )
