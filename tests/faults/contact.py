@@ -84,6 +84,7 @@ def curvature_forgotten_in_one_wave(patch):
 
 
 FAULTS = {
+    "stress": {layer_that_never_slips: {"layers-that-give"}},
     "driving-layer": {
         contact_as_deep_everywhere: {"no-load-speed", "force-at-half-speed", "efficiency", "stall-force-with-give"},
         layer_that_never_slips: {"no-load-speed-with-give", "stall-force-with-give"},

@@ -312,7 +312,7 @@ FAULTS = {
         slider_on_links_that_stretch_a_tenth_less: {"chain-slider-on-links-that-stretch"},
         slider_on_a_chain_that_feels_the_mid_line: {"chain-slider", "chain-slider-in-the-limit"},
         slider_on_a_chain_under_another_gravity: {"chain-slider-in-the-limit", "chain-slider-saturates"},
-        friction_booked_at_a_thousandth_less: {"chain-slider-books"},
+        friction_booked_at_a_thousandth_less: {"chain-slider-books", "chain-slider-books-following"},
         means_of_the_size_alone: {"slider-mean-friction", "slider-mean-surface-speed"},
         phases_left_as_they_are_where_they_were_to_turn: {"slider-turned-round"},
         ends_for_the_largest: {"slider-largest-friction", "slider-mean-friction", "slider-mean-surface-speed"},

@@ -8,7 +8,7 @@ from faults.chain import recursion_with_another_inertia_than_the_energy
 from msgspec.structs import replace
 
 from verify import beam, slider
-from verify.chain import problems, ride, splitting, stepping, stretching
+from verify.chain import bending, departure, load_path, problems, ride, splitting, stepping, stretching
 from verify.chain import system as chain_system
 from verify.chain.result import ChainMotion
 from verify.contact import bouncing, foot
@@ -16,12 +16,16 @@ from verify.elements import cuts
 from verify.elements import linear as fem_beam
 from verify.elements import stacks as element_stacks
 from verify.errors import InputError
-from verify.exact import closed_forms, harmonic
+from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
 from verify.judge import compare, crossing
-from verify.models import division, driven_pencil, eigen, spline
+from verify.models import division, driven_pencil, eigen, kind, spline, underfoot
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, request, rigid_surface
+from verify.motion import free_vibration, friction_kernels, request, rigid_surface, validity
+from verify.motion.stepping import Sliding
+from verify.motor import feet as motor_feet
+from verify.motor import stepping as motor_stepping
+from verify.segments import crowded
 from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
@@ -396,8 +400,88 @@ def maps_of_reflections_alone(patch):
     patch.setitem(unit_waves.FIGURES, "standing_wave_ratio", unit_waves._reflection)
 
 
+def links_bent_by_a_millionth_more(patch):
+    true = bending.led_to
+    patch.setattr(bending, "led_to", lambda *given: (1.0 + 1e-6) * true(*given))
+
+
+def loads_that_buckle_a_little_larger(patch):
+    true = load_path.buckling_load
+    patch.setattr(load_path, "buckling_load", lambda system: (1.0 + 1e-5) * true(system))
+
+
+def gregory_without_his_last_weight(patch):
+    patch.setattr(error_laws, "_GREGORY", (-5.0 / 8.0, 1.0 / 6.0, 0.0))
+
+
+def slopes_of_one_step_ahead(patch):
+    patch.setattr(free_vibration, "FORWARD", np.array([-1.0, 1.0, 0.0, 0.0, 0.0]))
+
+
+def surfaces_without_a_step(patch):
+    patch.setattr(underfoot, "_alike", lambda beam, x: (0, len(beam.pieces) - 1))
+
+
+def rigid_motions_counted_among_modes(patch):
+    patch.setattr(kind.Model, "n_elastic", lambda self, beam, count, **given: self.unknowns(beam, count, **given))
+
+
+def slopes_a_little_steeper(patch):
+    true = validity.axial_inertia_size
+    patch.setattr(validity, "axial_inertia_size", lambda *given: 1.01 * true(*given))
+
+
+def points_a_little_farther_apart(patch):
+    true = motor_feet.arms
+    patch.setattr(motor_feet, "arms", lambda foot: 1.01 * true(foot))
+
+
+def bodies_felt_as_if_each_stood_alone(patch):
+    patch.setattr(crowded, "_mended", lambda stretch, felt, turned: (felt, turned))
+
+
+def surfaces_that_fall_a_little_faster(patch):
+    true = Sliding.fall.fget
+    patch.setattr(Sliding, "fall", property(lambda self: (1.0 + 1e-6) * true(self)))
+
+
+def friction_of_a_step_a_billionth_larger(patch):
+    true = friction_kernels.tanh_speed_change
+    patch.setattr(friction_kernels, "tanh_speed_change", lambda *given: (1.0 + 1e-9) * true(*given))
+
+
+def feet_without_their_preload_spring(patch):
+    true = motor_feet._given
+    patch.setattr(motor_feet, "_given", lambda *given: (*true(*given)[:3], 0.0))
+
+
+def blows_that_throw_a_little_higher(patch):
+    true = motor_stepping.hard_of
+
+    def higher(given):
+        found = true(given)
+        return found and found._replace(restitution=1.001 * found.restitution)
+
+    patch.setattr(motor_stepping, "hard_of", higher)
+
+
 FAULTS = {
     "stress": {
+        links_bent_by_a_millionth_more: {"bent-beyond-buckling"},
+        loads_that_buckle_a_little_larger: {"pushed-along-alone"},
+        limitless(departure, "TENTHS", 9): {"departure-along-the-chain"},
+        gregory_without_his_last_weight: {"sums-at-a-wall", "expected-errors"},
+        limitless(error_laws, "KEPT", 0.4): {"sizes-that-are-certain"},
+        slopes_of_one_step_ahead: {"bodies-that-turn-with-a-shape"},
+        surfaces_without_a_step: {"steps-of-a-surface"},
+        rigid_motions_counted_among_modes: {"a-model-from-outside"},
+        slopes_a_little_steeper: {"slopes-of-a-field"},
+        points_a_little_farther_apart: {"feet-written-out", "works-of-feet"},
+        feet_without_their_preload_spring: {"feet-that-stick"},
+        blows_that_throw_a_little_higher: {"hard-points-thrown"},
+        friction_of_a_step_a_billionth_larger: {"friction-in-one-step"},
+        bodies_felt_as_if_each_stood_alone: {"crowds-on-a-cantilever"},
+        surfaces_that_fall_a_little_faster: {"nearest-to-lifting-off"},
         assembled_instead_of_factored: {
             "segments-parts",
             "elements-parts",

@@ -65,6 +65,19 @@ def test_blows_lose_what_restitution_leaves_out_and_the_books_close(ratio, resti
     assert abs(run.ledger.residual) < 1e-10 * run.ledger.impacts
 
 
+@pytest.mark.parametrize(("ratio", "restitution"), [(1.9, 0.4), (1.5, 0.0), (0.7, 0.3)])
+def test_what_holds_a_speed_against_friction_stands_in_the_books(ratio, restitution):
+    """It pulls against mu of every push and blow: work - mu (mean N) v t, friction being ahead all the time."""
+    amplitude, held = ratio * GRAVITY / OMEGA**2, -3e-6
+    slider = Slider(
+        mass=MASS, mu=0.2, law="coulomb", gravity=GRAVITY, coupling="one-way", contact=Contact(restitution=restitution)
+    )
+    run = ridden(slider, amplitude, periods=6, step=640, held_speed=held, frozen=True, samples=2)
+    books, pushed = run.ledger, float(run.normal_force[-1]) * 6.0 / HERTZ
+    assert books.pulled == pytest.approx(-0.2 * pushed * held, rel=1e-9)
+    assert abs(books.residual) < 1e-6 * books.rubbed
+
+
 def thrown(ratio, restitution, off, periods, held=0.0, mu=0.2):
     """(phases of landings, the bounce, run) of a point that has left in step, but for `off` of its speed."""
     amplitude, bounce = ratio * GRAVITY / OMEGA**2, bouncing.bounce_in_step(ratio, restitution)

@@ -95,6 +95,12 @@ def _gap(t: float, s: float, surface: Surface, rubbing: Rubbing, hard: Hard, lin
 
 
 @part()
+def _pulling(rub: float, feet: Feet) -> float:
+    """What pulls the point along beside this friction: `slider.pull`, or what holds its speed against friction."""
+    return float(feet.riders[0, PULL] if feet.riders[0, INVERSE_MASS] > 0.0 else -rub)
+
+
+@part()
 def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
     """The point flies for s seconds."""
     body, state, sums = feet.body, feet.state, feet.sums
@@ -104,7 +110,7 @@ def _move_flying(s: float, rubbing: Rubbing, hard: Hard, feet: Feet) -> None:
     body[0, V] += along * s
     state[0, HEIGHT] += rise
     state[0, CLIMB] -= hard.press * s
-    sums[0, PULLED] += feet.riders[0, PULL] * way
+    sums[0, PULLED] += _pulling(0.0, feet) * way
     sums[0, MEAN_SPEED] += way
     sums[0, PRESSED] -= hard.mass * hard.press * rise
 
@@ -139,6 +145,7 @@ def _land(rubbing: Rubbing, hard: Hard, feet: Feet, slope: float | None) -> floa
     sums[0, DAMPED] += 0.5 * blow * into * (1.0 - hard.restitution)
     sums[0, ALONG] += rub * touch[0, SURFACE]
     sums[0, RUBBED] += rub * (touch[0, SURFACE] - mean)
+    sums[0, PULLED] -= 0.0 if feet.riders[0, INVERSE_MASS] > 0.0 else rub * mean
     sums[0, MEAN_RUB] += rub
     sums[0, MEAN_PUSH] += blow
     return hard.restitution * into
@@ -192,7 +199,7 @@ def _book_riding(s: float, mean: float, surface_mean: float, feet: Feet) -> None
     sums[0, RUBBED] += s * rub * (surface_mean - mean)
     sums[0, MEAN_RUB] += s * rub
     sums[0, MEAN_PUSH] += s * push
-    sums[0, PULLED] += s * feet.riders[0, PULL] * mean
+    sums[0, PULLED] += s * _pulling(rub, feet) * mean
     sums[0, MEAN_SPEED] += s * mean
     sums[0, TOUCHING] += s
     sums[0, STICKING] += s * feet.touch[0, STUCK]

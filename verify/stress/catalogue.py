@@ -9,7 +9,7 @@ from verify.stress.kind import Row
 FAMILIES = (
     *("sizes", "scales", "standing", "drive", "friction", "turns", "runs", "growth", "many", "laws", "books"),
     *("anything", "written", "moving", "moved", "tableaux", "waves", "sheared", "resonances"),
-    *("choices", "rules", "felt", "stacked", "coiled"),
+    *("choices", "rules", "felt", "stacked", "coiled", "bent", "walls", "let_go", "feet", "thrown"),
     *("said", "verdicts", "readings", "sliders", "slips", "stretched", "every", "refused_verbs"),
     *("refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs"),
 )

@@ -93,6 +93,33 @@ def _pulled(excess: float) -> float:
     return creep_speed(MU, SLOPE, (1.0 + excess) * MU * GRAVITY)
 
 
+def step_error(tau: float) -> float:
+    """Of what tanh friction adds in one step on a surface that speeds up by a part of mu g, over all it can add.
+
+    With u = e^{2 K r}, -tau is ln((1 + alpha) u - 1 + alpha) / (1 - alpha^2) - ln u / (2 (1 - alpha)) from start to
+    end: by how much the time of the step is missed, times how fast the speed changes at its end.
+    """
+    from verify.motion.friction_kernels import tanh_speed_change
+
+    worst = 0.0
+    for alpha in (-2.3, -1.02, -0.61, 0.3, 0.93, 1.4, 7.0):
+        for rho in (-3.1, -0.4, 0.0, 0.7, 6.0):
+            change = tanh_speed_change(
+                rho / SLOPE, alpha * MU * GRAVITY, MU * GRAVITY, SLOPE, tau / SLOPE / MU / GRAVITY
+            )
+            end = rho + SLOPE * change - alpha * tau
+            with localcontext() as context:
+                context.prec = 50
+                lean = Decimal(alpha)
+                parts = [
+                    (abs((1 + lean) * u - 1 + lean).ln() / (1 - lean**2) - u.ln() / (2 * (1 - lean)))
+                    for u in (exp(2 * Decimal(rho)), exp(2 * Decimal(end)))
+                ]
+                missed = float(parts[0] - parts[1] - Decimal(tau))
+            worst = max(worst, abs(missed * (tanh(end) + alpha)) / ((1.0 + abs(alpha)) * tau))
+    return worst
+
+
 def belt_error(speed: float) -> float:
     """Worst relative error of stick and slip times on a belt, Coulomb friction, against their closed form."""
     from verify.motion.rigid_surface import stick_slip_times
@@ -116,6 +143,13 @@ def _belt(law: str) -> Iterator[Call]:
     from verify.motion.warm import on_belt
 
     return on_belt(law)
+
+
+def _step() -> Iterator[Call]:
+    """One step of tanh friction by itself."""
+    from verify.motion.friction_kernels import tanh_speed_change
+
+    yield tanh_speed_change, (0.0, 0.0, 1.0, 1.0, 1.0)
 
 
 ROWS: tuple[Row, ...] = (
@@ -145,6 +179,16 @@ ROWS: tuple[Row, ...] = (
         beside=lambda mu: rk4_error(mu, STEEP),
         textbook="RK4 in as many steps",
         kernels=partial(_belt, "tanh"),
+    ),
+    Floor(
+        id="friction-in-one-step",
+        title="Tanh friction in one step on a surface that speeds up by more or less than friction can follow",
+        why="motion/friction_kernels.py: one monotone equation to rounding; 1e-11 of a short step.",
+        along="K mu g dt",
+        at=(1e-3, 0.3, 4.0, 30.0),
+        promise=1e-10,
+        error=step_error,
+        kernels=_step,
     ),
     Floor(
         id="friction-comes-to-rest",

@@ -1,6 +1,6 @@
 """What the nonlinear chain refuses: chains that are none, and motions of it that are not begun."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace as changed
 from math import nan
 
@@ -11,6 +11,7 @@ from verify.beam import Beam, PointForce
 from verify.chain import bending, dynamics, problems, ride, splitting, stepping, stretching, warm
 from verify.chain.system import Actuator, ChainState, ChainSystem, LinkLoad, Rotation, build_system
 from verify.chain.work import check_kept, refuse_work
+from verify.models.compiling import Call
 from verify.slider import Slider
 from verify.stress.beams import PLAIN, STEPPED, STRIP, held
 from verify.stress.kind import Row
@@ -97,6 +98,20 @@ def ridden(of: ChainSystem | None = None, on: Beam = CANTILEVER, **slider: str) 
 def transient(**more: object) -> Ask:
     """From rest by a method."""
     return lambda: problems.transient(CANTILEVER, FORCES, HERTZ, (1e-5,), LINKS, **more)  # type: ignore[arg-type]
+
+
+def leaving(start: float, links: int, speed: float = -0.01) -> Ask:
+    """A slider that starts somewhere on a chain of so many links with a speed."""
+    slider = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=start, speed=speed)
+    return lambda: ride.ride_from_rest(STRIP, FORCES, HERTZ, slider, links, 4e-3, step=2e-4)
+
+
+def _loops() -> Iterator[Call]:
+    """Of a chain, and of a slider that goes on it."""
+    from verify.motion.warm import on_chain
+
+    yield from warm.rigid()
+    yield from on_chain("tanh")
 
 
 ROWS: tuple[Row, ...] = (
@@ -241,8 +256,14 @@ ROWS: tuple[Row, ...] = (
             "slider.coupling = 'auto'",
             lambda: ride.ride_from_rest(CANTILEVER, FORCES, HERTZ, SLIDER, LINKS, 1e-4, step=1e-5),
         ),
+        Case("the slider left the piece of the chain it began on", leaving(0.365, 24), leaving(0.365, 25)),
+        Case(
+            "the slider left the piece of the chain it began on after 0.0",
+            leaving(0.325, 25, -3.0),
+            leaving(0.325, 3, -3.0),
+        ),
         Case("time = 1.0 s would keep", lambda: check_kept(1e9, LINKS, "time = 1.0 s")),
         Case("time = 2 s takes", lambda: refuse_work(1001.0, 1000.0, 2.0), lambda: refuse_work(1000.0, 1000.0, 2.0)),
-        kernels=warm.accelerations,
+        kernels=_loops,
     ),
 )

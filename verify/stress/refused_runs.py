@@ -9,13 +9,13 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.chain import departure, dynamics, problems, ride, statics
-from verify.chain.small_motion import choose_pivots, refuse_unstable_modes
+from verify.chain.small_motion import _turning_squares, choose_pivots, refuse_unstable_modes
 from verify.chain.system import ChainState, LinkLoad, build_system
 from verify.device import Device
 from verify.exact.closed_forms import frequency_hz
 from verify.exact.spans import _check_spans
 from verify.judge.compare import paired_index
-from verify.judge.sizing import _gallop_up
+from verify.judge.sizing import _gallop_up, _scanned
 from verify.judge.workbench import Workbench
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS, check_count
@@ -23,6 +23,7 @@ from verify.models.fields import HarmonicField
 from verify.models.naming import Among
 from verify.motion.free_vibration import free_vibration
 from verify.motion.simulate import simulate
+from verify.patience import PATIENCE_S
 from verify.stress.beams import STEPPED, STRIP, held
 from verify.stress.kind import Row
 from verify.stress.refusals import Ask, Case, refusals
@@ -165,6 +166,19 @@ def pushed(newton: float) -> Ask:
     return lambda: statics.solve_static(changed(system, stiffness=np.zeros(4), loads=(load,) if newton else ()))
 
 
+def gone_through(failed: int, share: float) -> Ask:
+    """Sizes up to one that fails, where solves of those after it take this share of what is waited for."""
+    ahead = failed + (1.5 * failed**2 if failed < 100 else 20.0 * failed)
+    each_s = share * PATIENCE_S / ahead
+    return lambda: _scanned(lambda n: n > failed, failed, failed, "segment", 1e-3, each_s=each_s)
+
+
+def turning(spin: float, follows: float) -> Ask:
+    """Two motions on springs that push outwards, which spin couples, or that are coupled by a load that follows."""
+    spring = np.array([[-1.0, follows], [-follows, -1.0]]) if spin else np.array([[1.0, follows], [-follows, 1.0]])
+    return lambda: _turning_squares(np.eye(2), np.array([[0.0, spin], [-spin, 0.0]]), spring)
+
+
 ROWS: tuple[Row, ...] = (
     refusals(
         "refused-once-solved",
@@ -275,6 +289,14 @@ ROWS: tuple[Row, ...] = (
             lambda: _gallop_up(lambda n: False, 9, "segment", 0.01),
             lambda: _gallop_up(lambda n: n > 99_999, 9, "segment", 0.01),
         ),
+        Case(
+            "error = 0.001: the segment model, whose error goes up and down",
+            lambda: _scanned(lambda n: n % 7 != 0 or n > 2050, 2, 30, "segment", 1e-3, uneven=True),
+            lambda: _scanned(lambda n: n % 7 != 0 or n > 50, 2, 30, "segment", 1e-3, uneven=True),
+        ),
+        Case("count = 'beyond 40'", gone_through(40, 1.001), gone_through(40, 0.999)),
+        Case("count = 'beyond 150'", gone_through(150, 1.001), gone_through(150, 0.999)),
+        Case("the equilibrium is unstable: it flutters", turning(0.0, 1.0), turning(3.0, 0.0)),
         Case("the equilibrium is unstable: mode 1 grows", lambda: refuse_unstable_modes(np.array([-4.0, 1.0]))),
         Case(
             "the equilibrium is unstable: modes 1 to 2 grow (omega^2 = -4 1/s^2, e-fold in 0.5 s",
@@ -312,5 +334,6 @@ ROWS: tuple[Row, ...] = (
             lambda: problems._check_height(0.11, build_system(STRIP, 4)),
             lambda: problems._check_height(0.07, build_system(STRIP, 4)),
         ),
+        Case("amplitude: the middle would stand 0 m off", raised(0.0), raised(1e-9)),
     ),
 )

@@ -97,8 +97,8 @@ ROWS: tuple[Row, ...] = (
         Case("device at position = 0.1", lambda: Device(position=0.1), lambda: Device(position=0.1, dashpot=1.0)),
         Case("device.dashpot = -1.0", lambda: Device(position=0.1, dashpot=-1.0)),
         Case(
-            "position = 0.74",
-            lambda: matched_device(STRIP, HERTZ, 0.74),
+            "position = 0.7301",
+            lambda: matched_device(STRIP, HERTZ, 0.7301),
             lambda: matched_device(STRIP, HERTZ, 0.72),
         ),
         Case(
@@ -109,11 +109,11 @@ ROWS: tuple[Row, ...] = (
         Case("position = -0.1", lambda: beam_impedance(STRIP, HERTZ, -0.1, "pinned")),
         Case("beam.section", lambda: beam_impedance(STEPPED, HERTZ, 0.1, "pinned")),
         Case(
-            "position = 0.74",
-            lambda: receptance("segment", STRIP, 0.74, 37.0, 0.2, 9),
+            "position = 0.7301",
+            lambda: receptance("segment", STRIP, 0.7301, 37.0, 0.2, 9),
             lambda: receptance("segment", STRIP, 0.73, 37.0, 0.2, 9),
         ),
-        Case("x = 0.74", lambda: receptance("fem", STRIP, 0.2, 37.0, 0.74, 9)),
+        Case("x = 0.7301", lambda: receptance("fem", STRIP, 0.2, 37.0, 0.7301, 9)),
     ),
     refusals(
         "refused-contacts",

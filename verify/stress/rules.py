@@ -59,6 +59,57 @@ def standing_error(load: float) -> float:
     return max(abs(float(pressed.mean()) / load - 1.0), *drive)
 
 
+def giving_error(epsilon: float) -> float:
+    """Of forces through a layer that gives way, against its stretch followed in 3000 steps, whatever touches and slips.
+
+    A spring goes on with the surface as far as friction there lets it, and never further.
+    """
+    from verify.contact.layer import force, no_load_speed
+
+    pairs = [(phi, r) for phi in (0.4, 1.3, 2.2, 3.1) for r in (-1.4, -0.3, 0.25, 0.8, 1.3)]
+    phi, r = np.array(pairs).T
+    places, stretch, total = np.linspace(-1.0, 1.0, 3001)[:, None] * phi, np.zeros(len(phi)), np.zeros(len(phi))
+    limits = epsilon * (np.cos(places) - np.cos(phi))
+    for before, after, most in zip(places[:-1], places[1:], limits[1:], strict=True):
+        passed = np.sin(after) - np.sin(before) - r * (after - before)
+        moved = np.clip(stretch + passed, -most, most)
+        stretch, total = moved, total + 0.5 * (stretch + moved) * (after - before)
+    exact = total / (2.0 * epsilon * (np.sin(phi) - phi * np.cos(phi)))
+    worst = float(abs(np.array([force(*pair, epsilon) for pair in pairs]) - exact).max())
+    return max(worst, *(abs(force(one, no_load_speed(one, epsilon), epsilon)) for one in (0.4, 1.3, 2.2)))
+
+
+CROWD = np.array([0.31, 1.72, 2.0, 5.4, 5.41, 19.6, 38.2])
+"""Links from the wall at which bodies stand: beside it, on a joint, next to each other, alone, near the tip."""
+
+
+def crowd_error(links: float) -> float:
+    """Of how bodies on a cantilever of links feel each other's forces and couples, and their own, as on the beam.
+
+    x^2 (3 y - x) / 6 of forces, x (2 y - x) / 2 or x^2 / 2 of a force and a couple, x of couples, for x < y; and the
+    same from the other end.
+    """
+    from verify.segments.crowded import felt_together
+    from verify.segments.links import build_chain
+
+    n, worst = int(links), 0.0
+    joints = np.arange(n + 1)
+    x, y = np.meshgrid(CROWD, CROWD, indexing="ij")
+    low, high = np.minimum(x, y), np.maximum(x, y)
+    turns = np.where(x < y, x**2 / 2.0, y * (2.0 * x - y) / 2.0)
+    exact = np.block([[low**2 * (3.0 * high - low) / 6.0, turns], [turns.T, low]])
+    scale = np.sqrt(np.outer(np.diag(exact), np.diag(exact)))
+    for way, pair in ((1, ("clamped", "free")), (-1, ("free", "clamped"))):
+        chain = build_chain(held(*pair), n)
+        places = (CROWD if way > 0 else n - CROWD) * chain.unit
+        felt, turned = (rows[:, ::way] for rows in felt_together(chain, places.tolist(), "reciprocal"))
+        couples = np.pad(turned, ((0, 0), (1, 0))) - np.pad(turned, ((0, 0), (0, 1)))
+        moments = (np.maximum(joints - joints[:, None], 0) @ np.vstack([felt, couples]).T)[:-1]
+        found = moments.T @ (chain.compliances[::way][:-1, None] * moments)
+        worst = max(worst, float((abs(found - exact) / scale).max()))
+    return worst
+
+
 def judge_error(part: float) -> float:
     """By how far the judge of eigenvalues misses a frequency that is off by a part: the next of 1, 2 and 5 above it."""
     from scipy.linalg import eigh
@@ -114,6 +165,24 @@ ROWS: tuple[Row, ...] = (
         at=(0.05, 0.6, 1.7),
         promise=1e-3,
         error=standing_error,
+    ),
+    Floor(
+        id="layers-that-give",
+        title="Forces through layers that give way along the surface, half touching or nearly all of a wave, any speed",
+        why="contact/layer.py: stretches of sticking and slipping by closed forms; 3000 steps miss 1e-6 at turns.",
+        along="epsilon",
+        at=(0.07, 0.4, 2.5),
+        promise=1e-5,
+        error=giving_error,
+    ),
+    Floor(
+        id="crowds-on-a-cantilever",
+        title="Bodies beside a wall and next to each other on links, statically: forces and couples that they feel",
+        why="segments/crowded.py: weights whose products are the beam's, to the rounding of their factorisations.",
+        along="links",
+        at=(40.0, 55.0),
+        promise=1e-8,
+        error=crowd_error,
     ),
     Floor(
         id="judge-of-eigenvalues",

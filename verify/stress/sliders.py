@@ -317,6 +317,18 @@ def books_error(number: float) -> float:
     return float(max(abs(getattr(books, name) - works[name]) / works["work_in"] for name in works))
 
 
+def margin_error(number: float) -> float:
+    """Of how near a slider comes to lifting off, by what presses it on in every step of the first leg."""
+    from verify.motion.simulate import simulate
+
+    given: dict[str, Any] = {"model": "fem", "count": PARTS, "modal_damping": RATIO, "slider": RUNS[int(number)]}
+    run = simulate(BAR, FORCES, HERTZ, LEG, samples=1 + round(LEG / STEP), step=STEP, **given)
+    assert run.normal_force is not None
+    slider, pressed = RUNS[int(number)], run.normal_force[1:]
+    fall = float((slider.normal_force - pressed).max()) / slider.mass
+    return abs(run.margins.lift_off * slider.effective_gravity / fall - 1.0)
+
+
 def _loops() -> Iterator[Call]:
     from verify.motion.warm import on_beam
 
@@ -351,6 +363,14 @@ ROWS: tuple[Row, ...] = (
         at=(0.0, 2.0, 3.0, 5.0),
         promise=2e-4,
         error=forces_error,
+    ),
+    _row(
+        id="nearest-to-lifting-off",
+        title="How near sliders come to lifting off, against what presses them on in every step",
+        why="motion/kernels.py: the least reaction of a mean over a step, whose samples are the same means.",
+        at=(0.0, 2.0),
+        promise=1e-9,
+        error=margin_error,
     ),
     _row(
         id="books-written-out",
