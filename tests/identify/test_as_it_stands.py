@@ -180,6 +180,19 @@ def test_one_or_two_frequencies_do_not_tell_a_size_from_a_modulus(n, count):
     assert found.answer.startswith("One frequency does not say" if n == 1 else "Two frequencies do not say")
 
 
+def test_two_shapes_that_are_a_modes_are_two_frequencies_however_long_the_list():
+    """Of six shapes the last four are steep steps, like no mode."""
+    model, x = elements(CANTILEVER, 6, 40), np.linspace(0.0, CANTILEVER.length, 41)
+    values = model.deflection(x)
+    values[2:] = np.sign(np.sin(np.arange(23, 27)[:, None] * np.pi * x / CANTILEVER.length + 0.3))
+    given, shapes = np.sqrt(0.93) * model.frequencies_hz, Shapes(x=x, values=values)
+    found = of_list(given, scene("steel-cantilever"), digits=6, shapes=shapes, count=27)
+    assert "unlike" in kinds(found)
+    assert {one["kind"] for one in found.plain()["causes"]} == {"scale", "none"}
+    assert not found.plain()["best"]["identified"]
+    assert not gates(found)["identified"].passed
+
+
 def test_what_is_not_fitted_is_known_from_two_frequencies():
     """The exact beam; or a size that was said, to nine digits."""
     exact = of_list(closed_form(CANTILEVER, 2), scene("steel-cantilever"), digits=5, kind="elements", within=1e-4)

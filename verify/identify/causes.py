@@ -44,7 +44,7 @@ def identify(data: Data, count: int | None) -> Identified | None:
     as it stands is one candidate's but for rounding, gaps where nothing else explains the list, they do, and nobody
     says which mode each entry is.
     """
-    n, among = len(data.listed), units(data)
+    n, among = len(data.listed if data.paired is None else data.paired.entries), units(data)
     found = best_of(data, count, in_order(n, among))
     if n < FEWEST:
         return None if found is None else _of_few(found, data, count)
@@ -73,7 +73,7 @@ def _of_few(found: Identified, data: Data, count: int | None) -> Identified:
     scaled = best_of(msgspec.structs.replace(data, family=members), count, (SCALED,))
     both = [msgspec.structs.replace(one, short=True) for one in (plain, scaled) if one is not None]
     best, *others = sorted(both, key=lambda one: one.best.residual)
-    rivals = [one for one in others if likelier(best.best, one.best, len(data.listed)) < SURE]
+    rivals = [one for one in others if likelier(best.best, one.best, len(one.best.pairs.entries)) < SURE]
     return msgspec.structs.replace(best, rivals=tuple(rivals))
 
 

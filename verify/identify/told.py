@@ -63,8 +63,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             return ""  # each of them is told with what is nearest by it
         if self.found.short:
             few = {1: "one frequency does", 2: "two frequencies do", 3: "three frequencies do"}[len(best.pairs.entries)]
-            leaves = in_percent(best.residual, sign=False)
-            return f"{few} not say which model it is: the nearest, {nearest(best)}, leaves {leaves}"
+            return f"{few} not say which model it is: the nearest, {nearest(best)}, leaves {left(best)}"
         if best.residual > TOLERANCE:
             known = "what is known of the family on this beam" if self.left_out else "the known family"
             return f"none of {known} fits: the nearest, {nearest(best)}, leaves {in_percent(best.residual, sign=False)}"
