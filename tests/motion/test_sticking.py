@@ -29,7 +29,8 @@ def ride(count=60, duration=8e-3, step=None, **given):
 
 
 def words(run):
-    return [note for note in run.notes if note.startswith("step:")]
+    """What is said against its step."""
+    return [note for note in run.notes if note.startswith("step:") and "give" in note]
 
 
 def test_a_slider_that_sticks_moves_as_one_the_beam_hardly_feels():

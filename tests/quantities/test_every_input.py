@@ -155,7 +155,7 @@ COULOMB = {
 }
 RISING = {**SHAKEN, "slider": {**SHAKEN["slider"], "slope": 3.0}, "motion": {"duration": 8.3e-4}}
 """Friction that is far from its limit and has not come to its largest yet."""
-COARSE = {"motion": {"steps_per_period": 6}}
+COARSE = {"motion": {"steps_per_period": 21, "duration": 6.1e-3}}
 """So that the step shows on a beam that its slider hardly moves."""
 HEAVY = {"slider": {"mass": 0.02}}
 STEADY = {"motion": {"start": "steady", "soft_start_periods": 0.0}}

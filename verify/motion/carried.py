@@ -1,6 +1,7 @@
 """A slider's run on a beam in time: how it is coupled, put on, stepped and told."""
 
 from collections.abc import Callable
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from verify.models.time_basis import TimeBasis
 from verify.models.underfoot import standing_at
 from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.going_on import check_goes_on
+from verify.motion.judged_step import Ran, steps_in, until_it_stands
 from verify.motion.margins import margins_of
 from verify.motion.moving_mass import carried_along, receptance, weighed_down
 from verify.motion.records import (
@@ -38,12 +40,12 @@ from verify.motion.records import (
 )
 from verify.motion.request import MOST_STEPS, Request
 from verify.motion.result import EndState, Ledger, Motion, Statistics
-from verify.motion.sound_books import check_books
+from verify.motion.sound_books import check_books, excess_of
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
 from verify.motion.stepping import Sliding, fresh_motion, on_beam, run_stages, slider_seconds
 from verify.motion.surface import Stage
 from verify.motion.turning import couple, modal_turning, turned_by
-from verify.patience import check_work
+from verify.patience import check_work, waited_for
 from verify.slider import Slider
 
 if TYPE_CHECKING:
@@ -132,16 +134,36 @@ class Laid(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motion:
     """Step the slider through all stages. Raises InputError where that takes too many steps, or too long.
 
-    Also where it was booked, and the contact gave the beam far more than was put in.
+    Also where it was booked, and the contact gave the beam far more than was put in. Unless a step is given, that of a
+    slider that the beam feels is halved until its way stands (`judged_step`).
     """
+    request, felt = laid.request, laid.coupling.two_way
+    stages, step_note = _in_steps(request, laid.stages, begin(request, laid.stages[0], laid.basis, None), laid.coupling)
+    laid = replace(laid, stages=stages, notes=(*laid.notes, laid.coupling.note, *step_note))
+    rows, ready = len(stages[0].modal.squares), perf_counter()
+
+    def seconds(n_steps: float) -> float:
+        return slider_seconds(n_steps, rows, felt)
+
+    if not patient:
+        duration = sum(stage.duration for stage in stages)
+        check_work("duration", duration, seconds(steps_in(stages)), "shorten it or lengthen the step")
+    if request.step is None and felt:
+        ran = until_it_stands(partial(_ran, laid), stages, lambda n: waited_for(seconds(n)), progress)
+    else:
+        ran = _ran(laid, stages, progress)
+    check_books(ran.excess, request, ran.stages)
+    taken = ran.motion.statistics
+    return replace(ran.motion, statistics=replace(taken, set_up_s=taken.set_up_s + ready - laid.began))
+
+
+def _ran(laid: Laid, stages: list[Stage], progress: Callable[[float], None]) -> Ran:
+    """A run through these stages."""
     request, basis = laid.request, laid.basis
-    stages, step_note = _in_steps(request, laid.stages, begin(request, laid.stages[0], basis, None), laid.coupling)
+    began = perf_counter()
     z = begin(request, stages[0], basis, laid.coupling)
     sliding = _fresh(request, laid.slider, stages, laid.coupling)
-    n_steps = sum(stage.n_steps for stage in stages)
-    if not patient:
-        seconds = slider_seconds(n_steps, z.shape[1], laid.coupling.two_way)
-        check_work("duration", sum(stage.duration for stage in stages), seconds, "shorten it or lengthen the step")
+    n_steps = steps_in(stages)
     energy = _beam_energy(basis, *stages[0].state(z, 0.0)) if basis else (0.0, 0.0)
     ready = perf_counter()
     stopped, *state = run_stages(stages, z, sliding, request.forces, lambda n: progress(n / n_steps))
@@ -149,20 +171,19 @@ def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motio
         steps=sliding.steps,
         evaluations=2 * sliding.steps + 1,
         step_s=stages[-1].dt,
-        set_up_s=ready - laid.began + sliding.set_up_s,
+        set_up_s=ready - began + sliding.set_up_s,
         wall_s=perf_counter() - ready - sliding.set_up_s,
         loop_s=sliding.loop_s,
         stopped=stopped,
     )
     lost = (f"events: the first {len(sliding.events)} of {len(sliding.events) + sliding.n_lost}",)
-    said = replace(
-        laid, stages=stages, notes=(*laid.notes, laid.coupling.note, *step_note, *lost * bool(sliding.n_lost))
-    )
+    said = replace(laid, stages=stages, notes=(*laid.notes, *lost * bool(sliding.n_lost)))
     found = _told(said, sliding, statistics, energy, *state)
-    if laid.coupling.two_way and found.ledger and basis and not statistics.interrupted:
-        had = _own_energy(sliding) + (sum(energy) if request.before else 0.0)
-        check_books(found.ledger, had, float(abs(found.travelled).max()), request, basis, stages)
-    return found
+    if not (laid.coupling.two_way and found.ledger and basis) or statistics.interrupted:
+        return Ran(found, stages, None)
+    had = _own_energy(sliding) + (sum(energy) if request.before else 0.0)
+    way = float(abs(found.travelled).max())
+    return Ran(found, stages, excess_of(found.ledger, had, way, request, basis))
 
 
 def _own_energy(sliding: Sliding) -> float:

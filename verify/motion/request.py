@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from verify.motion.free_vibration import FreeVibration
 
 STEPS_PER_PERIOD = 64
-"""At least: more where the start excites faster modes (`step_size`)."""
+"""At least: more where the start excites faster modes (`step_size`) or a slider's way asks for it (`judged_step`)."""
 COARSEST = 0.25
 """Of a period: longer steps of a slider are refused."""
 MOST_STEPS = 2e9

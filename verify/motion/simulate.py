@@ -61,8 +61,9 @@ def simulate(
     spreads as 3 p^2 - 2 p^3. Any other growth is an `envelope` of pieces (seconds, coefficients), one after another:
     in each the forces have the part c0 + c1 p + c2 p^2 + ... of what is given, p = t/seconds from 0 to 1 within that
     piece, and all of it afterwards; [(0.02, [0, 1])] grows straight over 20 ms. Modes advance exactly by any step;
-    `step` is the slider's alone: unless given it is at most a `steps_per_period`-th of the drive's period and follows
-    what the start excites (`step_size`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
+    `step` is the slider's alone: unless given it is at most a `steps_per_period`-th of the drive's period, follows what
+    the start excites (`step_size`) and, of a slider that the beam feels, is halved until its way stands
+    (`judged_step`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
     given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode, half the
     beam's loss factor unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and
     in the steady state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept,

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import msgspec
 import numpy as np
 
 from verify.errors import InputError
@@ -17,27 +18,38 @@ MOST = 10.0
 that is summed up in steps, the part of the exact beam beyond its last mode, what carries a tangential slider uphill."""
 
 
-def check_books(
-    ledger: Ledger, had: float, way: float, request: Request, basis: TimeBasis, stages: Sequence[Stage]
-) -> None:
-    """Raise InputError for a slider that gave the beam more than MOST times what it and the forces had put in.
+class Excess(msgspec.Struct, frozen=True):
+    """What a slider gave its beam, and all that had been put in, joules."""
+
+    made: float
+    put_in: float
+
+
+def excess_of(ledger: Ledger, had: float, way: float, request: Request, basis: TimeBasis) -> Excess | None:
+    """What a slider gave the beam where that is more than MOST times what it and the forces had put in.
 
     `had` is what it had at the start or fell by, joules, `way` how far it came, metres: only where they decide is
     looked up what its weight can give on such a way.
     """
     made, put_in = ledger.contact_on_beam + ledger.normal_on_beam, abs(ledger.work_in) + had
     if made <= MOST * put_in:
-        return
+        return None
     assert request.slider is not None
     put_in += passed(basis, request.slider, way) if request.slider.normal == "held" else 0.0
-    if made <= MOST * put_in:
+    return None if made <= MOST * put_in else Excess(made, put_in)
+
+
+def check_books(excess: Excess | None, request: Request, stages: Sequence[Stage]) -> None:
+    """Raise InputError for a run in these stages whose slider gave its beam what it never had."""
+    if excess is None:
         return
     dt = max(stage.dt for stage in stages)
     enough = gripped_step(stages, float("inf"), 0.5 * dt)
     raise InputError(
-        f"step = {dt:.3g} s: the slider gave the beam {_joules(made)}, where forces, weight and what moved at first "
-        f"had put in {_joules(put_in)}: in such steps its contact makes energy of modes that turn within one; give a "
-        f"step of at most {enough:.2g} s" + (", or a larger steps_per_period" if request.step is None else "")
+        f"step = {dt:.3g} s: the slider gave the beam {_joules(excess.made)}, where forces, weight and what moved at "
+        f"first had put in {_joules(excess.put_in)}: in such steps its contact makes energy of modes that turn within "
+        f"one; give a step of at most {enough:.2g} s"
+        + (", or a larger steps_per_period" if request.step is None else "")
     )
 
 

@@ -86,11 +86,11 @@ def gripped_step(stages: Sequence[Stage], rate: float, longest: float) -> float:
     return step
 
 
-def stepped(stages: Sequence[Stage], step: float) -> list[Stage]:
-    """The same stages in steps no longer than `step`, with the same samples."""
-    return [_cut(stage, step) for stage in stages]
+def stepped(stages: Sequence[Stage], step: float, closer: int = 1) -> list[Stage]:
+    """The same stages in steps no longer than `step`, with the same samples, or so many times as many."""
+    return [_cut(stage, step, closer) for stage in stages]
 
 
-def _cut(stage: Stage, step: float) -> Stage:
-    steps = cut(stage.duration, step, stage.n_steps // stage.every)
+def _cut(stage: Stage, step: float, closer: int) -> Stage:
+    steps = cut(stage.duration, step, closer * (stage.n_steps // stage.every))
     return replace(stage, n_steps=steps.n, dt=steps.dt, every=steps.every)

@@ -137,6 +137,7 @@ def with_slider(
         )
     found = bench.motions[key]
     _check_ended(found, case.duration)
+    _check_stands(found)
     _check_modes(a, case.start, bool(found.coupling and found.coupling.two_way))
     return found
 
@@ -149,6 +150,19 @@ def _check_ended(found: Motion, duration: float) -> None:
         raise InputError(
             f"the slider {found.statistics.stopped} after {found.end.time:.6g} s of {written(duration)} s: "
             "shorten time or start it elsewhere"
+        )
+
+
+def _check_stands(found: Motion) -> None:
+    """Raise InputError for a slider whose way halving the step does not make stand."""
+    from verify.motion.judged_step import KNOWN
+
+    part, dt = found.statistics.moved, found.statistics.step_s
+    if part is not None and part > KNOWN:
+        raise InputError(
+            f"step, which is not given: in steps of {dt:.3g} s the slider's way is not known to {100.0 * KNOWN:g} %, "
+            f"halving them last moved it by {100.0 * part:.2g} %; give a shorter step, and halve it until the figure "
+            "stands, or a shorter time"
         )
 
 
