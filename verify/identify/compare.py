@@ -186,9 +186,13 @@ def _of_shapes_alone(found: Found) -> Found:
 
 
 def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found, ...]]:
-    """What the list is at the given size, or else beside it or at any. Raises InputError where nothing is so large."""
+    """What the list is at the given size, or else beside it or at any. Raises InputError where nothing is so large.
+
+    Of so few frequencies that none is claimed at the given size, another would be a fitted one.
+    """
     found = identify(data, count)
-    if count is not None and (found is None or not (found.explained and found.best.candidate.sized)):
+    known = found is not None and (found.short or (found.explained and found.best.candidate.sized))
+    if count is not None and not known:
         beside = [size for size in {2 * count, count // 2, *range(count - 2, count + 3)} - {count} if size > 1]
         n_modes = data.solver.n_modes
         seconds = _sizes_seconds(n_modes, beside) + _search_seconds(n_modes, len(data.family))
