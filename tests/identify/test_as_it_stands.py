@@ -146,6 +146,15 @@ def test_an_entry_whose_shape_is_no_modes_is_judged_by_its_number():
     assert gates(found)["within"].measured == pytest.approx(0.07, rel=1e-3)
 
 
+def test_one_mode_beyond_the_tolerance_is_enough_to_claim_nothing():
+    """Ground of 0.24 EI/L^4: 0.12 % at the first mode, and the root mean square of eight is a third of it."""
+    found = of_list(ground(0.24) * closed_form(PINNED, 8), scene("paper"), kind="elements", count=9)
+    assert found.found.best.residual < 1e-3 < found.rows[0].beyond
+    assert not gates(found)["identified"].passed
+    assert not found.plain()["best"]["identified"]
+    assert not found.answer.startswith("Your ")
+
+
 # --- modes that lie close together ---------------------------------------------------------------------------------
 
 

@@ -102,7 +102,8 @@ def gaps_of(data: Data, best: Fit, elastic: Elastic) -> tuple[Found, ...]:
         if entry not in paired:
             off = percent(float(data.listed[entry] / best.factor / known[mode] - 1.0))
             words = f"entry {elastic.kept[entry] + 1} is {off} off mode {mode + 1}, and the others fit"
-            told.append(Found(kind="apart", words=f"{words}: mend it, or it is none of the beam's bending modes"))
+            may_be = "a slip, a motion of another kind, or something that the scene does not have"
+            told.append(Found(kind="apart", words=f"{words}: {may_be}"))
     entries = sorted(read)
     pairs = Pairs(entries=np.array(entries), modes=np.array([read[entry] for entry in entries]))
     return (*told, *missing(pairs, elastic.kept))

@@ -78,20 +78,20 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
                 f"the nearest is {nearest(best)}"
             )
         answer = best.candidate.answer
-        probably = self.found.doubtful or self._loose() or self._apart()
+        probably = self.found.doubtful or self._loose() or not self._within()
         return f"{f'Probably y{answer[1:]}' if probably else answer}{self._parts()}"
 
     def _loose(self) -> bool:
         """Whether it is read with a common factor that is told and not claimed."""
         return self.found.reading.factor is None and loosely(self.found.best)
 
-    def _apart(self) -> bool:
-        """Whether an entry in its own place is not of what the others fit."""
-        return any(remark.kind == "apart" for remark in self.told)
+    def _within(self) -> bool:
+        """Whether every entry is within the tolerance of the best, as the gate has it."""
+        return all(gate.passed for gate in self.gates if gate.id == "identified")
 
     def _claimed(self) -> bool:
         """Whether it is said to be one candidate and no other."""
-        return self.found.explained and not (self._unseen() or self.found.rivals or self._apart())
+        return self.found.explained and self._within() and not (self._unseen() or self.found.rivals)
 
     def _unseen(self) -> bool:
         """Whether the exact beam fits about as well as the best model of parts."""
