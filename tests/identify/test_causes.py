@@ -12,6 +12,7 @@ from verify.cli import status_of
 from verify.elements.linear import solve_modes as elements
 from verify.errors import InputError
 from verify.exact.modes import exact_frequency_hz
+from verify.identify.causes_told import cause_of
 from verify.identify.clamps import clamp_of, clamped_ends, loss_of, softened
 from verify.identify.compare import Asked, compared
 from verify.identify.reading import Listed
@@ -176,10 +177,19 @@ def test_a_clamp_that_hardly_gives_is_told_beside_a_modulus_and_neither_is_claim
     """To first order both lower every mode of a cantilever alike: the square of its tip is 4 in all of them."""
     found = of_list(fine(2000.0), 200)
     assert kinds(found) == ["causes", "twin"]
-    assert "neither is claimed: (a) " in found.answer
+    assert "none is claimed: (a) " in found.answer
     assert {one["kind"] for one in found.plain()["causes"]} == {"clamp", "scale"}
     assert not found.plain()["best"]["identified"]
     assert found.told[0].wrong
+    assert found.answer.startswith("This list does not say which it is, or whether it is one of them")
+
+    def leaving(cause):
+        return replace(cause, fits=tuple(replace(one, residual=1.2e-3) for one in cause.fits))
+
+    loose = replace(leaving(found.found), rivals=tuple(map(leaving, found.found.rivals)))
+    (told,) = cause_of(loose, BEAM)
+    assert told.words.count("0.1200 %") == 2
+    assert "is left, which leaves" not in told.words
 
 
 def test_what_a_factor_does_not_explain_is_not_claimed_as_one():

@@ -20,9 +20,10 @@ def cause_of(found: Identified, beam: Beam) -> tuple[Found, ...]:
     if not found.rivals:
         kind = kind_of(found)
         return (Found(kind=kind, words=_words(found, beam)),) if kind != "none" else ()
-    causes = (found, *found.rivals)
+    causes, number = (found, *found.rivals), len(found.best.pairs.entries)
     each = "; ".join(f"({letter}) {_among(one, beam)}" for letter, one in zip("abcdef", causes, strict=False))
-    words = f"this list does not say which it is, and neither is claimed: {each}"
+    says = {1: "one frequency does not say", 2: "two frequencies do not say"}.get(number, "this list does not say")
+    words = f"{says} which it is, or whether it is one of them, and none is claimed: {each}"
     return (Found(kind="causes", words=words, wrong=all(kind_of(one) != "none" for one in causes)),)
 
 
@@ -63,19 +64,25 @@ def left(one: Fit) -> str:
 
 def _among(found: Identified, beam: Beam) -> str:
     """One of several causes: what it is, what is nearest by it, what that leaves."""
-    return f"{_words(found, beam)}, which leaves {left(found.best)} with {nearest(found.best)}"
+    return f"{_words(found, beam, loose=False)}, which leaves {left(found.best)} with {nearest(found.best)}"
 
 
-def _words(found: Identified, beam: Beam) -> str:
+def _words(found: Identified, beam: Beam, *, loose: bool = True) -> str:
+    """What a cause is; `loose` with what is left of the list where that is too much to claim it."""
     kind, best = kind_of(found), found.best
     unit = UNITS.get(found.reading.factor or 1.0, "")
     said = [f"the frequencies are {unit}"] if unit else []
     if best.clamp is not None:
-        near = f"nearest comes a clamp that gives: {best.clamp.words}, and {left(best)} is left"
+        near = f"nearest comes a clamp that gives: {best.clamp.words}{_and_left(best) * loose}"
         said += [best.clamp.words if found.explained else near]
     if kind == "scale":
-        return _scale_words(best, beam)
+        plainly = not (loosely(best) or (loose and found.short))
+        return _scale_words(best, beam, plainly=plainly) + _and_left(best) * (loose and not plainly)
     return "; ".join(said) or ("nothing is off" if found.reading == PLAIN else "modes are missing or too many")
+
+
+def _and_left(best: Fit) -> str:
+    return f", and {left(best)} is left"
 
 
 def loosely(best: Fit) -> bool:
@@ -84,14 +91,13 @@ def loosely(best: Fit) -> bool:
     return best.residual > max(FLOOR, _LITTLE * change)
 
 
-def _scale_words(best: Fit, beam: Beam) -> str:
+def _scale_words(best: Fit, beam: Beam, *, plainly: bool) -> str:
     """One factor on all frequencies, and what alone it may be of on this beam."""
     factor, unit = beyond_unit(best.factor)
-    plainly = not loosely(best)
     had = "all frequencies have the common factor" if plainly else "nearest comes a common factor of all frequencies,"
     beside = f": {UNITS[unit]}; beyond that {factor:.6g}, so that" if unit != 1.0 else ""
     made = made_by(factor, beam, best.candidate.theory)
-    return f"{had} {best.factor:.6g}{beside or ':'} {made}{'' if plainly else f', and {left(best)} is left'}"
+    return f"{had} {best.factor:.6g}{beside or ':'} {made}"
 
 
 def made_by(factor: float, beam: Beam, theory: str) -> str:

@@ -17,13 +17,15 @@ from verify.identify.causes import identify
 from verify.identify.causes_told import cause_of
 from verify.identify.family import CHAIN, ELEMENTS, EXACT, Candidate, Solver, exact_hz, family
 from verify.identify.fitting import PLAIN, Data, Identified
+from verify.identify.gates import judged
 from verify.identify.outside import asked_of
 from verify.identify.pairing import Elastic, Found, by_number, by_shape, elastic_of, missing, swapped
 from verify.identify.reading import Listed, Shapes, read_frequencies, read_shapes
+from verify.identify.rows import Row, gaps_of, rows_of
 from verify.identify.sizing import Enough, enough
-from verify.identify.told import Compared, Row, judged
+from verify.identify.told import Compared
 from verify.identify.twins import twin_of
-from verify.identify.yielding import CREDIBLE, frequencies_of
+from verify.identify.yielding import CREDIBLE
 from verify.models.arrays import Array
 from verify.options import Support
 from verify.patience import check_work
@@ -90,12 +92,18 @@ def compared(scene: Scene, asked: Asked, listed: Listed, shapes: Shapes | None, 
     )
     data, told, likeness = _by_shapes(scene, data, shapes, elastic, count)
     found, recounted = _identified(data, count)
-    told = (*elastic.told, *told, *_of_list(scene.beam, found, data), *recounted, *_of_supports(scene, found, data))
+    told = (
+        *elastic.told,
+        *told,
+        *_of_list(scene.beam, found, data, elastic),
+        *recounted,
+        *_of_supports(scene, found, data),
+    )
     told = (*told, *twin_of(beam, found))
     best = found.best
-    mode = asked.mode or int(best.pairs.modes.max()) + 1
+    rows = rows_of(data, found, exact, likeness, elastic)
+    mode = asked.mode or max(row.read_as or 1 for row in rows)
     size = enough(beam, best.candidate, mode, asked.error) if best.candidate.sized else None
-    rows = _rows(data, found, exact, likeness, elastic)
     return _told(scene, asked, listed, found, told, rows, size, solver, perf_counter() - start)
 
 
@@ -159,7 +167,7 @@ def _by_shapes(
     if shapes is None:
         return data, (), {}
     pairs, likeness, told = by_shape(scene.beam, shapes, elastic.kept)
-    told = (*told, *swapped(pairs), *missing(pairs, len(data.listed)))
+    told = (*told, *swapped(pairs), *missing(pairs, elastic.kept))
     paired = msgspec.structs.replace(data, paired=pairs)
     rises = bool((np.diff(data.listed) >= 0.0).all())
     if rises and any(one.kind == "swapped" for one in told):
@@ -178,9 +186,13 @@ def _of_shapes_alone(found: Found) -> Found:
 
 
 def _identified(data: Data, count: int | None) -> tuple[Identified, tuple[Found, ...]]:
-    """What the list is at the given size, or else beside it or at any. Raises InputError where nothing is so large."""
+    """What the list is at the given size, or else beside it or at any. Raises InputError where nothing is so large.
+
+    Of so few frequencies that none is claimed at the given size, another would be a fitted one.
+    """
     found = identify(data, count)
-    if count is not None and (found is None or not (found.explained and found.best.candidate.sized)):
+    known = found is not None and (found.short or (found.explained and found.best.candidate.sized))
+    if count is not None and not known:
         beside = [size for size in {2 * count, count // 2, *range(count - 2, count + 3)} - {count} if size > 1]
         n_modes = data.solver.n_modes
         seconds = _sizes_seconds(n_modes, beside) + _search_seconds(n_modes, len(data.family))
@@ -214,9 +226,9 @@ def _explaining(data: Data, counts: Sequence[int | None]) -> Identified | None:
     return min(good, key=lambda one: one.best.score, default=None)
 
 
-def _of_list(beam: Beam, found: Identified, data: Data) -> tuple[Found, ...]:
-    """What the best reading of a list says of it: its unit, a common factor, a clamp, what is missing."""
-    gaps = missing(found.best.pairs, len(data.listed)) if data.paired is None else ()
+def _of_list(beam: Beam, found: Identified, data: Data, elastic: Elastic) -> tuple[Found, ...]:
+    """What the best reading of a list says of it: its unit, a common factor, a clamp, what is missing or apart."""
+    gaps = gaps_of(data, found.best, elastic) if data.paired is None else ()
     return (*cause_of(found, beam), *gaps)
 
 
@@ -263,33 +275,6 @@ def _held_otherwise(beam: Beam) -> Iterator[Beam]:
             if other not in seen and other.mirrored() not in seen:
                 seen.add(other)
                 yield other
-
-
-def _rows(data: Data, found: Identified, exact: Array, likeness: dict[int, float], elastic: Elastic) -> tuple[Row, ...]:
-    """Every paired mode: yours as it was given, exact, freed of a wrong unit or factor, of the best candidate."""
-    best = found.best
-    known = frequencies_of(data, best)
-    rows = []
-    for entry, mode, off in zip(best.pairs.entries, best.pairs.modes, best.differences, strict=True):
-        given = float(data.listed[entry])
-        scaled = None if best.factor == 1.0 else given / best.factor
-        rows.append(
-            Row(
-                mode=int(mode) + 1,
-                entry=int(elastic.kept[entry]) + 1,
-                given_hz=given,
-                frequency_hz=given,
-                exact_hz=float(exact[mode]),
-                error=given / float(exact[mode]) - 1.0,
-                scaled_hz=scaled,
-                scaled_error=None if scaled is None else scaled / float(exact[mode]) - 1.0,
-                best_hz=float(known[mode]),
-                difference=float(off),
-                beyond=max(abs(float(off)) - float(data.rounding[entry]), 0.0),
-                likeness=likeness.get(int(entry)),
-            )
-        )
-    return tuple(sorted(rows, key=lambda row: row.mode))
 
 
 def _told(

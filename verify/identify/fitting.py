@@ -76,12 +76,15 @@ class Reading(msgspec.Struct, frozen=True, kw_only=True):
 
 
 PLAIN = Reading(factor=1.0, aligned=False, cost=0.0)
+SCALED = Reading(factor=None, aligned=False, cost=SCALE_COST)
+FEWEST = 3
+"""Entries below which a factor or a spring may always be fitted."""
 
 
 def in_order(n: int, units: Sequence[float]) -> tuple[Reading, ...]:
     """Readings by which no mode is missing, the plain one first."""
     scaled = [Reading(factor=factor, aligned=False, cost=UNIT_COST) for factor in units]
-    return PLAIN, *scaled, *([Reading(factor=None, aligned=False, cost=SCALE_COST)] if n >= 3 else [])
+    return PLAIN, *scaled, *([SCALED] if n >= FEWEST else [])
 
 
 def with_gaps(units: Sequence[float]) -> tuple[Reading, ...]:
@@ -159,6 +162,8 @@ class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Whether what is left over goes smoothly with the mode, as noise would not."""
     rivals: tuple["Identified", ...] = ()
     """What else may be behind the list: other readings, or a clamp that gives, that leave about as much."""
+    short: bool = False
+    """Whether it has so few entries beside what was fitted that a fit is no evidence."""
 
     @property
     def best(self) -> Fit:
@@ -182,8 +187,8 @@ class Identified(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
     @property
     def explained(self) -> bool:
-        """Whether the best is it: within the tolerance, and but noise left over."""
-        return self.best.residual <= TOLERANCE and not self.systematic
+        """Whether the best is it: within the tolerance, but noise left over, of a list that is long enough."""
+        return self.best.residual <= TOLERANCE and not self.systematic and not self.short
 
     @property
     def odds(self) -> float:
@@ -236,7 +241,7 @@ def best_of(data: Data, count: int | None, among: Sequence[Reading]) -> Identifi
     best: Fit | None = None
     of_it = PLAIN
     for (_, reading), one in fits.items():
-        if best is None or one.score < best.score - 1e-6 * abs(best.score):
+        if best is None or one.score < (best.score - 1e-6 * abs(best.score) if best.score < inf else inf):
             best, of_it = one, reading
     return None if best is None else _ranked(data, best, of_it, count)
 

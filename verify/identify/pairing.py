@@ -15,15 +15,17 @@ _TINY = 3e-3
 _FARTHEST = 1e6
 """Times the beam's own frequencies: beyond it a list is of something else."""
 _TWICE = 1e-3
-"""Closer than this two entries are one mode; a beam's own modes lie farther apart."""
+"""Closer than this two entries are one mode, unless the exact beam has two so close there."""
+_PAIRED = 3.0
+"""Times that: up to here a model of few parts may bring two modes of the beam as close."""
 
 
 class Found(msgspec.Struct, frozen=True, kw_only=True):
     """Something about a list that is to be told."""
 
     kind: str
-    """What it is about: unit, scale, clamp, causes, missing, extra, twice, rigid, swapped, count, supports, leaving,
-    twin, unlike or unsearched."""
+    """What it is about: unit, scale, clamp, causes, missing, extra, apart, twice, rigid, swapped, count, supports,
+    leaving, twin, unlike or unsearched."""
     words: str
     """A sentence without its full stop."""
     wrong: bool = True
@@ -52,7 +54,7 @@ def elastic_of(listed: Listed, beam: Beam, exact: Array) -> Elastic:
     kept = list(range(rigid, rigid + 1))
     twice = []
     for i in range(rigid + 1, len(values)):
-        if abs(values[i] / values[kept[-1]] - 1.0) < _TWICE:
+        if abs(values[i] / values[kept[-1]] - 1.0) < _TWICE and not _close_there(exact, len(kept)):
             twice.append(i)
         else:
             kept.append(i)
@@ -61,6 +63,11 @@ def elastic_of(listed: Listed, beam: Beam, exact: Array) -> Elastic:
         said = f"entries {rows} of the list repeat" if len(twice) > 1 else f"entry {rows} of the list repeats"
         told.append(Found(kind="twice", words=f"{said} the one before: a mode is there twice"))
     return Elastic(kept=np.array(kept, dtype=np.intp), numbers=_numbers(listed, kept, rigid), told=tuple(told))
+
+
+def _close_there(exact: Array, place: int) -> bool:
+    """Whether the beam's mode at a place, from 0, is about as close to the one before: two spans, hardly coupled."""
+    return bool(exact[place] / exact[place - 1] - 1.0 < _PAIRED * _TWICE)
 
 
 def _check_sizes(listed: Listed, rigid: int, exact: Array) -> None:
@@ -157,16 +164,16 @@ def _listed(wrong: list[tuple[int, int]]) -> str:
     return ", ".join(str(a) for a, _ in wrong)
 
 
-def missing(pairs: Pairs, n: int) -> tuple[Found, ...]:
-    """Modes below the last that no entry is, and entries that are no mode."""
+def missing(pairs: Pairs, kept: Indices) -> tuple[Found, ...]:
+    """Modes below the last that none of the entries that are kept is, and those of them that are no mode."""
     told = []
     there = {int(mode) + 1 for mode in pairs.modes}
     gone = [mode for mode in range(1, max(there) + 1) if mode not in there]
     if gone:
         verb = "mode {} is missing" if len(gone) == 1 else "modes {} are missing"
         told.append(Found(kind="missing", words=verb.format(", ".join(map(str, gone))) + " from the list"))
-    extra = sorted(set(range(n)) - {int(i) for i in pairs.entries})
+    extra = sorted(set(range(len(kept))) - {int(i) for i in pairs.entries})
     if extra:
         verb = "entry {} is none of the beam's bending modes" if len(extra) == 1 else "entries {} are no bending modes"
-        told.append(Found(kind="extra", words=verb.format(", ".join(str(i + 1) for i in extra))))
+        told.append(Found(kind="extra", words=verb.format(", ".join(str(kept[i] + 1) for i in extra))))
     return tuple(told)

@@ -9,9 +9,10 @@ from verify.identify.causes_told import left, loosely, nearest, plain_cause
 from verify.identify.family import CHAIN, Candidate
 from verify.identify.fitting import FLOOR, TOLERANCE, Fit, Identified
 from verify.identify.pairing import Found as Remark
+from verify.identify.rows import Row
 from verify.identify.sizing import Enough
-from verify.run.gates import Band, GateResult
-from verify.studies.chart import Axis, Chart
+from verify.run.gates import GateResult
+from verify.studies.chart import Axis, Chart, Numbers
 from verify.studies.charting import GREY, line, percent, plain_line
 from verify.studies.told import Column, Found, Table
 from verify.words import percent as in_percent
@@ -21,33 +22,6 @@ _OFF_THE_CHART = 2.0
 """A factor beyond which a list as given is not drawn beside the candidates."""
 _SHOWN = 8
 """Candidates in the terminal."""
-
-
-class Row(msgspec.Struct, frozen=True, kw_only=True):
-    """One mode."""
-
-    mode: int
-    entry: int
-    """Of the list, from 1."""
-    given_hz: float
-    """The same as `frequency_hz`."""
-    frequency_hz: float
-    """As it was given, in hertz."""
-    exact_hz: float
-    error: float
-    """Of what was given, relative to exact."""
-    scaled_hz: float | None
-    """Freed of a wrong unit or a common factor that was diagnosed; None without one."""
-    scaled_error: float | None
-    """Of `scaled_hz`, relative to exact."""
-    best_hz: float
-    """Of the best candidate."""
-    difference: float
-    """Of `scaled_hz`, else of what was given, relative to the best candidate."""
-    beyond: float
-    """Its size, less what the rounding of the list explains."""
-    likeness: float | None
-    """MAC of its shape with the exact one; None without shapes."""
 
 
 class Compared(Found, frozen=True, eq=False, kw_only=True):
@@ -86,7 +60,10 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
     def _identity(self) -> str:
         best = self.found.best
         if self.found.rivals:
-            return f"read by (a), the nearest is {nearest(best)}"
+            return ""  # each of them is told with what is nearest by it
+        if self.found.short:
+            few = {1: "one frequency does", 2: "two frequencies do", 3: "three frequencies do"}[len(best.pairs.entries)]
+            return f"{few} not say which model it is: the nearest, {nearest(best)}, leaves {left(best)}"
         if best.residual > TOLERANCE:
             known = "what is known of the family on this beam" if self.left_out else "the known family"
             return f"none of {known} fits: the nearest, {nearest(best)}, leaves {in_percent(best.residual, sign=False)}"
@@ -101,15 +78,20 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
                 f"the nearest is {nearest(best)}"
             )
         answer = best.candidate.answer
-        return f"{f'Probably y{answer[1:]}' if self.found.doubtful or self._loose() else answer}{self._parts()}"
+        probably = self.found.doubtful or self._loose() or not self._within()
+        return f"{f'Probably y{answer[1:]}' if probably else answer}{self._parts()}"
 
     def _loose(self) -> bool:
         """Whether it is read with a common factor that is told and not claimed."""
         return self.found.reading.factor is None and loosely(self.found.best)
 
+    def _within(self) -> bool:
+        """Whether every entry is within the tolerance of the best, as the gate has it."""
+        return all(gate.passed for gate in self.gates if gate.id == "identified")
+
     def _claimed(self) -> bool:
         """Whether it is said to be one candidate and no other."""
-        return self.found.explained and not self._unseen() and not self.found.rivals
+        return self.found.explained and self._within() and not (self._unseen() or self.found.rivals)
 
     def _unseen(self) -> bool:
         """Whether the exact beam fits about as well as the best model of parts."""
@@ -158,19 +140,31 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         return (self.answer, self._largest())
 
     def _largest(self) -> str:
-        """Of the list as it was given; beside it of the scaled one, named as such."""
+        """Of the list as it was given; beside it as it is read, named as such."""
         worst = max(self.rows, key=lambda row: abs(row.error))
         said = f"Against the exact beam ({self.theory}) the largest error is {_at(worst.error, worst)}"
-        if not self.scaled:
+        if not (self.scaled or self.shifted):
             return f"{said}."
-        least = max(self.rows, key=lambda row: abs(row.scaled_error or 0.0))
-        scaled = _at(least.scaled_error or 0.0, least)
-        return f"{said}, of your list as it is; of the list over {self.found.best.factor:.6g} it would be {scaled}."
+        error, mode = max(self._read(), key=lambda read: abs(read[0]))
+        read = " and ".join(
+            [f"of the list over {self.found.best.factor:.6g}"] * self.scaled
+            + ["with each entry as it is read"] * self.shifted
+        )
+        return f"{said}, of your list as it is; {read} it would be {in_percent(error)}, at mode {mode}."
 
     @property
     def scaled(self) -> bool:
         """Whether the list was read as one that has a wrong unit or a common factor."""
         return self.rows[0].scaled_hz is not None
+
+    @property
+    def shifted(self) -> bool:
+        """Whether an entry was read as another mode than its number says, or as none."""
+        return any(row.read_as != row.mode for row in self.rows)
+
+    def _read(self) -> list[tuple[float, int]]:
+        """(error, mode) of every entry as it is read."""
+        return [(row.read_error, row.read_as) for row in self.rows if row.read_error is not None and row.read_as]
 
     def tables(self) -> tuple[Table, ...]:
         """Modes, and candidates."""
@@ -184,26 +178,31 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             Column("yours, Hz", ".4f"),
             Column("exact, Hz", ".4f"),
             Column("error, %", "bare percent"),
-            *[Column("scaled, Hz", ".4f"), Column("scaled error, %", "bare percent")] * self.scaled,
+            *[Column("scaled, Hz", ".4f")] * self.scaled,
+            *[Column("read as")] * self.shifted,
+            *[Column(f"{self._freed()} error, %", "bare percent")] * bool(self._freed()),
             Column("best, Hz", ".4f"),
             Column("off it, %", "bare percent"),
             *([Column("MAC", ".4f")] if shaped else []),
         )
         rows = []
         for row in self.rows:
-            off: float | str = row.difference if abs(row.difference) > FLOOR else "rounding"
-            scaled = (row.scaled_hz, row.scaled_error) if self.scaled else ()
-            cells = (row.mode, row.entry, row.frequency_hz, row.exact_hz, row.error, *scaled, row.best_hz, off)
+            off = "rounding" if row.difference is not None and abs(row.difference) <= FLOOR else row.difference
+            read = (row.scaled_hz,) * self.scaled + (row.read_as,) * self.shifted
+            read += (row.read_error,) * bool(self._freed())
+            cells = (row.mode, row.entry, row.frequency_hz, row.exact_hz, row.error, *read, row.best_hz, off)
             rows.append((*cells, row.likeness) if shaped else cells)
-        return Table(title="Modes", columns=columns, rows=tuple(rows), notes=self._scaling(), shown="both")
+        return Table(title="Modes", columns=columns, rows=tuple(rows), notes=self._notes(), shown="both")
 
-    def _scaling(self) -> tuple[str, ...]:
-        """What `scaled` and `off it` are, where they are not of what was given."""
-        if not self.scaled:
-            return ()
-        return (
-            f"Scaled: yours over {self.found.best.factor:.6g}, as diagnosed. Off it: the scaled ones off the best.",
-        )
+    def _freed(self) -> str:
+        """What errors that a diagnosis leaves are called; empty without one."""
+        return "scaled" if self.scaled else "read" if self.shifted else ""
+
+    def _notes(self) -> tuple[str, ...]:
+        """What is beside the list as it was given."""
+        scaled = f"Scaled: yours over {self.found.best.factor:.6g}, as diagnosed. Off it: the scaled ones off the best."
+        read = "Read as: the mode that an entry is by what was diagnosed; errors before that column are by its number."
+        return (*[scaled] * self.scaled, *[read] * self.shifted)
 
     def _candidates(self) -> Table:
         columns = (
@@ -232,19 +231,15 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
 
     def charts(self) -> tuple[Chart, ...]:
         """Errors over the mode: yours, of the best candidate, of the next."""
-        modes = [row.mode for row in self.rows]
-        best = [row.best_hz / row.exact_hz - 1.0 for row in self.rows]
+        modes = sorted({row.mode for row in self.rows} | {mode for _, mode in self._read()})
         lines = [
             plain_line("exact", GREY, modes, [0.0] * len(modes)),
-            *(line(name, colour, modes, percent(off), joined=False) for name, colour, off in self._points()),
-            plain_line(self.found.best.candidate.words, _BEST, modes, percent(best)),
+            *(line(name, colour, at, percent(off), joined=False) for name, colour, at, off in self._points()),
+            plain_line(self.found.best.candidate.words, _BEST, *self._errors_of(self.found.best)),
         ]
         following = self.found.next
         if following is not None:
-            by_mode = {int(m) + 1: float(d) for m, d in zip(following.pairs.modes, following.differences, strict=True)}
-            own = [row.error if row.scaled_error is None else row.scaled_error for row in self.rows]
-            errors = [(1.0 + e) / (1.0 + by_mode[row.mode]) - 1.0 for e, row in zip(own, self.rows, strict=True)]
-            lines.append(plain_line(following.candidate.words, _NEXT, modes, percent(errors), dash="dash"))
+            lines.append(plain_line(following.candidate.words, _NEXT, *self._errors_of(following), dash="dash"))
         return (
             Chart(
                 id="compare",
@@ -256,20 +251,27 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             ),
         )
 
-    def _points(self) -> list[tuple[str, str, list[float]]]:
-        """(name, colour, errors) of yours, and of yours scaled; of these alone where the others lie far off."""
-        given = ("yours", _YOURS, [row.error for row in self.rows])
-        if not self.scaled:
+    def _errors_of(self, one: Fit) -> tuple[list[int], Numbers]:
+        """(modes that are paired, the errors of a candidate in them, %): those of the list less what is off it."""
+        off = {int(m) + 1: float(d) for m, d in zip(one.pairs.modes, one.differences, strict=True)}
+        own = [(error, mode) for error, mode in self._read() if mode in off]
+        return [mode for _, mode in own], percent([(1.0 + error) / (1.0 + off[mode]) - 1.0 for error, mode in own])
+
+    def _points(self) -> list[tuple[str, str, list[int], list[float]]]:
+        """(name, colour, modes, errors) of yours, and of yours as read; of these alone where the others lie far off."""
+        given = ("yours", _YOURS, [row.mode for row in self.rows], [row.error for row in self.rows])
+        freed = self._freed()
+        if not freed:
             return [given]
-        scaled = ("yours, scaled", _SCALED, [row.scaled_error or 0.0 for row in self.rows])
-        return [scaled] if self._far_off() else [given, scaled]
+        read = (f"yours, {freed}", _SCALED, [mode for _, mode in self._read()], [error for error, _ in self._read()])
+        return [read] if self._far_off() else [given, read]
 
     def _far_off(self) -> bool:
-        return not 1.0 / _OFF_THE_CHART < self.found.best.factor < _OFF_THE_CHART
+        return self.shifted or not 1.0 / _OFF_THE_CHART < self.found.best.factor < _OFF_THE_CHART
 
     def _pointed(self) -> str:
-        over = f"over {self.found.best.factor:.6g}, as diagnosed"
-        if not self.scaled:
+        over = f"over {self.found.best.factor:.6g}, as diagnosed" if self.scaled else "as read"
+        if not self._freed():
             return "yours"
         return f"yours {over} (as given they lie off the chart)" if self._far_off() else f"yours, and yours {over}"
 
@@ -327,57 +329,3 @@ def _candidate(one: Fit) -> dict[str, Any]:
         "residual": one.residual,
         "words": candidate.words,
     }
-
-
-def judged(
-    found: Identified, told: tuple[Remark, ...], rows: tuple[Row, ...], within: float | None
-) -> tuple[GateResult, ...]:
-    """The list as it stands, what it is, and where asked its errors against the exact beam."""
-    wrong = [one for one in told if one.wrong]
-    reason = "; ".join(one.words for one in wrong)
-    gates = [
-        _gate("list", float(len(wrong)), 0.0, reason, "A list that stands as it is has nothing to be mended.", "1")
-    ]
-    off = max(rows, key=lambda row: row.beyond)
-    why = (
-        "A model is a member of the family if every mode is its mode, and what is left over does not go with the mode."
-    )
-    over = f" over {found.best.factor:.6g}" if off.scaled_hz is not None else ""
-    reason = f"mode {off.mode}{over} is {in_percent(off.difference)} off the nearest candidate"
-    if found.systematic and off.beyond <= TOLERANCE:
-        reason = (
-            f"what is left over, up to {in_percent(off.difference)} at mode {off.mode}, goes smoothly with the mode"
-        )
-    passed = off.beyond <= TOLERANCE and not found.systematic
-    gates.append(_gate("identified", off.beyond, TOLERANCE, "" if passed else reason, why, "1"))
-    if within is not None:
-        gates.append(_errors(rows, within))
-    return tuple(gates)
-
-
-def _errors(rows: tuple[Row, ...], within: float) -> GateResult:
-    """What was given against the exact beam, whatever it was read as."""
-    beyond = [row for row in rows if not abs(row.error) <= within]
-    worst = max(rows, key=lambda row: abs(row.error))
-    modes = ", ".join(str(row.mode) for row in beyond[:6]) + (" and more" if len(beyond) > 6 else "")
-    reason = f"beyond it: mode{'s' * (len(beyond) > 1)} {modes}; the largest error is {in_percent(worst.error)}"
-    why = "Every mode, as it was given, against the exact beam."
-    return _gate("within", abs(worst.error), within, reason if beyond else "", why, "1")
-
-
-def _gate(name: str, measured: float, at_most: float, reason: str, why: str, unit: str) -> GateResult:
-    return GateResult(
-        id=name,
-        quantity=f"compare.{name}",
-        arguments={},
-        why=why,
-        unit=unit,
-        expected=f"at most {at_most:g}",
-        band=Band(expect=None, within=None, at_least=None, at_most=at_most),
-        measured=measured,
-        passed=not reason,
-        applicable=True,
-        share=measured / at_most if at_most else None,
-        reason=reason,
-        seconds=0.0,
-    )

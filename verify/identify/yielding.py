@@ -17,6 +17,7 @@ from verify.identify.alignment import Pairs, in_order_of
 from verify.identify.clamps import SOFTEST, STIFFEST, Loss, clamp_of, clamped_ends, loss_of, softened
 from verify.identify.family import EXACT, Candidate, frequencies_hz
 from verify.identify.fitting import (
+    FEWEST,
     FLOOR,
     SCALE_COST,
     UNIT_COST,
@@ -31,8 +32,6 @@ from verify.identify.fitting import (
 from verify.identify.searching import best_size, downhill
 from verify.models.arrays import Array
 
-FEWEST = 3
-"""Modes below which a spring may always be fitted."""
 READING = Reading(factor=1.0, aligned=False, cost=SCALE_COST)
 """As a common factor, a clamp that gives costs one fitted number."""
 _CLOSER = 6
