@@ -183,6 +183,39 @@ def test_every_set_compares_at_the_orders_that_are_due_on_the_beam(added, sets, 
         assert lines[name, "Hermite elements"] == (4.0, 4.0)
 
 
+def cases_of(scene, **asked):
+    """By set, unmeasured."""
+    cases, _ = all_cases(Bench(**QUICK, **asked), scene, Workbench(scene.beam))
+    return {case.set: case for case in cases}
+
+
+def test_motions_under_a_step_load_fall_at_order_seven_thirds_unless_losses_calm_them():
+    """Modes of n^-4 whose phases are lost from N^(2/3) on; damped, those are gone before it shows."""
+    asked = {"sets": ("transient",), "counts": (12, 96), "duration": 2e-2, "x": 0.13}
+    for losses, low, high in ((0.0, 2.1, 2.6), (0.05, 3.6, 4.2)):
+        scene = strip(
+            beam=STRIP["beam"] | {"supports": ["guided", "pinned"], "loss_factor": losses},
+            motion={"duration": 1.5e-3, "soft_start_periods": 0.0},
+            drive={"frequency_hz": 97.0, "force": [{"position": 0.083}, {"position": 0.31, "phase_deg": 40.0}]},
+        )
+        case = cases_of(scene, **asked)["transient"]
+        assert "switched on at once" in case.condition
+        judged = case.judge()
+        ours = [one for one in case.entries if one.line.name == "Hermite elements"]
+        coarse, fine = (judged(one, one.prepare()().answer).error for one in ours)
+        assert low < np.log(coarse / fine) / np.log(8.0) < high
+        assert ours[0].line.orders == pytest.approx((7.0 / 3.0, 4.0))
+        assert "let the forces grow (motion.soft_start_periods)" in ours[0].line.remedy
+
+
+@pytest.mark.parametrize(("soft", "due"), [(0.0, None), (0.5, (4.0, 4.0))])
+def test_a_slider_under_a_step_load_is_asked_for_no_order(soft, due):
+    scene = strip(motion={"duration": 1.5e-3, "soft_start_periods": soft})
+    line = cases_of(scene, sets=("slider",), counts=(40, 80))["slider"].entries[0].line
+    assert line.orders == due
+    assert bool(line.remedy) == (due is None)
+
+
 @pytest.mark.parametrize(("added", "due"), [({}, 4), ({"section": [{"length": 0.15}, {"length": 0.26}]}, 2)])
 def test_run_times_over_the_error_of_a_slider_know_the_order_that_is_due(added, due):
     from verify.studies.work_precision import work_of
