@@ -175,7 +175,7 @@ def test_references_are_as_well_known_as_they_say(paper):
 def test_every_set_compares_at_the_orders_that_are_due_on_the_beam(added, sets, due):
     """As frequencies fall, so do fields and motions: a chain on steps never comes to order 4."""
     scene, asked = strip(beam=STRIP["beam"] | added), Bench(**QUICK, sets=sets, counts=(40, 80), modes=(2,))
-    cases, _ = all_cases(asked, scene, Workbench(scene.beam))
+    cases, *_ = all_cases(asked, scene, Workbench(scene.beam))
     lines = {(case.set, entry.line.name): entry.line.orders for case in cases for entry in case.entries}
     assert {name for name, _ in lines} == set(sets)
     for name in sets:
@@ -185,7 +185,7 @@ def test_every_set_compares_at_the_orders_that_are_due_on_the_beam(added, sets, 
 
 def cases_of(scene, **asked):
     """By set, unmeasured."""
-    cases, _ = all_cases(Bench(**QUICK, **asked), scene, Workbench(scene.beam))
+    cases, *_ = all_cases(Bench(**QUICK, **asked), scene, Workbench(scene.beam))
     return {case.set: case for case in cases}
 
 
@@ -296,9 +296,10 @@ def test_defaults_are_the_scenes_own():
 def test_sets_that_a_scene_has_not_are_named_with_the_reason():
     found = found_of(load_scene("steel-cantilever"), sets=("modes", "slider", "harmonic"), counts=(8,), modes=(1,))
     assert {one.set for one in found.rows} == {"modes"}
+    told = " / ".join(found.facts())
+    assert "slider is left out: slider: the scene has no [slider], add it" in told
+    assert "harmonic is left out: harmonic: nothing drives the beam" in told
     notes = " / ".join(found.notes)
-    assert "slider is left out: slider: the scene has no [slider], add it" in notes
-    assert "harmonic is left out: harmonic: nothing drives the beam" in notes
     assert "chain is left out: nothing in the scene asks for the nonlinear chain" in notes
     assert "the mean of both takes no part: mode.bracket: with wall = 'gregory'" in notes
 
@@ -529,6 +530,15 @@ def test_an_engine_that_is_pushed_says_what_it_did_or_that_nobody_knows(ghost, m
     assert "it went home" in page(found)
 
 
+@pytest.mark.parametrize("name", ["transient", "slider"])
+def test_a_set_that_the_exact_beam_has_no_motion_for_is_refused_by_a_key_of_the_bench(name):
+    """Nothing in [bench] chooses a model; a run tells it in the terminal too, as the set was asked for."""
+    scene = strip(beam=STRIP["beam"] | {"tension": 90.0})
+    (told,) = all_cases(Bench(**QUICK, sets=(name,)), scene, Workbench(scene.beam))[2]
+    assert told.endswith(f"the exact beam in time takes none, leave it out or give bench.sets without '{name}'")
+    assert told.startswith(f"{name} is left out: beam.tension")
+
+
 def test_a_part_of_a_run_tells_the_time_of_the_whole():
     """A tenth of the steps after 1 s of set-up: 3 s measured are 1 s and ten times 2 s."""
     assert measuring._of_the_whole(3.0, 1.0 / 3.0, 0.1) == pytest.approx((21.0, 1.0 / 21.0))
@@ -537,7 +547,7 @@ def test_a_part_of_a_run_tells_the_time_of_the_whole():
 
 def test_without_engines_nothing_but_their_names_is_told(monkeypatch):
     monkeypatch.setattr(peer_set, "missing", lambda peer: f"{peer.name} is away")
-    cases, notes = all_cases(
+    cases, notes, _ = all_cases(
         Bench(sets=("modes", "slider"), counts=(20,), modes=(1,)), strip(), Workbench(strip().beam)
     )
     assert [case.name for case in cases if case.entries] == ["modes, mode 1", "slider"]

@@ -27,7 +27,7 @@ def slider_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
     if scene.slider is None or scene.motion is None or scene.drive is None:
         missing = next(name for name in ("slider", "motion", "drive") if getattr(scene, name) is None)
         raise InputError(f"slider: the scene has no [{missing}], add it")
-    check_beam(scene.beam)
+    check_beam(scene.beam, "give bench.sets without 'slider'")
     able = discrete("time_basis", scene.beam)
     motion = scene.motion
     start = grown_in_words(motion.soft_start) if motion.start == "rest" else "in the steady state"

@@ -28,7 +28,7 @@ TIME_S, TIME_PER_PART_S = 1e-2, 2e-4
 def transient_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
     """The one. Raises InputError."""
     forces_of(scene, "transient")
-    check_beam(scene.beam)
+    check_beam(scene.beam, "give bench.sets without 'transient'")
     if scene.motion is not None and scene.motion.start == "steady":
         raise InputError("transient: the scene's motion is steady from the start, give motion.start = 'rest'")
     able = discrete("time_basis", scene.beam)
