@@ -208,6 +208,16 @@ def test_motions_under_a_step_load_fall_at_order_seven_thirds_unless_losses_calm
         assert "let the forces grow (motion.soft_start_periods)" in ours[0].line.remedy
 
 
+def test_the_forces_on_a_chain_are_told_each():
+    """No one amplitude of all, as [axial_inertia] has."""
+    drive = {
+        "frequency_hz": 97.0,
+        "force": [{"position": 0.083, "amplitude": 0.05}, {"position": 0.3, "amplitude": 0.03}],
+    }
+    (chain,) = cases_of(strip(drive=drive), sets=("chain",), counts=(6,)).values()
+    assert chain.condition == "0.05 and 0.03 N from rest, a step load, for 1.5 ms"
+
+
 @pytest.mark.parametrize(("soft", "due"), [(0.0, None), (0.5, (4.0, 4.0))])
 def test_a_slider_under_a_step_load_is_asked_for_no_order(soft, due):
     scene = strip(motion={"duration": 1.5e-3, "soft_start_periods": soft})
