@@ -31,6 +31,11 @@ def metres_in_words(metres: float) -> str:
     return f"{metres * 1e9:.3g} nm"
 
 
+def newtons(amplitudes: Iterable[float]) -> str:
+    """'5 N', '0.05 and 0.03 N': of forces, each size once."""
+    return " and ".join(f"{one:g}" for one in dict.fromkeys(amplitudes)) + " N"
+
+
 def percent(value: float | None, *, sign: bool = True) -> str:
     """A relative figure in per cent; small ones in powers of ten."""
     if value is None:

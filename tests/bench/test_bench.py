@@ -175,12 +175,55 @@ def test_references_are_as_well_known_as_they_say(paper):
 def test_every_set_compares_at_the_orders_that_are_due_on_the_beam(added, sets, due):
     """As frequencies fall, so do fields and motions: a chain on steps never comes to order 4."""
     scene, asked = strip(beam=STRIP["beam"] | added), Bench(**QUICK, sets=sets, counts=(40, 80), modes=(2,))
-    cases, _ = all_cases(asked, scene, Workbench(scene.beam))
+    cases, *_ = all_cases(asked, scene, Workbench(scene.beam))
     lines = {(case.set, entry.line.name): entry.line.orders for case in cases for entry in case.entries}
     assert {name for name, _ in lines} == set(sets)
     for name in sets:
         assert lines[name, "segments"] == (due, due)
         assert lines[name, "Hermite elements"] == (4.0, 4.0)
+
+
+def cases_of(scene, **asked):
+    """By set, unmeasured."""
+    cases, *_ = all_cases(Bench(**QUICK, **asked), scene, Workbench(scene.beam))
+    return {case.set: case for case in cases}
+
+
+def test_motions_under_a_step_load_fall_at_order_seven_thirds_unless_losses_calm_them():
+    """Modes of n^-4 whose phases are lost from N^(2/3) on; damped, those are gone before it shows."""
+    asked = {"sets": ("transient",), "counts": (12, 96), "duration": 2e-2, "x": 0.13}
+    for losses, low, high in ((0.0, 2.1, 2.6), (0.05, 3.6, 4.2)):
+        scene = strip(
+            beam=STRIP["beam"] | {"supports": ["guided", "pinned"], "loss_factor": losses},
+            motion={"duration": 1.5e-3, "soft_start_periods": 0.0},
+            drive={"frequency_hz": 97.0, "force": [{"position": 0.083}, {"position": 0.31, "phase_deg": 40.0}]},
+        )
+        case = cases_of(scene, **asked)["transient"]
+        assert "switched on at once" in case.condition
+        judged = case.judge()
+        ours = [one for one in case.entries if one.line.name == "Hermite elements"]
+        coarse, fine = (judged(one, one.prepare()().answer).error for one in ours)
+        assert low < np.log(coarse / fine) / np.log(8.0) < high
+        assert ours[0].line.orders == pytest.approx((7.0 / 3.0, 4.0))
+        assert "let the forces grow (motion.soft_start_periods)" in ours[0].line.remedy
+
+
+def test_the_forces_on_a_chain_are_told_each():
+    """No one amplitude of all, as [axial_inertia] has."""
+    drive = {
+        "frequency_hz": 97.0,
+        "force": [{"position": 0.083, "amplitude": 0.05}, {"position": 0.3, "amplitude": 0.03}],
+    }
+    (chain,) = cases_of(strip(drive=drive), sets=("chain",), counts=(6,)).values()
+    assert chain.condition == "0.05 and 0.03 N from rest, a step load, for 1.5 ms"
+
+
+@pytest.mark.parametrize(("soft", "due"), [(0.0, None), (0.5, (4.0, 4.0))])
+def test_a_slider_under_a_step_load_is_asked_for_no_order(soft, due):
+    scene = strip(motion={"duration": 1.5e-3, "soft_start_periods": soft})
+    line = cases_of(scene, sets=("slider",), counts=(40, 80))["slider"].entries[0].line
+    assert line.orders == due
+    assert bool(line.remedy) == (due is None)
 
 
 @pytest.mark.parametrize(("added", "due"), [({}, 4), ({"section": [{"length": 0.15}, {"length": 0.26}]}, 2)])
@@ -263,9 +306,10 @@ def test_defaults_are_the_scenes_own():
 def test_sets_that_a_scene_has_not_are_named_with_the_reason():
     found = found_of(load_scene("steel-cantilever"), sets=("modes", "slider", "harmonic"), counts=(8,), modes=(1,))
     assert {one.set for one in found.rows} == {"modes"}
+    told = " / ".join(found.facts())
+    assert "slider is left out: slider: the scene has no [slider], add it" in told
+    assert "harmonic is left out: harmonic: nothing drives the beam" in told
     notes = " / ".join(found.notes)
-    assert "slider is left out: slider: the scene has no [slider], add it" in notes
-    assert "harmonic is left out: harmonic: nothing drives the beam" in notes
     assert "chain is left out: nothing in the scene asks for the nonlinear chain" in notes
     assert "the mean of both takes no part: mode.bracket: with wall = 'gregory'" in notes
 
@@ -496,6 +540,15 @@ def test_an_engine_that_is_pushed_says_what_it_did_or_that_nobody_knows(ghost, m
     assert "it went home" in page(found)
 
 
+@pytest.mark.parametrize("name", ["transient", "slider"])
+def test_a_set_that_the_exact_beam_has_no_motion_for_is_refused_by_a_key_of_the_bench(name):
+    """Nothing in [bench] chooses a model; a run tells it in the terminal too, as the set was asked for."""
+    scene = strip(beam=STRIP["beam"] | {"tension": 90.0})
+    (told,) = all_cases(Bench(**QUICK, sets=(name,)), scene, Workbench(scene.beam))[2]
+    assert told.endswith(f"the exact beam in time takes none, leave it out or give bench.sets without '{name}'")
+    assert told.startswith(f"{name} is left out: beam.tension")
+
+
 def test_a_part_of_a_run_tells_the_time_of_the_whole():
     """A tenth of the steps after 1 s of set-up: 3 s measured are 1 s and ten times 2 s."""
     assert measuring._of_the_whole(3.0, 1.0 / 3.0, 0.1) == pytest.approx((21.0, 1.0 / 21.0))
@@ -504,7 +557,7 @@ def test_a_part_of_a_run_tells_the_time_of_the_whole():
 
 def test_without_engines_nothing_but_their_names_is_told(monkeypatch):
     monkeypatch.setattr(peer_set, "missing", lambda peer: f"{peer.name} is away")
-    cases, notes = all_cases(
+    cases, notes, _ = all_cases(
         Bench(sets=("modes", "slider"), counts=(20,), modes=(1,)), strip(), Workbench(strip().beam)
     )
     assert [case.name for case in cases if case.entries] == ["modes, mode 1", "slider"]

@@ -218,6 +218,18 @@ def test_choose_answers_for_both_models_and_one_part_less_is_not_enough(verify):
     assert "segments: N = 41 does not; every larger N does, proven by the discrete dispersion" in words
 
 
+def test_choose_says_where_one_part_less_cannot_be_built(verify):
+    """Joints of EI - T l^2/12 have no stiffness left in eight links under 410 N, however coarse an error is asked for."""
+    taut = ("--mode", "2", "--error", "20%", "--joints", "tensioned", "--set", "beam.tension=410.0")
+    chain = json.loads(verify("choose", *taut, "--json")[1])["choices"][0]
+    stiffness = 70e9 * 0.02 * 0.001**3 / 12.0
+    assert 410.0 * (0.5 / chain["count"]) ** 2 < 12.0 * stiffness < 410.0 * (0.5 / (chain["count"] - 1)) ** 2
+    assert chain["count"] == 9
+    words = " ".join(verify("choose", *taut)[1].split())
+    assert "N = 8 cannot be built (joints = 'tensioned': beam.tension = 410.0 N leaves no stiffness in a joint" in words
+    assert "give more segments or choose joints = 'series')" in words
+
+
 def test_choose_names_the_smaller_number_that_happens_to_do(verify):
     """Clamped-clamped, Gregory's joints: the error of mode 3 crosses zero between 33 and 34 links."""
     clamped = ("--mode", "3", "--error", "1e-6", "--set", 'beam.supports=["clamped","clamped"]')

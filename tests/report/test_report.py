@@ -235,6 +235,11 @@ def small_study(*overrides):
         (("drive.force.1.amplitude=0.7",), False),
         (("drive.force.1.position=0.02",), False),
         (("beam.supports=clamped,clamped",), False),
+        (("beam.tension=-4.0",), True),
+        (("beam.mass=[{position=0.412, mass=0.002}]",), False),
+        (("beam.spring=[{position=0.412, stiffness=900.0}]",), False),
+        (("beam.section=[{length=0.06, thickness=0.0015}, {length=0.44}]",), False),
+        (("beam.foundation=2e6",), False),
     ],
 )
 def test_the_map_speaks_of_a_pure_phase_only_where_there_is_one(overrides, pure):

@@ -6,6 +6,7 @@ import pytest
 
 from verify import load_scene
 from verify.cli import status_of
+from verify.run.plan import plan_scene
 from verify.run.remarks import remarks_on
 from verify.run.scale import scale_in_words
 from verify.scenes.scene import packaged_scenes
@@ -95,3 +96,5 @@ def test_the_scale_is_the_first_frequency_and_how_far_a_driven_beam_bends(tmp_pa
     assert scale_in_words(pushed).endswith(
         f"driven at 0.11 Hz, it deflects by up to {1e6 * bent:.3g} µm in the steady state."
     )
+    (why,) = [one.why for one in plan_scene(pushed).skipped if one.what == "harmonic response"]
+    assert why.endswith("fields are solved for how far the beam deflects alone")  # told above, and not skipped

@@ -1,14 +1,17 @@
 """What the studies of modes say in words: against which theory a figure is, and why a column is empty."""
 
+import re
 from itertools import combinations, pairwise
+from pathlib import Path
 
 import pytest
 
+import verify
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
 from verify.scenes.scene import load_scene
-from verify.studies.charting import GREY, MEAN_COLOUR, OTHERS, PLATE, RAYLEIGH, TIMOSHENKO, other_line
+from verify.studies.charting import GREY, MEAN_COLOUR, OTHERS, PALETTE, PLATE, RAYLEIGH, TIMOSHENKO, other_line
 from verify.studies.convergence import Convergence
 from verify.studies.convergence_figures import Cell, ConvergenceFound, Row, _local_order, convergence
 from verify.studies.spectrum import Spectrum
@@ -147,6 +150,22 @@ def test_no_two_lines_of_a_chart_look_alike():
         looks = strokes(charts[name])
         assert len(looks) >= 8
         assert len(set(looks.values())) == len(looks), name
+
+
+def luminance(colour):
+    """Of WCAG 2.2."""
+    parts = [int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def test_every_line_stands_out_from_a_dark_card():
+    """By three to one, as graphics have to."""
+    style = (Path(verify.__file__).parent / "report" / "page.css").read_text("utf-8")
+    dark = re.search(r"prefers-color-scheme: ?dark.*?--card:(#[0-9a-f]{6})", style, re.DOTALL)[1]
+    models = [model.colour for model in MODELS.values()]
+    drawn = (*OTHERS, *PALETTE, *models, GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE)
+    assert min((luminance(one) + 0.05) / (luminance(dark) + 0.05) for one in drawn) > 3.0
 
 
 def test_other_lines_look_unlike_each_other_when_colours_come_round_again():

@@ -104,6 +104,26 @@ def waves(*overrides):
     return {chart.id: chart.caption for chart in wave_charts(study)}, study
 
 
+@pytest.mark.parametrize(
+    ("more", "theory", "rules"),
+    [
+        ({}, True, ""),
+        ({"tension": -3.0}, False, "Joints side by side."),
+        ({"supports": ["clamped", "pinned"]}, True, "Walls side by side."),
+        ({"tension": 40.0, "mass": [{"position": 0.13, "mass": 0.02}]}, False, "Joints and attachments side by side."),
+    ],
+)
+def test_captions_of_modes_name_what_is_drawn(more, theory, rules):
+    """A beam under axial force has no other theory beside it; rules differ in what the beam has."""
+    asked = {"spectrum": {"modes": 3, "count": 12}, "convergence": {"modes": [2], "counts": [12, 16]}}
+    scene = scene_of(beam=STRIP["beam"] | {"supports": ["pinned", "pinned"]} | more, **asked)
+    charts = {one.id: one for found in run_scene(scene).found.values() for one in found.charts()}
+    split = charts["error-split"]
+    assert any(name.startswith("theory") for name in split.bars.names) is theory
+    assert ("Theory: what" in split.caption) is theory
+    assert charts["rules"].caption.startswith(rules) if rules else "rules" not in charts
+
+
 @pytest.mark.parametrize("fibre", [0.0005, 0.02])
 def test_ellipses_are_as_flat_as_they_are(fibre):
     """Of waves of 135.4 / m, by reflection wider and narrower: upright with half a millimetre, lying with 20."""
@@ -153,6 +173,7 @@ def test_modulus_and_density_move_a_bare_beam_by_half_and_a_laden_one_by_what_wa
     told = float(chart.caption.partition("moves mode 2 by ")[2].split()[0])
     assert told == pytest.approx(stiff, rel=0.02)
     assert "half a per cent" not in chart.caption
+    assert chart.title == "Mode 2 over modulus and density"  # given, and inferred from nothing
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from verify.chain.system import ChainState, ChainSystem, build_system
 from verify.chain.work import check_modes_of, fixed_steps, modal_work, per_evaluation
 from verify.errors import InputError
 from verify.models.arrays import Array
+from verify.words import newtons
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -83,12 +84,12 @@ def chain_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
 
             theirs, absent = chain_entries(scene, its, chain)
         names = dict.fromkeys(entry.line.name for entry in theirs)
-        amplitude = max(abs(force.amplitude) for force in scene.forces)
+        sizes = newtons(force.amplitude for force in scene.forces)
         yield Case(
             set="chain",
             about=f"N = {count}",
             question=f"deflection at x = {its.x:g} m, rms over time",
-            condition=f"{amplitude:g} N from rest, a step load, for {1e3 * its.duration:.3g} ms",
+            condition=f"{sizes} from rest, a step load, for {1e3 * its.duration:.3g} ms",
             entries=(*_kicks(chain, 1), *_kicks(chain, 2), *_rk4(chain), *_adaptive(chain), _flow(chain), *theirs),
             pairs=(
                 (f"{KICKS}, 2", RK4),

@@ -86,7 +86,7 @@ def tell(name: str) -> None:
     from verify.scenes.scene import scene_type
 
     scene = checked(json.loads(sys.stdin.read()), scene_type())
-    cases, _ = all_cases(Bench(sets=(name,), peers=False), scene, Workbench(scene.beam))  # type: ignore[arg-type]
+    cases, *_ = all_cases(Bench(sets=(name,), peers=False), scene, Workbench(scene.beam))  # type: ignore[arg-type]
     found: dict[str, float] = {}
     for entry in (entry for case in cases for entry in case.entries):
         if entry.line.name not in found:

@@ -25,7 +25,9 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
     pushed: tuple[Break, ...] = ()
     """What other engines did beyond what they bear."""
     notes: tuple[str, ...] = ()
-    """Sets and methods that take no part, each with the reason."""
+    """Sets that nobody asks for and methods that take no part, each with the reason."""
+    refused: tuple[str, ...] = ()
+    """Sets and cases that are asked for and cannot be run, each with the reason."""
     estimate_s: float = 0.0
     """Seconds that the work was estimated to take, from above."""
     moved: tuple[Sentence, ...] = ()
@@ -36,8 +38,8 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
         return next((one.text for one in self.sentences if one.earned), "")
 
     def facts(self) -> tuple[str, ...]:
-        """What moved against an earlier run, where there is one; then a sentence for each comparison."""
-        return tuple(one.text for one in (*self.moved, *self.sentences))
+        """What moved against an earlier run, where there is one; a sentence for each comparison; what cannot be run."""
+        return (*(one.text for one in (*self.moved, *self.sentences)), *self.refused)
 
     def tables(self) -> tuple[Table, ...]:
         """One for each case, what broke, and what processes of their own paid."""

@@ -61,6 +61,8 @@ class Line(msgspec.Struct, frozen=True, kw_only=True):
     """Between which the error falls with what is refined, as theory has it; None where nothing is refined."""
     refined: str = "N"
     """What is refined: N, step or tolerance."""
+    remedy: str = ""
+    """What to do where errors fall at no such order: finer sizes, or a look at the rows, unless given."""
     settings: dict[str, Setting] = {}
 
 
@@ -68,6 +70,16 @@ def orders_due(model: "Model", beam: "Beam", **settings: Setting) -> tuple[float
     """Between which a model's errors fall on a beam, frequencies and motions alike; None where nobody says."""
     order = model.order(beam, **settings)
     return (float(order), float(order)) if order else None
+
+
+def orders_at_once(model: "Model", beam: "Beam") -> tuple[float, float] | None:
+    """Likewise of motions under a step load.
+
+    It moves mode n by n^-4, its phase goes astray as n^2 (n/N)^p, and is lost from n = N^(p/(p + 2)) on: an rms of
+    N^(-7p / (2p + 4)). Losses, and forces that pass nought as they are switched on, bring that nearer to p.
+    """
+    order = model.order(beam)
+    return (3.5 * order / (order + 2.0), float(order)) if order else None
 
 
 class Entry(msgspec.Struct, frozen=True, eq=False, kw_only=True):

@@ -51,8 +51,8 @@ def cases_of(name: str, scene: "Scene", its: Settled, bench: "Workbench") -> Ite
 
 def all_cases(
     asked: Bench, scene: "Scene", bench: "Workbench", said: Callable[[str], None] = lambda step: None
-) -> tuple[list[Case], list[str]]:
-    """(every case, why sets and methods are left out)."""
+) -> tuple[list[Case], list[str], list[str]]:
+    """(every case, why sets are not asked for and methods left out, why sets that are asked for cannot be run)."""
     its = settled(asked, scene)
     notes = [
         f"{name} is left out: {unasked(name, scene) or 'it is not among sets'}"
@@ -60,13 +60,14 @@ def all_cases(
         if name not in its.sets
     ]
     cases: list[Case] = []
+    refused: list[str] = []
     for name in its.sets:
         try:
             cases += cases_of(name, scene, its, bench)
         except InputError as error:
-            notes.append(f"{name} is left out: {error}")
+            refused.append(f"{name} is left out: {error}")
     notes += dict.fromkeys(note for case in cases for note in case.notes)
-    return cases, notes
+    return cases, notes, refused
 
 
 def benched(
@@ -77,7 +78,7 @@ def benched(
     clock: Clock = process_time,
 ) -> BenchFound:
     """Everything a [bench] asks for. `step` is told the set about to be run. Raises InputError."""
-    cases, notes = all_cases(asked, scene, bench)
+    cases, notes, refused = all_cases(asked, scene, bench)
     left_out, estimate = fitting(cases, asked.seconds)
     outcomes: list[tuple[Case, list[Outcome]]] = []
     shown = ""
@@ -88,14 +89,14 @@ def benched(
         try:
             outcomes.append((case, measured(case, left_out, asked.rounds, asked.seconds / len(cases), clock)))
         except InputError as error:
-            notes.append(f"{case.name} is left out: {error}")
+            refused.append(f"{case.name} is left out: {error}")
     if not any(one.row.rounds for _, found in outcomes for one in found):
-        raise InputError(f"bench: nothing is left to measure: {'; '.join(notes) or 'give more seconds'}")
+        raise InputError(f"bench: nothing is left to measure: {'; '.join([*refused, *notes]) or 'give more seconds'}")
     pushed: tuple[Break, ...] = ()
     if asked.push:
         step("bench, other engines pushed")
-        pushed, refused = breaks(scene, settled(asked, scene))
-        notes += refused
+        pushed, unbroken = breaks(scene, settled(asked, scene))
+        notes += unbroken
     sets = tuple(dict.fromkeys(case.set for case in cases))
     if asked.imports:
         step("bench, imports")
@@ -112,6 +113,7 @@ def benched(
         rows=tuple(_compiled(one.row, compiling) for _, found in outcomes for one in found),
         sentences=tuple(told for case, found in outcomes for told in sentences_of(case, found, scene.name)),
         pushed=pushed,
+        refused=tuple(refused),
         notes=tuple(notes),
         estimate_s=estimate,
     )

@@ -104,9 +104,9 @@ def _compared(case: Case, found: Sequence[Outcome], scene: str, first: str, seco
 
 def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unearned:
     own = [one for one in found if one.entry.line.name == name]
-    orders = own[0].entry.line.orders
+    orders, remedy = own[0].entry.line.orders, own[0].entry.line.remedy
     if orders is None:
-        return Unearned("nobody knows the order of its errors", "compare its rows")
+        return Unearned("nobody knows the order of its errors", remedy or "compare its rows")
     pairs = [(one, one.point) for one in sorted(own, key=lambda o: -o.entry.size)]
     points: list[Point] = [point for _, point in pairs if point is not None]
     floor = ABOVE_FLOOR * floors(case, (one.row for one, point in pairs if point is not None))
@@ -114,7 +114,7 @@ def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unear
         return Unearned(UNTIMED, "give larger sizes")
     if not points:
         return Unearned(own[-1].row.left_out or "it has no figure", "see its rows")
-    return converging(points, orders, floor)
+    return converging(points, orders, floor, finer=remedy or "give finer ones")
 
 
 def _verdict(first: str, second: str, answer: Crossing) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from verify.bench.field_set import forces_of, relative_rms
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
+from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_at_once, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.exact.in_time import check_beam
@@ -13,6 +13,7 @@ from verify.models.catalogue import MODELS, discrete
 from verify.models.eigen import solve_seconds
 from verify.models.kind import Model
 from verify.motion.result import Motion
+from verify.motion.starting import SOFT_START_PERIODS, grown_in_words
 from verify.quantities.motion_arguments import DeflectionAt
 from verify.quantities.simulated import MODES, motion_case
 
@@ -27,15 +28,14 @@ TIME_S, TIME_PER_PART_S = 1e-2, 2e-4
 def transient_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
     """The one. Raises InputError."""
     forces_of(scene, "transient")
-    check_beam(scene.beam)
+    check_beam(scene.beam, "give bench.sets without 'transient'")
     if scene.motion is not None and scene.motion.start == "steady":
         raise InputError("transient: the scene's motion is steady from the start, give motion.start = 'rest'")
     able = discrete("time_basis", scene.beam)
-    soft = scene.motion.soft_start if scene.motion else 2.0
     yield Case(
         set="transient",
         question=f"deflection at x = {its.x:g} m, rms over time",
-        condition=f"the linear beam from rest for {1e3 * its.duration:.3g} ms, forces grown over {soft:g} periods",
+        condition=f"the linear beam from rest for {1e3 * its.duration:.3g} ms, {grown_in_words(_soft(scene))}",
         entries=(
             *(_entry(scene, its, model, n) for model in able for n in its.counts),
             _entry(scene, its, MODELS["analytic"], None),
@@ -43,6 +43,19 @@ def transient_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
         pairs=tuple((able[0].title, model.title) for model in able[1:]),
         judge=lambda: _judge(scene, its),
     )
+
+
+def _soft(scene: "Scene") -> float:
+    """Periods over which the forces grow."""
+    return scene.motion.soft_start if scene.motion else SOFT_START_PERIODS
+
+
+def _line(scene: "Scene", model: Model) -> Line:
+    """Of a model of parts."""
+    if _soft(scene):
+        return Line(name=model.title, model=model.name, orders=orders_due(model, scene.beam))
+    remedy = "give finer ones, or let the forces grow (motion.soft_start_periods)"
+    return Line(name=model.title, model=model.name, orders=orders_at_once(model, scene.beam), remedy=remedy)
 
 
 def _run(scene: "Scene", its: Settled, model: str, count: int | None, modes: int | None = None) -> Motion:
@@ -57,7 +70,7 @@ def _entry(scene: "Scene", its: Settled, model: Model, count: int | None) -> Ent
 
     unknowns = model.unknowns(scene.beam, count) if count else MODES
     return Entry(
-        line=Line(name=model.title, model=model.name, orders=orders_due(model, scene.beam) if count else None),
+        line=_line(scene, model) if count else Line(name=model.title, model=model.name),
         size=1.0 / count if count else 0.0,
         count=count,
         estimate_s=TIME_S + TIME_PER_PART_S * unknowns + (solve_seconds(unknowns, unknowns) if count else 0.0),

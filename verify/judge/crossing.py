@@ -112,13 +112,15 @@ def too_few(n_sizes: int) -> str:
     return "one size shows no order" if n_sizes == 1 else f"{n_sizes} sizes show no order"
 
 
-def converging(points: Sequence[Point], orders: tuple[float, float], floor: float) -> Stretch | Unearned:
+def converging(
+    points: Sequence[Point], orders: tuple[float, float], floor: float, *, finer: str = "give finer ones"
+) -> Stretch | Unearned:
     """The stretch, up to the finest error above `floor`, whose observed orders lie within ASTRAY of the known ones.
 
     `points` from coarse to fine; errors up to `floor` are rounding, those from NO_ANSWER on are none. What falls at an
-    order for a while and then does not has no order there.
+    order for a while and then does not has no order there; `finer` is what to do then, while errors fall.
     """
-    known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:g} to {orders[1]:g}"
+    known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:.3g} to {orders[1]:.3g}"
     above = [p for p in points if floor < abs(p.error) < NO_ANSWER]
     if len(points) < LEAST:
         return Unearned(too_few(len(points)), "give three or more")
@@ -133,7 +135,7 @@ def converging(points: Sequence[Point], orders: tuple[float, float], floor: floa
     if len(above) - first < LEAST:
         words = ", ".join("a change of sign" if order is None else f"{order:.2f}" for order in seen)
         grows = abs(above[-1].error) >= min(abs(p.error) for p in above[:-1])
-        remedy = "leave out the finest, which are no better" if grows else "give finer ones"
+        remedy = "leave out the finest, which are no better" if grows else finer
         return Unearned(f"errors fall not at order {known} but at {words}", remedy)
     return Stretch(tuple(above[first:]), tuple(order for order in seen[first:] if order is not None))
 

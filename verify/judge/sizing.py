@@ -89,6 +89,8 @@ class Choice(msgspec.Struct, frozen=True, kw_only=True):
     """Its error."""
     known_by: str
     """Which larger sizes do, and how it is known."""
+    unbuilt: str = ""
+    """Why there is no model of one part less; empty where there is one, beyond what was asked."""
 
     @property
     def variant(self) -> Variant:
@@ -356,6 +358,16 @@ def choose(bench: Workbench, mode: Modes, error: float, variants: tuple[Variant,
     return _choices(bench, found, mode, error)
 
 
+def _unbuilt(bench: Workbench, one: Variant, count: int, mode: int) -> str:
+    """Why a model of so many parts is refused; empty where it is solved, or has not so many modes."""
+    try:
+        if MODELS.named(one.model).n_elastic(bench.beam, count, **dict(one.settings)) >= mode:
+            bench.frequency_error(one.model, count, mode, one.settings)
+    except InputError as refused:
+        return str(refused)
+    return ""
+
+
 def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error: float) -> list[Choice]:
     highest = _several(mode)[-1]
     jobs = [_solver(bench, one, enough.count, highest) for one, enough in found.items()]
@@ -372,6 +384,7 @@ def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error:
             expected_error=None if one.settings else _expected(one.model, bench.beam, enough.mode, enough.count),
             smaller=enough.smaller,
             known_by=enough.known_by,
+            unbuilt=_unbuilt(bench, one, enough.count - 1, enough.mode),
             smaller_error=None
             if enough.smaller is None
             else bench.frequency_error(one.model, enough.smaller, enough.mode, one.settings),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.models.catalogue import MODELS
+from verify.words import newtons
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
@@ -123,7 +124,7 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def force_words(self) -> str:
         """'1 N', '1 and 0.7 N'."""
-        return " and ".join(f"{force:g}" for force in dict.fromkeys(self.forces)) + " N"
+        return newtons(self.forces)
 
     @property
     def run_words(self) -> str:

@@ -9,3 +9,10 @@ def soft_start(start: str, periods: float | None) -> float:
     if periods is not None:
         return periods
     return SOFT_START_PERIODS if start == "rest" else 0.0
+
+
+def grown_in_words(periods: float) -> str:
+    """How forces on a beam at rest begin."""
+    if not periods:
+        return "forces switched on at once"
+    return f"forces grown over {periods:g} period{'s' * (periods != 1.0)}"

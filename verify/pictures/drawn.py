@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from verify.checks import check_whole
 from verify.errors import InputError
 from verify.judge.workbench import Workbench, no_such_mode
-from verify.models.arrays import Array
+from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS
 from verify.pictures.parts import force_solids
 from verify.pictures.picture import Picture, Solid
@@ -121,32 +121,40 @@ def _wave(scene: Scene, asked: Asked) -> Picture:
         devices=scene.devices,
     )
     joints = np.asarray(bench.modes(CHAIN, count, 1).nodes)
-    turn = np.exp(2j * np.pi * np.arange(PERIOD) / PERIOD) if asked.moving else np.ones(1, dtype=complex)
-    rows = []
-    for model, words in ((CHAIN, "rigid links and joints"), (ELEMENTS, "Hermite elements")):
-        x = joints if model == CHAIN else _fine_enough(scene)
-        settings = (("reading", "raw"),) if model == CHAIN else ()
-        w = driven(replace(case, model=model, settings=settings), bench).deflection(x)
-        moved = np.real(turn[:, None] * w[None, :])
-        is_chain = model == CHAIN
-        rows.append(Row(words=f"{count} {words}", upper=is_chain, x=x, deflection=moved, links=is_chain))
-    largest = max(float(abs(row.deflection).max()) for row in rows)
+    fine = _fine_enough(scene)
+    raw = driven(replace(case, settings=(("reading", "raw"),)), bench).deflection(joints)
+    own = driven(replace(case, model=ELEMENTS), bench).deflection(fine)
+    largest = float(abs(own).max())
     check_moves(largest, "the drive")
+    degrees = 360.0 * np.arange(PERIOD) / PERIOD if asked.moving else _highest(own)
+    turn = np.exp(1j * np.deg2rad(degrees))
+    rows = [
+        Row(words=f"{count} {words}", upper=links, x=x, deflection=np.real(turn[:, None] * w), links=links)
+        for words, x, w, links in (
+            ("rigid links and joints", joints, raw, True),
+            ("Hermite elements", fine, own, False),
+        )
+    ]
     stage = stage_of(scene.beam, rows, largest)
     loads = [one for row in rows for one in _loads(scene, stage.y(row), turn)] if scene.drive.kind == "force" else []
     unit, factor = unit_of(largest)
-    period = tuple(f"{360.0 * i / PERIOD:.0f}° of the period" for i in range(len(turn))) if asked.moving else ()
     return picture_of_rows(
         scene,
         rows,
         title=f"{scene.name}: driven at {scene.drive.frequency_hz:g} Hz",
-        said=exaggerated(scene.beam, stage),
+        said=exaggerated(scene.beam, stage, "over the period"),
         scale=(f"-{factor * largest:.3g} {unit}", "deflection", f"+{factor * largest:.3g} {unit}"),
         largest=largest,
-        notes=period,
+        notes=tuple(f"{one:.0f}° of the period" for one in degrees),
         seconds=3.0,
         more=tuple(loads),
     )
+
+
+def _highest(field: ComplexArray) -> Array:
+    """The part of the period, (1,), degrees, at which a steady field (n,) deflects as far as it ever does."""
+    degrees = float(np.rint(-np.angle(field[abs(field).argmax()], deg=True)))
+    return np.array([degrees % 360.0])
 
 
 def _fine_enough(scene: Scene) -> Array:

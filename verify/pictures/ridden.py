@@ -62,8 +62,8 @@ def ridden(scene: Scene, asked: Asked) -> Picture:
         scene,
         rows,
         title=f"{scene.name}: the slider and the friction on it",
-        said=f"{exaggerated(scene.beam, stage)}; the longest arrow is {1e3 * hardest:.3g} mN; the slider's travel is "
-        "not enlarged",
+        said=f"{exaggerated(scene.beam, stage, f'of {n} instants')}; the longest arrow of them is "
+        f"{1e3 * hardest:.3g} mN; the slider's travel is not enlarged",
         scale=(f"-{factor * largest:.3g} {unit}", "deflection", f"+{factor * largest:.3g} {unit}"),
         largest=largest,
         notes=tuple(notes),

@@ -127,10 +127,11 @@ def _free_place(taken: list[float]) -> float:
 
 
 def stage_of(beam: Beam, rows: list[Row], largest: float) -> Stage:
-    """Lower than AMPLITUDE where that would be too steep to look at."""
+    """Lower than AMPLITUDE where that would be too steep to look at, or joints lie farther out than `largest`."""
     smooth = next(row for row in rows if not row.links)
     steep = float(abs(np.gradient(smooth.deflection, smooth.x / beam.length, axis=1)).max()) / largest
-    amplitude = min(AMPLITUDE, STEEPEST / steep)
+    farthest = max(float(abs(row.deflection).max()) for row in rows) / largest
+    amplitude = min(AMPLITUDE, STEEPEST / steep) / max(farthest, 1.0)
     return Stage(largest=largest, amplitude=amplitude, apart=amplitude + drawn_section(beam).bulge + ROOM)
 
 
@@ -140,11 +141,11 @@ def check_moves(largest: float, what: str) -> None:
         raise InputError(f"drive: {what} does not move the beam, give it a force")
 
 
-def exaggerated(beam: Beam, stage: Stage) -> str:
-    """How many times as large deflections are drawn, in words."""
+def exaggerated(beam: Beam, stage: Stage, over: str) -> str:
+    """How many times as large deflections are drawn, in words; the largest is that over a period or a run."""
     unit, factor = unit_of(stage.largest)
     drawn = times(stage.amplitude * beam.length / stage.largest)
-    return f"Deflection drawn {drawn} (the largest is {factor * stage.largest:.3g} {unit})"
+    return f"Deflection drawn {drawn} (the largest {over} is {factor * stage.largest:.3g} {unit})"
 
 
 def unit_of(size: float) -> tuple[str, float]:

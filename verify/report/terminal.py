@@ -287,7 +287,8 @@ def print_choices(
         )
     console.print(table)
     for one in choices:
-        console.print(Text(f"{one.variant.title}: N = {one.count - 1} does not; {one.known_by}"))
+        less = f"cannot be built ({one.unbuilt})" if one.unbuilt else "does not"
+        console.print(Text(f"{one.variant.title}: N = {one.count - 1} {less}; {one.known_by}"))
         if one.smaller:
             console.print(Text(f"  N = {one.smaller} happens to do as well, with {percent(one.smaller_error)}"))
         if one.lower:

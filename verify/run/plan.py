@@ -180,11 +180,19 @@ def _skipped(scene: "Scene", asks: list[Ask]) -> tuple[Choice, ...]:
     if scene.drive is None:
         left.append(Choice("harmonic response", "the scene has no drive"))
     elif "harmonic" not in work:
-        left.append(Choice("harmonic response", "no gate and no study asks for the driven beam"))
+        left.append(Choice("harmonic response", _without_fields(scene, "in time" in work)))
     if "in time" not in work:
         left.append(Choice("time stepping", "modes and harmonic fields only: linear, nothing depends on the past"))
         left += [] if "equilibrium" in work else [Choice("numba", "nothing asked is stepped")]
     return (*left, *_skipped_slider(scene, asks), *_skipped_studies(scene))
+
+
+def _without_fields(scene: "Scene", in_time: bool) -> str:
+    """Why nothing is found of the steady field, and for what it is solved all the same."""
+    if not scene.forces:
+        return "no gate and no study asks for the driven beam"
+    steady = " and for what is steady in time" if in_time else ""
+    return f"no gate and no study is of it, fields are solved for how far the beam deflects{steady} alone"
 
 
 def _skipped_slider(scene: "Scene", asks: list[Ask]) -> list[Choice]:

@@ -60,7 +60,7 @@ def _tensioned(
         raise InputError(
             f"joints = 'tensioned': beam.tension = {beam.tension!r} N leaves no stiffness in a joint of "
             f"{len(stiffness)} segments, which takes less than 12 EI/l^2, at a clamped wall about two thirds of it: "
-            "raise n_segments or choose joints = 'series'"
+            "give more segments or choose joints = 'series'"
         )
     return found
 

@@ -18,10 +18,10 @@ DASHES: tuple[Dash, ...] = ("solid", "dash", "dot", "dashdot", "longdash")
 PALETTE = ("#2a9d5c", "#d6427a", "#9b6bdf", "#b38a00", "#00a3a3", "#9a7450", "#6f7d8c")
 """Of a few lines that stand beside no model and no theory."""
 OTHERS = (
-    *("#a8a000", "#7a1fe8", "#7d6124", "#e01030", "#d418c4", "#3fbf1f"),
-    *("#e09482", "#18b4f0", "#9c2f22", "#cf93c2", "#9db578", "#1540d0"),
+    *("#a8a000", "#7b3ffe", "#5a8002", "#e01030", "#d418c4", "#3fbf1f"),
+    *("#e09482", "#18b4f0", "#c06034", "#cf93c2", "#9db578", "#dc0cff"),
 )
-"""Of lines that stand beside models, theories and means, and are none of their colours."""
+"""Of lines that stand beside models, theories and means, and are none of their colours; seen on a dark page too."""
 SYMBOLS: tuple[Marker, ...] = ("circle", "square", "diamond", "triangle", "cross")
 BROAD = 4.0
 """Of a line that others lie on."""

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from verify.exact.error_laws import MEAN_LIMIT
 from verify.judge.compare import EIGENVALUE_FLOOR
-from verify.judge.variants import Variant
+from verify.judge.variants import DEFAULTS, Variant
 from verify.judge.workbench import for_model
 from verify.models.catalogue import MODELS, bounding
 from verify.options import THEORIES
@@ -91,11 +91,20 @@ def _rules(found: "ConvergenceFound") -> Chart:
     return Chart(
         id="rules",
         title=f"Every rule of the chain on this beam, mode {mode}",
-        caption="Walls, joints and attachments side by side." + (_DIP if _turns(found) else ""),
+        caption=f"{_turned(found)} side by side.{_DIP if _turns(found) else ''}",
         x=sizes_axis("number of segments N", (n for one in found.rules for n in one.counts)),
         y=Axis("size of the frequency error, %", log=True),
         lines=tuple(lines),
     )
+
+
+def _turned(found: "ConvergenceFound") -> str:
+    """In which settings the rules differ: 'Walls and joints'."""
+    words = ("walls", "joints", "gradings", "theories", "attachments")
+    known = dict(zip(DEFAULTS, words, strict=True))
+    given = [dict(one.variant.settings) for one in found.rules]
+    turned = [word for name, word in known.items() if len({one.get(name) for one in given}) > 1]
+    return " and ".join(filter(None, (", ".join(turned[:-1]), *turned[-1:]))).capitalize()
 
 
 _DIP = " A dip is where an error changes its sign, not where a rule is better."
@@ -145,11 +154,12 @@ def _split(study: "SpectrumFound") -> Chart:
     parts = [(f"division, {one.title}", abs(e), MODELS[one.model].colour) for one, e in found if e]
     parts += [(f"theory, {theory_name(t)}", abs(v[-1]), _THEORIES[t]) for t, v in study.theories.items() if v[-1]]
     parts.append(("rounding, at most", EIGENVALUE_FLOOR, GREY))
+    theory = "Theory: what Euler-Bernoulli's leaves out. " if study.theories else ""
     return Chart(
         id="error-split",
         title=f"What the error of mode {study.modes[-1]} is made of, N = {study.count}",
-        caption="Division into parts: against the exact beam of the same theory. Theory: what Euler-Bernoulli's leaves "
-        "out. Rounding: the floor of the eigenvalues. Nothing is stepped in time here, so that no step has a share.",
+        caption=f"Division into parts: against the exact beam of the same theory. {theory}Rounding: the floor of the "
+        "eigenvalues. Nothing is stepped in time here, so that no step has a share.",
         x=Axis("relative", log=True),
         y=Axis(""),
         bars=Bars(
@@ -314,7 +324,7 @@ def sensitivity_chart(study: "SensitivityFound") -> Chart:
         caption += " The dashed line is the published figure: every crossing is a material that fits it."
     return Chart(
         id="sensitivity",
-        title=f"Mode {study.mode} over the inferred modulus and density",
+        title=f"Mode {study.mode} over modulus and density",
         caption=caption,
         x=Axis("Young's modulus, GPa"),
         y=Axis(f"frequency of mode {study.mode}, Hz"),

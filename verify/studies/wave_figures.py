@@ -154,7 +154,9 @@ class WaveFound(Found, frozen=True, eq=False, kw_only=True):
     operating_loss_factor: float
     """Of the map and of the operating points."""
     pure_phase: bool
-    """Whether, undamped, the wave is pure along phase = -kL: equal forces as far from both pinned ends."""
+    """Whether, undamped, the wave is pure along phase = -kL: equal forces as far from both pinned ends of a beam with
+    nothing on it.
+    """
     first_phase_deg: float
     """Of the first force; phases of the map are those of the second, absolute."""
     undamped: bool
@@ -322,11 +324,16 @@ def _under_the_other_drive(scene: "Scene", bench: "Workbench") -> float:
 
 
 def _pure_along_a_phase(scene: "Scene") -> bool:
-    """Whether a phase between the forces makes the undamped wave pure at any frequency (phi = -kL)."""
+    """Whether a phase between the forces makes the undamped wave pure at any frequency (phi = -kL).
+
+    Not where a step, a body or a spring throws back what runs past, nor below the frequency to which a foundation
+    lets nothing run.
+    """
     first, second = scene.forces
     mirrored = abs(first.position + second.position - scene.beam.length) < 1e-9 * scene.beam.length
     equal = first.amplitude == second.amplitude and scene.beam.supports == ("pinned", "pinned")
-    return scene.drive is not None and scene.drive.kind == "force" and mirrored and equal
+    smooth = set(scene.beam.added) <= {"tension"}
+    return scene.drive is not None and scene.drive.kind == "force" and mirrored and equal and smooth
 
 
 def _steps(span: tuple[float, float, int]) -> tuple[float, ...]:
