@@ -5,11 +5,14 @@ from math import acos, cos, exp, pi, sin, sqrt
 import numpy as np
 import pytest
 from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive
+from msgspec.structs import replace
 from scipy.integrate import solve_ivp
 
+from verify.beam import Beam, PointForce
 from verify.contact import layer
 from verify.motor.case import MotorCase
-from verify.motor.figures import force_speed, no_load, stall, started, stopped
+from verify.motor.figures import crest_speed, force_speed, mean_speed, no_load, stall, started, stopped
+from verify.motor.on_wave import over_a_wave
 from verify.motor.shooting import periodic
 from verify.slider import Contact, Foot, Slider
 
@@ -63,6 +66,50 @@ def test_no_load_speed_and_stall_force_at_a_half_angle_of_one(epsilon, speed, fo
     case, load = motor(1.0, epsilon)
     assert -no_load(case).speed / CRESTS == pytest.approx(speed, abs=2e-3)
     assert -stall(case).force / (MU * load) == pytest.approx(force, abs=2e-3)
+
+
+@pytest.mark.parametrize(("phi", "ratio"), [(0.8, 0.83), (2.3, 0.61), (3.0, -0.3)])
+def test_friction_of_two_points_turns_where_the_wave_says_and_not_with_the_next_step(phi, ratio):
+    wrong = []
+    for steps in (61, 122, 488):
+        found, _ = over_a_wave(
+            STRIP, HERTZ, speed_ratio=ratio, contact_half_angle=phi, points=2, steps_per_period=steps, mu=MU
+        )
+        assert found.given == pytest.approx(found.power + found.rubbed, rel=1e-9)
+        wrong.append(found.force / (MU * found.normal_force) + layer.force(phi, ratio))
+    assert abs(np.array(wrong)) == pytest.approx(0.0, abs=6e-3)  # a step is 2 / 61 = 0.033 of it
+    assert abs(wrong[2]) < 6e-5
+
+
+LAWS = {"coulomb": ("coulomb", None, 0.04), "a steep tanh": ("tanh", 1e5, 0.04), "light": ("coulomb", None, 0.008)}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_motor_of_one_point_gives_the_same_in_the_usual_steps_and_in_many(law):
+    few, many = (_on_one_point(*LAWS[law], steps) for steps in (61, 700))
+    assert few[0] == pytest.approx(many[0], rel=0.01)
+    assert few[1] == pytest.approx(many[1], abs=0.006)
+
+
+def _on_one_point(name, slope, mass, steps):
+    """(stall force, N, free speed over that of the crests) on a wave of unequal forces, which the point never leaves."""
+    case, _ = motor(1.0, steps=steps)
+    forces = (PointForce(position=0.012, amplitude=6.0), PointForce(position=0.25, amplitude=9.0, phase_deg=70.0))
+    beam = Beam(length=0.26, width=0.012, thickness=0.0014, youngs_modulus=200e9, density=7850.0)
+    slider = replace(
+        case.slider,
+        mass=mass,
+        mu=0.25,
+        law=name,
+        slope=slope,
+        preload=8.0,
+        position=0.115,
+        contact=Contact(stiffness=2e5, damping=40.0),
+        foot=(Foot(points=1, mass=0.02),),
+    )
+    case = replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider)
+    run = case.run(300 * case.period, samples=301)
+    return stall(case).force, mean_speed(run, 100)[0] / crest_speed(case)
 
 
 def test_efficiency_is_best_where_the_layers_is():
