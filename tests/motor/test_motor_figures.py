@@ -92,24 +92,50 @@ def test_a_motor_of_one_point_gives_the_same_in_the_usual_steps_and_in_many(law)
 
 
 def _on_one_point(name, slope, mass, steps):
-    """(stall force, N, free speed over that of the crests) on a wave of unequal forces, which the point never leaves."""
-    case, _ = motor(1.0, steps=steps)
+    """(stall force, N, free speed over that of the crests) of one that never leaves the beam."""
+    case = _one_point(steps_per_period=steps)
+    case = replace(case, slider=replace(case.slider, law=name, slope=slope, mass=mass))
+    run = case.run(300 * case.period, samples=301)
+    return stall(case).force, mean_speed(run, 100)[0] / crest_speed(case)
+
+
+def _one_point(**given):
+    """A motor of one contact point on the wave of two unequal forces."""
+    case, _ = motor(1.0)
     forces = (PointForce(position=0.012, amplitude=6.0), PointForce(position=0.25, amplitude=9.0, phase_deg=70.0))
     beam = Beam(length=0.26, width=0.012, thickness=0.0014, youngs_modulus=200e9, density=7850.0)
     slider = replace(
         case.slider,
-        mass=mass,
         mu=0.25,
-        law=name,
-        slope=slope,
         preload=8.0,
         position=0.115,
         contact=Contact(stiffness=2e5, damping=40.0),
         foot=(Foot(points=1, mass=0.02),),
     )
-    case = replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider)
-    run = case.run(300 * case.period, samples=301)
-    return stall(case).force, mean_speed(run, 100)[0] / crest_speed(case)
+    return replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider, **given)
+
+
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
+def test_crests_of_a_damped_motor_are_those_that_its_slider_sees(model, count):
+    slow, damped = (_one_point(model=model, count=count, modal_damping=zeta) for zeta in (None, 0.05))
+    seen = damped.run(damped.period, held_speed=0.0, frozen=True, samples=62).surface_speed
+    assert crest_speed(damped) == pytest.approx(np.nanmax(abs(seen)), rel=3e-3)
+    assert crest_speed(slow) < 0.9 * crest_speed(damped)
+
+
+@pytest.mark.parametrize(("tension", "foundation"), [(0.0, 0.0), (4300.0, 0.0), (0.0, 2.6e6), (-700.0, 1.1e6)])
+def test_the_give_of_a_contact_is_over_a_wavelength_of_the_beam_as_it_is_held(tension, foundation):
+    case = _one_point(model="fem", count=40)
+    stiffness, mass = case.beam.pieces[0].bending_stiffness, case.beam.pieces[0].mass_per_length
+    load = mass * (2.0 * pi * 7300.0) ** 2 - foundation
+    k = sqrt((sqrt(tension**2 + 4.0 * stiffness * load) - tension) / (2.0 * stiffness))
+    give = Contact(stiffness=2e5, damping=40.0, tangential_stiffness=9e4)
+    beam = replace(case.beam, tension=tension, foundation=foundation)
+    case = replace(case, beam=beam, slider=replace(case.slider, contact=give))
+    found = case.run(case.period, samples=2).motor_margins
+    assert found.epsilon == pytest.approx(2.0 * 0.25 * 2e5 / (9e4 * k * 0.0014), rel=1e-12)
+    still = replace(case, beam=replace(beam, foundation=foundation + 1.4 * load))
+    assert still.run(case.period, samples=2).motor_margins.epsilon is None
 
 
 def test_efficiency_is_best_where_the_layers_is():

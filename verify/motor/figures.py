@@ -284,12 +284,8 @@ def _loss(slider: Slider) -> str:
 
 def crest_speed(case: MotorCase) -> float:
     """First-order speed amplitude of the surface where the slider is put, (h/2) omega |w'|, m/s. Raises InputError."""
-    from verify.models.catalogue import MODELS
-
-    model, beam = MODELS[case.model], case.beam
-    field = model.solve_harmonic(beam, case.forces, case.frequency_hz, case.count)
-    x = case.slider.start_on(beam)
-    return standing_at(beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
+    field, x = case.field(), case.slider.start_on(case.beam)
+    return standing_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
 class Timed(Value, frozen=True, eq=False, kw_only=True):
