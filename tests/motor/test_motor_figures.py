@@ -115,6 +115,15 @@ def _one_point(**given):
     return replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider, **given)
 
 
+def test_friction_that_the_beam_feels_is_off_by_no_more_than_its_turn_in_a_step():
+    case = _one_point(model="fem", count=9)
+    felt = case.on(replace(case.slider, coupling="two-way"))
+    coarse, fine = (stall(replace(felt, steps_per_period=steps)) for steps in (61, 900))
+    assert abs(coarse.force - fine.force) < coarse.turned
+    assert fine.turned == pytest.approx(2.0 * 0.25 * 8.0 / 900, rel=0.01)
+    assert stall(case).turned == 0.0
+
+
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
 def test_crests_of_a_damped_motor_are_those_that_its_slider_sees(model, count):
     slow, damped = (_one_point(model=model, count=count, modal_damping=zeta) for zeta in (None, 0.05))
