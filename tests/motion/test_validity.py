@@ -79,6 +79,13 @@ def test_axial_inertia_grows_with_the_square_of_wavenumber_length_and_slope(tita
     assert axial_inertia_size(titanium_strip, 1310.0, 3.1e-5) == pytest.approx(k2 * 0.73**2 * 3.1e-5, rel=1e-12)
 
 
+def test_axial_inertia_is_of_the_wave_that_runs_under_tension_and_on_ground(titanium_strip):
+    piece, ground = titanium_strip.pieces[0], 0.4 * titanium_strip.pieces[0].mass_per_length * (2 * np.pi * 1310.0) ** 2
+    held = replace(titanium_strip, tension=310.0, foundation=ground)
+    k2 = np.roots([piece.bending_stiffness, 310.0, -1.5 * ground]).max()
+    assert axial_inertia_size(held, 1310.0, 3.1e-5) == pytest.approx(k2 * 0.73**2 * 3.1e-5, rel=1e-12)
+
+
 @pytest.mark.parametrize("model", ["segment", "fem"])
 @pytest.mark.parametrize("supports", [("pinned", "pinned"), ("clamped", "free")])
 def test_a_model_without_the_mode_has_no_division_error(titanium_strip, supports, model):

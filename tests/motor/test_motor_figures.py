@@ -5,11 +5,14 @@ from math import acos, cos, exp, pi, sin, sqrt
 import numpy as np
 import pytest
 from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive
+from msgspec.structs import replace
 from scipy.integrate import solve_ivp
 
+from verify.beam import Beam, PointForce
 from verify.contact import layer
 from verify.motor.case import MotorCase
-from verify.motor.figures import force_speed, no_load, stall, started, stopped
+from verify.motor.figures import crest_speed, force_speed, mean_speed, no_load, stall, started, stopped
+from verify.motor.on_wave import over_a_wave
 from verify.motor.shooting import periodic
 from verify.slider import Contact, Foot, Slider
 
@@ -63,6 +66,85 @@ def test_no_load_speed_and_stall_force_at_a_half_angle_of_one(epsilon, speed, fo
     case, load = motor(1.0, epsilon)
     assert -no_load(case).speed / CRESTS == pytest.approx(speed, abs=2e-3)
     assert -stall(case).force / (MU * load) == pytest.approx(force, abs=2e-3)
+
+
+@pytest.mark.parametrize(("phi", "ratio"), [(0.8, 0.83), (2.3, 0.61), (3.0, -0.3)])
+def test_friction_of_two_points_turns_where_the_wave_says_and_not_with_the_next_step(phi, ratio):
+    wrong = []
+    for steps in (61, 122, 488):
+        found, _ = over_a_wave(
+            STRIP, HERTZ, speed_ratio=ratio, contact_half_angle=phi, points=2, steps_per_period=steps, mu=MU
+        )
+        assert found.given == pytest.approx(found.power + found.rubbed, rel=1e-9)
+        wrong.append(found.force / (MU * found.normal_force) + layer.force(phi, ratio))
+    assert abs(np.array(wrong)) == pytest.approx(0.0, abs=6e-3)  # a step is 2 / 61 = 0.033 of it
+    assert abs(wrong[2]) < 6e-5
+
+
+LAWS = {"coulomb": ("coulomb", None, 0.04), "a steep tanh": ("tanh", 1e5, 0.04), "light": ("coulomb", None, 0.008)}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_motor_of_one_point_gives_the_same_in_the_usual_steps_and_in_many(law):
+    few, many = (_on_one_point(*LAWS[law], steps) for steps in (61, 700))
+    assert few[0] == pytest.approx(many[0], rel=0.01)
+    assert few[1] == pytest.approx(many[1], abs=0.006)
+
+
+def _on_one_point(name, slope, mass, steps):
+    """(stall force, N, free speed over that of the crests) of one that never leaves the beam."""
+    case = _one_point(steps_per_period=steps)
+    case = replace(case, slider=replace(case.slider, law=name, slope=slope, mass=mass))
+    run = case.run(300 * case.period, samples=301)
+    return stall(case).force, mean_speed(run, 100)[0] / crest_speed(case)
+
+
+def _one_point(**given):
+    """A motor of one contact point on the wave of two unequal forces."""
+    case, _ = motor(1.0)
+    forces = (PointForce(position=0.012, amplitude=6.0), PointForce(position=0.25, amplitude=9.0, phase_deg=70.0))
+    beam = Beam(length=0.26, width=0.012, thickness=0.0014, youngs_modulus=200e9, density=7850.0)
+    slider = replace(
+        case.slider,
+        mu=0.25,
+        preload=8.0,
+        position=0.115,
+        contact=Contact(stiffness=2e5, damping=40.0),
+        foot=(Foot(points=1, mass=0.02),),
+    )
+    return replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider, **given)
+
+
+def test_friction_that_the_beam_feels_is_off_by_no_more_than_its_turn_in_a_step():
+    case = _one_point(model="fem", count=9)
+    felt = case.on(replace(case.slider, coupling="two-way"))
+    coarse, fine = (stall(replace(felt, steps_per_period=steps)) for steps in (61, 900))
+    assert abs(coarse.force - fine.force) < coarse.turned
+    assert fine.turned == pytest.approx(2.0 * 0.25 * 8.0 / 900, rel=0.01)
+    assert stall(case).turned == 0.0
+
+
+@pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
+def test_crests_of_a_damped_motor_are_those_that_its_slider_sees(model, count):
+    slow, damped = (_one_point(model=model, count=count, modal_damping=zeta) for zeta in (None, 0.05))
+    seen = damped.run(damped.period, held_speed=0.0, frozen=True, samples=62).surface_speed
+    assert crest_speed(damped) == pytest.approx(np.nanmax(abs(seen)), rel=3e-3)
+    assert crest_speed(slow) < 0.9 * crest_speed(damped)
+
+
+@pytest.mark.parametrize(("tension", "foundation"), [(0.0, 0.0), (4300.0, 0.0), (0.0, 2.6e6), (-700.0, 1.1e6)])
+def test_the_give_of_a_contact_is_over_a_wavelength_of_the_beam_as_it_is_held(tension, foundation):
+    case = _one_point(model="fem", count=40)
+    stiffness, mass = case.beam.pieces[0].bending_stiffness, case.beam.pieces[0].mass_per_length
+    load = mass * (2.0 * pi * 7300.0) ** 2 - foundation
+    k = sqrt((sqrt(tension**2 + 4.0 * stiffness * load) - tension) / (2.0 * stiffness))
+    give = Contact(stiffness=2e5, damping=40.0, tangential_stiffness=9e4)
+    beam = replace(case.beam, tension=tension, foundation=foundation)
+    case = replace(case, beam=beam, slider=replace(case.slider, contact=give))
+    found = case.run(case.period, samples=2).motor_margins
+    assert found.epsilon == pytest.approx(2.0 * 0.25 * 2e5 / (9e4 * k * 0.0014), rel=1e-12)
+    still = replace(case, beam=replace(beam, foundation=foundation + 1.4 * load))
+    assert still.run(case.period, samples=2).motor_margins.epsilon is None
 
 
 def test_efficiency_is_best_where_the_layers_is():

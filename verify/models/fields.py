@@ -99,6 +99,17 @@ def wavenumber(beam: Beam, frequency_hz: float, theory: str = "euler-bernoulli")
     return complex(real * (1.0 + 1j * beam.loss_factor) ** -0.25)
 
 
+def lossless_wavenumber(beam: Beam, frequency_hz: float) -> complex:
+    """The same of a beam without losses, 1/m: real where a wave travels."""
+    return wavenumber(replace(beam, loss_factor=0.0), frequency_hz)
+
+
+def travelling_wavenumber(beam: Beam, frequency_hz: float) -> float | None:
+    """The same where a wave travels, 1/m; None below the frequency from which on a foundation lets it."""
+    k = lossless_wavenumber(beam, frequency_hz)
+    return k.real if k.real > 0.0 == k.imag else None
+
+
 def _running(beam: Beam, omega: float, theory: str) -> complex:
     """The root k of a k^4 + b k^2 = c that runs: of Euler-Bernoulli, Rayleigh and Timoshenko with both ends' signs.
 

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
-from verify.beam import PointForce
+from verify.beam import Beam, PointForce
 from verify.errors import InputError, written
 from verify.models.arrays import Array
 from verify.models.catalogue import MODELS, check_count
@@ -75,13 +75,25 @@ def yielding(request: Request, x: float, basis: TimeBasis | None) -> tuple[compl
 
 def steady_field(request: Request, forces: tuple[PointForce, ...]) -> "HarmonicField":
     """The steady field of the request's model and damping under these forces. Raises InputError."""
-    check_count(request.model, request.count)
-    model, beam, settings = MODELS[request.model], request.beam, {}
-    if request.damping_replaced:
+    return damped_field(request.model, request.count, request.beam, forces, request.frequency_hz, request.damping)
+
+
+def damped_field(
+    name: str,
+    count: int | None,
+    beam: Beam,
+    forces: tuple[PointForce, ...],
+    frequency_hz: float,
+    damping: float | None,
+) -> "HarmonicField":
+    """The steady field of a model with this damping ratio, that of the beam itself unless given. Raises InputError."""
+    check_count(name, count)
+    model, settings = MODELS[name], {}
+    if damping is not None and damping != 0.5 * beam.loss_factor:
         by_mode = "modal_damping" in model.field_settings
-        beam = replace(beam, loss_factor=0.0 if by_mode else 2.0 * request.damping)
-        settings = {"modal_damping": request.damping} if by_mode else {}
-    return model.solve_harmonic(beam, forces, request.frequency_hz, request.count, **settings)
+        beam = replace(beam, loss_factor=0.0 if by_mode else 2.0 * damping)
+        settings = {"modal_damping": damping} if by_mode else {}
+    return model.solve_harmonic(beam, forces, frequency_hz, count, **settings)
 
 
 def begin(request: Request, stage: Stage, basis: TimeBasis | None, coupling: Coupling | None) -> Array:

@@ -1,16 +1,20 @@
 """A motor as one value: a beam, its forces, a model of it, a slider that may leave it."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
+from verify.motion.carried import damped_field
 from verify.motor.result import MotorRun
 from verify.motor.run import STEPS_PER_PERIOD, run_motor
 from verify.options import Links, Start
 from verify.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.models.fields import HarmonicField
 
 
 class MotorCase(msgspec.Struct, frozen=True, kw_only=True):
@@ -40,6 +44,10 @@ class MotorCase(msgspec.Struct, frozen=True, kw_only=True):
         """The run of so many seconds; `settings` are those of `run_motor` beside the case's own. Raises InputError."""
         own = {name: getattr(self, name) for name in self.__struct_fields__}
         return run_motor(**own, duration=duration, progress=progress, **settings)
+
+    def field(self) -> "HarmonicField":
+        """The steady field that runs are under in the long run, without the slider. Raises InputError."""
+        return damped_field(self.model, self.count, self.beam, self.forces, self.frequency_hz, self.modal_damping)
 
     def driven(self, factor: float) -> "MotorCase":
         """The same with all forces times a factor."""

@@ -27,6 +27,7 @@ from verify.motor.records import (
     PRESS,
     PRESSED,
     PUSH,
+    PUSH_BEFORE,
     RAMP,
     SLOPE,
     SPRING,
@@ -68,7 +69,7 @@ def see(i: int, x: float, edge: float, length: float, v: float, half: float, lin
     at, level, slope, bend, rise, turn, along = material(feet.piece[i], above, length, lever, line)
     lift = image * (rise + slope * (v + lever * (turn + bend * v)))
     touch[i, RAMP] = image * slope * (v + lever * bend * v)
-    touch[i, SURFACE_BEFORE], touch[i, SURFACE] = touch[i, SURFACE], along
+    touch[i, SURFACE_BEFORE], touch[i, SURFACE], touch[i, PUSH_BEFORE] = touch[i, SURFACE], along, touch[i, PUSH]
     touch[i, AT], touch[i, ABOVE], touch[i, SLOPE], touch[i, ANSWER], touch[i, LIFT] = at, above, slope, 0.0, lift
     touch[i, DEPTH] = inset + face * (image * level - state[foot, HEIGHT] - arm * state[foot, PITCH])
     touch[i, CLOSING] = face * (lift - state[foot, CLIMB] - arm * state[foot, TURN])

@@ -30,6 +30,7 @@ from verify.motor.settling import (
     rows,
     spread_of,
     told_by_balance,
+    turned_late,
 )
 from verify.motor.stepping import seconds_of
 from verify.patience import VARIABLE, waited_for
@@ -86,6 +87,9 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     """Until then."""
     window: int
     """Periods, the last of these, of which these are means."""
+    turned: float = 0.0
+    """Newton, by which the force may be off besides, since friction of a point that the beam feels, or that lands hard,
+    turns round with the steps: 2 mu N_i over their number in a period."""
     unsettled: tuple[Reading, ...]
     """What has not settled: its spread is more than a hundredth of mu N, of N, of 1, of mu N times the larger speed."""
 
@@ -150,10 +154,10 @@ def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int
         presses = max(found.normal_force, case.slider.normal_force)
         agree = found.spread <= SETTLED * case.slider.mu * presses and off <= BALANCED * presses
         if agree and not found.unsettled:
-            return found, run
+            return replace(found, turned=turned_late(run)), run
     assert run is not None
     spread = max(found.spread, case.slider.mu * found.normal_spread)  # two blocks in flight agree
-    return replace(found, spread=spread, unsettled=READINGS), run
+    return replace(found, spread=spread, unsettled=READINGS, turned=turned_late(run)), run
 
 
 def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpeed, MotorRun]:
@@ -162,7 +166,8 @@ def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpe
     each = rows(run)
     spreads = spread_of(each, missed(case.slider, before.state, run), told_by_balance(case.slider))
     means = Means(*map(float, each.mean(axis=0)))
-    return _found(case, found.speed, means, spreads, 2 * found.periods, found.periods), run
+    after = _found(case, found.speed, means, spreads, 2 * found.periods, found.periods)
+    return replace(after, turned=turned_late(run)), run
 
 
 def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | None], MotorRun]:
@@ -284,12 +289,8 @@ def _loss(slider: Slider) -> str:
 
 def crest_speed(case: MotorCase) -> float:
     """First-order speed amplitude of the surface where the slider is put, (h/2) omega |w'|, m/s. Raises InputError."""
-    from verify.models.catalogue import MODELS
-
-    model, beam = MODELS[case.model], case.beam
-    field = model.solve_harmonic(beam, case.forces, case.frequency_hz, case.count)
-    x = case.slider.start_on(beam)
-    return standing_at(beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
+    field, x = case.field(), case.slider.start_on(case.beam)
+    return standing_at(case.beam, x).surface_distance * field.omega * float(abs(field.slope([x]))[0])
 
 
 class Timed(Value, frozen=True, eq=False, kw_only=True):

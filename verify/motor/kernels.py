@@ -7,18 +7,21 @@ from verify.models.kernels import lean, part
 from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import find_piece, rotate_half, set_factors
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
+from verify.motor.cross_kernels import cross
 from verify.motor.feet_kernels import drift, kick, place, press, see, stored
 from verify.motor.logging_kernels import keep, note
 from verify.motor.records import (
     AFTER,
     ALONG,
     ANSWER,
+    BEYOND,
     CLOSING,
     DEPTH,
     DONE,
     FACE,
     FREE,
     HEIGHT,
+    HELD,
     IMAGE,
     INVERSE_MASS,
     LIFT,
@@ -27,6 +30,7 @@ from verify.motor.records import (
     MEAN_PUSH,
     MEAN_RUB,
     MEAN_SPEED,
+    MU,
     NOT_FINITE,
     OFF_BEAM,
     OFFSET,
@@ -49,7 +53,7 @@ from verify.motor.records import (
     V,
     X,
 )
-from verify.motor.rub_kernels import agree, hold, settle, share, stretch
+from verify.motor.rub_kernels import agree, hold, stretch
 from verify.motor.surface_kernels import draw
 
 GIVES_WAY = 4
@@ -84,10 +88,14 @@ def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet
 def _rub(dt: float, feet: Feet, slope: float | None, before: Array) -> None:
     """Friction where the beam does not feel it, and what speeds the sliders have by it."""
     hold(dt, feet, before)
+    means, riders, touch = feet.means, feet.riders, feet.touch
     for b in range(feet.body.shape[0]):
-        mean = agree(b, dt, feet, slope)
-        share(b, dt, mean, feet, slope)
-        settle(b, dt, mean, feet)
+        first, last, v, mu = feet.first[b], feet.first[b + 1], feet.body[b, V], riders[b, MU]
+        light, pull = dt * riders[b, INVERSE_MASS], riders[b, PULL] + means[b, HELD]
+        if slope is None:
+            means[b, MEAN], means[b, AFTER] = cross(first, last, light, pull, v, mu, touch, feet.points)
+        else:
+            means[b, MEAN], means[b, AFTER] = agree(first, last, light, pull, v, mu, slope, touch)
 
 
 @part()
@@ -149,8 +157,8 @@ def _book(dt: float, feet: Feet) -> None:
         for i in range(feet.first[b], feet.first[b + 1]):
             push, rub = touch[i, PUSH], touch[i, RUB]
             if push > 0.0:
-                sums[b, ALONG] += dt * rub * touch[i, SURFACE]
-                sums[b, RUBBED] += dt * rub * (touch[i, SURFACE] - mean)
+                sums[b, ALONG] += dt * (rub * touch[i, SURFACE] + touch[i, BEYOND])
+                sums[b, RUBBED] += dt * (rub * (touch[i, SURFACE] - mean) + touch[i, BEYOND])
                 sums[b, MEAN_RUB] += dt * rub
                 sums[b, MEAN_PUSH] += dt * push
                 sums[b, TOUCHING] += dt / n

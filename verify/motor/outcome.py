@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from verify.models.arrays import Array
+from verify.models.fields import travelling_wavenumber
 from verify.models.underfoot import standing_at
 from verify.motion.carried import reached
 from verify.motion.result import Statistics
@@ -138,8 +139,7 @@ def _lost(push: Array, events: Array, times: Array) -> tuple[str, ...]:
 def motor_margins(plan: Plan, one: Placed) -> MotorMargins:
     """What the contact's assumptions leave out."""
     beam = standing_at(plan.request.beam, one.start)
-    k = float(np.sqrt(plan.request.omega / beam.wave_constant))
-    thickness = 2.0 * beam.surface_distance
+    k, thickness = travelling_wavenumber(beam, plan.request.frequency_hz), 2.0 * beam.surface_distance
     return MotorMargins(
         epsilon=layer_epsilon(one.slider, k, thickness),
         step=plan.contact_rate * plan.stages[-1].dt,
@@ -149,13 +149,18 @@ def motor_margins(plan: Plan, one: Placed) -> MotorMargins:
     )
 
 
-def layer_epsilon(slider: Slider, wavenumber: float, thickness: float) -> float | None:
-    """2 mu kappa / (kappa_t k h) of the slider's contact; 0 without give along the surface, None of a hard one."""
+def layer_epsilon(slider: Slider, wavenumber: float | None, thickness: float) -> float | None:
+    """2 mu kappa / (kappa_t k h) of the slider's contact; 0 without give along the surface.
+
+    None of a hard one, and of one that gives way where no wave travels.
+    """
     contact = slider.contact
     if contact is None or contact.hard:
         return None
     across, along = (max(each(foot.length) for foot in slider.feet) for each in (contact.across, contact.along))
-    return 2.0 * slider.mu * across / (along * wavenumber * thickness) if along else 0.0
+    if not along:
+        return 0.0
+    return 2.0 * slider.mu * across / (along * wavenumber * thickness) if wavenumber else None
 
 
 def ledger(riding: Riding, b: int) -> MotorLedger:

@@ -12,7 +12,8 @@ class MotorMargins(Value, frozen=True, kw_only=True):
 
     epsilon: float | None
     """2 mu kappa / (kappa_t k h): how little the contact slips before it has given way. 0 where it does not give way,
-    which is Coulomb's law at every point; None of a hard contact."""
+    which is Coulomb's law at every point; None of a hard contact, and of one that does where no wave travels. k is that
+    of a wave under the beam's tension and on its foundation, without losses."""
     step: float
     """Natural frequency of the contact times the step, radians: from 2 on it grows without bound. Its square over
     24 is the error of a swing on the springs."""

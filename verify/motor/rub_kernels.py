@@ -1,19 +1,16 @@
-"""The compiled friction of many points on one slider: by Coulomb's law or tanh, or through a layer that gives way."""
+"""The compiled friction of many points on one slider: by tanh, or by Coulomb's law through a layer that gives way."""
 
 import numpy as np
 
 from verify.models.arrays import Array
 from verify.models.kernels import part
 from verify.motor.records import (
-    AFTER,
     CLOSING,
     DEPTH,
     GRIP,
     HELD,
-    INVERSE_MASS,
     MEAN,
     MU,
-    PULL,
     PUSH,
     RUB,
     STIFF,
@@ -27,6 +24,8 @@ from verify.motor.records import (
 
 ROUNDS = 100
 """Of the search for a speed under tanh: each halves what is left at least."""
+SHORT = 1.0
+"""Of the turn of tanh: half a step that long is seen by its middle alone."""
 
 
 @part()
@@ -75,141 +74,62 @@ def hold(dt: float, feet: Feet, before: Array) -> None:
 
 
 @part()
-def _rubs(i: int, feet: Feet) -> bool:
-    """Whether point i touches and does not give way."""
-    return bool(feet.touch[i, PUSH] > 0.0 and feet.points[i, GRIP] == 0.0)
+def _turned(ahead: float, half: float, slope: float) -> tuple[float, float]:
+    """(tanh of how far a surface is ahead, its rise with that), of a step through whose half it goes by `half` m/s.
 
-
-@part()
-def _even(b: int, mean: float, feet: Feet, slope: float | None) -> tuple[float, float]:
-    """Friction at a speed of slider b of its points that do not give way: (sum, what those at that speed can do)."""
-    touch, total, reserve = feet.touch, 0.0, 0.0
-    for i in range(feet.first[b], feet.first[b + 1]):
-        if _rubs(i, feet):
-            ahead, most = touch[i, SURFACE] - mean, feet.riders[b, MU] * touch[i, PUSH]
-            if slope is not None:
-                total += most * np.tanh(slope * ahead)
-            elif ahead > 0.0:
-                total += most
-            elif ahead < 0.0:
-                total -= most
-            else:
-                reserve += most
-    return total, reserve
-
-
-@part()
-def agree(b: int, dt: float, feet: Feet, slope: float | None) -> float:
-    """The mean speed of a step at which friction and slider b agree.
-
-    Friction falls with the speed, so that there is one: Coulomb's between the speeds of the surface under two points or
-    at one of them, that of tanh by halving and Newton's steps.
+    Where that is longer than the turn of the law, these are means over the step; otherwise its middle tells them.
     """
-    light = feet.riders[b, INVERSE_MASS]
-    if light == 0.0:
-        return float(feet.body[b, V])
-    gain, most = 0.5 * dt * light, 0.0
-    for i in range(feet.first[b], feet.first[b + 1]):
-        most += feet.riders[b, MU] * feet.touch[i, PUSH] if _rubs(i, feet) else 0.0
-    free = feet.body[b, V] + gain * (feet.riders[b, PULL] + feet.means[b, HELD])
-    if most == 0.0:
-        return float(free)
-    if slope is not None:
-        return _by_halving(b, free - gain * most, free + gain * most, free, gain, feet, slope)
-    return _by_points(b, free - gain * most, free + gain * most, free, gain, feet, slope)
+    if half * slope < SHORT:
+        turned = np.tanh(slope * ahead)
+        return float(turned), float(slope * (1.0 - turned * turned))
+    high, low = slope * (ahead + half), slope * (ahead - half)
+    gone = abs(high) - abs(low) + np.log1p(np.exp(-2.0 * abs(high))) - np.log1p(np.exp(-2.0 * abs(low)))
+    return float(gone / (2.0 * slope * half)), float((np.tanh(high) - np.tanh(low)) / (2.0 * half))
 
 
 @part()
-def _by_points(b: int, low: float, high: float, free: float, gain: float, feet: Feet, slope: float | None) -> float:
-    """Coulomb: surface speeds between low and high are tried until one holds the slider or none is left between."""
-    for i in range(feet.first[b], feet.first[b + 1]):
-        at = feet.touch[i, SURFACE]
-        if low < at < high and _rubs(i, feet):
-            total, reserve = _even(b, at, feet, slope)
-            wanted = (at - free) / gain - total
-            if abs(wanted) <= reserve:
-                return float(at)
-            if wanted > 0.0:
-                high = at
-            else:
-                low = at
-    total, _ = _even(b, 0.5 * (low + high), feet, slope)
-    return float(free + gain * total)
+def agree(
+    first: int, last: int, light: float, pull: float, v: float, mu: float, slope: float, touch: Array
+) -> tuple[float, float]:
+    """(mean speed of a slider in a step, that at its end), and with them friction of every point, by tanh.
 
-
-@part()
-def _by_halving(b: int, low: float, high: float, free: float, gain: float, feet: Feet, slope: float) -> float:
-    """tanh: the root of mean - free - gain friction(mean), which rises, from the speed at the start of the step."""
-    mean = feet.body[b, V]
+    `light` is the step over the slider's mass, `pull` what else acts on it, v its speed as the step begins. Friction
+    falls with the speed, so that one mean agrees with it: by halving and Newton's steps.
+    """
+    gain, wide, free, mean = 0.5 * light, 0.0, v + 0.5 * light * pull, v
+    for i in range(first, last):
+        wide += gain * mu * touch[i, PUSH]
+    low, high = free - wide, free + wide
     mean = low if mean < low else high if mean > high else mean
     for _ in range(ROUNDS):
-        miss, rise = _miss(b, mean, free, gain, feet, slope)
-        if miss > 0.0:
+        total, rise = _slid(first, last, mean, wide, mu, slope, touch)
+        after = mean - (mean - free - gain * total) / (1.0 + gain * rise)
+        if mean - free - gain * total > 0.0:
             high = mean
         else:
             low = mean
-        after = mean - miss / rise
         if not low < after < high:
             after = 0.5 * (low + high)
-        if abs(after - mean) <= 1e-15 * (abs(mean) + abs(high - low)) or after == mean:
-            return float(after)
-        mean = after
-    return float(mean)
-
-
-@part()
-def _miss(b: int, mean: float, free: float, gain: float, feet: Feet, slope: float) -> tuple[float, float]:
-    """(mean - free - gain friction, its rise with the mean)."""
-    touch, miss, rise = feet.touch, mean - free, 1.0
-    for i in range(feet.first[b], feet.first[b + 1]):
-        if _rubs(i, feet):
-            most = feet.riders[b, MU] * touch[i, PUSH]
-            share = np.tanh(slope * (touch[i, SURFACE] - mean))
-            miss -= gain * most * share
-            rise += gain * most * slope * (1.0 - share * share)
-    return miss, rise
-
-
-@part()
-def share(b: int, dt: float, mean: float, feet: Feet, slope: float | None) -> None:
-    """Friction of every point of slider b that does not give way; those that stick share what is left."""
-    touch, riders = feet.touch, feet.riders
-    total, reserve = _even(b, mean, feet, slope)
-    left, light = 0.0, riders[b, INVERSE_MASS]
-    if reserve > 0.0 and light > 0.0:
-        left = 2.0 * (mean - feet.body[b, V]) / (dt * light) - riders[b, PULL] - feet.means[b, HELD] - total
-        left = left / reserve
-    for i in range(feet.first[b], feet.first[b + 1]):
-        if feet.points[i, GRIP] > 0.0:
-            continue
-        most, ahead = riders[b, MU] * touch[i, PUSH], touch[i, SURFACE] - mean
-        touch[i, STUCK] = 0.0
-        if slope is not None:
-            touch[i, RUB] = most * np.tanh(slope * ahead)
-        elif ahead == 0.0:
-            touch[i, RUB] = most * left
-            touch[i, STUCK] = 1.0 if touch[i, PUSH] > 0.0 else 0.0
-        else:
-            touch[i, RUB] = most if ahead > 0.0 else -most
-
-
-@part()
-def settle(b: int, dt: float, mean: float, feet: Feet) -> None:
-    """Mean and last speed of a step: that of the point that holds the slider, drawn on; otherwise by the mean.
-
-    What was off when the stick began would otherwise swing on about the surface from step to step. It is bounded by
-    what the point that holds can do.
-    """
-    touch, v, riders = feet.touch, feet.body[b, V], feet.riders
-    after, gain = 2.0 * mean - v, dt * riders[b, INVERSE_MASS]
-    for i in range(feet.first[b], feet.first[b + 1]):
-        if gain > 0.0 and touch[i, STUCK] > 0.0 and _rubs(i, feet):
-            wanted = 1.5 * touch[i, SURFACE] - 0.5 * touch[i, SURFACE_BEFORE]
-            more = (wanted - after) / gain
-            most, rub = riders[b, MU] * touch[i, PUSH], touch[i, RUB]
-            more = most - rub if more > most - rub else more
-            more = -most - rub if more < -most - rub else more
-            touch[i, RUB] += more
-            after += gain * more
+        if abs(after - mean) <= 1e-15 * (abs(mean) + abs(high - low)):
             break
-    feet.means[b, MEAN], feet.means[b, AFTER] = 0.5 * (v + after), after
+        mean = after
+    return mean, 2.0 * mean - v
+
+
+@part()
+def _slid(
+    first: int, last: int, mean: float, wide: float, mu: float, slope: float, touch: Array
+) -> tuple[float, float]:
+    """(sum of friction on a slider of this mean speed, how it falls with that); every point has its own.
+
+    By what friction may give the slider in half a step, `wide` m/s, it may go with the surface.
+    """
+    total, fall = 0.0, 0.0
+    for i in range(first, last):
+        most = mu * touch[i, PUSH]
+        half = 0.5 * abs(touch[i, SURFACE] - touch[i, SURFACE_BEFORE]) - wide
+        turned, more = _turned(touch[i, SURFACE] - mean, half, slope)
+        touch[i, RUB], touch[i, STUCK] = most * turned, 0.0
+        total += most * turned
+        fall += most * more
+    return total, fall

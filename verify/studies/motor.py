@@ -1,6 +1,6 @@
 """The motor of a scene: a slider that may leave the beam, held, free and from rest, on every field."""
 
-from math import pi, sqrt
+from math import pi
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
@@ -233,10 +233,11 @@ def case_of(asked: Motor, scene: "Scene", model: str) -> "MotorCase":
 
 def places_from_rest(asked: Motor, scene: "Scene") -> tuple[float, ...]:
     """Over one wavelength about the slider's own place, which is one of them, metres."""
+    from verify.models.fields import lossless_wavenumber
     from verify.models.underfoot import standing_at
 
     assert scene.drive is not None
     assert scene.slider is not None
     x, n = scene.slider.start_on(scene.beam), asked.places
-    length = 2.0 * pi / sqrt(2.0 * pi * scene.drive.frequency_hz / standing_at(scene.beam, x).wave_constant)
+    length = 2.0 * pi / abs(lossless_wavenumber(standing_at(scene.beam, x), scene.drive.frequency_hz))
     return tuple(x + (k - n // 2) / n * length for k in range(n))

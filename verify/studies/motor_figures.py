@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
+from verify.models.fields import travelling_wavenumber
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
 from verify.motor.figures import (
@@ -160,8 +161,8 @@ class MotorFound(Found, frozen=True, eq=False, kw_only=True):
     """None where no chain was asked for."""
     doubts: tuple[str, ...]
     """A sentence for every margin that is not small."""
-    wavenumber: float
-    """Of the wave, 1/m."""
+    hard: bool
+    """Whether the contact is."""
     mu: float
     drawn: Drawn
     n_motions: int
@@ -222,7 +223,7 @@ def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step
         fields=tuple(fields),
         rest=rest,
         doubts=doubts(fields, scene.slider, _wavenumber(case), 2.0 * under(case).surface_distance),
-        wavenumber=_wavenumber(case),
+        hard=scene.slider.contact is not None and scene.slider.contact.hard,
         mu=scene.slider.mu,
         drawn=Drawn(histories=histories, period=_picture(case_of(asked, scene, first.model), first), title=first.title),
         n_motions=len(fields) * (asked.speeds + 4) + (rest.n_runs if rest else 0) + 1,
@@ -233,9 +234,9 @@ def _no_histories() -> dict[str, dict[str, History]]:
     return {name: {} for name in ("start", "stop", "reversal", "contact", "stuck", "portrait")}
 
 
-def _wavenumber(case: MotorCase) -> float:
-    """Of a wave on the section under the slider, without losses, 1/m."""
-    return float(np.sqrt(2.0 * np.pi * case.frequency_hz / under(case).wave_constant))
+def _wavenumber(case: MotorCase) -> float | None:
+    """Of a wave on the section under the slider, without losses, 1/m; None where none travels."""
+    return travelling_wavenumber(under(case), case.frequency_hz)
 
 
 def under(case: MotorCase) -> Beam:
@@ -326,8 +327,7 @@ def _shooting(case: MotorCase, one_way: bool) -> Shooting | None:
 
 
 def _amplitude(case: MotorCase) -> float:
-    field = MODELS[case.model].solve_harmonic(case.beam, case.forces, case.frequency_hz, case.count)
-    return float(abs(field.deflection([case.slider.start_on(case.beam)])[0]))
+    return float(abs(case.field().deflection([case.slider.start_on(case.beam)])[0]))
 
 
 def _histories(case: MotorCase, under_way: Timed, cut_off: Timed | None, turned: Timed | None) -> dict[str, History]:

@@ -82,7 +82,7 @@ def _overview(found: "MotorFound") -> Table:
             "off at once, with its phases turned round at once. Shares are of contact points and of time, in per "
             "cent. Most power and best efficiency are those of the speeds below. Last column: run time over simulated "
             "time of the free run.",
-            *unsettled(found.fields),
+            *unsettled(found.fields, found.hard),
         ),
         shown="both",
     )

@@ -104,13 +104,15 @@ def _held_still(at: "AtSpeed") -> str:
             f"not settled after {at.periods} periods, {force} +- {spread} as a mean over the last {at.window} of them"
         )
     said = f"blocks differ by {spread}" if at.window == BLOCK else f"the last {at.window}, +- {spread}"
+    if at.turned:
+        said += f"; +- {1e3 * at.turned:.1g} mN since friction turns round with the steps, fewer with more of them"
     return f"{force} as a mean over periods ({said})"
 
 
-def unsettled(fields: "Sequence[FieldFound]") -> Iterator[str]:
+def unsettled(fields: "Sequence[FieldFound]", hard: bool) -> Iterator[str]:
     """What bounces so that its means have not settled, and what to do."""
     for one in fields:
-        loss = f"{'less slider.contact.restitution' if one.margins.epsilon is None else 'more slider.contact.damping'} "
+        loss = f"{'less slider.contact.restitution' if hard else 'more slider.contact.damping'} "
         loss += "or more slider.preload"
         shaky = sum(not at.settled() for at in one.curve)
         if shaky:
@@ -139,11 +141,21 @@ def _fields_agree(fields: "Sequence[FieldFound]") -> Iterator[str]:
     yield f"fields: their free speeds lie within {apart / max(abs(v) for v in speeds):.2g} of the largest"
 
 
-def doubts(fields: "Sequence[FieldFound]", slider: "Slider", wavenumber: float, thickness: float) -> tuple[str, ...]:
+def doubts(
+    fields: "Sequence[FieldFound]", slider: "Slider", wavenumber: float | None, thickness: float
+) -> tuple[str, ...]:
     """A sentence for every margin that is not small, of the first field unless fields differ in it."""
     one = fields[0]
     margins = one.margins
-    told = [*unsettled(fields), *_of_epsilon(margins.epsilon, slider.mu, wavenumber, thickness)]
+    hard = slider.contact is not None and slider.contact.hard
+    told = [*unsettled(fields, hard)]
+    if wavenumber is not None:
+        told += _of_epsilon(margins.epsilon, slider.mu, wavenumber, thickness)
+    elif margins.epsilon is None and not hard:
+        told.append(
+            "epsilon: 2 mu kappa/(kappa_t k h) is withheld, on the beam's foundation no wave travels at the drive's "
+            "frequency"
+        )
     if margins.sag is None:
         told.append("sag: the net load would push away a beam that nothing holds, which a one-way run leaves out")
     elif not margins.sag_taken and margins.sag > SAGS * one.amplitude:
