@@ -77,9 +77,14 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         """Of all stages so far."""
         return self.steps_before + int(self.log.tally[records.STEP])
 
-    def seconds(self, steps: int) -> float:
-        """An estimate from above of the time the loop takes."""
-        return seconds_of(steps, len(self.feet.points), self.two_way)
+    def seconds(self, steps: int, table: Array, length: float) -> float:
+        """An estimate from above of the time the loop takes on a beam of that length, metres, and these polynomials."""
+        points, (pieces, terms, rows) = len(self.feet.points), table.shape
+        if not self.two_way:
+            return steps * (1e-6 + 1e-7 * points)
+        near = 2 * AROUND + 1 + pieces * float(np.ptp(self.feet.points[:, records.OFFSET])) / length
+        step = 8e-6 + points * (8e-7 + 4e-9 * terms * (rows + 2.0 * near))
+        return float(steps * step + 2e-10 * rows * (terms * near) ** 2)
 
     def set_touch(self, levels: Array) -> None:
         """Depths as the slider is put down on these heights of the surface, (points,)."""
@@ -114,11 +119,6 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         depth = np.maximum(touch[:, records.DEPTH] + more, 0.0)
         np.add.at(found[:, 1], feet.owner, 0.5 * p[:, records.STIFF] * depth**2)
         return found
-
-
-def seconds_of(steps: int, points: int, two_way: bool) -> float:
-    """An estimate from above of the time that steps of so many points take."""
-    return steps * (1e-6 + 1e-7 * points) * (8.0 if two_way else 1.0)
 
 
 AROUND = 8
