@@ -11,6 +11,7 @@ from motor_setups import MIDDLE, PERIOD, STRIP, drive, ridden
 
 from verify.beam import Beam, PointForce
 from verify.motion.simulate import simulate
+from verify.motor import stepping
 from verify.motor.run import run_motor
 from verify.slider import Contact, Foot, Slider
 
@@ -170,3 +171,21 @@ def test_a_stiff_contact_under_a_large_preload_is_the_slider_that_stays_on():
     assert off[-1] < 1e-2
     orders = np.log2(np.array(off)[:-1] / np.array(off)[1:])
     assert np.all((orders > 0.6) & (orders < 1.4))
+
+
+@pytest.mark.parametrize("around", [0, 1])
+def test_a_beam_that_is_told_of_piece_by_piece_moves_as_one_that_is_told_of_whole(around, monkeypatch):
+    """A slider that runs over a dozen of its pieces on a foot that stands on three of them."""
+    foot = {"foot": (Foot(length=0.013, points=3, offset=-0.004),)}
+
+    def run():
+        slider = Slider(mass=MASS, mu=0.3, preload=LOAD, gravity=0.0, speed=9.0, position=START, coupling="two-way",
+                        contact=Contact(stiffness=STIFFNESS), **foot)  # fmt: skip
+        return run_motor(BEAM, FORCES, HERTZ, 6e-3, model="segment", count=60, slider=slider, samples=7)
+
+    whole = run()
+    assert whole.travelled[-1] > 10 * BEAM.length / 60
+    monkeypatch.setattr(stepping, "AROUND", around)
+    found = run()
+    assert found.travelled == pytest.approx(whole.travelled, rel=1e-12)
+    assert found.friction == pytest.approx(whole.friction, rel=1e-9)

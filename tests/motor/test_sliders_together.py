@@ -37,6 +37,34 @@ def test_feet_on_both_faces_are_driven_the_same_way_and_do_not_bend_the_beam():
     assert clasp.normal_force[-9:].mean() == pytest.approx(23.0, rel=0.2)
 
 
+def pinned_sag(x, at, load):
+    """Of a pinned beam at x under loads at places, metres: the closed form of each."""
+    length, total = BEAM.length, 0.0
+    for a, force in zip(at, load, strict=True):
+        c, y = (length - a, x) if x <= a else (a, length - x)
+        total += force * c * y * (length**2 - c**2 - y**2) / (6.0 * length * BEAM.bending_stiffness)
+    return total
+
+
+def test_feet_of_a_clasp_that_are_not_above_each_other_bend_the_beam_by_their_couple():
+    """Their forces cancel, and the beam stands highest or lowest under one of them, not under the slider."""
+    upper, lower = (Foot(length=0.03, points=5, offset=-0.031), Foot(length=0.02, points=3, offset=0.043, face="lower"))
+    apart = replace(SLIDER, gravity=0.0, preload=0.0031, foot=(upper, lower))
+    place = apart.start_on(BEAM)
+    spread = [
+        place + foot.offset + foot.length * ((np.arange(foot.points) + 0.5) / foot.points - 0.5) for foot in apart.feet
+    ]
+    each = [
+        np.full(len(x), 0.5 * sign * apart.normal_force / len(x)) for x, sign in zip(spread, (-1.0, 1.0), strict=True)
+    ]
+    at, load = np.concatenate(spread), np.concatenate(each)
+    expected = max(abs(pinned_sag(x, at, load)) for x in at)
+    assert moved(apart, seconds=2e-4).motor_margins.sag == pytest.approx(expected, rel=1e-3)
+    held = moved(apart, seconds=2e-4, model="analytic", count=None, start="steady")
+    taut = run_motor(replace(BEAM, tension=1e-3), FORCES, HERTZ, 2e-4, slider=apart, model="analytic", start="steady")
+    assert taut.motor_margins.sag == pytest.approx(held.motor_margins.sag, rel=1e-3)
+
+
 def test_weight_presses_an_upper_foot_on_and_a_lower_one_off():
     stiff = replace(SLIDER, gravity=9.81, contact=Contact(stiffness=5e7))
     still = [replace(one, amplitude=1e-9) for one in FORCES]

@@ -13,6 +13,8 @@ from verify.motor.result import MotorRun, MotorState
 from verify.motor.stepping import RIDES_FROM_HERE, Riding, run_stages
 from verify.patience import check_work
 
+REMEDY = "shorten it, lengthen the step, or give fewer modes or points of contact"
+
 
 def carry_out(
     plan: Plan,
@@ -24,13 +26,14 @@ def carry_out(
     """Step a run that is laid out. Raises InputError where that takes too long."""
     n_steps = sum(stage.n_steps for stage in plan.stages)
     riding = Riding.fresh(plan.placed, plan.request, plan.coupling.two_way)
+    estimated = riding.seconds(n_steps, plan.tables[-1], plan.request.beam.length)
     if not patient:
         seconds = sum(stage.duration for stage in plan.stages)
-        check_work("duration", seconds, riding.seconds(n_steps), "shorten it or lengthen the step")
+        check_work("duration", seconds, estimated, REMEDY)
     begin(plan, riding, before)
     ready = perf_counter()
     stopped, q, rates = run_stages(plan.stages, plan.tables, plan.z, riding, lambda n: progress(n / n_steps))
-    ended = Ended(stopped, q, rates, ready - began, perf_counter() - ready)
+    ended = Ended(stopped, q, rates, ready - began, perf_counter() - ready, estimated)
     return tuple(outcome(b, plan, riding, ended) for b in range(len(plan.placed)))
 
 

@@ -32,14 +32,14 @@ from verify.motor.settling import (
     told_by_balance,
     turned_late,
 )
-from verify.motor.stepping import seconds_of
-from verify.patience import VARIABLE, waited_for
+from verify.patience import VARIABLE, check_work, waited_for
 from verify.slider import Slider
 
 Reading: TypeAlias = Literal["force", "normal force", "shares", "powers"]
 """What may settle or not by itself."""
 READINGS: tuple[Reading, ...] = get_args(Reading)
 MOST_BLOCKS = 60
+FEWER = "give fewer modes, segments or points of contact"
 PERIODS = 46_080
 """At most, unless asked for otherwise, that are run until the means settle."""
 REACHED = 1.0 - np.exp(-1.0)
@@ -124,9 +124,9 @@ def held(
 ) -> tuple[AtSpeed, MotorRun]:
     """The same with the last run of periods; `before`, a run held at its place too, is settled already.
 
-    Blocks go on until two agree and carry what presses on. A motion that does not repeat itself so runs on in windows,
-    each as long as all before it, until the spread of its means is small: for `periods` at most, and no longer than
-    work is waited for.
+    Blocks go on until two agree and carry what presses on, or take longer than is waited for. A motion that does not
+    repeat itself so runs on in windows, each as long as all before it, until the spread of its means is small: for
+    `periods` at most, and likewise.
     """
     found, run = _in_blocks(case, speed, before, min(MOST_BLOCKS, periods // BLOCK))
     while found.unsettled and 2 * found.periods <= periods and waited_for(next_seconds(run, found.periods)):
@@ -136,14 +136,17 @@ def held(
 
 def next_seconds(run: MotorRun, periods: int) -> float:
     """An estimate from above of the time that so many periods take, held as in a run of whole periods."""
-    steps = run.statistics.steps * periods // (len(run.times) - 1)
-    return seconds_of(steps, len(run.point_offsets), run.coupling is not None and run.coupling.two_way)
+    return run.statistics.estimated_s * periods / (len(run.times) - 1)
 
 
 def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int) -> tuple[AtSpeed, MotorRun]:
     """The last of blocks, the first two that agree and carry what presses on; nothing has settled without such two."""
     block, run, means, spreads, off = _block(case, speed, BLOCK), before, None, UNKNOWN, np.inf
     for number in range(1, most + 1):
+        if run is not None and number == 2:
+            check_work("periods", 2 * BLOCK, next_seconds(run, 2 * BLOCK), FEWER)
+        if run is not None and number > 2 and not waited_for(next_seconds(run, BLOCK * number)):
+            break
         last, run = run, _whole(block(run))
         now = Means(*map(float, rows(run).mean(axis=0)))
         if means is not None and last is not None:
@@ -176,7 +179,12 @@ def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | 
         block = blocks(case, speed, periods, periods + 1)
         return lambda before: block(before.state if before is not None else None)
     return lambda before: case.run(
-        periods * case.period, continue_from=before, held_speed=speed, frozen=True, samples=periods + 1
+        periods * case.period,
+        continue_from=before,
+        held_speed=speed,
+        frozen=True,
+        samples=periods + 1,
+        patient=False,
     )
 
 
@@ -308,7 +316,7 @@ class Timed(Value, frozen=True, eq=False, kw_only=True):
 
 def started(case: MotorCase, target: float, periods: int = LONGEST) -> Timed:
     """From rest, without load: how long until 1 - 1/e of the `target` speed (m/s) is reached."""
-    return _timed(case.run(periods * case.period, samples=periods + 1), case.slider.speed, target)
+    return _timed(case.run(periods * case.period, samples=periods + 1, patient=False), case.slider.speed, target)
 
 
 def stopped(case: MotorCase, before: MotorRun, periods: int = LONGEST) -> Timed:
@@ -317,13 +325,13 @@ def stopped(case: MotorCase, before: MotorRun, periods: int = LONGEST) -> Timed:
     One-way, on a steady field, which ends with its forces: a beam that rings down brakes longer than that.
     """
     still = case.driven(1e-12)
-    run = still.run(periods * case.period, samples=periods + 1, continue_from=before)
+    run = still.run(periods * case.period, samples=periods + 1, patient=False, continue_from=before)
     return _timed(run, before.state.speed, 0.0)
 
 
 def reversed_way(case: MotorCase, before: MotorRun, target: float, periods: int = LONGEST) -> Timed:
     """After a run, the phase turned round at once: how long until 1 - 1/e of the way to `target` (m/s) is made."""
-    run = case.turned().run(periods * case.period, samples=periods + 1, continue_from=before)
+    run = case.turned().run(periods * case.period, samples=periods + 1, patient=False, continue_from=before)
     return _timed(run, before.state.speed, target)
 
 

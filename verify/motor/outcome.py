@@ -28,6 +28,8 @@ class Ended(NamedTuple):
     """(n,), dq/dt."""
     set_up_s: float
     wall_s: float
+    estimated_s: float = 0.0
+    """What the loop was thought to take, from above."""
 
 
 def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
@@ -111,6 +113,7 @@ def _statistics(plan: Plan, riding: Riding, ended: Ended) -> Statistics:
         step_s=plan.stages[-1].dt,
         set_up_s=ended.set_up_s,
         wall_s=ended.wall_s,
+        estimated_s=ended.estimated_s,
         stopped=ended.stopped,
     )
 

@@ -32,10 +32,10 @@ def blocks(case: MotorCase, speed: float, periods: int, samples: int) -> Block:
 
     def run(before: MotorState | None) -> MotorRun:
         if before is None:
-            return carry_out(plan, (), perf_counter(), lambda part: None, True)[0]
+            return carry_out(plan, (), perf_counter(), lambda part: None, False)[0]
         state = replace(before, time=0.0)
         again = replace(plan, z=plan.stages[0].start(state.q, state.rates))
-        return carry_out(again, (state,), perf_counter(), lambda part: None, True)[0]
+        return carry_out(again, (state,), perf_counter(), lambda part: None, False)[0]
 
     return run
 

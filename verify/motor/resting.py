@@ -16,6 +16,8 @@ from verify.motor.records import Feet
 
 PASSES = 4
 """Each shortens what is left of the way to the material under a point by (h/2) w'' and more."""
+NOTHING = 1e-12
+"""Of the forces and of their moments: what rounding leaves of a clasp's."""
 SAGGING = 20
 """Modes that a static deflection is read from."""
 
@@ -77,24 +79,35 @@ def press_apart(placed: Sequence[Placed], basis: TimeBasis, feet: Feet) -> None:
 
 
 def sag_of(request: Request, placed: Sequence[Placed]) -> float | None:
-    """Largest static deflection under the net loads at the sliders, metres, by the first modes of the model.
+    """Largest static deflection of the beam under the sliders' points, metres, by its first modes.
 
-    None where they would push away a beam that nothing holds.
+    None where they would push away, or turn away, a beam that nothing holds.
     """
-    if not any(_net(one) for one in placed):
-        return 0.0
-    if request.beam.rigid_motions:
+    if request.beam.rigid_motions and any(_moves(one) for one in placed):
         return None
-    basis = basis_of(request.beam, request.model, request.count, min(request.modes, SAGGING), "spline")
-    places = np.array([one.start for one in placed])
+    basis = _slow_modes(request)
+    places = np.concatenate([one.start + feet_of((one,)).points[:, records.OFFSET] for one in placed])
     still = weighed(basis, placed)
     return float(np.abs(still @ basis.shapes(places, 0)).max())
 
 
-def _net(one: Placed) -> bool:
-    """Whether what presses a slider's feet on bends the beam: a clasp's cancel out."""
-    press = feet_of((one,)).given[:, records.PRESS]
-    return bool(abs(press.sum()) > 1e-12 * np.abs(press).max()) or any(foot.mirrored for foot in one.slider.feet)
+def _slow_modes(request: Request) -> TimeBasis:
+    """Of the model; of elements for an exact beam whose modes are not had, which is of more than sections and bodies."""
+    beam, n = request.beam, min(request.modes, SAGGING)
+    if request.model == "analytic" and set(beam.added) - {"section", "mass"}:
+        return basis_of(beam, "fem", 2 * SAGGING, n, "spline")
+    return basis_of(beam, request.model, request.count, n, "spline")
+
+
+def _moves(one: Placed) -> bool:
+    """Whether what presses a slider's feet on leaves a force or a moment: those of a clasp's two faces cancel."""
+    feet = feet_of((one,))
+    share = (feet.given[:, records.PRESS] / np.bincount(feet.foot))[feet.foot]
+    offset = feet.points[:, records.OFFSET]
+    moment = abs(share @ offset) > NOTHING * (np.abs(share) @ np.abs(offset))
+    return bool(abs(share.sum()) > NOTHING * np.abs(share).sum() or moment) or any(
+        foot.mirrored for foot in one.slider.feet
+    )
 
 
 def contact_rate(one: Placed, basis: TimeBasis | None) -> float:

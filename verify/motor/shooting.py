@@ -50,7 +50,7 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
             f"slider.coupling = {case.slider.coupling!r}, start = {case.start!r}: shooting is of a steady beam that "
             "does not feel its slider, give 'one-way' and 'steady'"
         )
-    run = case.run(settle * case.period, held_speed=speed, frozen=True, samples=2)
+    run = case.run(settle * case.period, held_speed=speed, frozen=True, samples=2, patient=False)
     free, period = _free(case), blocks(case, speed, 1, 2)
     state, size, best = run.state, _size(run)[free], None
     for rounds in range(1, MOST + 1):

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.models.arrays import Array
+from verify.models.arrays import Array, Indices
 from verify.models.underfoot import LEFT_BEAM, standing_at
 from verify.motion import records as beam_records
 from verify.motion.forcing import turns
@@ -77,9 +77,14 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         """Of all stages so far."""
         return self.steps_before + int(self.log.tally[records.STEP])
 
-    def seconds(self, steps: int) -> float:
-        """An estimate from above of the time the loop takes."""
-        return seconds_of(steps, len(self.feet.points), self.two_way)
+    def seconds(self, steps: int, table: Array, length: float) -> float:
+        """An estimate from above of the time the loop takes on a beam of that length, metres, and these polynomials."""
+        points, (pieces, terms, rows) = len(self.feet.points), table.shape
+        if not self.two_way:
+            return steps * (1e-6 + 1e-7 * points)
+        near = 2 * AROUND + 1 + pieces * float(np.ptp(self.feet.points[:, records.OFFSET])) / length
+        step = 8e-6 + points * (8e-7 + 4e-9 * terms * (rows + 2.0 * near))
+        return float(steps * step + 2e-10 * rows * (terms * near) ** 2)
 
     def set_touch(self, levels: Array) -> None:
         """Depths as the slider is put down on these heights of the surface, (points,)."""
@@ -116,9 +121,8 @@ class Riding(msgspec.Struct, eq=False, kw_only=True):
         return found
 
 
-def seconds_of(steps: int, points: int, two_way: bool) -> float:
-    """An estimate from above of the time that steps of so many points take."""
-    return steps * (1e-6 + 1e-7 * points) * (8.0 if two_way else 1.0)
+AROUND = 8
+"""Pieces on each side of the points that a beam is asked for at once."""
 
 
 def _turned(eases: Array) -> Array:
@@ -154,10 +158,15 @@ def run_stages(
 
 def span_of(riding: Riding, step: float) -> tuple[float, float]:
     """The least and the largest place of all points after another step, seconds: metres from the left end."""
+    x = riding.start + _after(riding, step)
+    return float(x.min()), float(x.max())
+
+
+def _after(riding: Riding, step: float) -> Array:
+    """Where all points are after another step, seconds: metres from the start, (points,)."""
     feet = riding.feet
     on = feet.body[:, records.X] + step * feet.body[:, records.V] * feet.riders[:, records.FREE]
-    x = riding.start + on[feet.owner] + feet.points[:, records.OFFSET]
-    return float(x.min()), float(x.max())
+    return np.asarray(on[feet.owner] + feet.points[:, records.OFFSET])
 
 
 def _surface(stage: Stage, table: Array, z: Array, start: float) -> Surface:
@@ -208,17 +217,58 @@ def _run_stage(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[i
     """One stage in chunks; why it ended."""
     from verify.motor import kernels
 
+    if riding.two_way and riding.hard is None:
+        return _run_felt(stage, surface, riding, tell)
     line = fresh_line(*surface.table.shape)
     if riding.hard is not None:
         return _run_hard(stage, surface, riding, line, riding.hard, tell)
-    beam = beam_answer(surface) if riding.two_way else None
 
     def advance(steps: int) -> int:
         return kernels.ride(
-            steps, stage.dt, surface, riding.feet, riding.rubbing, beam, line, riding.before, riding.log
+            steps, stage.dt, surface, riding.feet, riding.rubbing, None, line, riding.before, riding.log
         )
 
     return in_chunks(stage.n_steps, riding, advance, tell)
+
+
+def _run_felt(stage: Stage, surface: Surface, riding: Riding, tell: Callable[[int], None]) -> str:
+    """The same of a beam that feels its points.
+
+    How it answers is had near them alone, and anew where they have left that: of all its pieces it would be as many
+    numbers as the square of them, which for the exact beam takes seconds and hundreds of megabytes.
+    """
+    from verify.motor import kernels
+
+    feet = riding.feet
+    near = _near(surface, feet.piece)
+
+    def advance(steps: int) -> int:
+        nonlocal near
+        first, own, beam, line = near
+        feet.piece[:] -= first
+        why = int(kernels.ride(steps, stage.dt, own, feet, riding.rubbing, beam, line, riding.before, riding.log))
+        feet.piece[:] += first
+        if why != records.OFF_BEAM:
+            return why
+        feet.piece[:] = np.searchsorted(surface.edges[1:-1], _after(riding, stage.dt))
+        if _reach(surface, feet.piece) == (first, first + len(own.table)):
+            return why
+        near = _near(surface, feet.piece)
+        return int(records.DONE)
+
+    return in_chunks(stage.n_steps, riding, advance, tell)
+
+
+def _reach(surface: Surface, piece: Indices) -> tuple[int, int]:
+    """The first piece near these, and the one after the last."""
+    return max(int(piece.min()) - AROUND, 0), min(int(piece.max()) + AROUND + 1, len(surface.table))
+
+
+def _near(surface: Surface, piece: Indices) -> tuple[int, Surface, BeamAnswer, Line]:
+    """The number of the first piece near these; the surface, its answer and room for it from there."""
+    first, end = _reach(surface, piece)
+    own = surface._replace(table=surface.table[first:end], edges=surface.edges[first : end + 1])
+    return first, own, beam_answer(own), fresh_line(*own.table.shape)
 
 
 def _run_hard(

@@ -157,10 +157,12 @@ def doubts(
             "frequency"
         )
     if margins.sag is None:
-        told.append("sag: the net load would push away a beam that nothing holds, which a one-way run leaves out")
+        told.append(
+            "sag: what presses would push away or turn a beam that nothing holds, which a one-way run leaves out"
+        )
     elif not margins.sag_taken and margins.sag > SAGS * one.amplitude:
         told.append(
-            f"sag: the net load bends the beam by {1e6 * margins.sag:.3g} um, {margins.sag / one.amplitude:.2g} times "
+            f"sag: what presses bends the beam by {1e6 * margins.sag:.3g} um, {margins.sag / one.amplitude:.2g} times "
             "the wave's amplitude, which a one-way run leaves out"
         )
     worst = max(field.margins.step**2 / 24.0 for field in fields)
