@@ -92,7 +92,7 @@ def sag_of(request: Request, placed: Sequence[Placed]) -> float | None:
 
 
 def _slow_modes(request: Request) -> TimeBasis:
-    """Of the model; of elements for an exact beam whose modes are not had, which is of more than sections and bodies."""
+    """Of the model; of elements for an exact beam of more than sections and bodies, whose modes are not had."""
     beam, n = request.beam, min(request.modes, SAGGING)
     if request.model == "analytic" and set(beam.added) - {"section", "mass"}:
         return basis_of(beam, "fem", 2 * SAGGING, n, "spline")
