@@ -2,9 +2,11 @@
 
 from math import inf
 
+from verify.errors import InputError
 from verify.exact.error_laws import KEPT, KEPT_FROM, expected_error, has_law, is_kept
 from verify.judge.compare import ORDER_FLOOR
 from verify.judge.workbench import Settings, Workbench
+from verify.models.catalogue import MODELS
 
 UNKNOWN = "neither larger nor smaller ones were looked through"
 
@@ -50,3 +52,13 @@ def worst_of(bench: Workbench, model: str, modes: range, count: int, settings: S
         return modes[0]
     found = {mode: bench.error_or_why(model, count, mode, settings)[0] for mode in modes}
     return max(modes, key=lambda mode: (inf if (error := found[mode]) is None else abs(error), mode))
+
+
+def unbuilt(bench: Workbench, model: str, settings: Settings, count: int, mode: int) -> str:
+    """Why a model of so many parts is refused; empty where it is solved, or has not so many modes."""
+    try:
+        if MODELS.named(model).n_elastic(bench.beam, count, **dict(settings)) >= mode:
+            bench.frequency_error(model, count, mode, settings)
+    except InputError as refused:
+        return str(refused)
+    return ""

@@ -17,7 +17,7 @@ from verify.exact.error_laws import (
     sine_fits,
     smallest_count,
 )
-from verify.judge.known import by_law, kept, solved, worst_of
+from verify.judge.known import by_law, kept, solved, unbuilt, worst_of
 from verify.judge.variants import Rules, Variant, falls_within, without_effect
 from verify.judge.workbench import Settings, Workbench
 from verify.models.catalogue import MODELS, discrete
@@ -358,16 +358,6 @@ def choose(bench: Workbench, mode: Modes, error: float, variants: tuple[Variant,
     return _choices(bench, found, mode, error)
 
 
-def _unbuilt(bench: Workbench, one: Variant, count: int, mode: int) -> str:
-    """Why a model of so many parts is refused; empty where it is solved, or has not so many modes."""
-    try:
-        if MODELS.named(one.model).n_elastic(bench.beam, count, **dict(one.settings)) >= mode:
-            bench.frequency_error(one.model, count, mode, one.settings)
-    except InputError as refused:
-        return str(refused)
-    return ""
-
-
 def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error: float) -> list[Choice]:
     highest = _several(mode)[-1]
     jobs = [_solver(bench, one, enough.count, highest) for one, enough in found.items()]
@@ -384,7 +374,7 @@ def _choices(bench: Workbench, found: dict[Variant, Enough], mode: Modes, error:
             expected_error=None if one.settings else _expected(one.model, bench.beam, enough.mode, enough.count),
             smaller=enough.smaller,
             known_by=enough.known_by,
-            unbuilt=_unbuilt(bench, one, enough.count - 1, enough.mode),
+            unbuilt=unbuilt(bench, one.model, one.settings, enough.count - 1, enough.mode),
             smaller_error=None
             if enough.smaller is None
             else bench.frequency_error(one.model, enough.smaller, enough.mode, one.settings),
