@@ -600,7 +600,7 @@ PATIENCE = {
     "check_work": None,
     "patient": {"stress.sizes"},
     "own_limit": {"commands.stress"},
-    "waited_for": {"motor.figures"},
+    "waited_for": {"motor.figures", "motion.judged_step"},
     "VARIABLE": {"motor.figures"},
 }
 """What is taken of `patience`, by whom where few may: its refusals; a `with` in which minutes are waited for, which the
@@ -612,7 +612,7 @@ def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():
 
     What `own_limit` gives goes to a command alone, and no model stands on a command or on the stress table. Means of a
     motor that have not settled are read over longer windows while that is `waited_for`, and refused or told with their
-    spread where it is not: it stands in the head of that loop alone.
+    spread where it is not, and a slider's step is halved likewise: it stands in the heads of these loops alone.
     """
     assert imported("patience", set()) == {"patience", "errors"}
     takers = set()

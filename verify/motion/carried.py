@@ -45,7 +45,7 @@ from verify.motion.step_size import gripped_step, longest_step, missed, speeds, 
 from verify.motion.stepping import Sliding, fresh_motion, on_beam, run_stages, slider_seconds
 from verify.motion.surface import Stage
 from verify.motion.turning import couple, modal_turning, turned_by
-from verify.patience import check_work, waited_for
+from verify.patience import check_work
 from verify.slider import Slider
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ def slide(laid: Laid, progress: Callable[[float], None], patient: bool) -> Motio
         duration = sum(stage.duration for stage in stages)
         check_work("duration", duration, seconds(steps_in(stages)), "shorten it or lengthen the step")
     if request.step is None and felt:
-        ran = until_it_stands(partial(_ran, laid), stages, lambda n: waited_for(seconds(n)), progress)
+        ran = until_it_stands(partial(_ran, laid), stages, seconds, progress)
     else:
         ran = _ran(laid, stages, progress)
     check_books(ran.excess, request, ran.stages)

@@ -15,6 +15,7 @@ from verify.motion.result import Motion
 from verify.motion.sound_books import Excess
 from verify.motion.step_size import stepped
 from verify.motion.surface import Stage
+from verify.patience import waited_for
 
 KNOWN = 0.01
 """Of the displacement, and of the longest way: what moves more with its step is not known."""
@@ -47,30 +48,31 @@ class Ran(msgspec.Struct, frozen=True, eq=False):
 def until_it_stands(
     run: Callable[[list[Stage], Told], Ran],
     stages: list[Stage],
-    waited_for: Callable[[int], bool],
+    seconds: Callable[[int], float],
     progress: Told,
 ) -> Ran:
     """The first run in steps as those of `stages`, or in a half, a quarter, ... of them, that confirms the one before.
 
     The first of all takes steps twice as long, to be compared with, or where samples stand too close for that, no
-    other. Where none confirms, or the next has more steps than are waited for (of that many it is asked), the last that
-    was run, or broken off. What the runs before took is added to its cost; a note says how far it stands.
+    other. Where none confirms, or the next would take longer than is waited for (so many steps take `seconds`), the
+    last that was run, or broken off. What the runs before took is added to its cost; a note says how far it stands.
     """
-    left, ran = 1.0, list[Ran]()
     closer = ceil(LOOKS / sum(stage.n_steps // stage.every for stage in stages))
-    for number, layout in enumerate(_layouts(stages, closer)):
-        if number > 1 and not waited_for(steps_in(layout)):
-            break
-        ran.append(run(layout, _part_of(progress, 1.0 - left, SHARE * left)))
+    left, ran, layouts = 1.0, list[Ran](), list(_layouts(stages, closer))
+    while len(ran) < len(layouts) and (len(ran) < 2 or waited_for(seconds(steps_in(layouts[len(ran)])))):
+        ran.append(run(layouts[len(ran)], _part_of(progress, 1.0 - left, SHARE * left)))
         left *= 1.0 - SHARE
-        if ran[-1].motion.statistics.interrupted:
-            break
-        if number and ran[-1].excess is None and moved(ran[-2].motion, ran[-1].motion) <= STANDS:
+        if ran[-1].motion.statistics.interrupted or _stands(ran):
             break
     found = _thinned(_with_cost(ran), closer)
     if not found.motion.statistics.interrupted:
         progress(1.0)
     return found
+
+
+def _stands(ran: Sequence[Ran]) -> bool:
+    """Whether the last run confirms the one before it."""
+    return len(ran) > 1 and ran[-1].excess is None and moved(ran[-2].motion, ran[-1].motion) <= STANDS
 
 
 def _layouts(stages: list[Stage], closer: int) -> Iterator[list[Stage]]:

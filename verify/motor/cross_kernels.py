@@ -20,9 +20,19 @@ from verify.motor.records import (
     SURFACE_BEFORE,
 )
 
+NONE = 1e-12
+"""Of the speeds at hand: by no more is a surface ahead that goes with the slider."""
+
 
 @part()
-def _begin(first: int, last: int, v: float, mu: float, touch: Array, points: Array) -> None:
+def _snapped(ahead: float, i: int, v: float, light: float, touch: Array) -> float:
+    """How far a surface is ahead, 0 where that is rounding: points that stick are let go by nothing else."""
+    speeds = abs(touch[i, SURFACE]) + abs(v) + light * touch[i, MOST]
+    return 0.0 if abs(ahead) <= NONE * speeds else ahead
+
+
+@part()
+def _begin(first: int, last: int, light: float, v: float, mu: float, touch: Array, points: Array) -> None:
     """How far every point's surface is ahead of v as the step begins, and what friction can do there.
 
     The line has the mean speed of the step, which is off that of its middle by what the surface gains the more over 24.
@@ -33,7 +43,8 @@ def _begin(first: int, last: int, v: float, mu: float, touch: Array, points: Arr
             touch[i, RUB], touch[i, BEYOND], touch[i, STUCK] = 0.0, 0.0, 0.0
             touch[i, MOST] = mu * touch[i, PUSH]
             gained = touch[i, SURFACE] - touch[i, SURFACE_BEFORE]
-            touch[i, AHEAD] = touch[i, SURFACE] + (gained - touch[i, GAINED]) / 24.0 - 0.5 * gained - v
+            ahead = touch[i, SURFACE] + (gained - touch[i, GAINED]) / 24.0 - 0.5 * gained - v
+            touch[i, AHEAD] = _snapped(ahead, i, v, light, touch)
             touch[i, GAINED] = gained
 
 
@@ -90,7 +101,9 @@ def _next(first: int, last: int, left: float, gain: float, touch: Array) -> tupl
 
 
 @part()
-def _go_on(first: int, last: int, done: float, share: float, gain: float, held: float, touch: Array) -> None:
+def _go_on(
+    first: int, last: int, done: float, share: float, gain: float, held: float, v: float, light: float, touch: Array
+) -> None:
     """What a share of the step adds to the friction of all points, and by how much the surface is ahead then."""
     middle = done + 0.5 * share - 0.5
     for i in range(first, last):
@@ -100,7 +113,8 @@ def _go_on(first: int, last: int, done: float, share: float, gain: float, held: 
             way = before if before != 0.0 else more
             force = most * (1.0 + middle * (1.0 - touch[i, PUSH_BEFORE] / touch[i, PUSH]))
             force = 0.0 if force < 0.0 else force if way > 0.0 else -force if way < 0.0 else held * most
-            touch[i, AHEAD], touch[i, STUCK] = before + share * more, 1.0 if way == 0.0 else 0.0
+            touch[i, AHEAD] = _snapped(before + share * more, i, v, light, touch)
+            touch[i, STUCK] = 1.0 if way == 0.0 else 0.0
             touch[i, RUB] += share * force
             touch[i, BEYOND] += share * force * (before + 0.5 * share * more)
 
@@ -113,12 +127,12 @@ def cross(
 
     `light` is the step over the slider's mass, `pull` what else acts on it, v its speed as the step begins.
     """
-    _begin(first, last, v, mu, touch, points)
+    _begin(first, last, light, v, mu, touch, points)
     done = 0.0
     for _ in range(4 * (last - first) + 4):
         gain, held = _gain(first, last, light, pull, touch)
         found, share = _next(first, last, 1.0 - done, gain, touch)
-        _go_on(first, last, done, share, gain, held, touch)
+        _go_on(first, last, done, share, gain, held, v, light, touch)
         done += share
         if found < 0:
             break

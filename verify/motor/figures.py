@@ -134,6 +134,12 @@ def held(
     return found, run
 
 
+def _had(run: MotorRun | None) -> MotorRun:
+    """A run that there is."""
+    assert run is not None
+    return run
+
+
 def next_seconds(run: MotorRun, periods: int) -> float:
     """An estimate from above of the time that so many periods take, held as in a run of whole periods."""
     return run.statistics.estimated_s * periods / (len(run.times) - 1)
@@ -142,12 +148,11 @@ def next_seconds(run: MotorRun, periods: int) -> float:
 def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int) -> tuple[AtSpeed, MotorRun]:
     """The last of blocks, the first two that agree and carry what presses on; nothing has settled without such two."""
     block, run, means, spreads, off = _block(case, speed, BLOCK), before, None, UNKNOWN, np.inf
-    for number in range(1, most + 1):
-        if run is not None and number == 2:
-            check_work("periods", 2 * BLOCK, next_seconds(run, 2 * BLOCK), FEWER)
-        if run is not None and number > 2 and not waited_for(next_seconds(run, BLOCK * number)):
-            break
-        last, run = run, _whole(block(run))
+    number = 0
+    while number < most and (number < 2 or waited_for(next_seconds(_had(run), BLOCK * (number + 1)))):
+        if number == 1:
+            check_work("periods", 2 * BLOCK, next_seconds(_had(run), 2 * BLOCK), FEWER)
+        number, last, run = number + 1, run, _whole(block(run))
         now = Means(*map(float, rows(run).mean(axis=0)))
         if means is not None and last is not None:
             off = missed(case.slider, last.state, run)
