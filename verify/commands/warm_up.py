@@ -61,8 +61,9 @@ def _calls() -> list[tuple[Any, tuple[Any, ...]]]:
     from verify.chain import warm as chain
     from verify.motion import warm as motion
     from verify.motor import warm as motor
+    from verify.stress.friction import one_step
 
-    return [*motion.calls(), *chain.calls(), *motor.calls()]
+    return [*motion.calls(), *chain.calls(), *motor.calls(), *one_step()]
 
 
 def _compile_all() -> None:

@@ -145,7 +145,7 @@ def _belt(law: str) -> Iterator[Call]:
     return on_belt(law)
 
 
-def _step() -> Iterator[Call]:
+def one_step() -> Iterator[Call]:
     """One step of tanh friction by itself."""
     from verify.motion.friction_kernels import tanh_speed_change
 
@@ -188,7 +188,7 @@ ROWS: tuple[Row, ...] = (
         at=(1e-3, 0.3, 4.0, 30.0),
         promise=1e-10,
         error=step_error,
-        kernels=_step,
+        kernels=one_step,
     ),
     Floor(
         id="friction-comes-to-rest",
