@@ -601,10 +601,12 @@ PATIENCE = {
     "patient": {"stress.sizes"},
     "own_limit": {"commands.stress"},
     "waited_for": {"motor.figures", "motion.judged_step"},
+    "PATIENCE_S": {"stress.refused_runs"},
     "VARIABLE": {"motor.figures"},
 }
 """What is taken of `patience`, by whom where few may: its refusals; a `with` in which minutes are waited for, which the
-stress table opens around whole solves; and the seconds that the environment says, the cap of that table's command."""
+stress table opens around whole solves; what is waited for at most, to refuse what takes a little more; and the seconds that the
+environment says, the cap of that table's command."""
 
 
 def test_work_is_estimated_to_be_refused_and_nothing_is_figured_with_it():

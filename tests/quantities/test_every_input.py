@@ -473,7 +473,7 @@ CASES: dict[str, list[Case]] = {
         Case({**STEPPED, "steps_per_period": 53, "periods": 13, "last": 4}, CLASPING),
         Case({"model": "analytic", "steps_per_period": 53, "periods": 83, "last": 40}, BETWEEN),
     ],
-    "slider.start_time": [Case({**STEPPED, "periods": 811, "last": 14, "mass": 0.7}, {**AWAY, **UNDER_WAY})],
+    "slider.start_time": [Case({**STEPPED, "periods": 811, "last": 14, "mass": 0.9}, {**AWAY, **UNDER_WAY})],
     "slider.contact_energy": [
         Case({**STEPPED, "periods": 13, "of": "rubbed"}, ON_A_POINT),
         Case({**STEPPED, "steps_per_period": 53, "periods": 13, "of": "damped"}, CLASPING),
