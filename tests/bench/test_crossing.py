@@ -50,7 +50,8 @@ def test_a_line_that_is_exactly_as_dear_stands_at_one():
         ((1e-2, 1e-3), "2 sizes"),
         ((1e-2, 3e-3, 2.9e-3), "not at order 4"),
         ((1e-2, -1e-3, 1e-4), "a change of sign"),
-        ((1e-2, 6e-4, 3e-5, 3e-5), "not at order 4"),
+        ((1e-2, 6e-4, 3e-5, 4e-5), "not at order 4"),
+        ((1e-2, 6e-4, -3e-5, 2e-6), "a change of sign"),
         ((1e-13, 2e-13, 1e-14), "rounding"),
         ((0.96, 0.06, 0.0038), "errors up to 96 % are no answers"),
     ],
@@ -69,6 +70,21 @@ def test_coarse_sizes_before_the_order_and_fine_ones_that_are_rounding_are_left_
     found = converging(points, (4.0, 4.0), 1e-12)
     assert found.span == (6.25e-5, 1.6e-2)
     assert found.orders == pytest.approx((4.0, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("errors", "smallest", "beyond"),
+    [
+        ((3e-2, 2e-3, 1.2e-4, -9e-5), 1.2e-4, 1),  # rounding of another sign
+        ((3e-2, 2e-3, 1.2e-4, 3e-5, 7e-6), 1.2e-4, 2),  # of order 2 from there on
+        ((3e-2, 2e-3, 1.2e-4, 7.6e-6, 6e-5), 1.2e-4, 2),  # what a finer size exceeds is not promised
+    ],
+)
+def test_finer_sizes_that_exceed_no_error_of_the_stretch_take_nothing_from_it(errors, smallest, beyond):
+    found = converging([Point(0.1 / 2**i, error, 1.0) for i, error in enumerate(errors)], (4.0, 4.0), 1e-12)
+    assert isinstance(found, Stretch)
+    assert found.span == (smallest, 3e-2)
+    assert found.n_finer == beyond
 
 
 def test_methods_that_share_no_error_are_not_compared():

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
+from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
@@ -77,6 +77,7 @@ def field_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
         entries=(*(entry(model, n) for model in able for n in its.counts), entry(MODELS["analytic"], None)),
         pairs=tuple((able[0].title, model.title) for model in able[1:]),
         judge=lambda: _against(exact),
+        wanted=ASKED_OF_PARTS,
     )
 
 

@@ -16,6 +16,10 @@ Run: TypeAlias = Callable[[], "Told"]
 """One warm run, set up beforehand."""
 
 
+ASKED_OF_PARTS = (1e-2, 1e-3, 1e-4)
+"""Errors at which a number of parts is chosen: sentences of modes and linear motions name ratios there."""
+
+
 class Told(msgspec.Struct, frozen=True, eq=False):
     """What one run gave, with how long its parts took where it knows."""
 

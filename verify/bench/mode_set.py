@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_due
+from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.judge.compare import EIGENVALUE_FLOOR, ORDER_FLOOR, relative_error
@@ -54,6 +54,7 @@ def mode_cases(scene: "Scene", its: Settled, bench: Workbench) -> Iterator[Case]
             ),
             judge=_judge(bench, mode),
             floor=ORDER_FLOOR,
+            wanted=ASKED_OF_PARTS,
             notes=(*refused, *why_not, *absent),
         )
 

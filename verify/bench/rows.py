@@ -63,6 +63,8 @@ class Sentence(msgspec.Struct, frozen=True, kw_only=True):
     """That error."""
     crossing: float | None = None
     """The error at which the cheaper of the two changes; None where it does not."""
+    at: tuple[tuple[float, float], ...] = ()
+    """(error, time of the second over that of the first) at errors that are asked for, where both come to them."""
 
 
 class ChildCost(msgspec.Struct, frozen=True):

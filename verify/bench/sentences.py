@@ -1,8 +1,11 @@
 """One sentence for each comparison: where the cheaper method changes, or why nobody can say."""
 
 from collections.abc import Sequence
+from itertools import groupby
 from math import log
+from operator import itemgetter
 
+from msgspec import Struct
 from msgspec.structs import replace
 
 from verify.bench.kind import Case
@@ -35,12 +38,12 @@ def sentences_of(case: Case, found: Sequence[Outcome], scene: str) -> list[Sente
 def _raced(case: Case, found: Sequence[Outcome], scene: str, first: str, second: str) -> Sentence:
     """How much longer the second takes at every wanted error, each at its own longest step."""
     told = {wanted: _race(case, found, wanted, (first, second)) for wanted in case.wanted}
-    ratios = {wanted: answer for wanted, answer in told.items() if isinstance(answer, tuple)}
+    ratios = {wanted: answer.whole for wanted, answer in told.items() if isinstance(answer, _Ratio)}
     parts = [
         answer
         if isinstance(answer, str)
-        else f"at {percent(wanted)} {second} takes {answer[0]:.3g} times as long as {first}, "
-        f"without their set-up {answer[1]:.3g} times"
+        else f"at {percent(wanted)} {second} takes {answer.whole:.3g} times as long as {first}, "
+        f"without their set-up {answer.run:.3g} times"
         for wanted, answer in told.items()
     ]
     finest = min(ratios, default=None)
@@ -50,14 +53,26 @@ def _raced(case: Case, found: Sequence[Outcome], scene: str, first: str, second:
         methods=(first, second),
         text=f"{case.name}: {'; '.join(parts)} (each at its own longest step; {_condition(case, found, scene)})",
         earned=bool(ratios),
-        ratio=ratios[finest][0] if finest is not None else None,
+        ratio=ratios[finest] if finest is not None else None,
         at_error=finest,
+        at=tuple(ratios.items()),
     )
 
 
-def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[str, str]) -> tuple[float, float] | str:
-    """Ratios of (whole runs, runs without their set-up) at an error; why there are none."""
+class _Ratio(Struct, frozen=True):
+    """Times of the second over those of the first, at one error."""
+
+    whole: float
+    run: float
+    """Without their set-up."""
+    spread: float
+    """Of the first, relative."""
+
+
+def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[str, str]) -> _Ratio | str:
+    """Each at the coarsest size from which on all are within an error; why there is no ratio."""
     seconds: list[tuple[float, float]] = []
+    spread = 0.0
     for name in methods:
         ran = sorted((o for o in found if o.entry.line.name == name), key=lambda o: -o.entry.size)
         own = [o for o in ran if o.point]
@@ -75,8 +90,9 @@ def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[st
             left = sum(bool(o.row.left_out) for o in found if o.entry.line.name == name)
             return f"at {percent(wanted)} nothing is said, {name} {why}" + (f", {left} steps left out" if left else "")
         seconds.append((whole, run))
+        spread += max(p.spread for p in points)
     (a, b), (c, d) = seconds
-    return c / a, d / b
+    return _Ratio(c / a, d / b, spread)
 
 
 def _untimed(row: Row) -> bool:
@@ -86,20 +102,51 @@ def _untimed(row: Row) -> bool:
 
 def _compared(case: Case, found: Sequence[Outcome], scene: str, first: str, second: str) -> Sentence:
     stretches = [_stretch(case, found, name) for name in (first, second)]
-    about = f"{case.name}: {first} against {second}"
     for name, one in zip((first, second), stretches, strict=True):
         if isinstance(one, Unearned):
-            text = f"{about}: no time is set against another, {name}: {one.why}; {one.remedy}"
-            return _sentence(case, (first, second), text)
+            return _at_wanted(case, found, scene, (first, second), f"{name}: {one.why}; {one.remedy}")
     a, b = (one for one in stretches if isinstance(one, Stretch))
     answer = crossing(a, b)
     if isinstance(answer, Unearned):
-        text = f"{about}: no time is set against another, {answer.why}; {answer.remedy}"
-        return _sentence(case, (first, second), text)
-    parts = (_verdict(first, second, answer), *_wanted(case, answer, a, b), *_alone(found, (first, second), answer))
+        return _at_wanted(case, found, scene, (first, second), f"{answer.why}; {answer.remedy}")
+    ends = [_end(name, one) for name, one in ((first, a), (second, b)) if one.n_finer]
+    at = _inside(case, answer, a, b)
+    wanted = [f"{ratio:.2f} at {percent(error)}" for error, ratio in at]
+    parts = (_verdict(first, second, answer), *wanted, *_alone(found, (first, second), answer), *ends)
     orders = f"observed orders {_span(a.orders)} and {_span(b.orders)}"
-    text = f"{about}: {'; '.join(parts)} ({orders}; {_condition(case, found, scene)})"
-    return _sentence(case, (first, second), text, answer)
+    text = f"{case.name}: {first} against {second}: {'; '.join(parts)} ({orders}; {_condition(case, found, scene)})"
+    return _sentence(case, (first, second), text, answer, at)
+
+
+def _end(name: str, stretch: Stretch) -> str:
+    """Where errors cease to fall at their order, though no finer size is worse."""
+    sizes = "a finer size" if stretch.n_finer == 1 else f"{stretch.n_finer} finer sizes"
+    return f"{sizes} of {name} {'is' if stretch.n_finer == 1 else 'are'} no part of it, not at that order"
+
+
+def _at_wanted(case: Case, found: Sequence[Outcome], scene: str, methods: tuple[str, str], why: str) -> Sentence:
+    """Ratios at errors that somebody asks for, where times cannot be compared over all of them; or nothing."""
+    first, second = methods
+    told = {wanted: _race(case, found, wanted, methods) for wanted in case.wanted}
+    ratios = {wanted: ratio for wanted, ratio in told.items() if isinstance(ratio, _Ratio)}
+    about = f"{case.name}: {first} against {second}"
+    if not ratios:
+        return _sentence(case, methods, f"{about}: no time is set against another, {why}")
+    words = [(percent(wanted), _told(first, second, ratio)) for wanted, ratio in ratios.items()]
+    alike = [(said, [at for at, _ in group]) for said, group in groupby(words, key=itemgetter(1))]
+    parts = ", ".join(f"at {' and '.join(errors)} {said}" for said, errors in alike)
+    text = (
+        f"{about}: {parts}, each at the coarsest of its sizes from which on all are within; "
+        f"where the cheaper one changes is not told, {why} ({_condition(case, found, scene)})"
+    )
+    return _sentence(case, methods, text, at=tuple((wanted, ratio.whole) for wanted, ratio in ratios.items()))
+
+
+def _told(first: str, second: str, ratio: _Ratio) -> str:
+    """A ratio, or that it is none beyond the spread."""
+    if abs(log(ratio.whole)) <= ratio.spread:
+        return f"as long by either within the spread of {100 * ratio.spread:.0f} %"
+    return _slower(first, second, ratio.whole)
 
 
 def _stretch(case: Case, found: Sequence[Outcome], name: str) -> Stretch | Unearned:
@@ -150,10 +197,10 @@ def _span(values: Sequence[float]) -> str:
     return f"{high:.2f}" if high - low < 0.02 * abs(high) else f"{low:.2f} to {high:.2f}"
 
 
-def _wanted(case: Case, answer: Crossing, a: Stretch, b: Stretch) -> list[str]:
-    """The ratio at errors that somebody asks for, where both reach them."""
+def _inside(case: Case, answer: Crossing, a: Stretch, b: Stretch) -> tuple[tuple[float, float], ...]:
+    """(error, ratio) at errors that somebody asks for, where both reach them."""
     inside = [error for error in case.wanted if answer.low <= error <= answer.high]
-    return [f"{b.seconds(error) / a.seconds(error):.2f} at {percent(error)}" for error in inside]
+    return tuple((error, b.seconds(error) / a.seconds(error)) for error in inside)
 
 
 def _alone(found: Sequence[Outcome], methods: tuple[str, str], answer: Crossing) -> list[str]:
@@ -193,7 +240,13 @@ def _exact(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
     return [Sentence(set=case.set, about=case.about, methods=methods, text=text, earned=True, ratio=other / own)]
 
 
-def _sentence(case: Case, methods: tuple[str, str], text: str, answer: Crossing | None = None) -> Sentence:
+def _sentence(
+    case: Case,
+    methods: tuple[str, str],
+    text: str,
+    answer: Crossing | None = None,
+    at: tuple[tuple[float, float], ...] = (),
+) -> Sentence:
     return Sentence(
         set=case.set,
         about=case.about,
@@ -203,6 +256,7 @@ def _sentence(case: Case, methods: tuple[str, str], text: str, answer: Crossing 
         ratio=answer.ratios[0][1] if answer else None,
         at_error=answer.low if answer else None,
         crossing=answer.crossings[0] if answer and answer.crossings else None,
+        at=at,
     )
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from verify.bench.field_set import forces_of, relative_rms
-from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told, orders_at_once, orders_due
+from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_at_once, orders_due
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.exact.in_time import check_beam
@@ -42,6 +42,7 @@ def transient_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
         ),
         pairs=tuple((able[0].title, model.title) for model in able[1:]),
         judge=lambda: _judge(scene, its),
+        wanted=ASKED_OF_PARTS,
     )
 
 

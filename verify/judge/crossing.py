@@ -37,6 +37,8 @@ class Stretch(msgspec.Struct, frozen=True):
     points: tuple[Point, ...]
     orders: tuple[float, ...]
     """Observed between them."""
+    n_finer: int = 0
+    """Sizes beyond, which are no worse than the last of these and do not go on at that order."""
 
     @property
     def span(self) -> tuple[float, float]:
@@ -115,10 +117,11 @@ def too_few(n_sizes: int) -> str:
 def converging(
     points: Sequence[Point], orders: tuple[float, float], floor: float, *, finer: str = "give finer ones"
 ) -> Stretch | Unearned:
-    """The stretch, up to the finest error above `floor`, whose observed orders lie within ASTRAY of the known ones.
+    """The finest stretch whose observed orders lie within ASTRAY of the known ones, up to an error that all keep.
 
-    `points` from coarse to fine; errors up to `floor` are rounding, those from NO_ANSWER on are none. What falls at an
-    order for a while and then does not has no order there; `finer` is what to do then, while errors fall.
+    `points` from coarse to fine; errors up to `floor` are rounding, those from NO_ANSWER on are none. Finer sizes than
+    those of the stretch may fall otherwise, or no further, but exceed its smallest error nowhere: what is said of the
+    errors within it holds at all sizes from there on. `finer` is what to do where there is none, while errors fall.
     """
     known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:.3g} to {orders[1]:.3g}"
     above = [p for p in points if floor < abs(p.error) < NO_ANSWER]
@@ -131,13 +134,25 @@ def converging(
         return Unearned(f"errors down to {low:.1e} are rounding", "give coarser sizes")
     seen = [observed(a, b, floor) for a, b in pairwise(above)]
     fit = [order is not None and orders[0] - ASTRAY <= order <= orders[1] + ASTRAY for order in seen]
-    first = max((i + 1 for i, good in enumerate(fit) if not good), default=0)
-    if len(above) - first < LEAST:
+    found = _finest_run([abs(p.error) for p in above], fit)
+    if found is None:
         words = ", ".join("a change of sign" if order is None else f"{order:.2f}" for order in seen)
         grows = abs(above[-1].error) >= min(abs(p.error) for p in above[:-1])
-        remedy = "leave out the finest, which are no better" if grows else finer
-        return Unearned(f"errors fall not at order {known} but at {words}", remedy)
-    return Stretch(tuple(above[first:]), tuple(order for order in seen[first:] if order is not None))
+        return Unearned(f"errors fall not at order {known} but at {words}", "give coarser ones" if grows else finer)
+    first, last = found
+    kept = tuple(order for order in seen[first:last] if order is not None)
+    return Stretch(tuple(above[first : last + 1]), kept, len(above) - 1 - last)
+
+
+def _finest_run(errors: Sequence[float], fit: Sequence[bool]) -> tuple[int, int] | None:
+    """First and last of at least LEAST sizes whose steps fit, where no finer size exceeds the last; None without."""
+    for last in range(len(errors) - 1, LEAST - 2, -1):
+        first = last
+        while first and fit[first - 1]:
+            first -= 1
+        if last - first + 1 >= LEAST and max(errors[last:]) <= errors[last]:
+            return first, last
+    return None
 
 
 def crossing(a: Stretch, b: Stretch) -> Crossing | Unearned:
