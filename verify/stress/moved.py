@@ -228,6 +228,8 @@ def _free(system: ChainSystem, angles: Array) -> Array:
 
     theta = hub(system, 0.0)[0] + np.cumsum(angles)
     rows = np.array([reach * np.cos(theta) for reach, _, _ in held_at(system, 0.0)]).reshape(-1, system.n_links)
+    if not len(rows):  # of which scipy before 1.14 has no null space
+        return np.eye(system.n_links)
     return np.asarray(null_space(rows @ np.tril(np.ones((system.n_links, system.n_links)))))
 
 
