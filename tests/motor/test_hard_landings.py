@@ -200,3 +200,17 @@ def test_a_hard_point_that_stays_on_sticks_and_slips_as_dop853_says(law, slope):
     coarse, fine = (np.mean([miss(n) for n in steps]) for steps in ((97, 103, 107, 113), (1552, 1648, 1712, 1808)))
     assert fine < 2e-5
     assert 1.4 < np.log2(coarse / fine) / 4.0 < 2.6
+
+
+@pytest.mark.parametrize("speed", [1.3e-3, -0.9e-3])
+@pytest.mark.parametrize("step", [122, 976])
+def test_a_point_that_is_kept_at_its_place_lands_once_a_period_at_any_speed(speed, step):
+    """No slope comes along under it: it is touching from where a mass lands on a shaking place to where it leaves."""
+    ratio, amplitude = 1.1, 4.1e-7
+    slider = Slider(mass=MASS, mu=0.2, law="coulomb", gravity=amplitude * OMEGA**2 / ratio, contact=Contact())
+    slider = replace(slider, coupling="one-way")
+    run = ridden(slider, amplitude, periods=20, step=step, samples=21, held_speed=speed, frozen=True)
+    share = 1.0 - (bouncing.landing_phase(ratio) - asin(1.0 / ratio)) / (2.0 * pi)
+    assert np.count_nonzero(run.events[:, 1] == LANDS) == 20
+    assert run.contact_share[2:].mean() == pytest.approx(share, abs=1e-5)
+    assert run.ledger.uphill == 0.0

@@ -66,9 +66,10 @@ SETTLED = 1e-6
 def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Line, feet: Feet) -> float:
     """The surface under x at a time: its height, NaN off the beam; sets its speed, its slope and how fast it rises.
 
-    Its acceleration across, as a point that rides on it has it, goes to `kick`: of second order in the wave.
+    Its acceleration across, as a point that rides on it has it, goes to `kick`: of second order in the wave. One that
+    is kept at its place goes along no slope, whatever its speed v.
     """
-    touch, piece = feet.touch, find_piece(surface.edges, x, feet.piece[0])
+    touch, piece, v = feet.touch, find_piece(surface.edges, x, feet.piece[0]), v * feet.riders[0, FREE]
     if piece < 0:
         return np.nan
     feet.piece[0] = piece

@@ -8,7 +8,7 @@ from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import find_piece, rotate_half, set_factors
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
 from verify.motor.cross_kernels import cross
-from verify.motor.feet_kernels import drift, kick, place, press, see, stored
+from verify.motor.feet_kernels import drift, gone, kick, place, press, see, stored
 from verify.motor.logging_kernels import keep, note
 from verify.motor.records import (
     AFTER,
@@ -81,7 +81,7 @@ def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet
         if line.stamp[piece] != number:
             draw(table, piece, line)
             line.stamp[piece] = number
-        see(i, x, edges[piece], edges[piece + 1] - edges[piece], feet.body[feet.owner[i], V], half, line, feet)
+        see(i, x, edges[piece], edges[piece + 1] - edges[piece], gone(i, feet), half, line, feet)
 
 
 @part()
@@ -253,7 +253,7 @@ def ride_given(
                 line.local[piece, STILL, d] = given.local[number, piece, STILL, d]
                 line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]
             length = given.edges[piece + 1] - given.edges[piece]
-            see(i, x, given.edges[piece], length, feet.body[feet.owner[i], V], rubbing.half, line, feet)
+            see(i, x, given.edges[piece], length, gone(i, feet), rubbing.half, line, feet)
             feet.touch[i, SURFACE] += given.along[number, piece]
         press(dt, feet, before)
         _rub(dt, feet, rubbing.slope, before)
