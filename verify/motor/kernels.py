@@ -20,6 +20,7 @@ from verify.motor.records import (
     DONE,
     FACE,
     FREE,
+    GAINED,
     HEIGHT,
     HELD,
     IMAGE,
@@ -137,11 +138,11 @@ def _rub_back(
     bear(dt, surface.edges, half, feet, beam)
     match(dt, surface.edges, half, feet, slope, beam)
     for i in range(feet.points.shape[0]):
+        piece = feet.piece[i]
+        along, across = moved(i, surface.edges[piece + 1] - surface.edges[piece], half, feet, beam)
+        feet.touch[i, SURFACE] += along
+        feet.touch[i, GAINED] = along
         if feet.touch[i, PUSH] > 0.0:
-            piece = feet.piece[i]
-            length = surface.edges[piece + 1] - surface.edges[piece]
-            along, across = moved(i, length, half, feet, beam)
-            feet.touch[i, SURFACE] += along
             feet.touch[i, LIFT] += feet.points[i, IMAGE] * across
             _close(i, across, feet)
             feet.sums[feet.owner[i], LIFTED] -= dt * feet.touch[i, RUB] * feet.touch[i, SURFACE]
