@@ -186,8 +186,8 @@ def turn(most: float, ahead: float, slip: float, ease: float) -> tuple[float, fl
     """(mean friction of a step, 1 if it ends sticking) by Coulomb's law of a surface that is ahead as the step begins.
 
     Without friction it is ahead by `slip` in the middle, on a straight line; friction takes `ease` of that per newton,
-    and twice that by the end. So it slides until the line is crossed, then sticks, or slides back. The impulse of a step
-    acts at once: it is kept to where that takes energy, and none is made whatever the step.
+    and twice that by the end. So it slides until the line is crossed, then sticks, or slides back. The impulse of a
+    step acts at once: it is kept to where that takes energy, so that none is made whatever the step.
     """
     gain, whole, way = 2.0 * (slip - ahead), 2.0 * ease * most, 1.0 if ahead > 0.0 else -1.0
     share, stuck = 0.0, 0.0

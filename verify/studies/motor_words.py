@@ -104,8 +104,6 @@ def _held_still(at: "AtSpeed") -> str:
             f"not settled after {at.periods} periods, {force} +- {spread} as a mean over the last {at.window} of them"
         )
     said = f"blocks differ by {spread}" if at.window == BLOCK else f"the last {at.window}, +- {spread}"
-    if at.turned:
-        said += f"; +- {1e3 * at.turned:.1g} mN since friction turns round with the steps, fewer with more of them"
     return f"{force} as a mean over periods ({said})"
 
 
