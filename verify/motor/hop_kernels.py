@@ -288,7 +288,7 @@ def _move_riding(
 def _step(
     t: float, dt: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, before: Array, feet: Feet, log: Log
 ) -> bool:
-    """One step, cut wherever the point leaves, lands or has its friction turn round; whether it is still on the beam."""
+    """One step, cut where the point leaves or lands and where its friction turns; whether it is still on the beam."""
     done, x = 0.0, feet.body[0, X]
     origin = surface.drive.origin
     for _ in range(BLOWS):
