@@ -48,6 +48,8 @@ LINES: tuple[str, ...] = get_args(Line)
 Links = Literal["rigid", "stretching"]
 LINKS: tuple[str, ...] = get_args(Links)
 """What a nonlinear chain is made of. rigid: the paper's links. stretching: bars of the beam's own EA / l."""
+OF_THE_CHAIN = ("chain", "chain_force", "links", "places")
+"""Keys of [motor] that its runs on the nonlinear chain alone have."""
 
 Inertia = Literal["full", "transverse", "elastic"]
 """Of a chain's links along x. full: rigid links. transverse: rigid links without any. elastic: links that stretch."""

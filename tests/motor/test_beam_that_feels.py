@@ -173,6 +173,43 @@ def test_a_stiff_contact_under_a_large_preload_is_the_slider_that_stays_on():
     assert np.all((orders > 0.6) & (orders < 1.4))
 
 
+def held_at(speed, steps):
+    """Mean friction over mu N on a point that rubs a little and stays on, from rest over twelve periods."""
+    slider = Slider(mass=MASS, mu=0.004, law="coulomb", gravity=0.0, preload=30.0, position=START,
+                    coupling="two-way", contact=Contact(stiffness=4e5, damping=30.0))  # fmt: skip
+    given = {"model": "analytic", "modes": 4, "modal_damping": ZETA, "start": "rest", "samples": 13}
+    run = run_motor(
+        BEAM, FORCES, HERTZ, 12 * TURN, slider=slider, step=TURN / steps, held_speed=speed, frozen=True, **given
+    )
+    assert run.contact_share[1:].mean() == pytest.approx(1.0, rel=1e-9)
+    return run.friction[1:].mean() / (slider.mu * slider.preload)
+
+
+def test_friction_on_a_beam_that_feels_it_turns_round_within_the_step():
+    """Of second order at every speed; a turn at the next step leaves up to 2/steps of mu N, at random."""
+    speeds = (0.0, 0.004, -0.0031, 0.0073, 0.0017)
+    coarse, fine, true = (np.array([held_at(speed, steps) for speed in speeds]) for steps in (101, 404, 4000))
+    assert np.ptp(true) > 1.5
+    assert np.abs(fine - true).max() < 1e-4
+    assert 8.0 < np.linalg.norm(coarse - true) / np.linalg.norm(fine - true) < 32.0
+
+
+def test_a_point_that_sticks_on_a_beam_that_feels_it_does_not_shake_loose_with_the_step():
+    """Sticking 7.77e-3 of the time, by an own time-stepping code in 64 000 to 1 000 000 steps of a period."""
+    strip = Beam(length=0.15, width=0.015, thickness=0.002, youngs_modulus=210e9, density=7850.0)
+    forces = [PointForce(position=0.04, amplitude=30.0), PointForce(position=0.12, amplitude=22.0, phase_deg=70.0)]
+    slider = Slider(mass=0.02, mu=0.3, law="coulomb", preload=6.1962, gravity=0.0, position=0.07, speed=0.02,
+                    pull=-0.15, coupling="two-way", contact=Contact(stiffness=3e5, damping=4.0))  # fmt: skip
+    given = {"model": "analytic", "modes": 24, "modal_damping": 0.004, "start": "rest", "samples": 9}
+    runs = [
+        run_motor(strip, forces, 3000.0, 8 / 3000.0, slider=slider, step=1.0 / 3000.0 / steps, **given)
+        for steps in (976, 3904, 15616)
+    ]
+    assert [len(run.events) for run in runs] == [18, 18, 18]
+    assert runs[2].stuck_share[1:].mean() == pytest.approx(7.77e-3, rel=5e-3)
+    assert runs[2].speed[-1] == pytest.approx(-9.6427e-3, rel=1e-4)
+
+
 @pytest.mark.parametrize("around", [0, 1])
 def test_a_beam_that_is_told_of_piece_by_piece_moves_as_one_that_is_told_of_whole(around, monkeypatch):
     """A slider that runs over a dozen of its pieces on a foot that stands on three of them."""

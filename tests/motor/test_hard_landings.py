@@ -6,7 +6,7 @@ import motor_references as by
 import numpy as np
 import pytest
 from motor_references import bounces
-from motor_setups import HERTZ, MIDDLE, OMEGA, STRIP, drive, ridden
+from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, PERIOD, STRIP, drive, ridden
 from msgspec.structs import replace
 
 from verify.contact import bouncing, landing
@@ -200,3 +200,30 @@ def test_a_hard_point_that_stays_on_sticks_and_slips_as_dop853_says(law, slope):
     coarse, fine = (np.mean([miss(n) for n in steps]) for steps in ((97, 103, 107, 113), (1552, 1648, 1712, 1808)))
     assert fine < 2e-5
     assert 1.4 < np.log2(coarse / fine) / 4.0 < 2.6
+
+
+@pytest.mark.parametrize("speed", [1.3e-3, -0.9e-3])
+@pytest.mark.parametrize("step", [122, 976])
+def test_a_point_that_is_kept_at_its_place_lands_once_a_period_at_any_speed(speed, step):
+    """No slope comes along under it: it is touching from where a mass lands on a shaking place to where it leaves."""
+    ratio, amplitude = 1.1, 4.1e-7
+    slider = Slider(mass=MASS, mu=0.2, law="coulomb", gravity=amplitude * OMEGA**2 / ratio, contact=Contact())
+    slider = replace(slider, coupling="one-way")
+    run = ridden(slider, amplitude, periods=20, step=step, samples=21, held_speed=speed, frozen=True)
+    share = 1.0 - (bouncing.landing_phase(ratio) - asin(1.0 / ratio)) / (2.0 * pi)
+    assert np.count_nonzero(run.events[:, 1] == LANDS) == 20
+    assert run.contact_share[2:].mean() == pytest.approx(share, abs=1e-5)
+    assert run.ledger.uphill == 0.0
+
+
+@pytest.mark.parametrize("speed", [0.0, 3.1e-5, -2.2e-5])
+@pytest.mark.parametrize("step", [61, 64])
+def test_friction_of_a_hard_point_turns_round_within_the_step(speed, step):
+    """Held in a wave with a fifth of it coming back it is pushed as by quadrature: mean of sign(u - v) (g + w_tt)/g."""
+    amplitude, gravity, mu, back = 3.7e-8, 100.0, 0.2, 0.2
+    slider = Slider(mass=MASS, mu=mu, law="coulomb", gravity=gravity, coupling="one-way", contact=Contact())
+    times = np.arange(200_000) * PERIOD / 200_000
+    _, rise, _, along = by.felt(drive(amplitude, back)[1].at, MIDDLE, times, HALF)
+    wanted = np.mean(np.sign(along - speed) * (1.0 + np.gradient(rise, times) / gravity))
+    run = ridden(slider, amplitude, back, periods=4, step=step, samples=5, held_speed=speed, frozen=True)
+    assert run.friction[1:].mean() / (mu * MASS * gravity) == pytest.approx(wanted, abs=1e-3)

@@ -102,6 +102,18 @@ def test_a_slider_at_rest_goes_up_no_slope():
 
 
 @pytest.mark.parametrize("coupling", ["one-way", "two-way"])
+def test_a_slider_that_is_kept_at_its_place_goes_up_none_at_any_speed(coupling):
+    """What is booked and what dashpots feel is the rise of the material that stands there."""
+    slider = replace(SPRUNG, coupling=coupling, mu=0.3)
+    given = {"frozen": True, "duration": 2e-3, "amplitude": 90.0, "step": 4e-7}
+    still, run = (crossing(slider, held_speed=speed, **given) for speed in (0.0, 7.0))
+    assert run.ledger.uphill == 0.0
+    assert abs(run.ledger.residual) < 2e-4 * run.ledger.damped
+    if coupling == "one-way":
+        assert run.ledger.damped == pytest.approx(still.ledger.damped, rel=1e-9)
+
+
+@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
 def test_a_beam_that_nothing_drives_is_told_so_in_place_of_an_infinite_size(coupling):
     run = crossing(replace(SPRUNG, coupling=coupling), duration=1e-4)
     assert run.notes[1] == f"coupling: {coupling}; the drive does not move the surface under the slider"

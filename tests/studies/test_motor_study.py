@@ -405,3 +405,34 @@ def test_what_has_not_settled_is_told_with_its_spread_and_what_stands_on_it_is_w
     withheld = {chart.id for chart in replace(study, fields=(shaken,)).charts()}
     assert not withheld & {"motor-force", "motor-power", "motor-efficiency"}
     assert "motor-portrait" in withheld
+
+
+def test_two_ways_to_one_force_are_no_more_apart_than_rounding(study):
+    """Blocks that repeat themselves to the last digit differ by nothing, and 1e-13 of a force is no more than that."""
+    (field,) = study.fields
+    still = replace(field.stall, spread=0.0)
+    for off, told in ((1e-13, ", the same in the motion that repeats itself"), (1e-4, " apart, more than that")):
+        shot = replace(still, force=(1.0 + off) * still.force)
+        found = replace(study, fields=(replace(field, curve=(still, *field.curve[1:]), shooting=shot),))
+        (line,) = (line for line in found.facts() if line.startswith("standing still"))
+        assert line.endswith(told)
+
+
+OF_THE_CHAIN = {
+    "motor.chain=0.01": "motor.chain = 0.01",
+    "motor.chain_force=3.0": "motor.chain_force = 3.0",
+    'motor.links=["stretching"]': "motor.links = \\['stretching'\\]",
+    "motor.places=5": "motor.places = 5",
+}
+
+
+@pytest.mark.parametrize("setting", OF_THE_CHAIN)
+def test_what_is_of_the_chain_is_refused_without_one(setting):
+    """And taken with one; what the file says of it is left out where its models are set to others."""
+    with pytest.raises(InputError, match=f"{OF_THE_CHAIN[setting]} is of runs from rest.*add 'chain' there"):
+        load_scene("preloaded-motor", ('motor.models=["segment", "fem"]', setting))
+    name = setting.partition("=")[0].partition(".")[2]
+    kept = load_scene("preloaded-motor", ('motor.models=["segment", "chain"]', setting)).motor
+    assert getattr(kept, name) is not None
+    assert kept.chain_force == (3.0 if name == "chain_force" else 30.0)
+    assert load_scene("preloaded-motor", ('motor.models=["segment"]',)).motor.chain_force is None

@@ -15,8 +15,10 @@ from verify.motion.records import OMEGA, Z_IM
 from verify.motor.records import (
     ABOVE,
     AFTER,
+    AHEAD,
     AT,
     FACE,
+    GAINED,
     GRIP,
     HELD,
     IMAGE,
@@ -29,6 +31,7 @@ from verify.motor.records import (
     SLOPE,
     STUCK,
     SURFACE,
+    SURFACE_BEFORE,
     WEIGHT,
     BeamAnswer,
     Feet,
@@ -135,6 +138,8 @@ def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None,
 
     The surface has half of what all forces give it. Each point's rule is kept exactly in its turn; the sweeps are those
     of a symmetric problem and come to rest.
+
+    What a surface gains within the step by itself is what it has gained since the forces of the step before.
     """
     touch, points, riders, means, largest = feet.touch, feet.points, feet.riders, feet.means, 0.0
     for b in range(feet.body.shape[0]):
@@ -142,6 +147,8 @@ def match(dt: float, edges: Array, half: float, feet: Feet, slope: float | None,
     for i in range(points.shape[0]):
         if points[i, GRIP] == 0.0:
             touch[i, RUB], touch[i, STUCK] = 0.0, 0.0
+            gained = touch[i, SURFACE] - touch[i, SURFACE_BEFORE] - touch[i, GAINED]
+            touch[i, AHEAD] = touch[i, SURFACE] - 0.5 * gained - feet.body[feet.owner[i], V]
             most = riders[feet.owner[i], MU] * touch[i, PUSH]
             largest = most if most > largest else largest
     for _ in range(SWEEPS):
@@ -170,10 +177,31 @@ def _suited(i: int, slip: float, ease: float, feet: Feet, slope: float | None) -
     most = feet.riders[feet.owner[i], MU] * feet.touch[i, PUSH]
     if slope is not None:
         return slide_by_tanh(most, slip, ease, slope)
-    feet.touch[i, STUCK] = 1.0 if abs(slip) < ease * most else 0.0
-    if slip >= ease * most:
-        return float(most)
-    return float(-most if slip <= -ease * most else slip / ease)
+    force, feet.touch[i, STUCK] = turn(most, feet.touch[i, AHEAD], slip, ease)
+    return force
+
+
+@part()
+def turn(most: float, ahead: float, slip: float, ease: float) -> tuple[float, float]:
+    """(mean friction of a step, 1 if it ends sticking) by Coulomb's law of a surface that is ahead as the step begins.
+
+    Without friction it is ahead by `slip` in the middle, on a straight line; friction takes `ease` of that per newton,
+    and twice that by the end. So it slides until the line is crossed, then sticks, or slides back. The impulse of a
+    step acts at once: it is kept to where that takes energy, so that none is made whatever the step.
+    """
+    gain, whole, way = 2.0 * (slip - ahead), 2.0 * ease * most, 1.0 if ahead > 0.0 else -1.0
+    share, stuck = 0.0, 0.0
+    if ahead != 0.0:
+        left = way * gain - whole
+        share = 1.0 if abs(ahead) + left >= 0.0 else -abs(ahead) / left
+    force = way * most * share
+    if share < 1.0:
+        stuck = 1.0 if abs(gain) < whole else 0.0
+        after = 0.5 * gain / ease if stuck > 0.0 else most if gain > 0.0 else -most if gain < 0.0 else 0.0
+        force += (1.0 - share) * after
+    if force * (slip - ease * force) < 0.0:
+        force = slip / ease if slip * force > 0.0 else 0.0
+    return float(force), stuck
 
 
 @part()

@@ -60,7 +60,7 @@ def drift(t: float, feet: Feet) -> None:
 def see(i: int, x: float, edge: float, length: float, v: float, half: float, line: Line, feet: Feet) -> None:
     """What point i sees of the surface under x, of its material there: speed along, height and rate, slope.
 
-    `edge` and `length` are those of its piece, `v` is the speed of its slider.
+    `edge` and `length` are those of its piece, `v` is how fast its place goes along.
     """
     touch, state, foot = feet.touch, feet.state, feet.foot[i]
     image, face, arm, inset = feet.points[i, IMAGE], feet.points[i, FACE], feet.points[i, ARM], feet.points[i, INSET]
@@ -172,6 +172,12 @@ def stored(dt: float, feet: Feet) -> None:
         depth = feet.touch[i, DEPTH] + 0.5 * dt * feet.points[i, FACE] * (feet.touch[i, LIFT] - climb)
         if depth > 0.0:
             feet.sums[feet.owner[i], STORED] += 0.5 * feet.points[i, STIFF] * depth * depth
+
+
+@part()
+def gone(i: int, feet: Feet) -> float:
+    """How fast the place of point i goes along the beam, m/s: with its slider, unless that is kept where it is."""
+    return float(feet.body[feet.owner[i], V] * feet.riders[feet.owner[i], FREE])
 
 
 @part()

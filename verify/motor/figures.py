@@ -30,7 +30,6 @@ from verify.motor.settling import (
     rows,
     spread_of,
     told_by_balance,
-    turned_late,
 )
 from verify.patience import VARIABLE, check_work, waited_for
 from verify.slider import Slider
@@ -87,9 +86,6 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     """Until then."""
     window: int
     """Periods, the last of these, of which these are means."""
-    turned: float = 0.0
-    """Newton, by which the force may be off besides, since friction of a point that the beam feels, or that lands hard,
-    turns round with the steps: 2 mu N_i over their number in a period."""
     unsettled: tuple[Reading, ...]
     """What has not settled: its spread is more than a hundredth of mu N, of N, of 1, of mu N times the larger speed."""
 
@@ -162,10 +158,10 @@ def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int
         presses = max(found.normal_force, case.slider.normal_force)
         agree = found.spread <= SETTLED * case.slider.mu * presses and off <= BALANCED * presses
         if agree and not found.unsettled:
-            return replace(found, turned=turned_late(run)), run
+            return found, run
     assert run is not None
     spread = max(found.spread, case.slider.mu * found.normal_spread)  # two blocks in flight agree
-    return replace(found, spread=spread, unsettled=READINGS, turned=turned_late(run)), run
+    return replace(found, spread=spread, unsettled=READINGS), run
 
 
 def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpeed, MotorRun]:
@@ -174,8 +170,7 @@ def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpe
     each = rows(run)
     spreads = spread_of(each, missed(case.slider, before.state, run), told_by_balance(case.slider))
     means = Means(*map(float, each.mean(axis=0)))
-    after = _found(case, found.speed, means, spreads, 2 * found.periods, found.periods)
-    return replace(after, turned=turned_late(run)), run
+    return _found(case, found.speed, means, spreads, 2 * found.periods, found.periods), run
 
 
 def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | None], MotorRun]:

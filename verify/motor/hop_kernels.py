@@ -1,7 +1,7 @@
 """The compiled hard slider: a point that flies in parabolas, lands with restitution, and rides until it leaves again.
 
 On a steady beam that does not feel it, so that the surface is known at every instant: landings and leavings are found
-by halving, wherever in a step they fall.
+by halving, wherever in a step they fall. So is where friction turns round.
 """
 
 import numpy as np
@@ -60,15 +60,18 @@ BLOWS = 10_000
 """In a step, at most; a bounce that dies away has far fewer."""
 SETTLED = 1e-6
 """Of a step: a bounce that lasts no longer is a rest."""
+ALIKE = 1e-9
+"""Of the speeds at hand: a slip that is no more than that is none."""
 
 
 @part()
 def _under(t: float, x: float, v: float, surface: Surface, half: float, line: Line, feet: Feet) -> float:
     """The surface under x at a time: its height, NaN off the beam; sets its speed, its slope and how fast it rises.
 
-    Its acceleration across, as a point that rides on it has it, goes to `kick`: of second order in the wave.
+    Its acceleration across, as a point that rides on it has it, goes to `kick`: of second order in the wave. One that
+    is kept at its place goes along no slope, whatever its speed v.
     """
-    touch, piece = feet.touch, find_piece(surface.edges, x, feet.piece[0])
+    touch, piece, v = feet.touch, find_piece(surface.edges, x, feet.piece[0]), v * feet.riders[0, FREE]
     if piece < 0:
         return np.nan
     feet.piece[0] = piece
@@ -192,6 +195,45 @@ def _lasts(
 
 
 @part()
+def _ahead(
+    t: float, s: float, way: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet
+) -> float:
+    """How far the surface is ahead of the riding point, s seconds after t, which friction drags one way until then."""
+    light, v, force = feet.riders[0, INVERSE_MASS], feet.body[0, V], 0.0
+    if light > 0.0:
+        push = _pushed(t, 0.5 * s, surface, rubbing, hard, line, feet)
+        force = feet.riders[0, PULL] + way * feet.riders[0, MU] * hard.mass * (push if push > 0.0 else 0.0)
+    after = v + s * light * force
+    x = feet.body[0, X] + feet.riders[0, FREE] * 0.5 * (v + after) * s
+    _under(t + s, x, after, surface, rubbing.half, line, feet)
+    return float(feet.touch[0, SURFACE] - after)
+
+
+@part()
+def _slides(t: float, h: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, feet: Feet) -> float:
+    """For how long the riding point slides one way, at most h seconds, by halving: h where it begins with no slip."""
+    first = _ahead(t, 0.0, 0.0, surface, rubbing, hard, line, feet)
+    if abs(first) <= ALIKE * (abs(feet.touch[0, SURFACE]) + abs(feet.body[0, V])):
+        return h
+    way = 1.0 if first > 0.0 else -1.0
+    if way * _ahead(t, 0.5 * h, way, surface, rubbing, hard, line, feet) < 0.0:
+        low, high = 0.0, 0.5 * h
+    elif way * _ahead(t, h, way, surface, rubbing, hard, line, feet) < 0.0:
+        low, high = 0.5 * h, h
+    else:
+        return h
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if way * _ahead(t, middle, way, surface, rubbing, hard, line, feet) < 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@part()
 def _book_riding(s: float, mean: float, surface_mean: float, feet: Feet) -> None:
     """What s seconds of riding add to the sums along the beam, at these mean speeds of slider and surface."""
     sums, push, rub = feet.sums, feet.touch[0, PUSH], feet.touch[0, RUB]
@@ -246,7 +288,7 @@ def _move_riding(
 def _step(
     t: float, dt: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, before: Array, feet: Feet, log: Log
 ) -> bool:
-    """One step, cut wherever the point leaves or lands; whether it is still on the beam."""
+    """One step, cut where the point leaves or lands and where its friction turns; whether it is still on the beam."""
     done, x = 0.0, feet.body[0, X]
     origin = surface.drive.origin
     for _ in range(BLOWS):
@@ -256,9 +298,11 @@ def _step(
         riding = before[0, 0] > 0.0
         s = _lasts(riding, t + done, left, surface, rubbing, hard, line, feet)
         if riding:
+            turns = _slides(t + done, s, surface, rubbing, hard, line, feet) if rubbing.slope is None else s
+            leaves, s = s < left and turns >= s, turns
             if not _move_riding(t + done, s, surface, rubbing, hard, line, feet, rubbing.slope):
                 return False
-            if s < left:
+            if leaves:
                 before[0, 0] = -1.0
                 write(origin + t + done + s, LEAVES, 0, x, log.events, log.tally)
         else:

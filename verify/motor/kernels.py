@@ -8,7 +8,7 @@ from verify.motion.records import MOVING, STILL, Surface
 from verify.motion.surface_kernels import find_piece, rotate_half, set_factors
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
 from verify.motor.cross_kernels import cross
-from verify.motor.feet_kernels import drift, kick, place, press, see, stored
+from verify.motor.feet_kernels import drift, gone, kick, place, press, see, stored
 from verify.motor.logging_kernels import keep, note
 from verify.motor.records import (
     AFTER,
@@ -20,6 +20,7 @@ from verify.motor.records import (
     DONE,
     FACE,
     FREE,
+    GAINED,
     HEIGHT,
     HELD,
     IMAGE,
@@ -81,7 +82,7 @@ def _look(number: int, table: Array, edges: Array, half: float, line: Line, feet
         if line.stamp[piece] != number:
             draw(table, piece, line)
             line.stamp[piece] = number
-        see(i, x, edges[piece], edges[piece + 1] - edges[piece], feet.body[feet.owner[i], V], half, line, feet)
+        see(i, x, edges[piece], edges[piece + 1] - edges[piece], gone(i, feet), half, line, feet)
 
 
 @part()
@@ -137,11 +138,11 @@ def _rub_back(
     bear(dt, surface.edges, half, feet, beam)
     match(dt, surface.edges, half, feet, slope, beam)
     for i in range(feet.points.shape[0]):
+        piece = feet.piece[i]
+        along, across = moved(i, surface.edges[piece + 1] - surface.edges[piece], half, feet, beam)
+        feet.touch[i, SURFACE] += along
+        feet.touch[i, GAINED] = along
         if feet.touch[i, PUSH] > 0.0:
-            piece = feet.piece[i]
-            length = surface.edges[piece + 1] - surface.edges[piece]
-            along, across = moved(i, length, half, feet, beam)
-            feet.touch[i, SURFACE] += along
             feet.touch[i, LIFT] += feet.points[i, IMAGE] * across
             _close(i, across, feet)
             feet.sums[feet.owner[i], LIFTED] -= dt * feet.touch[i, RUB] * feet.touch[i, SURFACE]
@@ -253,7 +254,7 @@ def ride_given(
                 line.local[piece, STILL, d] = given.local[number, piece, STILL, d]
                 line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]
             length = given.edges[piece + 1] - given.edges[piece]
-            see(i, x, given.edges[piece], length, feet.body[feet.owner[i], V], rubbing.half, line, feet)
+            see(i, x, given.edges[piece], length, gone(i, feet), rubbing.half, line, feet)
             feet.touch[i, SURFACE] += given.along[number, piece]
         press(dt, feet, before)
         _rub(dt, feet, rubbing.slope, before)

@@ -48,8 +48,8 @@ KEPT_X, KEPT_V, KEPT_RUB, KEPT_PUSH, KEPT_TOUCHING, KEPT_STICKING, KEPT_RUBBED, 
 sums, over the interval that ends there."""
 STEP, SAMPLES, EVENTS = range(3)
 """Entries of `Log.tally`."""
-DONE, OFF_BEAM, NOT_FINITE, GONE = range(4)
-"""Why the loop came back. GONE: a hard slider that does not come down again within the run."""
+DONE, OFF_BEAM, NOT_FINITE = range(3)
+"""Why the loop came back."""
 STICKS, SLIPS, LANDS, LEAVES = 1.0, 2.0, 4.0, 5.0
 """Kinds of events."""
 EVENT_TIME, EVENT_KIND, EVENT_POINT, EVENT_X = range(4)

@@ -59,24 +59,6 @@ def missed(slider: "Slider", before: "MotorState", run: "MotorRun") -> float:
     return float(np.abs(masses * gained).sum()) / run.duration
 
 
-def turned_late(run: "MotorRun") -> float:
-    """By how much mean friction in a run sampled once a period may be off since it turns round with the steps, newton.
-
-    Coulomb's friction of a point jumps by 2 mu N_i: one step off, that is so much of the mean. Nought where the turn is
-    timed within the step, one-way on springs, and where the contact gives way along the surface.
-    """
-    slider, coupling = run.slider, run.coupling
-    assert slider is not None
-    contact = slider.contact
-    timed = contact is not None and not contact.hard and not (coupling is not None and coupling.two_way)
-    gives = contact is not None and any(contact.along(foot.length) for foot in slider.feet)
-    touching = len(run.point_offsets) * float(run.contact_share[1:].mean())
-    if timed or gives or slider.law != "coulomb" or not touching:
-        return 0.0
-    steps = run.statistics.steps / (len(run.times) - 1)
-    return 2.0 * slider.mu * float(run.normal_force[1:].mean()) / touching / steps
-
-
 def told_by_balance(slider: "Slider") -> bool:
     """Whether what presses on is a constant: no spring presses, and no second beam."""
     return not slider.preload_stiffness and not any(foot.mirrored for foot in slider.feet)

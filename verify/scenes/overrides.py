@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
+from verify.options import OF_THE_CHAIN
 from verify.slider import OF_ONE_LAW
 
 
@@ -16,10 +17,14 @@ def set_twice(overrides: Iterable[str]) -> list[str]:
 
 
 def forget_what_is_no_more(data: dict[str, Any], overrides: Iterable[str]) -> None:
-    """Leave out, in place, references of expectations that were set, and what a slider has of another law."""
+    """Leave out, in place, what belongs to what was set to something else.
+
+    That are references of expectations, what a slider has of another law, what a motor has of the nonlinear chain.
+    """
     keys = {text.partition("=")[0].strip() for text in overrides}
     _forget_references(data, keys)
     _forget_other_law(data, keys)
+    _forget_the_chain(data, keys)
 
 
 def _forget_references(data: dict[str, Any], keys: set[str]) -> None:
@@ -42,3 +47,13 @@ def _forget_other_law(data: dict[str, Any], keys: set[str]) -> None:
         for law, name in OF_ONE_LAW.items():
             if slider["law"] != law and f"slider.{name}" not in keys:
                 slider.pop(name, None)
+
+
+def _forget_the_chain(data: dict[str, Any], keys: set[str]) -> None:
+    """What a motor has of the nonlinear chain where that was set out of its models, unless it was set as well."""
+    motor = data.get("motor")
+    if "motor.models" not in keys or not isinstance(motor, dict) or not isinstance(motor["models"], list):
+        return
+    for name in OF_THE_CHAIN:
+        if "chain" not in motor["models"] and f"motor.{name}" not in keys:
+            motor.pop(name, None)

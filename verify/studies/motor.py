@@ -1,7 +1,7 @@
 """The motor of a scene: a slider that may leave the beam, held, free and from rest, on every field."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, get_args
 
 import msgspec
 from msgspec import Meta
@@ -11,7 +11,7 @@ from verify.errors import InputError, near_name
 from verify.models.catalogue import MODELS
 from verify.models.naming import Among
 from verify.motor.combine import CHAIN
-from verify.options import Links, Start
+from verify.options import OF_THE_CHAIN, Links, Start
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from verify.studies.told import Found
 
 STEPS_PER_PERIOD = 61
+SECONDS, PLACES = 0.02, 8
+"""Of the runs from rest, unless given."""
 PER_FIELD = 2
 """Steps of progress of one field: held, free."""
 FREE_RUNS = 3
@@ -54,38 +56,64 @@ class Motor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Ratio of every mode, in a steady field too; half the loss factor of the beam unless given."""
     steps_per_period: Annotated[int, Meta(ge=16, le=4096)] = STEPS_PER_PERIOD
     """At least; more where the contact is stiff."""
-    chain: float = 0.02
-    """Seconds from rest, undamped, of all fields beside the nonlinear chain, where `models` has it."""
+    chain: float | None = None
+    """Seconds from rest, undamped, of all fields beside the nonlinear chain of `models`; 0.02 unless given."""
     chain_force: float | None = None
     """Newton, of every force in those runs, with all that presses in proportion; the scene's unless given."""
-    links: tuple[Links, ...] = ("rigid", "stretching")
-    """Of that chain."""
-    places: Annotated[int, Meta(ge=2, le=64)] = 8
-    """Of one wavelength about the slider's own, at which it is put in those runs."""
+    links: tuple[Links, ...] | None = None
+    """Of that chain; rigid and stretching unless given."""
+    places: Annotated[int, Meta(ge=2, le=64)] | None = None
+    """Of one wavelength about the slider's own, at which it is put in those runs; 8 unless given."""
 
     def __post_init__(self) -> None:
         check_number("motor.soft_start_periods", self.soft_start_periods, "periods of the drive", at_least=0)
-        check_number("motor.chain", self.chain, "seconds", above=0, below=0.2)
-        if self.chain_force is not None:
-            check_number("motor.chain_force", self.chain_force, "newton", above=0)
+        self._check_chain()
         if self.modal_damping is not None:
             check_number("motor.modal_damping", self.modal_damping, "ratio", at_least=0, below=1)
         for name in self.linear:
             if name not in MODELS or not MODELS[name].can("time_basis"):
                 known = (*Among("time_basis").names(), CHAIN)
                 raise InputError(f"motor.models has {name!r}, which is not known: {near_name(name, known)}")
-        for name, one in (("models", self.models), ("links", self.links)):
+        for name, one in (("models", self.models), ("links", self.chained)):
             if len(set(one)) < len(one):
                 raise InputError(f"motor.{name} = {list(one)!r} has one twice: give each once")
         if not self.linear:
             raise InputError("motor.models has the nonlinear chain alone: add a linear field to hold it against")
-        if CHAIN in self.models and not self.links:
-            raise InputError("motor.links = [] with the chain among motor.models: give rigid, stretching or both")
         if self.start == "steady" and self.soft_start_periods:
             raise InputError(
                 f"motor.soft_start_periods = {self.soft_start_periods!r} with start = 'steady': a steady beam has no "
                 "start, leave it out"
             )
+
+    def _check_chain(self) -> None:
+        """Raise InputError for what the runs from rest cannot have, and for what is of them where there are none."""
+        for name in OF_THE_CHAIN:
+            if CHAIN not in self.models and (value := getattr(self, name)) is not None:
+                given = list(value) if isinstance(value, tuple) else value
+                raise InputError(
+                    f"motor.{name} = {given!r} is of runs from rest beside the nonlinear chain, which motor.models "
+                    "has not: add 'chain' there, or leave it out"
+                )
+        check_number("motor.chain", self.seconds, "seconds", above=0, below=0.2)
+        if self.chain_force is not None:
+            check_number("motor.chain_force", self.chain_force, "newton", above=0)
+        if self.links == ():
+            raise InputError("motor.links = [] with the chain among motor.models: give rigid, stretching or both")
+
+    @property
+    def seconds(self) -> float:
+        """Of the runs from rest."""
+        return SECONDS if self.chain is None else self.chain
+
+    @property
+    def chained(self) -> tuple[Links, ...]:
+        """Links of the chain in those runs."""
+        return get_args(Links) if self.links is None else self.links
+
+    @property
+    def put(self) -> int:
+        """At how many places of a wavelength the slider is put in those runs."""
+        return PLACES if self.places is None else self.places
 
     @property
     def linear(self) -> tuple[str, ...]:
@@ -97,7 +125,7 @@ class Motor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """(field, links) of the runs from rest: every linear field, every chain; none without a chain."""
         if CHAIN not in self.models:
             return ()
-        return (*((name, "rigid") for name in self.linear), *((CHAIN, links) for links in self.links))
+        return (*((name, "rigid") for name in self.linear), *((CHAIN, links) for links in self.chained))
 
     def sized(self, model: str) -> int | None:
         """Segments or elements; None of a field without."""
@@ -174,7 +202,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         points = sum(foot.points * (2 if foot.mirrored else 1) for foot in scene.slider.feet)
         rest = ""
         if CHAIN in asked.models:
-            rest = f"; from rest over {asked.chain:g} s on {' and '.join(asked.links)} links beside them"
+            rest = f"; from rest over {asked.seconds:g} s on {' and '.join(asked.chained)} links beside them"
         return (
             f"{points} contact point{'s' * (points > 1)} on {titles}: {asked.speeds} held speeds, {asked.periods} "
             f"periods free{rest}"
@@ -186,7 +214,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
 
     def n_motions(self, asked: Motor, scene: "Scene") -> int:
         """Held speeds, a search for no load counted as one; free runs; those from rest; one period for the picture."""
-        return len(asked.linear) * (asked.speeds + 1 + FREE_RUNS) + RUNS * asked.places * len(asked.from_rest) + 1
+        return len(asked.linear) * (asked.speeds + 1 + FREE_RUNS) + RUNS * asked.put * len(asked.from_rest) + 1
 
     def kernels(self, asked: Motor, scene: "Scene") -> "Iterable[Call]":
         """The slider's, on a beam and on every chain that is asked for."""
@@ -195,7 +223,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
 
         assert scene.slider is not None
         yield from warm.on_beam(scene.slider)
-        for links in asked.links if CHAIN in asked.models else ():
+        for links in asked.chained if CHAIN in asked.models else ():
             yield from chain.rigid() if links == "rigid" else chain.stretching()
             yield from warm.on_chain(scene.slider.law)
 
@@ -238,6 +266,6 @@ def places_from_rest(asked: Motor, scene: "Scene") -> tuple[float, ...]:
 
     assert scene.drive is not None
     assert scene.slider is not None
-    x, n = scene.slider.start_on(scene.beam), asked.places
+    x, n = scene.slider.start_on(scene.beam), asked.put
     length = 2.0 * pi / abs(lossless_wavenumber(standing_at(scene.beam, x), scene.drive.frequency_hz))
     return tuple(x + (k - n // 2) / n * length for k in range(n))

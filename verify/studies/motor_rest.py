@@ -159,7 +159,7 @@ def rest_runs(scene: "Scene", asked: "Motor", way: float, progress: Progress) ->
     return FromRest(
         force=max(abs(force.amplitude) for force in case.forces),
         preload=case.slider.preload,
-        seconds=asked.chain,
+        seconds=asked.seconds,
         size=next(size for one, size in reversed(found) if one.model == CHAIN),
         places=places,
         fields=tuple(one for one, _ in found),
@@ -181,10 +181,10 @@ def _field(case: MotorCase, asked: "Motor", places: tuple[float, ...], crests: f
     """All starts of one field, and how nonlinear its chain is; `crests` is their speed, m/s, with its way."""
     halved = replace(case, steps_per_period=2 * case.steps_per_period)
     held = tuple(crests * k / (HELD - 1) for k in range(HELD))
-    there = _runs(case, asked.chain, places, held)
-    back = _runs(case.turned(), asked.chain, places, tuple(-speed for speed in held))
-    fine = _runs(halved, asked.chain, places, held[:1])
-    fine_back = _runs(halved.turned(), asked.chain, places, held[:1])
+    there = _runs(case, asked.seconds, places, held)
+    back = _runs(case.turned(), asked.seconds, places, tuple(-speed for speed in held))
+    fine = _runs(halved, asked.seconds, places, held[:1])
+    fine_back = _runs(halved.turned(), asked.seconds, places, held[:1])
     shown = there[0][len(places) // 2]
     found = RestField(
         model=case.model,

@@ -19,6 +19,8 @@ COARSE = 1e-3
 """Relative error of a swing on the springs, which steps leave."""
 SETTLED = 0.01
 """Relative: a free run whose speed is so near that without force has come to its end."""
+SAME = 1e-9
+"""Relative: figures so near each other are told as one, whatever blocks differ by."""
 NU = 0.4
 LAYER = 2.0 * (1.0 - NU) / (1.0 - 2.0 * NU)
 """Stiffness of a confined layer of that Poisson's ratio, across over along."""
@@ -89,6 +91,8 @@ def _stall(one: "FieldFound") -> str:
     if one.shooting is None:
         return f"{held}; no motion that repeats itself after a period was found"
     apart = abs(one.shooting.force - one.stall.force)
+    if apart <= SAME * abs(one.stall.force):
+        return f"{held}, the same in the motion that repeats itself"
     said = "more than that" if apart > one.stall.spread else "no more than that"
     return (
         f"{held}, {1e3 * one.shooting.force:+.5g} mN in the motion that repeats itself: {1e3 * apart:.1g} mN apart, "
@@ -104,8 +108,6 @@ def _held_still(at: "AtSpeed") -> str:
             f"not settled after {at.periods} periods, {force} +- {spread} as a mean over the last {at.window} of them"
         )
     said = f"blocks differ by {spread}" if at.window == BLOCK else f"the last {at.window}, +- {spread}"
-    if at.turned:
-        said += f"; +- {1e3 * at.turned:.1g} mN since friction turns round with the steps, fewer with more of them"
     return f"{force} as a mean over periods ({said})"
 
 
