@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from verify import Beam, PointMass, PointSpring, Section, fem_beam, segment_model
+from verify import Beam, PointForce, PointMass, PointSpring, Section, fem_beam, segment_model
 from verify.models.eigen import lowest
 from verify.segments.links import build_chain, chain_pencil
 
@@ -66,3 +66,12 @@ def test_unequal_links_turn_freely_about_the_place_where_they_feel_their_spring(
     strain, mass = pencil.strain_matrix().toarray(), pencil.mass_matrix()
     known = eigh(strain.T @ (pencil.stiffness[:, None] * strain), mass, eigvals_only=True)[1:4]
     assert abs(lowest(pencil, 3).values / known - 1.0).max() < 1e-10
+
+
+@FACES
+def test_responses_summed_over_modes_are_those_of_each_frequency_on_soft_ground_too(face):
+    beam = bar(supports=("free", "free"), foundation=1e-2 * STIFFNESS / LENGTH**4)
+    x, hertz = np.linspace(0.0, LENGTH, 7), np.array([1.0, 5.0, 30.0, 90.0])
+    found = face.unit_responses(beam, [0.4], hertz, x, 60)[:, 0]
+    known = np.array([face.solve_harmonic(beam, PointForce(position=0.4), one, 60).deflection(x) for one in hertz])
+    assert (abs(found - known).max(axis=1) < 1e-8 * abs(known).max(axis=1)).all()
