@@ -1,6 +1,7 @@
 """Mode shapes on other people's meshes told what they are."""
 
 import json
+from pathlib import Path
 
 import meshio
 import numpy as np
@@ -107,6 +108,7 @@ def test_a_solid_mesh_is_averaged_over_its_cross_sections_and_other_motions_are_
     assert found["notes"][1:] == [
         "EigVec_2 bends it across its width, left out",
         "EigVec_6 leaves its middle line where it was, left out",
+        "no frequencies: no field data named after Hz or rad/s were read (a .vtu keeps them, a .vtk does not)",
     ]
     assert found["nearest"][0]["words"] == "the exact beam"
 
@@ -162,6 +164,61 @@ def test_frequencies_beside_are_gated(judged):
     assert gate["id"] == "within"
     off = found["shapes"][4]
     assert off["frequency_error"] == pytest.approx(off["frequency_hz"] / exact_frequency_hz(CANTILEVER, 5) - 1.0)
+
+
+def test_a_mode_given_twice_is_said_to_be_that_mode(judged):
+    x = np.linspace(0.0, CANTILEVER.length, 31)
+    first, second, third = mode_shapes(CANTILEVER, 3, x)
+    status, found = judged(line([first, second, -0.7 * second, third]))
+    assert status == 1
+    assert found["unlike"] == [{"name": "shape 3", "best_mac": pytest.approx(1.0, abs=1e-12), "again": 2}]
+    assert found["gates"][0]["reason"] == "shape 3 is like mode 2, which another shape is already (MAC 1.00)"
+
+
+@pytest.mark.parametrize("size", [0.6, 1.3])
+def test_sizes_of_another_normalisation_do_not_outweigh_an_exact_form(judged, size):
+    """Largest values of one, for instance, of a beam that weighs a few kilograms."""
+    x = np.linspace(0.0, CANTILEVER.length, 31)
+    _, found = judged(line(size * mode_shapes(CANTILEVER, 5, x)))
+    assert not found["sizes_compared"]
+    assert found["nearest"][0]["words"] == "the exact beam"
+    assert "In form nearest: the exact beam, which leaves rounding" in found["answer"]
+    assert any(note.startswith("sizes lie about those of mass-normalised shapes") for note in found["notes"])
+
+
+STRIP = load_scene("paper").beam
+
+
+@pytest.mark.parametrize(
+    ("modes", "places", "said"),
+    [
+        ((1, 2, 3, 4), 6, "6 places do not tell mode 3 from 7, nor mode 4 from 6: give more"),
+        ((1, 2, 3), 5, "5 places do not tell mode 2 from 6, nor mode 3 from 5: give more"),
+        ((1, 2, 3, 4), 31, ""),
+    ],
+)
+def test_modes_that_few_places_confuse_stand_in_order_and_are_named(judged, modes, places, said):
+    """sin(n pi x/L) and sin((2N - n) pi x/L) differ by their sign alone at N + 1 even places."""
+    x = np.linspace(0.0, STRIP.length, places)
+    mesh = line([(3.0 - n / 4) * np.sin(n * np.pi * x / STRIP.length) for n in modes], STRIP.length)
+    status, found = judged(mesh, scene="paper")
+    assert status == 0
+    assert not found["exchanged"]
+    assert said in found["answer"]
+    assert bool(said) == ("do not tell" in found["answer"])
+
+
+def test_frequencies_beside_each_other_s_shapes_are_said_to_fall(judged):
+    assert status_of(["export", "paper", "--what", "modes", "--count", "12", "--modes", "3", "--to", "m.vtu"]) == 0
+    second, third = map(repr, meshio.read("m.vtu").field_data["frequency_hz"][1:3].tolist())
+    text = Path("m.vtu").read_text(encoding="utf-8")
+    Path("m.vtu").write_text(text.replace(f"{second} {third}", f"{third} {second}"), encoding="utf-8")
+    status, found = judged("m.vtu", "--count", "12", scene="paper")
+    assert status == 1
+    assert [gate["passed"] for gate in found["gates"] if gate["id"] == "identified"] == [False]
+    assert found["notes"][-1].startswith("frequencies fall from mode 2 (83.0934 Hz) to mode 3 (36.9396 Hz): they stand")
+    assert "missing" not in found["answer"]
+    assert "none of the beam's bending modes" not in found["answer"]
 
 
 GOOD = np.sin(np.linspace(0.0, 1.3, 9)) ** 2

@@ -199,6 +199,21 @@ def test_a_section_without_sizes_is_said_to_be_a_strip():
     assert picture.said[0].endswith("; thickness as it is, of a section without sizes as a strip.")
 
 
+@pytest.mark.parametrize(
+    ("held", "said"),
+    [
+        ({"foundation": 700.0}, "as a strip; the ground below is not drawn."),
+        ({"tension": 90.0}, "as a strip; the axial force is not drawn."),
+        ({"foundation": 700.0, "tension": 90.0}, "as a strip; the ground below and the axial force are not drawn."),
+        ({}, "as a strip."),
+    ],
+)
+def test_what_holds_a_beam_and_is_not_drawn_is_said(held, said):
+    plain = {"length": 0.5, "bending_stiffness": 5.0, "mass_per_length": 0.2, "supports": ["free", "free"]}
+    picture = picture_of(scene_of(beam=plain | held), Asked(what="modes", mode=3, count=10))
+    assert picture.said[0].endswith(said)
+
+
 def test_thick_beams_stand_clear_of_each_other_and_of_words():
     picture = stepped(40, thickness=0.2, section=[])
     lower, upper = (coloured(picture, links=links)[0][..., 1] for links in (False, True))

@@ -30,6 +30,7 @@ FAR, MOST = 4, 500
 """Numbers in names beyond so many times the shapes are no mode numbers; and shapes that a file may have."""
 ACROSS = 0.5
 """Share of a shape's squares that has to lie across the thickness."""
+_UNHEARD = "no frequencies: no field data named after Hz or rad/s were read (a .vtu keeps them, a .vtk does not)"
 _HERTZ = re.compile(r"hz|hertz|freq", re.IGNORECASE)
 _RADIAN = re.compile(r"rad|omega", re.IGNORECASE)
 
@@ -77,7 +78,7 @@ def read_shapes_of_mesh(path: Path, length: float) -> Given:
         numbers=tuple(numbers[i] for i in chosen) if numbers else None,
         frequencies_hz=None if hertz is None else hertz[chosen],
         rounding=rounding,
-        notes=(_told(read, axes, len(stations), unit), *left_out),
+        notes=(_told(read, axes, len(stations), unit), *left_out, *([_UNHEARD] if hertz is None else [])),
     )
 
 

@@ -101,12 +101,13 @@ def _rigid_words(rigid: int, beam: Beam) -> Found:
 
 
 def _numbers(listed: Listed, kept: list[int], rigid: int) -> tuple[int, ...] | None:
-    """Mode numbers of what is kept; None where they are but its order."""
+    """Mode numbers of what is kept; None where they are but the order in which its frequencies rise."""
     if listed.numbers is None:
         return None
     shift = rigid if rigid and listed.numbers[0] == 1 else 0
     numbers = tuple(listed.numbers[i] - shift for i in kept)
-    return None if numbers == tuple(range(1, len(kept) + 1)) or len(kept) < listed.n - rigid else numbers
+    in_order = numbers == tuple(range(1, len(kept) + 1)) and bool((np.diff(listed.frequencies_hz[kept]) >= 0.0).all())
+    return None if in_order or len(kept) < listed.n - rigid else numbers
 
 
 def by_number(numbers: tuple[int, ...]) -> Pairs:

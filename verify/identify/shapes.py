@@ -5,6 +5,7 @@ of a shape is free of its scale: the least of |a s - e| / |e| over a, whose squa
 """
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import msgspec
 import numpy as np
@@ -16,7 +17,7 @@ from verify.identify.family import CHAIN, ELEMENTS
 from verify.identify.fitting import FLOOR
 from verify.identify.pairing import reference_shapes
 from verify.identify.reading import Listed, Shapes, check_shapes
-from verify.identify.shapes_told import Nearness, ShapeRow, ShapesJudged
+from verify.identify.shapes_told import ALIKE, ROUNDING, Nearness, Resembling, ShapeRow, ShapesJudged, Unlike
 from verify.identify.told import Compared
 from verify.judge.compare import LIKENESS, mac, node_weights, pair_modes
 from verify.models.arrays import Array, BoolArray, Indices
@@ -31,6 +32,12 @@ FLIPPED = 0.1
 """By how much the mean MAC has to rise for a beam to be taken as the other way round."""
 STRAIGHT = 1e-6
 """Of a shape: what a straight line may leave of a rigid motion."""
+IN_ORDER = 1e-6
+"""MAC that a mode of a shape's own place is worth more than the last: of modes that places do not tell apart."""
+UNTOLD = 0.05
+"""MAC by which a shape has to be more like its own mode than like another one."""
+FAR = 3
+"""Times a mode's number: beyond it nobody takes another for it."""
 
 
 class Given(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -62,8 +69,8 @@ class _Paired(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """(m,), from 0, rising."""
     likeness: Array
     """(m,), MAC."""
-    unlike: tuple[tuple[str, float], ...]
-    """Names of shapes that are no mode's, and their best MAC."""
+    unlike: tuple[Unlike, ...]
+    """Shapes that are no mode's, or one's that another shape is."""
 
 
 def judge_shapes(scene: Scene, given: Given, count: int | None, within: float | None) -> ShapesJudged:
@@ -73,28 +80,37 @@ def judge_shapes(scene: Scene, given: Given, count: int | None, within: float | 
     """
     check_shapes(Shapes(x=given.x, values=given.values), scene.beam.length, given.source)
     if within is not None and given.frequencies_hz is None:
-        raise InputError(f"within = {within!r} is for frequencies, and {given.source} has none: leave it out")
+        raise InputError(
+            f"within = {within!r} is for frequencies, and {given.source} gave none: leave it out, or write field data "
+            "named after Hz or rad/s into a .vtu"
+        )
     given, notes = _elastic(given, scene.beam)
     given, turned = _turned(given, scene.beam)
     exact = _exact(given, scene.beam, given.x)
     paired = _pair(given, exact)
     found = _of_frequencies(scene, given, paired, count, within)
-    scaled = _normalised(given, paired, exact)
     size = _size(found, count, given)
-    nearest = tuple(sorted(_nearness(scene.beam, given, paired, size, scaled, found), key=lambda one: one.error))
+    near = tuple(_nearness(scene.beam, given, paired, size, found))
+    like_normalised = _normalised(given, paired, exact)
+    scaled = like_normalised and _sizes_tell(near)
+    untold = () if scaled or not like_normalised else (_SIZES,)
     return ShapesJudged(
         scene=scene.name,
         source=given.source,
-        notes=(*given.notes, *notes, *turned),
+        notes=(*given.notes, *notes, *turned, *_falling(found), *untold),
         rows=tuple(_rows(given, paired, exact, found)),
         unlike=paired.unlike,
         exchanged=bool((np.diff(paired.entries) < 0).any()),
+        resembling=tuple(_resembling(scene.beam, given, paired)),
         n_points=len(given.x),
         count=size,
         normalised=scaled,
-        nearest=nearest,
+        nearest=tuple(sorted((one.by_size if scaled else one.by_form for one in near), key=lambda one: one.error)),
         compared=found,
     )
+
+
+_SIZES = "sizes lie about those of mass-normalised shapes and tell no model: forms alone are compared"
 
 
 def _weights(x: Array) -> Array:
@@ -149,17 +165,54 @@ def _likeness(given: Given, exact: Array) -> Array:
 
 
 def _pair(given: Given, exact: Array) -> _Paired:
-    """One exact mode for every shape that is like one. Raises InputError where none is."""
-    modes, likeness = pair_modes(_likeness(given, exact))
+    """One exact mode for every shape that is like one, in order where places do not tell. Raises InputError."""
+    every = _likeness(given, exact)
+    own = np.array(given.numbers or range(1, len(every) + 1)) - 1
+    apart = abs(np.arange(every.shape[1]) - own[:, None])
+    modes, _ = pair_modes(every - IN_ORDER * apart / max(apart.max(), 1))
+    likeness = every[np.arange(len(modes)), modes]
     like = likeness >= LIKENESS
     if not like.any():
         raise InputError(
-            f"{given.source}: no shape is like one of the beam's (best MAC {float(likeness.max()):.2f}): check the "
+            f"{given.source}: no shape is like one of the beam's (best MAC {float(every.max()):.2f}): check the "
             "scene's supports and which arrays are modes"
         )
     order = np.flatnonzero(like)[np.argsort(modes[like], kind="stable")]
-    unlike = tuple((given.names[i], float(likeness[i])) for i in np.flatnonzero(~like))
+    unlike = tuple(_unlike(given.names[i], every[i]) for i in np.flatnonzero(~like))
     return _Paired(entries=order, modes=modes[order], likeness=likeness[order], unlike=unlike)
+
+
+def _unlike(name: str, likeness: Array) -> Unlike:
+    """A shape that has no mode of its own, by its MAC with every exact one, (n_modes,)."""
+    best = int(likeness.argmax())
+    again = best + 1 if likeness[best] >= LIKENESS else None
+    return Unlike(name=name, best_mac=float(likeness[best]), again=again)
+
+
+def _resembling(beam: Beam, given: Given, paired: _Paired) -> Iterator[Resembling]:
+    """Which other modes the shapes are as much like, at places that are fewer than two in a half wave."""
+    highest, n_places = int(paired.modes.max()) + 1, len(given.x)
+    if n_places - 1 > 2 * highest:
+        return
+    kept = _kept(given, np.isin(np.arange(len(given.names)), paired.entries))
+    rows = np.argsort(np.argsort(paired.entries))
+    every = _likeness(kept, reference_shapes(beam, min(FAR * highest, 2 * n_places), given.x))[rows]
+    for row, mode, likeness in zip(every, paired.modes, paired.likeness, strict=True):
+        near = np.flatnonzero(row[: FAR * (int(mode) + 1)] > likeness - UNTOLD)
+        others = [int(other) + 1 for other in near if other != mode]
+        if others:
+            yield Resembling(mode=int(mode) + 1, others=tuple(others))
+
+
+def _falling(found: Compared | None) -> tuple[str, ...]:
+    """Where frequencies fall from a mode to the next, in words."""
+    told = [(row.mode, row.frequency_hz) for row in found.rows if row.mode is not None] if found else []
+    return tuple(
+        f"frequencies fall from mode {a} ({above:.6g} Hz) to mode {b} ({below:.6g} Hz): they stand beside each other's "
+        "shapes, or these modes change places in your model"
+        for (a, above), (b, below) in pairwise(sorted(told))
+        if below < above
+    )
 
 
 def _of_frequencies(
@@ -219,19 +272,45 @@ def _size(found: Compared | None, count: int | None, given: Given) -> int:
     return known or len(given.x) - 1
 
 
-def _nearness(
-    beam: Beam, given: Given, paired: _Paired, count: int, scaled: bool, found: Compared | None
-) -> Iterator[Nearness]:
+class _Near(msgspec.Struct, frozen=True, kw_only=True):
+    """How far all shapes lie from those of one model."""
+
+    by_form: Nearness
+    by_size: Nearness
+    """The same of shapes that have a size, as mass-normalised ones."""
+
+
+def _nearness(beam: Beam, given: Given, paired: _Paired, count: int, found: Compared | None) -> Iterator[_Near]:
     """How far all shapes lie from those of each model, root mean square over the modes."""
-    weights, error = _weights(given.x), _with_size if scaled else scale_free
+    weights, own = _weights(given.x), given.values[paired.entries]
     for words, size, shapes in _models(beam, given.x, int(paired.modes.max()) + 1, count, found):
         try:
-            theirs = shapes()
+            theirs = shapes()[paired.modes]
         except InputError:  # this beam, or so few parts, is none of its own
             continue
-        pairs = zip(given.values[paired.entries], theirs[paired.modes], strict=True)
-        errors = np.array([error(own, known, weights) for own, known in pairs])
-        yield Nearness(words=words, count=size, error=float(np.sqrt(np.mean(errors**2))))
+        form, with_size = (
+            Nearness(words=words, count=size, error=_mean_square(error, own, theirs, weights))
+            for error in (scale_free, _with_size)
+        )
+        yield _Near(by_form=form, by_size=with_size)
+
+
+def _mean_square(error: Callable[[Array, Array, Array], float], own: Array, theirs: Array, weights: Array) -> float:
+    """The root of the mean square of errors of shapes (k, n)."""
+    errors = np.array([error(one, other, weights) for one, other in zip(own, theirs, strict=True)])
+    return float(np.sqrt(np.mean(errors**2)))
+
+
+def _sizes_tell(near: tuple[_Near, ...]) -> bool:
+    """Whether sizes tell models apart: the nearest by size leaves less than models differ by, and is so in form too.
+
+    Shapes of another normalisation, by chance about as large, leave more in any model than one model in another.
+    """
+    if not near:
+        return False
+    sizes, forms = [one.by_size.error for one in near], [one.by_form.error for one in near]
+    best = min(sizes)
+    return best <= max(sizes) - best and forms[sizes.index(best)] <= max(ALIKE * min(forms), ROUNDING)
 
 
 def _models(

@@ -40,6 +40,32 @@ class Nearness(msgspec.Struct, frozen=True, kw_only=True):
     """Relative, root mean square over beam and modes."""
 
 
+class Unlike(msgspec.Struct, frozen=True, kw_only=True):
+    """A shape that has no mode of its own."""
+
+    name: str
+    best_mac: float
+    """With any exact mode."""
+    again: int | None
+    """The mode that it is like, from 1, and another shape more so, or before it."""
+
+    @property
+    def words(self) -> str:
+        """What is wrong with it."""
+        if self.again is not None:
+            return f"{self.name} is like mode {self.again}, which another shape is already (MAC {self.best_mac:.2f})"
+        return f"{self.name} is like no mode (best MAC {self.best_mac:.2f})"
+
+
+class Resembling(msgspec.Struct, frozen=True, kw_only=True):
+    """A mode that so few places do not tell from others."""
+
+    mode: int
+    """From 1."""
+    others: tuple[int, ...]
+    """Likewise."""
+
+
 class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
     """Mode shapes of somebody's, judged."""
 
@@ -48,10 +74,12 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
     notes: tuple[str, ...]
     """What was done with the mesh."""
     rows: tuple[ShapeRow, ...]
-    unlike: tuple[tuple[str, float], ...]
-    """Shapes that are no mode's, and their best MAC."""
+    unlike: tuple[Unlike, ...]
+    """Shapes that are no mode's, or one's that another shape is."""
     exchanged: bool
     """Whether shapes stand in another order than the modes."""
+    resembling: tuple[Resembling, ...]
+    """What the places leave open."""
     n_points: int
     """Places along the beam."""
     count: int
@@ -66,7 +94,7 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
     @property
     def gates(self) -> tuple[GateResult, ...]:
         """Whether every shape is a mode's, in their order; then those of the frequencies."""
-        wrong = [f"{name} is like no mode (best MAC {likeness:.2f})" for name, likeness in self.unlike]
+        wrong = [one.words for one in self.unlike]
         wrong += [f"shapes stand in another order: they are modes {self._order()}"] * self.exchanged
         return (_gate(len(wrong), "; ".join(wrong)), *(self.compared.gates if self.compared else ()))
 
@@ -89,9 +117,14 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
             f"{which or ', '.join(map(str, modes))}, "
         )
         off = f"the worst {percent(worst.error, sign=False)} off at mode {worst.mode} (MAC {worst.likeness:.6f})"
-        said += off if worst.error > ROUNDING else "each in form the exact one but for rounding"
+        said += off if worst.error > ROUNDING else f"{'each ' * (len(modes) > 1)}in form the exact one but for rounding"
         frequencies = f" By its frequencies: {self.compared.answer}" if self.compared else ""
-        return f"{said}. {self._nearest()}.{frequencies}"
+        return f"{said}. {self._open()}{self._nearest()}.{frequencies}"
+
+    def _open(self) -> str:
+        """What so few places do not tell apart."""
+        pairs = [f"mode {one.mode} from {' and '.join(map(str, one.others))}" for one in self.resembling]
+        return f"{self.n_points} places do not tell {', nor '.join(pairs)}: give more. " if pairs else ""
 
     def _nearest(self) -> str:
         if not self.nearest:
@@ -155,7 +188,8 @@ class ShapesJudged(Found, frozen=True, eq=False, kw_only=True):
             "answer": self.answer,
             "notes": list(self.notes),
             "shapes": msgspec.to_builtins(self.rows),
-            "unlike": [{"name": name, "best_mac": likeness} for name, likeness in self.unlike],
+            "unlike": msgspec.to_builtins(self.unlike),
+            "resembling": msgspec.to_builtins(self.resembling),
             "exchanged": self.exchanged,
             "places": self.n_points,
             "sizes_compared": self.normalised,

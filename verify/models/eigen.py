@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray
+from verify.models.arrays import Array, ComplexArray, Indices
 from verify.models.banded import band_of
 from verify.models.pencil import (
     DENSE_UNKNOWNS,
@@ -30,6 +30,8 @@ _LANCZOS = 1e-10
 _UNLIKE = 1e4
 """Of K_ii / M_ii, or of K_ii: between parts so unlike, graded or stepped, assembling drowns what is soft. Below, values
 of random steps were off by 2e-12 at most, at ten times as much by 4e-10."""
+_DROWNED = 1e-15
+"""Of a mode's strain energy: what rounding may have of it in an inverse."""
 _WHOLE = 32
 """Rows up to which a triangle is inverted at once."""
 _BYTES_PER_UNKNOWN = 2000
@@ -200,24 +202,61 @@ def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     """Vectors by LAPACK from L^T K^-1 L with M = L L^T and K^-1 through the mixed matrix, which takes any d.
 
     What is very stiff has next to nothing in it, where K would drown all else in its rounding. Rigid motions are
-    projected out, as for Lanczos.
+    projected out, as for Lanczos; so are, step by step, motions so slow that their answers' rounding drowns others.
     """
-    from scipy.linalg import cholesky, eigh, solve_triangular
+    from scipy.linalg import cholesky, solve_triangular
 
     mass = pencil.mass_matrix()
     mass = np.asarray(mass.toarray() if hasattr(mass, "toarray") else mass)
     lower = cholesky(mass, lower=True)
     mixed, free = mixed_matrix(pencil)
-    inertia = mass @ pencil.rigid
-    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
-    loads = np.zeros((mixed.shape[0], pencil.n))
+    factor, known, by_size = factorised(mixed), pencil.rigid, False
+    while (wanted := pencil.rigid_modes + n_modes - known.shape[1]) > 0:
+        flexibility = _flexibility(pencil, factor, free, lower, known)
+        softness, found = _softest(flexibility, wanted, by_size)
+        rounding = 0.5 * (flexibility - flexibility.T) @ found
+        vectors, unlike = np.split(solve_triangular(lower, np.hstack([found, rounding]), lower=True, trans="T"), 2, 1)
+        n_sure = max(_n_sure(pencil, unlike, softness), int(by_size))
+        by_size = not n_sure
+        known = np.hstack([known, vectors[:, :n_sure]])
+    return np.asarray(known[:, pencil.rigid_modes :])
+
+
+def _softest(flexibility: Array, wanted: int, by_size: bool) -> tuple[Array, Array]:
+    """(1/lambda, (wanted,), falling; vectors (n, wanted)) of an inverse (n, n) that rounding leaves unsymmetric.
+
+    `by_size` whatever its sign, which rounding may turn of the softest of all.
+    """
+    from scipy.linalg import eigh
+
+    n, symmetric = len(flexibility), 0.5 * (flexibility + flexibility.T)
+    if not by_size:
+        softness, found = eigh(symmetric, subset_by_index=(n - wanted, n - 1), driver="evr")
+        return softness[::-1], found[:, ::-1]
+    softness, found = eigh(symmetric)
+    first = np.argsort(-abs(softness))[:wanted]
+    return abs(softness[first]), found[:, first]
+
+
+def _flexibility(pencil: FactoredPencil, factor: Any, free: Indices, lower: Array, known: Array) -> Array:
+    """L^T K^-1 L, (n, n), without the part of motions (n, k) that are known."""
+    inertia = lower @ (lower.T @ known)
+    motions = np.linalg.solve(known.T @ inertia, known.T).T
+    loads = np.zeros((len(pencil.stiffness) + len(free), pencil.n))
     loads[-len(free) :] = (lower - inertia @ (motions.T @ lower))[free]
     answer = np.zeros((pencil.n, pencil.n))
-    answer[free] = factorised(mixed).solve(loads)[-len(free) :]
-    flexibility = lower.T @ (answer - motions @ (inertia.T @ answer))
-    symmetric = 0.5 * (flexibility + flexibility.T)
-    _, vectors = eigh(symmetric, subset_by_index=(pencil.n - n_modes, pencil.n - 1), driver="evr")
-    return np.asarray(solve_triangular(lower, vectors[:, ::-1], lower=True, trans="T"))
+    answer[free] = factor.solve(loads)[-len(free) :]
+    return np.asarray(lower.T @ (answer - motions @ (inertia.T @ answer)))
+
+
+def _n_sure(pencil: FactoredPencil, rounding: Array, softness: Array) -> int:
+    """How many of the first modes of K^-1, (k,) of `softness` 1/lambda, falling, its rounding leaves.
+
+    What breaks the symmetry of K^-1 is rounding, (n, k) in these modes; its strain energy over that of a mode is what
+    it adds to the mode's value.
+    """
+    drowned = abs(pencil.stiffness) @ pencil.strain(rounding) ** 2 > _DROWNED * softness
+    return int(drowned.argmax()) if drowned.any() else len(drowned)
 
 
 def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array | None]:

@@ -108,7 +108,7 @@ def picture_of_rows(
     words = stage.amplitude + drawn.bulge + LETTERS
     return Picture(
         title=title,
-        said=(f"{said}; {drawn.said}.",),
+        said=(f"{said}; {drawn.said}{_undrawn(scene.beam)}.",),
         notes=notes,
         solids=(*solids, *more),
         traces=tuple(traces),
@@ -118,6 +118,13 @@ def picture_of_rows(
         seconds=seconds,
         box=(-0.035, 1.035, -stage.apart - max(stage.amplitude + drawn.bulge, deepest), stage.apart + words + 0.02),
     )
+
+
+def _undrawn(beam: Beam) -> str:
+    """What holds a beam and stands in no picture, in words."""
+    there = {"the ground below": beam.foundation, "the axial force": beam.tension}
+    names = [name for name, size in there.items() if size]
+    return f"; {' and '.join(names)} {'is' if len(names) == 1 else 'are'} not drawn" if names else ""
 
 
 def _free_place(taken: list[float]) -> float:

@@ -64,7 +64,7 @@ def loaded_pencil(chain: Chain) -> FactoredPencil:
     strains = (chain.compliances[_jointed(chain)], np.ones(_n_slips(chain)))
     return FactoredPencil(
         n=n_unknowns(chain),
-        rigid=_rigid(chain),
+        rigid=_rigid(chain, placed),
         strain=lambda free: _strain(chain, placed, free),
         stiffness=np.concatenate([1.0 / strains[0], strains[1], placed.stiffness, _held_turns(chain)[1]]),
         strain_matrix=lambda: _strain_matrix(chain, placed),
@@ -384,12 +384,22 @@ def _weighed(chain: Chain, placed: _Placed, free: Array) -> Array:
     return np.asarray(total + masses @ felt**2 + rotary @ (placed.turned @ tilts) ** 2)
 
 
-def _rigid(chain: Chain) -> Array:
+def _rigid(chain: Chain, placed: _Placed) -> Array:
     """The motions that nothing resists, over the unknowns, (n, 0 to 2)."""
     x = chain.nodes / chain.unit
     left, right = chain.held
     found = np.zeros((n_unknowns(chain), len(chain.lines)))
     for column, (start, tilt) in enumerate(chain.lines):
-        found[: _n_free(chain), column] = (start / chain.unit + tilt * x)[int(left) : len(x) - right]
+        line = _unfelt(placed, start / chain.unit + tilt * x)
+        found[: _n_free(chain), column] = line[int(left) : len(x) - right]
         found[_n_free(chain) : _n_free(chain) + len(_turning(chain)), column] = tilt
     return found
+
+
+def _unfelt(placed: _Placed, line: Array) -> Array:
+    """A straight line (N + 1,) about the place of the beam's one spring, put where the chain itself feels none of it.
+
+    Among links of unequal lengths the weights of a place read a line a little beside it.
+    """
+    felt = np.asarray(placed.felt @ line)[placed.springs]
+    return line - (felt[0] if len(felt) else 0.0)

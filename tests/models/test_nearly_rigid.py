@@ -1,0 +1,77 @@
+"""Beams whose slowest motion is nearly rigid, a bar on foam or on two long springs: other modes keep their digits."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from verify import Beam, PointForce, PointMass, PointSpring, Section, fem_beam, segment_model
+from verify.models.eigen import lowest
+from verify.segments.links import build_chain, chain_pencil
+
+LENGTH, STIFFNESS, RHO_A = 1.3, 7.0, 0.2
+FACES = pytest.mark.parametrize("face", [fem_beam, segment_model], ids=["elements", "segments"])
+SOFT = pytest.mark.parametrize("softness", [5.0, 3e-2, 1e-4, 1e-7])
+"""Of what holds it, in EI/L^4: at 5 it bounces at a tenth of its first bending mode."""
+
+
+def bar(**more):
+    return Beam(length=LENGTH, bending_stiffness=STIFFNESS, mass_per_length=RHO_A, **more)
+
+
+@FACES
+@SOFT
+@pytest.mark.parametrize("supports", [("free", "free"), ("guided", "free"), ("free", "guided")], ids="-".join)
+def test_ground_of_any_softness_shifts_every_omega_squared_alike(face, softness, supports):
+    ground, rigid = softness * STIFFNESS / LENGTH**4, 2 if supports == ("free", "free") else 1
+    alone = face.solve_modes(bar(supports=supports), 4, 60).frequencies_hz
+    found = face.solve_modes(bar(supports=supports, foundation=ground), 4 + rigid, 60).frequencies_hz
+    expected = np.sqrt(np.append(np.zeros(rigid), alone**2) + ground / RHO_A / (2.0 * pi) ** 2)
+    assert abs(found / expected - 1.0).max() < 2e-11
+
+
+@FACES
+def test_soft_springs_add_to_every_omega_squared_what_their_places_move(face):
+    """Rayleigh's first order, whose second is the square of softness."""
+    stiffness, places = 1e-8 * STIFFNESS / LENGTH**3, np.array([0.2, 0.75]) * LENGTH
+    springs = tuple(PointSpring(position=float(x), stiffness=stiffness * (1 + i)) for i, x in enumerate(places))
+    alone = face.solve_modes(bar(supports=("free", "free")), 4, 60)
+    found = face.solve_modes(bar(supports=("free", "free"), spring=springs), 6, 60).frequencies_hz[2:]
+    moved = stiffness * alone.deflection(places) ** 2 @ [1.0, 2.0]
+    expected = np.sqrt(alone.frequencies_hz**2 + moved / (2.0 * pi) ** 2)
+    assert abs(found / expected - 1.0).max() < 1e-12
+
+
+UNEVEN = {
+    "graded": (bar(supports=("free", "free"), spring=(PointSpring(position=0.8, stiffness=30.0),)), 2.7),
+    "stepped": (
+        bar(
+            supports=("free", "free"),
+            section=(Section(length=0.1, bending_stiffness=9.0), Section(length=1.2)),
+            mass=(PointMass(position=LENGTH, mass=0.9),),
+            spring=(PointSpring(position=0.1, stiffness=90.0),),
+        ),
+        1.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", UNEVEN)
+def test_unequal_links_turn_freely_about_the_place_where_they_feel_their_spring(case):
+    beam, grading = UNEVEN[case]
+    chain = build_chain(beam, 17, grading=grading)
+    pencil = chain_pencil(chain)
+    assert abs(pencil.strain(pencil.rigid)).max() < 1e-12 * abs(pencil.rigid).max()
+    strain, mass = pencil.strain_matrix().toarray(), pencil.mass_matrix()
+    known = eigh(strain.T @ (pencil.stiffness[:, None] * strain), mass, eigvals_only=True)[1:4]
+    assert abs(lowest(pencil, 3).values / known - 1.0).max() < 1e-10
+
+
+@FACES
+def test_responses_summed_over_modes_are_those_of_each_frequency_on_soft_ground_too(face):
+    beam = bar(supports=("free", "free"), foundation=1e-2 * STIFFNESS / LENGTH**4)
+    x, hertz = np.linspace(0.0, LENGTH, 7), np.array([1.0, 5.0, 30.0, 90.0])
+    found = face.unit_responses(beam, [0.4], hertz, x, 60)[:, 0]
+    known = np.array([face.solve_harmonic(beam, PointForce(position=0.4), one, 60).deflection(x) for one in hertz])
+    assert (abs(found - known).max(axis=1) < 1e-8 * abs(known).max(axis=1)).all()
