@@ -1,7 +1,7 @@
 """Faults that rows of bodies on links, stacks, coils and of refusals by every verb have to find."""
 
 import numpy as np
-from faults.stress import unchecked
+from faults.stress import limitless, unchecked
 from msgspec.structs import replace
 
 from verify.chain import modes as chain_modes
@@ -12,6 +12,7 @@ from verify.chain.system import Rotation
 from verify.contact import landing
 from verify.elements import shear
 from verify.elements import stacks as element_stacks
+from verify.exact import error_laws
 from verify.exact import modes as exact_modes
 from verify.judge import bracket, sizing, variants
 from verify.models import driven_pencil, eigen, fields
@@ -20,7 +21,7 @@ from verify.motion import simulate, step_size, surface, validity
 from verify.segments import attached, carried, loaded
 from verify.segments import linear as segment_linear
 from verify.segments import stacks as segment_stacks
-from verify.waves import absorber, devices, imposed, operating_point, poles
+from verify.waves import absorber, best_phase, devices, imposed, operating_point, poles
 from verify.waves import measures as wave_measures
 
 
@@ -191,6 +192,11 @@ def ends_unsaid(patch):
     patch.setattr(operating_point, "edge_note", lambda *given: "")
 
 
+def phases_that_keep_a_reflection_alone(patch):
+    true = best_phase.stationary
+    patch.setattr(best_phase, "stationary", lambda *given: 0.0 * true(*given))
+
+
 def a_dashpot_too_stiff(patch):
     true = absorber.best_dashpot
     patch.setattr(absorber, "best_dashpot", lambda end: (1.1 * true(end)[0], true(end)[1]))
@@ -268,6 +274,9 @@ FAULTS = {
         sizes_of_one_part_more: {"sizes-side-by-side"},
         ends_unsaid: {"searches-that-end"},
         a_dashpot_too_stiff: {"absorbers"},
+        phases_that_keep_a_reflection_alone: {"phases-tried"},
+        limitless(error_laws, "_HERMITE_HUMP", 2.975618): {"where-errors-turn"},
+        limitless(devices, "_ASIDE", 0.0): {"devices-at-turning-ends"},
         a_loss_factor_of_half: {"damping-as-told"},
         margins_of_the_mode_above: {"margins-of-runs"},
         fields_estimated_by_half: {"estimates-as-measured"},

@@ -17,7 +17,9 @@ from verify.stress.kind import Floor, Row
 
 # --- Phases between two drives ----------------------------------------------------------------------------------------
 
-FORWARD = np.array([[0.9, 0.4j], [0.3 - 0.2j, 0.8], [0.1, 0.7 + 0.6j], [1.1j, 1.0], [0.5, 0.0], [0.0, 0.0], [0.4, 0.6j]])
+FORWARD = np.array(
+    [[0.9, 0.4j], [0.3 - 0.2j, 0.8], [0.1, 0.7 + 0.6j], [1.1j, 1.0], [0.5, 0.0], [0.0, 0.0], [0.4, 0.6j]]
+)
 BACKWARD = np.array([[0.2j, 0.7], [0.9, -0.5j], [0.8, 0.3], [0.6, 0.2j], [0.2j, 0.9], [0.7, 0.3], [0.5, 0.48j]])
 """Of the first and of the second drive, a row each: one silent forward, one forward at all, one with equal crosses."""
 WITHIN = (-2.2, 0.9)
@@ -63,7 +65,7 @@ def _best_phases(forward: ComplexArray, backward: ComplexArray, limit: float) ->
             turns = _roots(
                 lambda phase, one=one, other=other: squares(phase)[2 + one] - limit**2 * squares(phase)[2 + other]  # type: ignore[misc]
             )
-            found += sorted(turns, key=lambda phase: abs(squares(phase)[one] - limit**2 * squares(phase)[other]))[:1]  # noqa: B023
+            found += sorted(turns, key=lambda phase: abs(squares(phase)[one] - limit**2 * squares(phase)[other]))[:1]
     return found
 
 
@@ -110,10 +112,11 @@ def turns_error(clamped: float) -> float:
 
 TURNED = replace(PLAIN, supports=("pinned", "pinned"))
 PUSHED = (PointForce(position=0.23, amplitude=1.4, phase_deg=-35.0), PointForce(position=0.47, phase_deg=80.0))
+STOPS = [*PLACES.tolist(), *(force.position for force in PUSHED)]
 
 
 def turned_ends_error(hertz: float) -> float:
-    """Of fields with devices against turning at both pinned ends, against states.
+    """Of fields with devices against turning at both pinned ends, or with one that pushes alone, against states.
 
     At 0 a device alone, undamped, where a spring of EI k in its place would make a resonance: one that the reading by
     three springs tries first.
@@ -126,18 +129,20 @@ def turned_ends_error(hertz: float) -> float:
     devices = (first, last) if hertz else (Device(position=0.0, rotational=0.7),)
     beam, hertz = (replace(TURNED, loss_factor=0.004), hertz) if hertz else (TURNED, _sprung_resonance())
     omega = 2.0 * pi * hertz
-    resists = {
-        one.position: (
-            0.0j,
-            one.rotational - omega**2 * one.rotary_inertia + 1j * omega * one.rotational_dashpot,
-        )
-        for one in devices
-    }
-    states = States(beam, "euler-bernoulli", omega**2, [*PLACES, *(force.position for force in PUSHED)], resists)
-    under = states.under(PUSHED)
-    exact = np.array([states.read(under, x, 0) for x in PLACES.tolist()])
-    found = field_with_devices(solve_harmonic, beam, PUSHED, hertz, devices).shapes(PLACES, 0)
-    return float(abs(found - exact).max() / abs(exact).max())
+    turning = [one.rotational - omega**2 * one.rotary_inertia + 1j * omega * one.rotational_dashpot for one in devices]
+    resists = {one.position: (0.0j, stiffness) for one, stiffness in zip(devices, turning, strict=True)}
+    pushing = Device(position=PUSHED[1].position, amplitude=PUSHED[1].amplitude, phase_deg=PUSHED[1].phase_deg)
+    pairs = (
+        (field_with_devices(solve_harmonic, beam, PUSHED, hertz, devices), resists),
+        (field_with_devices(solve_harmonic, beam, PUSHED[:1], hertz, pushing), {}),
+    )
+    worst = 0.0
+    for found, resisted in pairs:
+        states = States(beam, "euler-bernoulli", omega**2, STOPS, resisted)
+        under = states.under(PUSHED)
+        exact = np.array([states.read(under, x, 0) for x in PLACES.tolist()])
+        worst = max(worst, float(abs(found.shapes(PLACES, 0) - exact).max() / abs(exact).max()))
+    return worst
 
 
 def _sprung_resonance() -> float:
@@ -176,7 +181,19 @@ def absorbers_error(hertz: float) -> float:
         resistance, left = best_dashpot(end)
         around = [alone.left(complex(part * resistance), turning) for part in (0.9, 1.0, 1.1)]
         worst = max(worst, abs(left - around[1]), around[1] - min(*around, alone.left(0.0j, turning)))
+        if not eta:
+            worst = max(worst, *(abs(each / end.matched - 1.0) for each in _matched(hertz, distance, support, turning)))
     return worst
+
+
+def _matched(hertz: float, distance: float, support: str, turning: bool) -> list[complex]:
+    """Impedances of the devices that match near the left end and near the right one, of two unlike ends."""
+    from verify.waves.absorber import matched_device
+
+    other, omega = "guided" if support == "pinned" else "pinned", 2.0 * pi * hertz
+    sides = ((held(support, other), distance), (held(other, support), STRIP.length - distance))
+    found = [matched_device(beam, hertz, at, turning=turning) for beam, at in sides]
+    return [one.turning_impedance(omega) if turning else one.impedance(omega) for one in found]
 
 
 class _Alone:
@@ -238,7 +255,7 @@ ROWS: tuple[Row, ...] = (
     ),
     Floor(
         id="devices-at-turning-ends",
-        title="The exact field with devices against turning at its ends, also where the first spring tried resonates (0)",
+        title="The exact field with devices against turning at its ends, also where a spring tried resonates (0)",
         why="waves/devices.py: three springs say what any device does, losing four digits.",
         along="Hz",
         at=(0.0, 53.0, 710.0),
@@ -246,7 +263,7 @@ ROWS: tuple[Row, ...] = (
         error=turned_ends_error,
     ),
     Floor(
-        id="absorbers-before-all-ends",
+        id="absorbers",
         title="What devices reflect before all ends, with loss and without, and the best, against both spans at once",
         why="waves/absorber.py: closed forms, to rounding over a device's own reflection.",
         along="Hz",

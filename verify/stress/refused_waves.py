@@ -38,6 +38,11 @@ def window(*ends: float, on: Beam = STRIP) -> Ask:
     return lambda: check_window(on, [force.position for force in FORCES], HERTZ, ends)  # type: ignore[arg-type]
 
 
+def among(*ends: float) -> Ask:
+    """Beside three forces, the last of them given first."""
+    return lambda: check_window(STRIP, [0.7, 0.1, 0.6], 9100.0, ends)  # type: ignore[arg-type]
+
+
 def halves(*ends: float, on: Beam = STRIP, hertz: float = HERTZ) -> Ask:
     """Half wavelengths in a window."""
     return lambda: check_halves(on, hertz, ends)  # type: ignore[arg-type]
@@ -86,6 +91,7 @@ ROWS: tuple[Row, ...] = (
         Case("window = (0.2,)", window(0.2)),
         Case("window = [0.05, 0.5] leaves the span", window(0.05, 0.5), window(0.1, 0.6)),
         Case("window = [0.2, 0.61] leaves the span", window(0.2, 0.61)),
+        Case("window = [0.05, 0.09] leaves the span", among(0.05, 0.09), among(0.63, 0.69)),
         Case("window = [0.2, 0.5] holds a mass", window(0.2, 0.5, on=WITH_MASS), window(0.32, 0.5, on=WITH_MASS)),
         Case("window = [0.2, 0.5] holds a beam.section", window(0.2, 0.5, on=STEPPED), window(0.2, 0.39, on=STEPPED)),
         Case("window = [0.2, ", halves(0.2, 0.2 + 0.999 * HALF), halves(0.2, 0.2 + 1.001 * HALF)),
