@@ -192,6 +192,11 @@ def ends_unsaid(patch):
     patch.setattr(operating_point, "edge_note", lambda *given: "")
 
 
+def sizes_of_the_slowest_load(patch):
+    true = ride._sized
+    patch.setattr(ride, "_sized", lambda system, beam, slider, hertz: true(system, beam, slider, min(hertz, 41.0)))
+
+
 def phases_that_keep_a_reflection_alone(patch):
     true = best_phase.stationary
     patch.setattr(best_phase, "stationary", lambda *given: 0.0 * true(*given))
@@ -275,7 +280,8 @@ FAULTS = {
         ends_unsaid: {"searches-that-end"},
         a_dashpot_too_stiff: {"absorbers"},
         phases_that_keep_a_reflection_alone: {"phases-tried"},
-        limitless(error_laws, "_HERMITE_HUMP", 2.975618): {"where-errors-turn"},
+        limitless(error_laws, "MEAN_LIMIT", 2.18766): {"where-errors-turn"},
+        sizes_of_the_slowest_load: {"felt-at-the-worst-frequency"},
         limitless(devices, "_ASIDE", 0.0): {"devices-at-turning-ends"},
         a_loss_factor_of_half: {"damping-as-told"},
         margins_of_the_mode_above: {"margins-of-runs"},
