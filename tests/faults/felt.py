@@ -14,6 +14,7 @@ from verify.elements import shear
 from verify.elements import stacks as element_stacks
 from verify.exact import error_laws
 from verify.exact import modes as exact_modes
+from verify.identify import family, fitting, shapes
 from verify.judge import bracket, sizing, variants
 from verify.models import driven_pencil, eigen, fields
 from verify.models.modes import Modes
@@ -192,6 +193,19 @@ def ends_unsaid(patch):
     patch.setattr(operating_point, "edge_note", lambda *given: "")
 
 
+def lists_a_thousandth_of_a_millionth_high(patch):
+    true = family.frequencies_hz
+    patch.setattr(family, "frequencies_hz", lambda *given: (1.0 + 1e-9 * given[2]) * true(*given))
+
+
+def factors_never_looked_for(patch):
+    patch.setattr(fitting, "UNITS", {})
+
+
+def rigid_motions_judged(patch):
+    patch.setattr(shapes, "_elastic", lambda given, beam: (given, ()))
+
+
 def sizes_of_the_slowest_load(patch):
     true = ride._sized
     patch.setattr(ride, "_sized", lambda system, beam, slider, hertz: true(system, beam, slider, min(hertz, 41.0)))
@@ -281,6 +295,9 @@ FAULTS = {
         a_dashpot_too_stiff: {"absorbers"},
         phases_that_keep_a_reflection_alone: {"phases-tried"},
         limitless(error_laws, "MEAN_LIMIT", 2.18766): {"where-errors-turn"},
+        lists_a_thousandth_of_a_millionth_high: {"lists-of-members"},
+        factors_never_looked_for: {"lists-with-faults"},
+        rigid_motions_judged: {"shapes-of-sines"},
         sizes_of_the_slowest_load: {"felt-at-the-worst-frequency"},
         limitless(devices, "_ASIDE", 0.0): {"devices-at-turning-ends"},
         a_loss_factor_of_half: {"damping-as-told"},

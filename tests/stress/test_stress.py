@@ -61,6 +61,7 @@ def light():
         "stretched",
         "every",
         "best",
+        "listed",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
