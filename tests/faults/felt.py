@@ -1,7 +1,7 @@
 """Faults that rows of bodies on links, stacks, coils and of refusals by every verb have to find."""
 
 import numpy as np
-from faults.stress import unchecked
+from faults.stress import limitless, unchecked
 from msgspec.structs import replace
 
 from verify.chain import modes as chain_modes
@@ -12,7 +12,9 @@ from verify.chain.system import Rotation
 from verify.contact import landing
 from verify.elements import shear
 from verify.elements import stacks as element_stacks
+from verify.exact import error_laws
 from verify.exact import modes as exact_modes
+from verify.identify import family, fitting, shapes
 from verify.judge import bracket, sizing, variants
 from verify.models import driven_pencil, eigen, fields
 from verify.models.modes import Modes
@@ -20,7 +22,7 @@ from verify.motion import simulate, step_size, surface, validity
 from verify.segments import attached, carried, loaded
 from verify.segments import linear as segment_linear
 from verify.segments import stacks as segment_stacks
-from verify.waves import absorber, devices, imposed, operating_point, poles
+from verify.waves import absorber, best_phase, devices, imposed, operating_point, poles
 from verify.waves import measures as wave_measures
 
 
@@ -191,6 +193,29 @@ def ends_unsaid(patch):
     patch.setattr(operating_point, "edge_note", lambda *given: "")
 
 
+def lists_a_thousandth_of_a_millionth_high(patch):
+    true = family.frequencies_hz
+    patch.setattr(family, "frequencies_hz", lambda *given: (1.0 + 1e-9 * given[2]) * true(*given))
+
+
+def factors_never_looked_for(patch):
+    patch.setattr(fitting, "UNITS", {})
+
+
+def rigid_motions_judged(patch):
+    patch.setattr(shapes, "_elastic", lambda given, beam: (given, ()))
+
+
+def sizes_of_the_slowest_load(patch):
+    true = ride._sized
+    patch.setattr(ride, "_sized", lambda system, beam, slider, hertz: true(system, beam, slider, min(hertz, 41.0)))
+
+
+def phases_that_keep_a_reflection_alone(patch):
+    true = best_phase.stationary
+    patch.setattr(best_phase, "stationary", lambda *given: 0.0 * true(*given))
+
+
 def a_dashpot_too_stiff(patch):
     true = absorber.best_dashpot
     patch.setattr(absorber, "best_dashpot", lambda end: (1.1 * true(end)[0], true(end)[1]))
@@ -268,6 +293,13 @@ FAULTS = {
         sizes_of_one_part_more: {"sizes-side-by-side"},
         ends_unsaid: {"searches-that-end"},
         a_dashpot_too_stiff: {"absorbers"},
+        phases_that_keep_a_reflection_alone: {"phases-tried"},
+        limitless(error_laws, "MEAN_LIMIT", 2.18766): {"where-errors-turn"},
+        lists_a_thousandth_of_a_millionth_high: {"lists-of-members"},
+        factors_never_looked_for: {"lists-with-faults"},
+        rigid_motions_judged: {"shapes-of-sines"},
+        sizes_of_the_slowest_load: {"felt-at-the-worst-frequency"},
+        limitless(devices, "_ASIDE", 0.0): {"devices-at-turning-ends"},
         a_loss_factor_of_half: {"damping-as-told"},
         margins_of_the_mode_above: {"margins-of-runs"},
         fields_estimated_by_half: {"estimates-as-measured"},

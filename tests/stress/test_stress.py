@@ -60,6 +60,8 @@ def light():
         "slips",
         "stretched",
         "every",
+        "best",
+        "listed",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

@@ -151,6 +151,25 @@ def kicks_energy_error(kicks: float) -> float:
     return float(abs(total / total[0] - 1.0).max())
 
 
+def worst_frequency_error(n: float) -> float:
+    """Of how much a chain under two loads feels a slider, against the larger of both alone, either given first."""
+    from verify.chain.ride import coupling_on_chain
+    from verify.chain.system import LinkLoad, build_system
+    from verify.slider import Slider
+
+    link, slider = STRIP.length / n, Slider(mass=0.004, mu=0.3, position=0.37, coupling="one-way")
+    system = build_system(STRIP, int(n), joint_dashpot=0.01)
+    loads = [
+        LinkLoad(link=2, at=0.3 * link, force=(0.0, force), frequency_hz=hertz)
+        for force, hertz in ((0.7, 41.0), (0.2, 137.0))
+    ]
+    sizes = []
+    for acting in ([loads[0]], [loads[1]], loads, loads[::-1]):
+        found = coupling_on_chain(changed(system, loads=tuple(acting)), STRIP, slider)
+        sizes.append((found and found.relative_size) or 0.0)
+    return max(abs(one / max(sizes[:2]) - 1.0) for one in sizes[2:]) + float(sizes[0] == sizes[1])
+
+
 def _kicked() -> Iterator[Call]:
     """Rigid links in modes, and their energies."""
     yield from warm.accelerations()
@@ -236,6 +255,15 @@ ROWS: tuple[Row, ...] = (
         promise=2.0,
         error=kept_between_error,
         kernels=warm.rigid,
+    ),
+    Floor(
+        id="felt-at-the-worst-frequency",
+        title="How much a chain under two loads feels a slider, against the larger of both alone",
+        why="chain/ride.py: the larger of its loads' sizes, whichever is given first.",
+        along="links",
+        at=(9,),
+        promise=1e-12,
+        error=worst_frequency_error,
     ),
     Floor(
         id="energy-over-kicks",

@@ -19,8 +19,12 @@ ASKED = (0.1, 0.02, 0.01, 1e-3, 1e-5)
 
 @cache
 def pinned_error(model: str, mode: int, count: int) -> float:
-    """Relative, of a frequency between pins: a sine of turn mu from part to part, by the two equations of a node."""
-    mu = mode * pi / count
+    """Relative, of a frequency between pins."""
+    return turned_error(model, mode * pi / count)
+
+
+def turned_error(model: str, mu: float) -> float:
+    """Relative, of the frequency of a sine of turn mu from part to part, by the two equations of a node."""
     c, s = cos(mu), sin(mu)
     if model == "segment":
         return 2.0 * (1.0 - c) / mu**2 / sqrt(1.0 - (1.0 - c) / 3.0) - 1.0

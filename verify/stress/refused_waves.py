@@ -1,6 +1,6 @@
 """What no wave is measured in, what no device does, and contacts in closed form that do not exist."""
 
-from math import nan, pi
+from math import nan, pi, sqrt
 
 import numpy as np
 from msgspec.structs import replace
@@ -27,6 +27,10 @@ WITH_MASS = replace(STRIP, mass=(PointMass(position=0.3, mass=0.02),))
 TIMES, PLACES = np.linspace(0.0, 0.01, 101), np.linspace(0.1, 0.6, 21)
 SEEN = np.cos(2.0 * pi * HERTZ * TIMES[:, None] - 26.0 * PLACES)
 SPRING = Device(position=0.2, stiffness=3000.0)
+HALF = pi / sqrt(2.0 * pi * HERTZ / STRIP.wave_constant)
+"""Of a wavelength."""
+MOST_HERTZ = STRIP.wave_constant * (1e4 * pi / STRIP.length) ** 2 / (2.0 * pi)
+"""Of ten thousand half waves on the beam."""
 
 
 def window(*ends: float, on: Beam = STRIP) -> Ask:
@@ -34,9 +38,25 @@ def window(*ends: float, on: Beam = STRIP) -> Ask:
     return lambda: check_window(on, [force.position for force in FORCES], HERTZ, ends)  # type: ignore[arg-type]
 
 
+def among(*ends: float) -> Ask:
+    """Beside three forces, the last of them given first."""
+    return lambda: check_window(STRIP, [0.7, 0.1, 0.6], 9100.0, ends)  # type: ignore[arg-type]
+
+
 def halves(*ends: float, on: Beam = STRIP, hertz: float = HERTZ) -> Ask:
     """Half wavelengths in a window."""
     return lambda: check_halves(on, hertz, ends)  # type: ignore[arg-type]
+
+
+def ground(share: float) -> Beam:
+    """On which waves run from `HERTZ` on, at a share of 1."""
+    return replace(STRIP, foundation=share * STRIP.mass_per_length * (2.0 * pi * HERTZ) ** 2)
+
+
+def turned(at: float) -> Ask:
+    """A window with a device against turning."""
+    places = [force.position for force in FORCES]
+    return lambda: check_window(STRIP, places, HERTZ, (0.35, 0.5), (at,))
 
 
 def series(x: Array = PLACES, times: Array = TIMES, values: Array = SEEN, hertz: float = HERTZ) -> Ask:
@@ -71,15 +91,21 @@ ROWS: tuple[Row, ...] = (
         Case("window = (0.2,)", window(0.2)),
         Case("window = [0.05, 0.5] leaves the span", window(0.05, 0.5), window(0.1, 0.6)),
         Case("window = [0.2, 0.61] leaves the span", window(0.2, 0.61)),
+        Case("window = [0.05, 0.09] leaves the span", among(0.05, 0.09), among(0.63, 0.69)),
         Case("window = [0.2, 0.5] holds a mass", window(0.2, 0.5, on=WITH_MASS), window(0.32, 0.5, on=WITH_MASS)),
         Case("window = [0.2, 0.5] holds a beam.section", window(0.2, 0.5, on=STEPPED), window(0.2, 0.39, on=STEPPED)),
-        Case("window = [0.2, 0.21] is shorter", halves(0.2, 0.21), halves(0.2, 0.5)),
-        Case("window = [0.0, 0.73] spans", halves(0.0, 0.73, hertz=1e12), halves(0.0, 0.73, hertz=1e6)),
+        Case("window = [0.2, ", halves(0.2, 0.2 + 0.999 * HALF), halves(0.2, 0.2 + 1.001 * HALF)),
         Case(
-            "frequency_hz = 370: no wave runs",
-            halves(0.2, 0.5, on=replace(STRIP, foundation=1e8)),
-            halves(0.2, 0.5, on=replace(STRIP, foundation=1e3)),
+            "window = [0.0, 0.73] spans 1e+04 half",
+            halves(0.0, 0.73, hertz=1.0001 * MOST_HERTZ),
+            halves(0.0, 0.73, hertz=0.9999 * MOST_HERTZ),
         ),
+        Case("frequency_hz = 370: no wave runs below 370", halves(0.2, 0.5, on=ground(1.0 + 1e-9))),
+        Case("frequency_hz = 370: no wave runs below 370", halves(0.2, 0.5, on=ground(1.0))),
+        Case("window = [0.2, 0.5] is shorter", halves(0.2, 0.5, on=ground(1.0 - 1e-6))),
+        Case("window = [0.4, 0.6] holds a beam.section", window(0.4, 0.6, on=STEPPED), window(0.2, 0.4, on=STEPPED)),
+        Case("window = [0.35, 0.5] holds a device", turned(0.43), turned(0.35)),
+        Case("window = [0.35, 0.5] holds a device", turned(0.35 + 1e-9), turned(0.5)),
         Case("frequency_hz = -1.0", series(hertz=-1.0), series()),
         Case("times and values have to be finite", series(times=TIMES[::-1])),
         Case("times have the shape", series(times=TIMES[:5])),

@@ -86,7 +86,7 @@ def margins_error(parts: float) -> float:
     exact = found["analytic"]
     worst = abs(exact.lift_off / (omega**2 * float(abs(_sines(x, 0)).max()) / 9.81) - 1.0)
     worst = max(worst, abs(exact.nonlinearity / (kl**2 * 0.5 * mean) - 1.0))
-    worst = max(worst, abs((exact.model_form or 0.0) / (_thick(mode) / own[mode - 1] - 1.0) - 1.0))
+    worst = max(worst, abs((exact.model_form or 0.0) / (timoshenko_rate(mode) / own[mode - 1] - 1.0) - 1.0))
     for model, sign in (("segment", -1.0), ("fem", 1.0)):
         worst = max(worst, abs((found[model].discretisation or 0.0) / (sign * mu**4 / 1440.0) - 1.0))
     wrong = int(exact.discretisation is not None)
@@ -96,7 +96,7 @@ def margins_error(parts: float) -> float:
     return max(worst, float(wrong))
 
 
-def _thick(mode: int) -> float:
+def timoshenko_rate(mode: int) -> float:
     """Omega of a mode of the pinned strip by Timoshenko's theory: the lower root of a quadratic in omega^2."""
     own, k = STRIP.own, mode * pi / STRIP.length
     bent, line = own.bending_stiffness, own.mass_per_length

@@ -1,7 +1,7 @@
 """What the judge stands models side by side by: rules of a beam, brackets, sizes; drives at the edge of a search."""
 
 from functools import partial
-from math import pi, sqrt
+from math import pi
 
 import numpy as np
 from msgspec.structs import replace
@@ -131,22 +131,6 @@ def edges_error(phase: float) -> float:
     return float(wrong)
 
 
-def absorbers_error(hertz: float) -> float:
-    """Of what devices reflect: none where they match, least of all dashpots where the best one does."""
-    from verify.waves.absorber import best_dashpot, ending, matched_impedance, reflection
-
-    worst = 0.0
-    for support in ("pinned", "free"):
-        end = ending(STRIP, hertz, 0.031, support)
-        own = end.own
-        worst = max(worst, reflection(matched_impedance(STRIP, hertz, 0.031, support), end))
-        resistance, left = best_dashpot(end)
-        around = [abs(reflection(complex(resistance * part), end)) for part in (0.99, 1.0, 1.01)]
-        exact = sqrt(((resistance - own.real) ** 2 + own.imag**2) / ((resistance + own.real) ** 2 + own.imag**2))
-        worst = max(worst, abs(left - exact), abs(around[1] - exact), float(min(around) != around[1]))
-    return worst
-
-
 _row = partial(Floor, promise=0.5)
 ROWS: tuple[Row, ...] = (
     _row(
@@ -189,14 +173,5 @@ ROWS: tuple[Row, ...] = (
         along="degrees",
         at=(70.0,),
         error=edges_error,
-    ),
-    Floor(
-        id="absorbers",
-        title="Reflection of matched devices and of the best dashpot, by impedances",
-        why="waves/absorber.py: |Z - Z_b*| / |Z + Z_b|, least at |Z_b|.",
-        along="Hz",
-        at=(370.0, 9100.0),
-        promise=1e-12,
-        error=absorbers_error,
     ),
 )
