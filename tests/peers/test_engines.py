@@ -97,7 +97,7 @@ def test_an_engine_that_breaks_says_when_and_how_and_nothing_else_anywhere(
     assert all(words in row.did for words in SAYS[name])
     time = float(row.did.partition("at t = ")[2].partition(" s ")[0])
     assert row.until <= time < row.asked
-    assert row.steps > 0
+    assert row.steps > 0 or time == 0.0
     assert list(tmp_path.iterdir()) == []
     assert capfd.readouterr() == ("", "")
 

@@ -63,7 +63,7 @@ class Exudyn:
                 seconds=seconds,
                 cpu_s=cpu_s,
                 set_up_s=ready[0] - began,
-                steps=int(solver.it.currentStepIndex) - 1,
+                steps=_good(solver, raised),
                 broke=_broke(solver, steps, raised) if raised else "",
             )
 
@@ -206,11 +206,17 @@ def _solve(system: Any, settings: Any) -> str:
     return ""
 
 
+def _good(solver: Any, raised: str) -> int:
+    """Steps that it finished: its index is of the next one, and where it raised of the one after that."""
+    return int(solver.it.currentStepIndex) - (2 if raised else 1)
+
+
 def _broke(solver: Any, steps: int, raised: str) -> str:
     """When it gave up, and what its solver's records say."""
     it, conv = solver.it, solver.conv
     return (
         f"at t = {float(it.currentTime):.4g} s it raised {raised!r}: Newton's iteration stalled at a residual of "
-        f"{float(conv.residual):.2g} after it had cut its step to {float(it.currentStepSize):.2g} s in "
-        f"{int(it.currentStepIndex)} steps where {steps} were asked for, {int(it.newtonStepsCount)} iterations in all"
+        f"{float(conv.residual):.2g} after it had cut its step to {float(it.currentStepSize):.2g} s; "
+        f"{_good(solver, raised)} steps were finished where {steps} were asked for, "
+        f"{int(it.newtonStepsCount)} iterations in all"
     )
