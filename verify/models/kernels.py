@@ -234,9 +234,9 @@ FAST = {"reassoc", "contract", "nsz"}
 
 def _pointer_to(kind: Any) -> Any:
     """What turns an address into a pointer of which kernels read and write numbers of a kind by their places."""
-    pointer = types.CPointer(kind)
+    pointer = types.CPointer(kind)  # type: ignore[no-untyped-call]
 
-    @intrinsic  # type: ignore[untyped-decorator]
+    @intrinsic
     def at(typing: Any, address: Any) -> Any:
         def made(context: Any, builder: Any, signature: Any, given: Any) -> Any:
             return builder.inttoptr(given[0], context.get_value_type(pointer))

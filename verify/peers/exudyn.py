@@ -21,7 +21,6 @@ import numpy as np
 from verify.models.arrays import Array
 from verify.peers.case import SAMPLES, Case, PeerRun, Sled, clocks, count, near, since, surface_speed
 
-
 NEWTON = 1e-7
 """Of the residual, relative."""
 

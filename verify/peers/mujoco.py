@@ -117,7 +117,7 @@ class Mujoco:
 
 
 @cache
-def _push() -> tuple[Any, Array, Array]:
+def _push() -> tuple[Any, Any, Array]:
     """(the callback as a C function, the whole numbers and the numbers that it reads), made once in a process."""
     from verify.models.kernels import callback
     from verify.peers.push_kernels import EACH, FORCE, PLACES, push
