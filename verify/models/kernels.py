@@ -20,11 +20,12 @@ from re import compile as compile_pattern
 from time import perf_counter
 from typing import Any, NoReturn, TypeVar
 
-from numba import njit
+from numba import cfunc, njit, types
 from numba.core import event
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
 from numba.core.compiler_machinery import PassManager
+from numba.extending import intrinsic
 
 from verify.models import compiling, quick_entries, quick_typing
 
@@ -229,3 +230,33 @@ lean = partial(compiled, _nrt=False)
 """For kernels that allocate nothing: without numba's memory runtime no loop counts references, twice the speed."""
 FAST = {"reassoc", "contract", "nsz"}
 """What sums over modes may do with their order."""
+
+
+def _pointer_to(kind: Any) -> Any:
+    """What turns an address into a pointer of which kernels read and write numbers of a kind by their places."""
+    pointer = types.CPointer(kind)  # type: ignore[no-untyped-call]
+
+    @intrinsic
+    def at(typing: Any, address: Any) -> Any:
+        def made(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+            return builder.inttoptr(given[0], context.get_value_type(pointer))
+
+        return pointer(types.int64), made
+
+    return at
+
+
+numbers_at, whole_numbers_at = _pointer_to(types.float64), _pointer_to(types.int64)
+
+
+def callback(part: Callable[[Any, Any], None], whole: Any, numbers: Any) -> Any:
+    """A C function of two pointers, which it leaves alone: it calls a part on two arrays, which have to live on.
+
+    `whole` are 64-bit whole numbers, `numbers` floating-point ones of 64 bits.
+    """
+    at, to = whole.ctypes.data, numbers.ctypes.data
+
+    def call(first: Any, second: Any) -> None:
+        part(whole_numbers_at(at), numbers_at(to))
+
+    return cfunc(types.void(types.voidptr, types.voidptr))(call)

@@ -10,7 +10,7 @@ from verify.peers.references import explicit_limit
 
 OVER = 1.2
 """Of the explicit limit of the step."""
-IMPLICIT_STEP, PULL = 2e-5, 1e5
+IMPLICIT_STEP, PULL = 2e-5, 1e11
 """Seconds, and by how much forces grow, where an engine has no such limit."""
 
 

@@ -2,26 +2,34 @@
 
 Bending is in its x-z plane, about -y. The tendon is a soft equality as hard as the engine makes one; of its solvers
 Gauss and Seidel's is the quickest here, exact for one constraint, 1.7 to 2.6 times as fast as Newton's. A slider is a
-body on a slide joint, pushed in the control callback, which Runge-Kutta calls at every stage.
+body on a slide joint. Runge-Kutta calls the control callback at every stage: forces and friction are put on in it, a C
+function, as the engine's manual has it for callbacks, which takes half the time of one in Python at 49 links.
 
-What it does when it breaks: it puts the model back to its start, goes on from there and raises nothing; the time that
-has gone backwards and a counter of warnings tell. A run here stops there and says so.
+What it does when it breaks: unless its flag `autoreset` is off, it puts the model back to its start, goes on from there
+and raises nothing; the time that has gone backwards and a counter of warnings tell. A run here stops there and says so.
 """
 
+import ctypes
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
+from math import pi, radians
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from verify.errors import one_line
+from verify.errors import InputError, one_line
 from verify.models.arrays import Array
 from verify.peers import tree
-from verify.peers.case import Case, PeerRun, Sled, clocks, count, near, since, surface_speed
+from verify.peers.case import Case, PeerRun, Sled, clocks, count, since
 
 KEPT = 4
 """Compiled models of so many steps, each with room for its data."""
+MOST_FORCES = 64
+"""On one chain."""
+MARK = -1.2345678e-77
+"""No time that a run comes to."""
 
 
 def model_text(case: Case, step: float, sled: Sled | None = None) -> str:
@@ -77,66 +85,73 @@ class Mujoco:
 
     def prepare(self, case: Case, sled: Sled | None = None) -> Callable[[float, float], PeerRun]:
         """Models are compiled once for each step."""
-        return _prepared(case, sled, pushed=True)
+        import mujoco
 
-    def bare(self, case: Case, sled: Sled | None = None) -> Callable[[float, float], PeerRun]:
-        """The same steps with nothing called back, so without forces: what the engine alone costs."""
-        return _prepared(case, sled, pushed=False)
+        models: dict[float, tuple[Any, Any, float]] = {}
+
+        def run(step: float, end: float) -> PeerRun:
+            steps, step = count(step, end)
+            began = perf_counter()
+            if step not in models:
+                try:
+                    model = mujoco.MjModel.from_xml_string(model_text(case, step, sled))
+                except ValueError as error:
+                    refused = f"at t = 0 s, before its first step, it refused the model: {one_line(str(error))}"
+                    return tree.Track(case, sled, steps, step).run((0.0, 0.0), perf_counter() - began, 0, refused)
+                if len(models) >= KEPT:
+                    models.pop(next(iter(models)))
+                models[step] = model, mujoco.MjData(model), perf_counter() - began
+            model, data, set_up_s = models[step]
+            mujoco.mj_resetData(model, data)
+            if sled:
+                data.qvel[case.n] = sled.speed
+            track = tree.Track(case, sled, steps, step)
+            with _called_back(_pushing(case, sled, data)) as said:
+                ready = clocks()
+                taken = _march(model, data, track)
+                spent = since(ready)
+            broke = "" if taken == steps else _broke(data, (taken + 1) * step, said)
+            return track.run(spent, set_up_s, taken, broke)
+
+        return run
 
 
-def _pusher(case: Case, sled: Sled | None) -> Callable[[Any, Any], None]:
-    """The callback: forces on links, and friction on the slider."""
-    loads: dict[int, list[tuple[int, float]]] = {}
-    for k, force in enumerate(case.forces):
+@cache
+def _push() -> tuple[Any, Any, Array]:
+    """(the callback as a C function, the whole numbers and the numbers that it reads), made once in a process."""
+    from verify.models.kernels import callback
+    from verify.peers.push_kernels import EACH, FORCE, PLACES, push
+
+    places, numbers = np.zeros(PLACES, dtype=np.int64), np.zeros(FORCE + EACH * MOST_FORCES)
+    return callback(push, places, numbers), places, numbers
+
+
+def _pushing(case: Case, sled: Sled | None, data: Any) -> Any:
+    """The callback, told of the run that is about to begin (`push_kernels`). Raises InputError for too many forces."""
+    made, places, numbers = _push()
+    if len(case.forces) > MOST_FORCES:
+        raise InputError(f"force: MuJoCo's callback has room for {MOST_FORCES}, {len(case.forces)} are too many")
+    arrays = (data.qpos, data.qvel, data.xfrc_applied, data.qfrc_applied)
+    addresses = [_time_at(data), *(array.ctypes.data for array in arrays)]
+    places[:] = [*addresses, case.n, len(case.forces), sled is not None]
+    slider = (sled.friction, sled.slope, sled.half_thickness, sled.start) if sled else (0.0,) * 4
+    told = [2.0 * pi * case.frequency, case.link, *slider]
+    for force in case.forces:
         link, where = case.place(force.position)
-        loads.setdefault(link + 1, []).append((k, where - case.link / 2))
-    n = case.n
-
-    def push(model: Any, data: Any) -> None:
-        forces = case.now(data.time)
-        for body, own in loads.items():
-            data.xfrc_applied[body, 2] = sum(forces[k] for k, _ in own)
-            data.xfrc_applied[body, 4] = -sum(lever * forces[k] for k, lever in own)
-        if sled:
-            x = sled.start + data.qpos[n]
-            first = near(case, x) - 2
-            spins = np.cumsum(data.qvel[: first + 5])[first:].tolist()
-            data.qfrc_applied[n] = sled.force(data.qvel[n] - surface_speed(case, sled, spins, x, first))
-
-    return push
+        told += [link + 1, force.amplitude, radians(force.phase_deg), where - case.link / 2]
+    numbers[: len(told)] = told
+    return made.ctypes
 
 
-def _prepared(case: Case, sled: Sled | None, *, pushed: bool) -> Callable[[float, float], PeerRun]:
-    import mujoco
-
-    models: dict[float, tuple[Any, Any, float]] = {}
-    push = _pusher(case, sled) if pushed else None
-
-    def run(step: float, end: float) -> PeerRun:
-        steps, step = count(step, end)
-        began = perf_counter()
-        if step not in models:
-            try:
-                model = mujoco.MjModel.from_xml_string(model_text(case, step, sled))
-            except ValueError as error:
-                refused = f"at t = 0 s, before its first step, it refused the model: {one_line(str(error))}"
-                return tree.Track(case, sled, steps, step).run((0.0, 0.0), perf_counter() - began, 0, refused)
-            if len(models) >= KEPT:
-                models.pop(next(iter(models)))
-            models[step] = model, mujoco.MjData(model), perf_counter() - began
-        model, data, set_up_s = models[step]
-        mujoco.mj_resetData(model, data)
-        if sled:
-            data.qvel[case.n] = sled.speed
-        track = tree.Track(case, sled, steps, step)
-        with _called_back(push) as said:
-            ready = clocks()
-            taken = _march(model, data, track) if pushed else _at_once(model, data, track)
-            spent = since(ready)
-        broke = "" if taken == steps else _broke(data, (taken + 1) * step, said)
-        return track.run(spent, set_up_s, taken, broke)
-
-    return run
+def _time_at(data: Any) -> int:
+    """The address of the time, which lies before the energy. Raises AttributeError where it does not."""
+    address, before = int(data.energy.ctypes.data) - 8, data.time
+    data.time = MARK
+    found = ctypes.c_double.from_address(address).value
+    data.time = before
+    if found != MARK:
+        raise AttributeError("MuJoCo's time does not lie before its energy in MjData: another version is needed")
+    return address
 
 
 def _march(model: Any, data: Any, track: tree.Track) -> int:
@@ -153,19 +168,6 @@ def _march(model: Any, data: Any, track: tree.Track) -> int:
     return track.steps
 
 
-def _at_once(model: Any, data: Any, track: tree.Track) -> int:
-    """The same without coming back to Python between; the end alone is kept, and nothing where the clock went back."""
-    import mujoco
-
-    mujoco.mj_step(model, data, nstep=track.steps)
-    if data.time < (track.steps - 0.5) * track.step:
-        return 0
-    n = track.case.n
-    track.look = track.steps
-    track.keep(track.steps, data.qpos, *((data.qpos[n], data.qvel[n]) if track.sled else ()))
-    return track.steps
-
-
 def _broke(data: Any, t: float, said: list[str]) -> str:
     """That it went back to its start, when, and what its counters and its warning say."""
     counted = sum(int(warning.number) for warning in data.warning)
@@ -177,7 +179,7 @@ def _broke(data: Any, t: float, said: list[str]) -> str:
 
 
 @contextmanager
-def _called_back(push: Callable[[Any, Any], None] | None) -> Iterator[list[str]]:
+def _called_back(push: Any) -> Iterator[list[str]]:
     """The callback set for a while; what the engine warns of is kept, and not written to a file beside the caller."""
     import mujoco
 

@@ -1,6 +1,8 @@
-"""Pinocchio: revolute joints and a light carriage joined by its constrained dynamics; Runge-Kutta steps in Python.
+"""Pinocchio: revolute joints in a tree, whose far end is held by articulated-body solves; Runge-Kutta steps in Python.
 
-The engine gives accelerations and has no integrator for a loop: classical steps of order 4 are ours, of a slider too.
+One solve gives the accelerations of the open chain, another what a unit force on its far end adds: that force keeps the
+end on its line, in O(N), where the engine's own constrained dynamics factorises the whole mass matrix, in O(N^3). The
+engine has no integrator for a loop: classical steps of order 4 are ours, of a slider too.
 
 What it does when it breaks: beyond the explicit limit of the step numbers grow from step to step, and nothing is
 raised. A run here stops where a joint has turned by half a turn, or is no number, and says so.
@@ -15,13 +17,11 @@ from verify.models.arrays import Array
 from verify.peers import tree
 from verify.peers.case import Case, PeerRun, Sled, clocks, count, near, since, surface_speed
 
-LIGHT = 1e-3
-"""Of a link's mass: the carriage on which the far end rolls."""
 Rates = Callable[[float, Array, Array], Array]
 
 
-def _model(case: Case) -> tuple[Any, int, int, Any]:
-    """(model, its last hinge, its carriage, the place of the far end on the last link)."""
+def _model(case: Case) -> tuple[Any, int]:
+    """(the chain pinned at its near end and free at the other, its last hinge)."""
     import pinocchio as pin
 
     model, last = pin.Model(), 0
@@ -31,23 +31,20 @@ def _model(case: Case) -> tuple[Any, int, int, Any]:
         place = pin.SE3(np.eye(3), np.array([case.link if i else 0.0, 0.0, 0.0]))
         last = model.addJoint(last, pin.JointModelRZ(), place, f"hinge{i}")
         model.appendBodyToJoint(last, bar, pin.SE3.Identity())
-    far = pin.SE3(np.eye(3), np.array([case.length, 0.0, 0.0]))
-    carriage = model.addJoint(0, pin.JointModelPX(), far, "carriage")
-    light = pin.Inertia(LIGHT * case.mass, np.zeros(3), 1e-12 * np.eye(3))
-    model.appendBodyToJoint(carriage, light, pin.SE3.Identity())
-    return model, last, carriage, pin.SE3(np.eye(3), np.array([case.link, 0.0, 0.0]))
+    return model, last
 
 
 def matrices(case: Case) -> tuple[Array, Array]:
     """The engine's own mass (n, n) and closure (n,) over the joint angles; springs are not the engine's."""
     import pinocchio as pin
 
-    model, last, _, tip = _model(case)
+    model, last = _model(case)
+    tip = pin.SE3(np.eye(3), np.array([case.link, 0.0, 0.0]))
     frame = model.addFrame(pin.Frame("tip", last, 0, tip, pin.FrameType.OP_FRAME))
     data, still = model.createData(), np.zeros(model.nv)
-    upper = np.triu(pin.crba(model, data, still))[: case.n, : case.n]
+    upper = np.triu(pin.crba(model, data, still))
     pin.computeJointJacobians(model, data, still)
-    closure = pin.computeFrameJacobian(model, data, still, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)[1, : case.n]
+    closure = pin.computeFrameJacobian(model, data, still, frame, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)[1]
     return upper + np.triu(upper, 1).T, np.array(closure)
 
 
@@ -61,12 +58,12 @@ class Pinocchio:
 
     def prepare(self, case: Case, sled: Sled | None = None) -> Callable[[float, float], PeerRun]:
         """The model is made once."""
-        rates, size = _rates(case), case.n + 1
+        rates = _rates(case)
 
         def run(step: float, end: float) -> PeerRun:
             steps, step = count(step, end)
             track = tree.Track(case, sled, steps, step)
-            q, v = np.zeros(size + 1), np.zeros(size + 1)
+            q, v = np.zeros(case.n + 1), np.zeros(case.n + 1)
             if sled:
                 v[-1] = sled.speed
             ready = clocks()
@@ -78,34 +75,27 @@ class Pinocchio:
 
 
 def _rates(case: Case) -> Rates:
-    """(t, q, v) -> accelerations of hinges and carriage, (n + 1,)."""
+    """(t, q, v) -> accelerations of the hinges, (n,), of the chain whose far end stays on its line."""
     import pinocchio as pin
 
-    model, last, carriage, tip = _model(case)
-    data = model.createData()
-    closures, scratch = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
-    closure = pin.RigidConstraintModel(
-        pin.ContactType.CONTACT_3D, model, last, tip, carriage, pin.SE3.Identity(), pin.ReferenceFrame.LOCAL
-    )
-    closures.append(closure)
-    scratch.append(closure.createData())
-    settings = pin.ProximalSettings(1e-12, 1e-10, 10)
-    pin.initConstraintDynamics(model, data, closures, scratch)
-    springs = np.zeros(model.nv)
-    springs[1 : case.n] = case.spring
-    places = [case.place(force.position) for force in case.forces]
-
-    def levers(q: Array, link: int, where: float) -> Array:
-        """Derivatives of a point's y by the joint angles, (link + 1,)."""
-        reach = np.cos(np.cumsum(q[: link + 1]))
-        joints = np.concatenate([[0.0], np.cumsum(case.link * reach)])
-        return np.asarray(joints[link] + where * reach[-1] - joints[: link + 1])
+    model, _ = _model(case)
+    open_end, pushed_end, still = model.createData(), model.createData(), np.zeros(model.nv)
+    springs = np.append(0.0, np.full(model.nv - 1, -case.spring))
+    places = [(link, where / case.link) for link, where in (case.place(force.position) for force in case.forces)]
 
     def rates(t: float, q: Array, v: Array) -> Array:
-        torque = -springs * q
-        for (link, where), force in zip(places, case.now(t), strict=True):
-            torque[: link + 1] += force * levers(q, link, where)
-        return np.array(pin.constraintDynamics(model, data, q, v, torque, closures, scratch, settings))
+        angles = q.cumsum()
+        along = case.link * np.cos(angles)
+        ends = along.cumsum()
+        starts = ends - along
+        torque = springs * q
+        for (link, share), force in zip(places, case.now(t), strict=True):
+            torque[: link + 1] += force * (starts[link] + share * along[link] - starts[: link + 1])
+        levers = ends[-1] - starts
+        free = pin.aba(model, open_end, q, v, torque)
+        answer = pin.aba(model, pushed_end, q, still, levers)
+        inward = case.link * np.sin(angles) @ np.square(v.cumsum())
+        return np.asarray(free - (levers @ free - inward) / (levers @ answer) * answer)
 
     return rates
 
