@@ -21,7 +21,7 @@ _BEYOND = 2.0
 """Modes beyond the last that the grid goes: bodies and steps take them up or down."""
 _BENT = 0.2
 """Of how much closer modes lie the higher they are, at most."""
-_GRID = 2
+_GRID = 3
 """Points for each eigenvalue."""
 _NODES = (-2, -1, 0, 1, 2, 3)
 """Points of the grid about a mode between 0 and 1."""

@@ -6,7 +6,7 @@ judged: by residuals of the factored K, by the gaps between the values, and by a
 last, which finds a mode that was missed. What does not pass is left to who asks.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import msgspec
 import numpy as np
@@ -48,14 +48,6 @@ class PencilStack(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """V (n, k, n_beams) -> v^T M v, (k, n_beams), where M as one matrix would lose digits in it."""
 
 
-class Ground(msgspec.Struct, frozen=True, eq=False):
-    """K + tau M of a stack as its factors: regular where motions are rigid."""
-
-    tau: Array
-    """(n_beams,)."""
-    factors: Factors
-
-
 def lowest_of_each(stack: PencilStack, n_modes: int) -> tuple[Array, BoolArray]:
     """(the lowest elastic eigenvalues (n_modes, n_beams), which of the beams have settled (n_beams,)).
 
@@ -74,18 +66,18 @@ def judged(stack: PencilStack, vectors: Array, carried: Array, top: Array) -> tu
     value and the next.
     """
     tau = _LEVEL * top
-    ground = Ground(tau, factorised(stack.pencils, -tau[None]))
+    ground, above = (factorised(stack.pencils, shift[None]) for shift in (-tau, top))
     strains = stack.strain(vectors)
     squares = _over_unknowns(vectors, carried)
     masses = stack.masses(vectors) if stack.masses else squares
     forces = stack.springs[:, None] * strains
     values = _over_unknowns(forces, strains) / masses
     rest = stack.loads(forces) - values * carried
-    residuals = np.sqrt(ground.factors.energy(rest) / squares / (values + tau))
+    residuals = np.sqrt(ground.energy(rest) / squares / (values + tau))
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
-    sure = _sure(ground, values, residuals, top) & _alike(stack)
-    return values, sure & _counted(stack, ground, values, vectors / np.sqrt(squares), top)
+    sure = _sure(tau, values, residuals, top) & _alike(stack)
+    return values, sure & _counted(stack, above, values, vectors / np.sqrt(squares), np.minimum(top - values[-1], values[0] + tau))
 
 
 def _alike(stack: PencilStack) -> BoolArray:
@@ -100,34 +92,32 @@ def _over_unknowns(one: Array, other: Array) -> Array:
     return np.asarray(np.einsum("i...,i...->...", one, other))
 
 
-def _sure(ground: Ground, values: Array, residuals: Array, top: Array) -> BoolArray:
+def _sure(tau: Array, values: Array, residuals: Array, top: Array) -> BoolArray:
     """Whose values are eigenvalues to `_SURE`, each another one, (n_beams,), if none but they lie below `top`.
 
     With A = K + tau M, an eigenvalue of A^-1 M lies within its residual r, in the norm of A and relative, of that of
     every vector, and within r^2 over its distance to the others (Kato and Temple); in the norm of M^-1 the residual of
     short parts would be rounding alone. Values that lie apart so have eigenvalues of their own.
     """
-    lifted = ground.tau + np.concatenate([values, top[None]])
+    lifted = tau + np.concatenate([values, top[None]])
     steps = np.diff(lifted, axis=0) / lifted[1:]
-    gaps = np.minimum(steps, np.concatenate([values[:1] / ground.tau, steps[:-1]])) - residuals
+    gaps = np.minimum(steps, np.concatenate([values[:1] / tau, steps[:-1]])) - residuals
     sharp = residuals**2 <= _SURE * gaps * (values / lifted[:-1])
     return np.asarray((sharp & (gaps > _APART) & (gaps > 2.0 * residuals)).all(axis=0), dtype=bool)
 
 
-def _counted(stack: PencilStack, ground: Ground, values: Array, vectors: Array, top: Array) -> BoolArray:
-    """Whose eigenvalues below `top` are as many as `values`, by a margin that rounding leaves, (n_beams,).
+def _counted(stack: PencilStack, above: Factors, values: Array, vectors: Array, margin: Array) -> BoolArray:
+    """Whose eigenvalues below a place are as many as `values`, by a `margin` that rounding leaves, (n_beams,).
 
-    Vectors (n, k, n_beams) have v^T M v = 1: what rounding does to K moves an eigenvalue by as much as it does to the
-    energy of its vector, with the motions of bodies beside it.
+    `above` are the factors there. Vectors (n, k, n_beams) have v^T M v = 1: what rounding does to K moves an eigenvalue
+    by as much as it does to the energy of its vector, with the motions of bodies beside it.
     """
-    pencils, factors = stack.pencils, factorised(stack.pencils, top[None])
-    rows, grown = 2 * pencils.stiffness.shape[1] - 1 + 2 * len(pencils.held), factors.grown
-    beside = factors.roots[:, None] * np.einsum("irn,ikn->rkn", pencils.felt, vectors)
-    shares = np.einsum("in,ikn,ikn->kn", grown[: len(vectors)], vectors, vectors)
-    shares += np.einsum("rn,rkn,rkn->kn", grown[len(vectors) :], beside, beside)
-    moved = _CAUTION * rows * np.finfo(float).eps * shares.max(axis=0)
-    clear = moved < 0.1 * np.minimum(top - values[-1], values[0] + ground.tau)
-    return np.asarray((factors.below == len(values) + stack.rigid_modes) & clear, dtype=bool)
+    pencils, grown, n = stack.pencils, above.grown, len(vectors)
+    rows = 2 * (pencils.stiffness.shape[1] + len(pencils.held)) - 1
+    beside = above.roots[:, None] * np.einsum("irn,ikn->rkn", pencils.felt, vectors)
+    shares = sum(np.einsum("in,ikn,ikn->kn", *each) for each in ((grown[:n], vectors, vectors), (grown[n:], beside, beside)))
+    moved = _CAUTION * rows * np.finfo(float).eps * np.asarray(shares).max(axis=0)
+    return np.asarray((above.below == len(values) + stack.rigid_modes) & (moved < 0.1 * margin), dtype=bool)
 
 
 def _homed(pencils: Pencils, shifts: Array) -> tuple[Array, Array]:
@@ -136,33 +126,39 @@ def _homed(pencils: Pencils, shifts: Array) -> tuple[Array, Array]:
     Two steps of inverse iteration, then Rayleigh quotient iteration of those that need it: B. N. Parlett, The Symmetric
     Eigenvalue Problem (1980), ch. 4.
     """
-    load = np.random.default_rng(4276).standard_normal((len(pencils.mass), 1, 1))
-    parts = [_stepped(pencils, some, load) for some in in_parts(pencils, shifts)]
-    vectors, carried, values, residuals = (np.concatenate(each, axis=-2) for each in zip(*parts, strict=True))
+    parts = [_stepped(pencils, some) for some in in_parts(pencils, shifts)]
+    vectors, carried, values, residuals = map(_beside, zip(*parts, strict=True))
     for _ in range(_STEPS):
         mode, beam = np.nonzero(residuals > _STILL * values)
         if not len(mode):
             break
-        found, heavy, at, left = _stepped(pencils.of_beams(beam), values[None, mode, beam], carried[:, None, mode, beam])
+        found, heavy, at, left = _stepped(pencils.of_beams(beam), values[None, mode, beam])
         vectors[:, mode, beam], carried[:, mode, beam] = found[:, 0], heavy[:, 0]
         values[mode, beam], residuals[mode, beam] = at[0], left[0]
     return vectors, carried
 
 
-def _stepped(pencils: Pencils, shifts: Array, loads: Array) -> tuple[Array, Array, Array, Array]:
-    """Two steps of inverse iteration from loads (n, k, c) or of all alike: (V, M V, (n, k, c), values, residuals (k, c)).
+def _beside(parts: Sequence[Array]) -> Array:
+    """Parts of the modes together; of one, without a copy."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-2)
+
+
+def _stepped(pencils: Pencils, shifts: Array) -> tuple[Array, Array, Array, Array]:
+    """Two steps of inverse iteration from any load: (V, M V, (n, k, c), values, residuals (k, c)).
 
     What is left of (K - value M) v is told in the norm of M^-1 by V before and after the second of them.
     """
     factors = regular(factorised(pencils, shifts))
 
-    def step(load: Array) -> tuple[Array, Array, Array]:
-        found = factors.solve(load.reshape(len(load), 1, -1)).reshape(load.shape)
-        carried = pencils.weighed(found)
-        return found, carried, _over_unknowns(found, carried)
+    def carried_by(vectors: Array) -> tuple[Array, Array]:
+        carried = pencils.weighed(vectors.reshape(-1, *shifts.shape))
+        return carried, _over_unknowns(vectors.reshape(carried.shape), carried)
 
-    _, load, before = step(np.broadcast_to(loads, (len(loads), *shifts.shape)))
-    vectors, carried, squares = step(load)
+    some = np.random.default_rng(4276).standard_normal((len(factors.pivots), 1, 1))
+    load, before = carried_by(factors.answer(some))
+    found = factors.solve(load.reshape(len(load), 1, -1))
+    carried, squares = carried_by(found)
+    vectors = found.reshape(carried.shape)
     moved = _over_unknowns(vectors, load) / squares
     residuals = np.sqrt(np.maximum(before / squares - moved * moved, 0.0))
     return vectors, carried, shifts + moved, residuals

@@ -277,7 +277,7 @@ def _strain(chains: Chains, vectors: Array) -> Array:
         found.append(turns)
     if chains.bodies is not None:
         found += _felt(chains, places, turns)
-    return np.concatenate(found)
+    return np.concatenate(found) if len(found) > 1 else found[0]
 
 
 def _loads(chains: Chains, forces: Array) -> Array:
