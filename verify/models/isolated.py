@@ -28,8 +28,8 @@ _NODES = (-2, -1, 0, 1, 2, 3)
 _NEWTON = 4
 _ROUNDS = 14
 """Of false position at most."""
-_NEAR, _CLOSE = 0.02, 0.01
-"""Of a bracket, and that of a distance of two points at least: what has moved less in a round is as near as a shift has to be, about its square."""
+_NEAR = 0.02
+"""Of the distance to the next mode: what has moved less in a round is about the square of it from where it should be."""
 _ENDLESS = 300.0
 """Logarithm of a number that is as good as endless."""
 AnyArray = TypeVar("AnyArray", Array, Indices)
@@ -110,9 +110,9 @@ def isolated(pencils: Pencils, rigid_modes: int, n_modes: int) -> Array:
     last = brackets.low + curve.root * (brackets.high - brackets.low)
     below, logs = measured.at(last)
     found, brackets = _bettered(curve, brackets, last, below, logs)
-    width, apart = np.ones_like(found), curve.told
+    apart = curve.told
     for _ in range(_ROUNDS - 1):
-        mode, beam = np.nonzero(~apart | (abs(found - last) > _NEAR * width))
+        mode, beam = np.nonzero(~apart | (abs(found - last) > _NEAR * _between_modes(found)))
         if not len(mode):
             break
         at, last = found[mode, beam], found.copy()
@@ -121,8 +121,14 @@ def isolated(pencils: Pencils, rigid_modes: int, n_modes: int) -> Array:
         own = _narrowed(own, at, *measured.at(at, beam))
         for each, one in zip(_all_of(brackets), _all_of(own), strict=True):
             each[mode, beam] = one
-        found[mode, beam], width[mode, beam] = _between(own), np.maximum(own.high - own.low, _CLOSE)
+        found[mode, beam] = _between(own)
     return np.asarray(np.where(brackets.below_high >= brackets.modes, scale.values(found), np.nan))
+
+
+def _between_modes(places: Array) -> Array:
+    """How far each mode lies from the next one, below or above, (m, n_beams)."""
+    steps = np.diff(places, axis=0, prepend=-places[:1])
+    return np.minimum(steps, np.concatenate([steps[1:], steps[-1:]]))
 
 
 def _scale(pencils: Pencils, rigid_modes: int, n_modes: int) -> _Scale:

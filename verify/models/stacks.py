@@ -19,7 +19,7 @@ _STEPS = 3
 """Of Rayleigh quotient iteration at most: each triples the digits of a vector."""
 _LEVEL = 1e-3
 """Of the place above the last value: what K is grounded by, so that it is regular where motions are rigid."""
-_STILL = 5e-9
+_STILL = 1e-9
 """Of a value: a residual that a step need not lower."""
 _SURE = 1e-13
 """Relative, of a value: beyond it a pencil has not settled."""
