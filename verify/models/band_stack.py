@@ -48,7 +48,8 @@ class Pencils(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     @property
     def size(self) -> int:
         """Numbers in the factors of one of them."""
-        return len(self.stiffness) * (self.stiffness.shape[1] + self.felt.shape[1] + 1)
+        n, width, _ = self.stiffness.shape
+        return int(n * (width + self.felt.shape[1]))
 
     def of_beams(self, which: Indices) -> "Pencils":
         """Those of some beams, in this order."""
@@ -90,7 +91,8 @@ class Factors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """How many eigenvalues of each matrix are negative, (m,) (Sylvester)."""
         negative = np.signbit(self.pivots).view(np.uint8)
         kind = np.uint8 if len(negative) < 256 else np.intp
-        return np.add.reduce(negative, axis=0, dtype=kind).astype(np.intp) - (self.signs > 0.0).sum(axis=0)
+        count: Indices = np.add.reduce(negative, axis=0, dtype=kind).astype(np.intp)
+        return np.asarray(count - (self.signs > 0.0).sum(axis=0))
 
     @property
     def logs(self) -> Array:
@@ -133,16 +135,16 @@ class Factors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         found, taken = np.empty((n + w, loads.shape[1], m)), np.empty((w, loads.shape[1], m))
         found[:n], found[n:] = loads, 0.0
         rows = zip(self.pivots, self.beside[:, :, None], found, _windows(found, w), strict=False)
-        for pivot, across, own, after in rows:
+        for pivot, beside, own, after in rows:
             np.divide(own, pivot, own)
-            np.multiply(across, own, taken)
+            np.multiply(beside, own, taken)
             np.subtract(after, taken, after)
         found[n:] = 0.0
         moved = -self.roots[:, None] * np.einsum("irm,ikm->rkm", self.felt, found[:n])
-        for j, row in enumerate(self.corner):
+        for j, across in enumerate(self.corner):
             moved[j] /= self.pivots[n + j]
-            for after in range(j + 1, len(row)):
-                moved[after] -= row[after] * moved[j]
+            for later in range(j + 1, len(across)):
+                moved[later] -= across[later] * moved[j]
         return found, moved
 
     def _back(self, found: Array, moved: Array) -> Array:
@@ -153,6 +155,8 @@ class Factors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
                 moved[j] -= self.corner[j, after] / self.pivots[n + j] * moved[after]
         if len(moved):
             found[:n] -= np.einsum("irm,rkm->ikm", self.felt, self.roots[:, None] * moved) / self.pivots[:n, None]
+        if not w:
+            return found
         taken = np.empty((w, *found.shape[1:]))
         first, others = taken[0], list(taken[1:])
         rows = zip(self.beside[:, :, None], self.pivots, found, _windows(found, w), strict=False)

@@ -77,7 +77,9 @@ def judged(stack: PencilStack, vectors: Array, carried: Array, top: Array) -> tu
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
     sure = _sure(tau, values, residuals, top) & _alike(stack)
-    return values, sure & _counted(stack, above, values, vectors / np.sqrt(squares), np.minimum(top - values[-1], values[0] + tau))
+    return values, sure & _counted(
+        stack, above, values, vectors / np.sqrt(squares), np.minimum(top - values[-1], values[0] + tau)
+    )
 
 
 def _alike(stack: PencilStack) -> BoolArray:
@@ -115,7 +117,9 @@ def _counted(stack: PencilStack, above: Factors, values: Array, vectors: Array, 
     pencils, grown, n = stack.pencils, above.grown, len(vectors)
     rows = 2 * (pencils.stiffness.shape[1] + len(pencils.held)) - 1
     beside = above.roots[:, None] * np.einsum("irn,ikn->rkn", pencils.felt, vectors)
-    shares = sum(np.einsum("in,ikn,ikn->kn", *each) for each in ((grown[:n], vectors, vectors), (grown[n:], beside, beside)))
+    shares = sum(
+        np.einsum("in,ikn,ikn->kn", *each) for each in ((grown[:n], vectors, vectors), (grown[n:], beside, beside))
+    )
     moved = _CAUTION * rows * np.finfo(float).eps * np.asarray(shares).max(axis=0)
     return np.asarray((above.below == len(values) + stack.rigid_modes) & (moved < 0.1 * margin), dtype=bool)
 

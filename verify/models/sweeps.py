@@ -277,7 +277,9 @@ def _shared(work: Callable[[Item], Found], items: Sequence[Item], worth: bool) -
 def _is_stack(group: list[int], n_modes: int, made: dict[int, tuple[FactoredPencil, float]]) -> bool:
     """Whether a group is worth a stack, and its beams have modes above those that are asked for."""
     pencil, _ = made[group[0]]
-    return len(group) >= LEAST and pencil.n <= DENSE_UNKNOWNS and 3 * (n_modes + 2) <= 2 * (pencil.n - pencil.rigid_modes)
+    return (
+        len(group) >= LEAST and pencil.n <= DENSE_UNKNOWNS and 3 * (n_modes + 2) <= 2 * (pencil.n - pencil.rigid_modes)
+    )
 
 
 def _keep_memory() -> None:

@@ -217,7 +217,7 @@ def _pencils(chains: Chains) -> Pencils:
     if chains.bodies is None:
         return alone
     heavy, held = (np.concatenate(chains.bodies[one]) for one in (slice(2), slice(2, 4)))
-    there = (heavy.any(axis=1) | held.any(axis=1)).nonzero()[0]
+    there = np.flatnonzero(heavy.any(axis=1) | held.any(axis=1))
     felt = _body_rows(chains)[there][:, chains.free].swapaxes(0, 1)
     return replace(alone, felt=np.ascontiguousarray(felt), held=held[there], heavy=heavy[there])
 
@@ -243,7 +243,7 @@ def _add_links(chains: Chains, bands: Array, of_middles: Array, of_turns: Array)
 
 
 def _body_rows(chains: Chains) -> Array:
-    """What bodies feel of the joints' positions, and then of the turns there, over the joints, (2 bodies, N + 1, ...)."""
+    """What bodies feel of positions and then of turns, over the joints, (2 bodies, N + 1, n_beams)."""
     assert chains.felt is not None
     assert chains.turned is not None
     by_slope = chains.turned / chains.lengths
