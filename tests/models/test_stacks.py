@@ -189,26 +189,25 @@ def test_no_beam_of_many_modes_is_left_to_be_solved_alone(alone, model, supports
     assert found == pytest.approx(np.array(each), rel=3e-14)
 
 
-def test_no_high_mode_of_thick_beams_is_lost():
-    """They lie closer the higher they are, so that one count tells too short a grid."""
-    beams = thick(many(29, 192, ("clamped", "free"), n_sections=3))
-    stack = of_segments.chain_stack(beams, 49, CHAIN | {"theory": "rayleigh"})
+@pytest.mark.parametrize("model", MODELS)
+def test_no_high_mode_of_thick_beams_is_lost(model):
+    """They lie closer the higher they are, so that a count tells too short a grid."""
+    beams = thick(many(29, 48, ("clamped", "free"), n_sections=3))
+    stack, _ = stacked(model, beams, 49, theory="rayleigh")
     with np.errstate(all="ignore"):
         assert np.isfinite(isolated(stack.pencils, stack.rigid_modes, 21)).all()
 
 
-@settings(max_examples=20, deadline=None)
-@given(batches(), st.integers(1, 25), st.integers(43, 60), st.sampled_from(list(MODELS)))
-def test_shifts_from_counts_stand_at_the_modes_of_any_beams(beams, n_modes, count, model):
-    """To a hundredth of their distance, told in fourth roots; of modes that lie too close together a beam is left."""
-    stack, pencils = stacked(model, beams, count)
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.tuples(*[st.sampled_from(SUPPORTS)] * 2), st.integers(2, 25), st.integers(43, 60))
+def test_shifts_from_counts_stand_at_the_modes_of_any_stepped_beams(seed, supports, n_modes, count):
+    """To a hundredth of their distance, told in fourth roots."""
+    stack, pencils = stacked("segment", many(seed, 5, supports, n_sections=3), count)
     with np.errstate(all="ignore"):
         shifts = isolated(stack.pencils, stack.rigid_modes, n_modes) ** 0.25
     roots = np.array([lowest(pencil, n_modes + 1).values for pencil in pencils]).T ** 0.25
     steps = np.diff(roots, axis=0, prepend=-roots[:1])
-    apart = np.minimum(steps[1:], steps[:-1])
-    near = abs(shifts - roots[:-1]) < 0.01 * apart
-    assert (near | (apart < 1e-3 * steps.mean(axis=0))).all()
+    assert (abs(shifts - roots[:-1]) < 0.01 * np.minimum(steps[1:], steps[:-1])).all()
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -348,7 +347,7 @@ def test_modes_that_lie_close_together_settle(model):
             bending_stiffness=EI,
             mass_per_length=LINE,
             supports=("clamped", "clamped"),
-            mass=(PointMass(position=(0.5 + 0.001 * i) * L, mass=40.0 * half, rotary_inertia=3.0 * half * L**2),),
+            mass=(PointMass(position=(0.5 + 0.001 * i) * L, mass=9.0 * half, rotary_inertia=0.07 * half * L**2),),
         )
         for i in range(1, 10)
     ]

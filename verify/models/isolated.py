@@ -20,8 +20,10 @@ _PHASE = 1.9
 """Of a mode, in sums of (M_ii / K_ii)^(1/4): 1.8 of a uniform chain, 2.0 of elements."""
 _BEYOND = 2.0
 """Modes beyond the last that the grid goes: bodies and steps take them up or down."""
-_BENT = 0.2
+_BENT = 3.0
 """Of how much closer modes lie the higher they are, at most."""
+_FAR = 0.8
+"""Of the modes: with fewer below where they were thought to end, they are sought twice as far."""
 _GRID = 2.5
 """Points for each eigenvalue."""
 _MIRRORED = 2
@@ -46,12 +48,12 @@ class _Scale(msgspec.Struct, frozen=True, eq=False):
     places: Array
     """Its place."""
     bent: Array
-    """How much closer modes lie the higher they are: the fourth root goes like u - bent u^3."""
+    """How much closer modes lie the higher they are: the fourth root goes like u / (1 + bent u^2)^(1/2)."""
 
     def values(self, at: Array, which: Any = slice(None)) -> Array:
         """Eigenvalues at places (..., n_beams), or of some beams."""
         part, bent = at / self.places[which], self.bent[which]
-        return np.asarray((self.ends[which] * part * (1.0 - bent * part**2) / (1.0 - bent)) ** 4)
+        return np.asarray((self.ends[which] * part) ** 4 * ((1.0 + bent) / (1.0 + bent * part**2)) ** 2)
 
 
 class _Brackets(msgspec.Struct, frozen=True, eq=False):
@@ -149,10 +151,13 @@ def _scale(pencils: Pencils, rigid_modes: int, n_modes: int) -> _Scale:
     """By the counts at about where the last of the modes lies, over the fourth root, and half way to it."""
     phase = ((pencils.mass[:, 0] / pencils.stiffness[:, 0]) ** 0.25).sum(axis=0)
     ends = _PHASE * (n_modes + 0.5) / phase
-    below, _ = tally(pencils, np.array([0.5 * ends, ends]) ** 4)
-    half, whole = np.maximum(below - rigid_modes + 0.5, 1.0)
+    below, _ = tally(pencils, (np.array([[0.5], [1.0], [2.0]]) * ends) ** 4)
+    below = np.maximum(below - rigid_modes + 0.5, 1.0)
+    far = below[1] < _FAR * n_modes
+    half, whole = np.where(far, below[1:], below[:-1])
     part = half / whole
-    return _Scale(ends, _GRID * whole, np.clip((0.5 - part) / (0.5 - part**3), 0.0, _BENT))
+    bent = np.clip((0.25 - part**2) / (0.75 * part**2), 0.0, _BENT)
+    return _Scale(np.where(far, 2.0 * ends, ends), _GRID * whole, bent)
 
 
 def _all_of(brackets: _Brackets) -> list[Any]:
