@@ -16,7 +16,7 @@ from verify.elements.curvatures import axial_weights, curvature_loads, element_c
 from verify.elements.cuts import stretches
 from verify.elements.mesh import basis_between, free_unknowns, mass_matrix, slope_matrix, stiffness_matrix
 from verify.models.arrays import Array, Indices
-from verify.models.band_stack import of_unknowns
+from verify.models.band_stack import banded, of_unknowns
 from verify.models.division import ManyParts, divide_each
 from verify.models.stacks import PencilStack
 from verify.section import Piece
@@ -110,8 +110,7 @@ def _stack(strained: list[_Strained], stiffness: Array, mass: Array, free: Indic
         return np.asarray(sum(each.loads(share) for each, share in shares))[free]
 
     return PencilStack(
-        stiffness=of_unknowns(stiffness, free),
-        mass=of_unknowns(mass, free),
+        pencils=banded(of_unknowns(stiffness, free), of_unknowns(mass, free)),
         strain=strain,
         loads=loads,
         springs=np.concatenate([each.stiffness for each in strained]),

@@ -1,20 +1,227 @@
-"""Symmetric bands of many pencils side by side: products, triangular factors, solutions and counts of all at once.
+"""Many pencils side by side: symmetric bands, what bodies add to them, triangular factors, solutions and counts of all.
 
 A band is kept by its main diagonal and those above it, (n, w + 1, c): entry [i, a, j] is A_{i, i + a} of matrix j,
-zero beyond the last row. Vectors are (n, k, c), k of each matrix. Loops run over the rows; what numpy is given in each
-is all matrices, so that a few hundred of them cost little more than one.
+zero beyond the last row. A body adds the square of a row over all unknowns, which would make the band as wide as it
+reaches; instead its motion stands beside the unknowns, after the last of them (Sylvester's law counts both alike).
+Vectors are (n, k, c), k of each matrix. Loops run over the rows; what numpy is given in each is all matrices, so that
+a few hundred of them cost little more than one.
 """
 
+from math import ceil
+
+import msgspec
 import numpy as np
 
 from verify.models.arrays import Array, Indices
 
 _NEAR = 32768
 """Numbers that a product takes at once."""
-_TALLIED = 8000
-"""Shifts of matrices that are counted at once."""
+_MOST = 3_000_000
+"""Numbers in factors that are taken at once: 24 MB."""
 _ROWS = 16
 """Pivots whose product is a number of ordinary size."""
+_NEXT_TO_NOTHING = 1e-30
+"""For a pivot that is zero: small beside any, and large enough to be divided by twice."""
+
+
+class Pencils(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """K and M of c beams: bands, and F^T diag(held) F and F^T diag(heavy) F of what bodies feel."""
+
+    stiffness: Array
+    """(n, w + 1, c)."""
+    mass: Array
+    """(n, w + 1, c) or narrower."""
+    felt: Array
+    """F, (n, r, c), what r motions of bodies are of the unknowns; r = 0 where there are none."""
+    held: Array
+    """(r, c), stiffness against them."""
+    heavy: Array
+    """(r, c), mass that takes part in them."""
+
+    @property
+    def diagonals(self) -> tuple[Array, Array]:
+        """K_ii and M_ii, (n, c) both."""
+        squares = self.felt**2
+        stiffness = self.stiffness[:, 0] + np.einsum("irc,rc->ic", squares, self.held)
+        return stiffness, self.mass[:, 0] + np.einsum("irc,rc->ic", squares, self.heavy)
+
+    @property
+    def size(self) -> int:
+        """Numbers in the factors of one of them."""
+        n, width, _ = self.stiffness.shape
+        return int(n * (width + self.felt.shape[1]))
+
+    def of_beams(self, which: Indices) -> "Pencils":
+        """Those of some beams, in this order."""
+        return Pencils(**{name: np.take(getattr(self, name), which, axis=-1) for name in self.__struct_fields__})
+
+    def weighed(self, vectors: Array) -> Array:
+        """M v, (n, k, c)."""
+        found = product(self.mass, vectors)
+        for row, heavy in zip(self.felt.swapaxes(0, 1), self.heavy, strict=True):
+            if heavy.any():
+                found += row[:, None] * (heavy * np.einsum("ic,ikc->kc", row, vectors))
+        return found
+
+
+def banded(stiffness: Array, mass: Array) -> Pencils:
+    """Bands without bodies."""
+    none = np.zeros((0, mass.shape[2]))
+    return Pencils(stiffness=stiffness, mass=mass, felt=np.zeros((len(mass), *none.shape)), held=none, heavy=none)
+
+
+class Factors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """[[A, F D], [D F^T, -S]] = L diag(d) L^T without row exchanges, of m matrices A + F D S D F^T, S of signs."""
+
+    pivots: Array
+    """d, (n + r, m)."""
+    beside: Array
+    """L_{i + 1 + a, i} d_i, (n, w, m)."""
+    felt: Array
+    """Of the rows of F^T, likewise, (n, r, m)."""
+    corner: Array
+    """Of the corner, likewise, above its diagonal, (r, r, m)."""
+    roots: Array
+    """D, (r, m), roots of what the motions of bodies weigh."""
+    signs: Array
+    """S, (r, m)."""
+
+    @property
+    def below(self) -> Indices:
+        """How many eigenvalues of each matrix are negative, (m,) (Sylvester)."""
+        negative = np.signbit(self.pivots).view(np.uint8)
+        kind = np.uint8 if len(negative) < 256 else np.intp
+        count: Indices = np.add.reduce(negative, axis=0, dtype=kind).astype(np.intp)
+        return np.asarray(count - (self.signs > 0.0).sum(axis=0))
+
+    @property
+    def logs(self) -> Array:
+        """Log |det|, (m,)."""
+        parts = [np.multiply.reduce(self.pivots[i : i + _ROWS], axis=0) for i in range(0, len(self.pivots), _ROWS)]
+        return np.asarray(sum(np.log(abs(part)) for part in parts))
+
+    @property
+    def grown(self) -> Array:
+        """The diagonal of |L| |d| |L|^T, (n + r, m): the factors are those of a matrix that is off by its rounding."""
+        sizes = abs(self.pivots)
+        found, (n, w, _) = sizes.copy(), self.beside.shape
+        for a in range(min(w, n - 1)):
+            found[1 + a : n] += self.beside[: n - 1 - a, a] ** 2 / sizes[: n - 1 - a]
+        found[n:] += self.roots**2 * (self.felt**2 / sizes[:n, None]).sum(axis=0)
+        for j in range(len(self.corner)):
+            found[n + j + 1 :] += self.corner[j, j + 1 :] ** 2 / sizes[n + j]
+        return np.asarray(found)
+
+    def solve(self, loads: Array) -> Array:
+        """A^-1 b, (n, k, m)."""
+        return self._back(*self._forward(loads))
+
+    def answer(self, loads: Array) -> Array:
+        """A^-1 L b, (n, k, m): of any load at all, as right as another to begin with, in half the time."""
+        n, w, m = self.beside.shape
+        found = np.zeros((n + w, loads.shape[1], m))
+        np.divide(loads[:n], self.pivots[:n, None], out=found[:n])
+        return self._back(found, loads[n:] / self.pivots[n:, None])
+
+    def energy(self, loads: Array) -> Array:
+        """b^T A^-1 b, (k, m)."""
+        found, moved = self._forward(loads)
+        inner = _energies(found[: len(loads)], self.pivots[: len(loads)])
+        return inner + _energies(moved, self.pivots[len(loads) :])
+
+    def _forward(self, loads: Array) -> tuple[Array, Array]:
+        """(D^-1 L^-1 b, (n + w, k, m), zeros at the end; of the corner, (r, k, m))."""
+        n, w, m = self.beside.shape
+        found, taken = np.empty((n + w, loads.shape[1], m)), np.empty((w, loads.shape[1], m))
+        found[:n], found[n:] = loads, 0.0
+        rows = zip(self.pivots, self.beside[:, :, None], found, _windows(found, w), strict=False)
+        for pivot, beside, own, after in rows:
+            np.divide(own, pivot, own)
+            np.multiply(beside, own, taken)
+            np.subtract(after, taken, after)
+        found[n:] = 0.0
+        moved = -self.roots[:, None] * np.einsum("irm,ikm->rkm", self.felt, found[:n])
+        for j, across in enumerate(self.corner):
+            moved[j] /= self.pivots[n + j]
+            for later in range(j + 1, len(across)):
+                moved[later] -= across[later] * moved[j]
+        return found, moved
+
+    def _back(self, found: Array, moved: Array) -> Array:
+        """L^-T of what `_forward` gives, in its place, (n, k, m)."""
+        n, w, _ = self.beside.shape
+        for j in range(len(moved) - 1, -1, -1):
+            for after in range(j + 1, len(moved)):
+                moved[j] -= self.corner[j, after] / self.pivots[n + j] * moved[after]
+        if len(moved):
+            found[:n] -= np.einsum("irm,rkm->ikm", self.felt, self.roots[:, None] * moved) / self.pivots[:n, None]
+        if not w:
+            return found
+        taken = np.empty((w, *found.shape[1:]))
+        first, others = taken[0], list(taken[1:])
+        rows = zip(self.beside[:, :, None], self.pivots, found, _windows(found, w), strict=False)
+        for beside, pivot, own, after in reversed(list(rows)[: n - 1]):
+            np.multiply(beside, after, taken)
+            for other in others:
+                np.add(first, other, first)
+            np.divide(first, pivot, first)
+            np.subtract(own, first, own)
+        return found[:n]
+
+
+def _windows(rows: Array, w: int) -> list[Array]:
+    """After each row the w next ones."""
+    return [rows[i : i + w] for i in range(1, len(rows) - w + 1)]
+
+
+def _energies(shares: Array, pivots: Array) -> Array:
+    return np.asarray(np.einsum("ikm,ikm,im->km", shares, shares, pivots))
+
+
+def factorised(pencils: Pencils, shifts: Array) -> Factors:
+    """The factors of K - shift M for shifts (k, c), m = k c. Not a number below a pivot that is zero."""
+    stiffness, mass, felt = pencils.stiffness, pencils.mass, pencils.felt
+    (n, width, c), narrow, r = stiffness.shape, mass.shape[1], felt.shape[1]
+    w = width - 1
+    rows = np.empty((n + w, width + r, len(shifts) * c))
+    filled = rows[:n].reshape(n, width + r, len(shifts), c)
+    np.multiply(mass[:, :, None], -shifts, out=filled[:, :narrow])
+    filled[:, :narrow] += stiffness[:, :narrow, None]
+    filled[:, narrow:width], filled[:, width:] = stiffness[:, narrow:, None], felt[:, :, None]
+    rows[n:] = 0.0
+    shares, taken = np.empty_like(rows[0, 1:width]), np.empty_like(rows[0, 1:])
+    steps = [(shares[a], list(rows[:n, 1 + a : width]), list(rows[1 + a :, : w - a]), taken[: w - a]) for a in range(w)]
+    if r:
+        steps += [(shares[a], list(rows[:n, width:]), list(rows[1 + a :, width:]), taken[w:]) for a in range(w)]
+    for i, (pivot, beside) in enumerate(zip(rows[:n, 0], rows[:n, 1:width], strict=True)):
+        np.divide(beside, pivot, shares)
+        for share, owns, lefts, part in steps:
+            np.multiply(share, owns[i], part)
+            np.subtract(lefts[i], part, lefts[i])
+    own = (pencils.held[:, None] - shifts * pencils.heavy[:, None]).reshape(r, rows.shape[2])
+    return _cornered(own, rows[:n, 0], rows[:n, 1:width], rows[:n, width:])
+
+
+def _cornered(own: Array, pivots: Array, beside: Array, felt: Array) -> Factors:
+    """The factors with what bodies feel, (n, r, m), of weights (r, m), of those of the bands."""
+    r = len(own)
+    signs, roots = np.where(own < 0.0, -1.0, 1.0), np.sqrt(abs(own))
+    corner = np.empty((r, r, own.shape[1]))
+    for j in range(r):
+        scaled = felt[:, j] / pivots
+        corner[j, j:] = -roots[j] * roots[j:] * np.einsum("im,iam->am", scaled, felt[:, j:])
+        corner[j, j] -= signs[j]
+    for j in range(r):
+        for after in range(j + 1, r):
+            corner[after, after:] -= corner[j, after] / corner[j, j] * corner[j, after:]
+    pivots = np.concatenate([pivots, corner[range(r), range(r)]]) if r else pivots
+    return Factors(pivots=pivots, beside=beside, felt=felt, corner=corner, roots=roots, signs=signs)
+
+
+def regular(factors: Factors) -> Factors:
+    """The same with next to nothing for a pivot that is zero, at an eigenvalue to the last digit."""
+    factors.pivots[factors.pivots == 0.0] = _NEXT_TO_NOTHING
+    return factors
 
 
 def of_unknowns(bands: Array, free: Indices) -> Array:
@@ -49,97 +256,17 @@ def product(bands: Array, vectors: Array) -> Array:
     return found
 
 
-def triangles(stiffness: Array, mass: Array, shifts: Array) -> tuple[Array, Array]:
-    """(pivots d (n, k c), L (n, w, k c)) of K - shift M = L diag(d) L^T without row exchanges, for shifts (k, c).
-
-    L by columns: entry [i, a, j] is L_{i + 1 + a, i}. Not a number below a pivot that is zero.
-    """
-    n, width, c = mass.shape
-    rows, w = np.empty((n + width - 1, width, len(shifts) * c)), width - 1
-    filled = rows[:n].reshape(n, width, len(shifts), c)
-    np.multiply(mass[:, :, None], -shifts, out=filled)
-    filled += stiffness[:, :, None]
-    rows[n:] = 0.0
-    kept, taken = np.empty_like(rows[0, 1:]), np.empty_like(rows[0, 1:])
-    for i in range(n):
-        lower = rows[i, 1:]
-        kept[...] = lower
-        np.divide(lower, rows[i, 0], out=lower)
-        for a in range(w):
-            left, part = rows[i + 1 + a, : w - a], taken[: w - a]
-            np.multiply(lower[a], kept[a:], out=part)
-            np.subtract(left, part, out=left)
-    return rows[:n, 0], rows[:n, 1:]
-
-
-def solution(pivots: Array, lower: Array, loads: Array) -> Array:
-    """A^-1 b of the triangles of A, (n, k, c)."""
-    n, w, _ = lower.shape
-    found = np.empty((n + w, *loads.shape[1:]))
-    found[:n], found[n:] = loads, 0.0
-    taken = np.empty((w, *loads.shape[1:]))
-    across = lower[:, :, None]
-    for i in range(n - 1):
-        np.multiply(across[i], found[i], out=taken)
-        found[i + 1 : i + 1 + w] -= taken
-    found[n:] = 0.0
-    found[:n] /= pivots[:, None]
-    for i in range(n - 2, -1, -1):
-        np.multiply(across[i], found[i + 1 : i + 1 + w], out=taken)
-        found[i] -= np.add.reduce(taken, axis=0)
-    return found[:n]
-
-
-def count_below(stiffness: Array, mass: Array, shifts: Array) -> tuple[Indices, Array]:
-    """(how many eigenvalues of K v = lambda M v lie below each shift, (c,), how the factors have grown, (n, c)).
-
-    As many as K - shift M has negative pivots (Sylvester). These are the pivots of a matrix that is off by no more than
-    the rounding of |L| |d| |L|^T, whose diagonal is the second.
-    """
-    pivots, lower = triangles(stiffness, mass, shifts[None])
-    n, w, _ = lower.shape
-    sizes = abs(pivots)
-    grown = sizes.copy()
-    for a in range(min(w, n - 1)):
-        grown[1 + a :] += lower[: n - 1 - a, a] ** 2 * sizes[: n - 1 - a]
-    return np.asarray((pivots < 0.0).sum(axis=0)), grown
-
-
-def tally(stiffness: Array, mass: Array, shifts: Array) -> tuple[Indices, Array]:
-    """(how many eigenvalues of K v = lambda M v lie below shifts, log |det(K - shift M)|), (k, c) both.
-
-    As `triangles` goes, but of a row no more is kept than the next ones take.
-    """
-    at_once = max(_TALLIED // mass.shape[2], 1)
-    found = [_tallied(stiffness, mass, shifts[first : first + at_once]) for first in range(0, len(shifts), at_once)]
+def tally(pencils: Pencils, shifts: Array) -> tuple[Indices, Array]:
+    """(how many eigenvalues of K v = lambda M v lie below shifts, log |det(K - shift M)|), (k, c) both."""
+    found = []
+    for some in in_parts(pencils, shifts):
+        factors = factorised(pencils, some)
+        found.append((factors.below.reshape(some.shape), factors.logs.reshape(some.shape)))
     below, logs = (np.concatenate(each) for each in zip(*found, strict=True))
     return below, logs
 
 
-def _tallied(stiffness: Array, mass: Array, shifts: Array) -> tuple[Indices, Array]:
-    """The same of some of the shifts."""
-    n, width, _ = mass.shape
-    rows = [np.empty((width, *shifts.shape)) for _ in range(width)]
-    shares, taken = np.empty_like(rows[0][1:]), np.empty_like(rows[0][1:])
-    negative, below = np.empty(shifts.shape, dtype=bool), np.zeros(shifts.shape, dtype=np.uint8)
-    product, logs = np.ones_like(shifts), np.zeros_like(shifts)
-    for i in range(-width, n):
-        own = rows[i % width]
-        if i >= 0:
-            np.signbit(own[0], out=negative)
-            below += negative.view(np.uint8)
-            product *= own[0]
-            if i % _ROWS == _ROWS - 1 or i == n - 1:
-                logs += np.log(abs(product))
-                product[...] = 1.0
-            np.divide(own[1:], own[0], out=shares)
-            for a in range(width - 1):
-                left, part = rows[(i + 1 + a) % width][: width - 1 - a], taken[: width - 1 - a]
-                np.multiply(shares[a], own[1 + a :], out=part)
-                left -= part
-        if (entering := i + width) < n:
-            np.multiply(mass[entering, :, None], -shifts, out=own)
-            own += stiffness[entering, :, None]
-        else:
-            own[...] = 0.0
-    return below.astype(np.intp), logs
+def in_parts(pencils: Pencils, shifts: Array) -> list[Array]:
+    """Shifts (k, c) in equal parts whose factors are not too many to stay near the processor."""
+    most = max(_MOST // (pencils.size * shifts.shape[1]), 1)
+    return np.array_split(shifts, ceil(len(shifts) / most))

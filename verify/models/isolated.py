@@ -1,35 +1,59 @@
 """Where the lowest eigenvalues of many small pencils lie, by counts and determinants alone: no vectors, nothing dense.
 
-Eigenvalues are counted below the points of a grid that is about twice as dense as they are, over the fourth root, on
-which those of a beam lie evenly. Between two counts that differ by one the determinant is a sine but for how it grows:
-it is zero first about where a cubic through four points of the grid is, then by false position as mended by Anderson
-and Bjoerck (BIT 13 (1973), p. 253), step by step in those alone that still move. What is found is a shift to start
-from, and no more: who takes it judges what comes of it.
+Two counts tell about where modes lie, over the fourth root, and how much closer the higher ones do; there a grid is
+laid that is a few times as dense as they are. Between two counts that differ by one the determinant, but for how it
+grows, is a sine: it is zero first about where a polynomial through six points of the grid is, then where one through
+these and the first is. What still moves goes on by false position as mended by Anderson and Bjoerck (BIT 13 (1973),
+p. 253), and where modes lie close together by halves. What is found is a shift to start from, and no more: who takes
+it judges what comes of it.
 """
 
-from functools import partial
 from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
 
 from verify.models.arrays import Array, BoolArray, Indices
-from verify.models.band_stack import tally
+from verify.models.band_stack import Pencils, tally
 
 _PHASE = 1.9
 """Of a mode, in sums of (M_ii / K_ii)^(1/4): 1.8 of a uniform chain, 2.0 of elements."""
-_BEYOND = 1.1
-"""How much farther the grid goes than one count says: modes of thick beams lie closer the higher they are."""
-_GRID = 2
+_BEYOND = 2.0
+"""Modes beyond the last that the grid goes: bodies and steps take them up or down."""
+_BENT = 3.0
+"""Of how much closer modes lie the higher they are, at most."""
+_FAR = 0.8
+"""Of the modes: with fewer below where they were thought to end, they are sought twice as far."""
+_GRID = 2.5
 """Points for each eigenvalue."""
+_MIRRORED = 2
+"""Points on the other side of zero, where the determinant is what it is on this."""
+_NODES = (-2, -1, 0, 1, 2, 3)
+"""Points of the grid about a mode between 0 and 1."""
 _NEWTON = 4
-_ROUNDS = 8
-"""Of false position at most: 0.01 of a distance after the cubic, 1e-4 after one, 1e-7 after two."""
-_NEAR = 3e-5
-"""Of a distance: what has moved less in a round is as near as a shift has to be."""
+_ROUNDS = 14
+"""Of false position and halving at most."""
+_NEAR = 0.02
+"""Of the distance to the next mode: what has moved less in a round is off by about the square of that."""
 _ENDLESS = 300.0
 """Logarithm of a number that is as good as endless."""
 AnyArray = TypeVar("AnyArray", Array, Indices)
+
+
+class _Scale(msgspec.Struct, frozen=True, eq=False):
+    """Places of which about `_GRID` lie between two modes, all (n_beams,)."""
+
+    ends: Array
+    """The fourth root of an eigenvalue."""
+    places: Array
+    """Its place."""
+    bent: Array
+    """How much closer modes lie the higher they are: the fourth root goes like u / (1 + bent u^2)^(1/2)."""
+
+    def values(self, at: Array, which: Any = slice(None)) -> Array:
+        """Eigenvalues at places (..., n_beams), or of some beams."""
+        part, bent = at / self.places[which], self.bent[which]
+        return np.asarray((self.ends[which] * part) ** 4 * ((1.0 + bent) / (1.0 + bent * part**2)) ** 2)
 
 
 class _Brackets(msgspec.Struct, frozen=True, eq=False):
@@ -54,86 +78,160 @@ class _Brackets(msgspec.Struct, frozen=True, eq=False):
         return np.asarray(self.below_high - self.below_low == 1, dtype=bool)
 
 
-def isolated(stiffness: Array, mass: Array, rigid_modes: int, n_modes: int) -> Array:
+class _Measured(msgspec.Struct, frozen=True, eq=False):
+    """Counts of elastic modes, and logs of determinants without rigid motions and without their growth."""
+
+    pencils: Pencils
+    rigid_modes: int
+    scale: _Scale
+    growth: Array
+    """Of powers 0, 1, 2 of the place, (3, n_beams)."""
+
+    def at(self, places: Array, which: Any = slice(None)) -> tuple[Indices, Array]:
+        """Both at places (..., n_beams), or of some beams."""
+        values = self.scale.values(places, which)
+        some = self.pencils if isinstance(which, slice) else self.pencils.of_beams(which)
+        below, logs = tally(some, np.atleast_2d(values))
+        logs = logs.reshape(places.shape) - self.rigid_modes * np.log(values)
+        return below.reshape(places.shape) - self.rigid_modes, self.grown_less(logs, places, which)
+
+    def grown_less(self, logs: Array, places: Array, which: Any = slice(None)) -> Array:
+        """Logs at places without the growth there."""
+        none, once, twice = self.growth[:, which]
+        return np.asarray(logs - (none + (once + twice * places) * places))
+
+
+def isolated(pencils: Pencils, rigid_modes: int, n_modes: int) -> Array:
     """About where the lowest elastic eigenvalues of K v = lambda M v are, (n_modes, n_beams); not a number if lost."""
-    ends = _ends(stiffness, mass, rigid_modes, n_modes)
-    points = np.linspace(0.0, 1.0, _GRID * (n_modes + 1) + 1)[1:, None] * ends
-    below, logs = tally(stiffness, mass, points**4)
-    spacing = ends / np.maximum(below[-1] - rigid_modes, 1)
-    told = partial(_without, rigid_modes)
-    brackets, last = _on_grid(points, *told(below, logs, points / spacing), n_modes)
-    brackets = _narrowed(brackets, last, *told(*tally(stiffness, mass, last**4), last / spacing))
-    found = _between(brackets)
-    for _ in range(_ROUNDS - 1):
-        mode, beam = np.nonzero(abs(found - last) > _NEAR * spacing)
+    measured, places, below, logs = _gridded(pencils, rigid_modes, n_modes)
+    brackets, curve = _on_grid(places, below, logs, n_modes)
+    first = brackets.low + curve.root * (brackets.high - brackets.low)
+    found, brackets = _bettered(curve, brackets, first, *measured.at(first))
+    found = _followed(measured, brackets, curve.told, first, found)
+    return np.asarray(np.where(brackets.below_high >= brackets.modes, measured.scale.values(found), np.nan))
+
+
+def _gridded(pencils: Pencils, rigid_modes: int, n_modes: int) -> tuple[_Measured, Array, Indices, Array]:
+    """(what is measured, places, counts and logs of a grid from the mirrored points on, (g, n_beams) all)."""
+    n_beams = pencils.mass.shape[2]
+    plain = _Measured(pencils, rigid_modes, _scale(pencils, rigid_modes, n_modes), np.zeros((3, n_beams)))
+    places = np.arange(0.5, _GRID * (n_modes + _BEYOND))[:, None] + np.zeros(n_beams)
+    below, logs = plain.at(places)
+    growth = np.linalg.pinv(places[:, :1] ** np.arange(3)) @ np.where(np.isfinite(logs), logs, 0.0)
+    measured = _Measured(pencils, rigid_modes, plain.scale, np.asarray(growth, dtype=float))
+    mirrored = slice(_MIRRORED - 1, None, -1)
+    places, logs = np.concatenate([-places[mirrored], places]), np.concatenate([logs[mirrored], logs])
+    return measured, places, np.concatenate([below[mirrored], below]), measured.grown_less(logs, places)
+
+
+def _followed(measured: _Measured, brackets: _Brackets, told: BoolArray, last: Array, found: Array) -> Array:
+    """Places (m, n_beams) where modes are that moved from `last` to `found`; brackets are narrowed in their place."""
+    apart = told.copy()
+    for _ in range(_ROUNDS):
+        mode, beam = np.nonzero(~apart | (abs(found - last) > _NEAR * _between_modes(found)))
         if not len(mode):
             break
         at, last = found[mode, beam], found.copy()
-        below, logs = tally(np.take(stiffness, beam, axis=2), np.take(mass, beam, axis=2), at[None] ** 4)
         own = _Brackets(*(each[mode, beam] for each in _all_of(brackets)))
-        own = _narrowed(own, at, *told(below[0], logs[0], at / spacing[beam]))
+        apart[mode, beam] = own.alone
+        own = _narrowed(own, at, *measured.at(at, beam))
         for each, one in zip(_all_of(brackets), _all_of(own), strict=True):
             each[mode, beam] = one
         found[mode, beam] = _between(own)
-    return np.asarray(np.where(brackets.below_high >= brackets.modes, found, np.nan) ** 4)
+    return found
 
 
-def _ends(stiffness: Array, mass: Array, rigid_modes: int, n_modes: int) -> Array:
-    """About where the last of the modes lies, over the fourth root, (n_beams,)."""
-    phase = ((mass[:, 0] / stiffness[:, 0]) ** 0.25).sum(axis=0)
-    found = _PHASE * (n_modes + 0.5) / phase
-    below, _ = tally(stiffness, mass, found[None] ** 4)
-    return np.asarray(_BEYOND * found * (n_modes + 0.5) / np.maximum(below[0] - rigid_modes, 1))
+def _between_modes(places: Array) -> Array:
+    """How far each mode lies from the next one, below or above, (m, n_beams)."""
+    steps = np.diff(places, axis=0, prepend=-places[:1])
+    return np.asarray(np.minimum(steps, np.concatenate([steps[1:], steps[-1:]])))
 
 
-def _without(rigid_modes: int, below: Indices, logs: Array, distances: Array) -> tuple[Indices, Array]:
-    """(counts of elastic modes, logs without what cosh gives a beam's determinant at so many distances from zero)."""
-    return below - rigid_modes, logs - np.pi * distances
+def _scale(pencils: Pencils, rigid_modes: int, n_modes: int) -> _Scale:
+    """By the counts at about where the last of the modes lies, over the fourth root, and half way to it."""
+    phase = ((pencils.mass[:, 0] / pencils.stiffness[:, 0]) ** 0.25).sum(axis=0)
+    ends = _PHASE * (n_modes + 0.5) / phase
+    below, _ = tally(pencils, (np.array([[0.5], [1.0], [2.0]]) * ends) ** 4)
+    below = np.maximum(below - rigid_modes + 0.5, 1.0)
+    far = below[1] < _FAR * n_modes
+    half, whole = np.where(far, below[1:], below[:-1])
+    part = half / whole
+    bent = np.clip((0.25 - part**2) / (0.75 * part**2), 0.0, _BENT)
+    return _Scale(np.where(far, 2.0 * ends, ends), _GRID * whole, bent)
 
 
 def _all_of(brackets: _Brackets) -> list[Any]:
     return [getattr(brackets, name) for name in _Brackets.__struct_fields__]
 
 
-def _on_grid(points: Array, below: Indices, logs: Array, n_modes: int) -> tuple[_Brackets, Array]:
-    """The brackets of modes and where in each its mode lies, by a cubic, of points, counts and logs (g, n_beams)."""
-    modes = np.arange(1, n_modes + 1)
-    after = np.array([(below < mode).sum(axis=0) for mode in modes])
-    last, first = len(points) - 1, after == 0
+class _Curve(msgspec.Struct, frozen=True, eq=False):
+    """The polynomial through values at `_NODES`, of which 0 is `low`: where it is zero in the bracket."""
+
+    told: BoolArray
+    """Whether it says where the mode is."""
+    root: Array
+    """The middle where it does not."""
+    slope: Array
+    """There."""
+
+
+def _on_grid(points: Array, below: Indices, logs: Array, n_modes: int) -> tuple[_Brackets, _Curve]:
+    """The brackets of modes and the curve in each, of points, counts and logs (g, n_beams)."""
+    modes, values, last = np.arange(1, n_modes + 1)[:, None], _signed(below, logs), len(points) - 1
+    counts = np.clip(below[_MIRRORED:], 0, n_modes).astype(np.uint16)  # four times as fast as whole numbers
+    less = np.add.reduce(counts[:, None] < modes.astype(np.uint16), axis=0, dtype=np.uint16)
+    after = less.astype(np.intp) + _MIRRORED
+    inside = after > _MIRRORED
 
     def at(values: AnyArray, which: Indices) -> AnyArray:
         return np.take_along_axis(values, np.clip(which, 0, last), axis=0)
 
     brackets = _Brackets(
-        modes=modes[:, None] + np.zeros_like(after),
-        low=np.where(first, 0.0, at(points, after - 1)),
+        modes=modes + np.zeros_like(after),
+        low=np.maximum(at(points, after - 1), 0.0),
         high=at(points, after),
-        below_low=np.where(first, 0, at(below, after - 1)),
+        below_low=np.where(inside, at(below, after - 1), 0),
         below_high=at(below, after),
-        log_low=np.where(first, np.nan, at(logs, after - 1)),
+        log_low=np.where(inside, at(logs, after - 1), np.nan),
         log_high=at(logs, after),
         moved=np.zeros_like(after),
     )
-    around = [after + shift for shift in (-2, -1, 0, 1)]
-    signs = [1.0 - 2.0 * ((at(below, i) - brackets.below_low) % 2) for i in around]
-    values = [sign * _exp(at(logs, i) - brackets.log_low) for sign, i in zip(signs, around, strict=True)]
-    share = _root_of_cubic(*values)
-    told = brackets.alone & (after >= 2) & (after < last) & (share > 0.0) & (share < 1.0)
-    return brackets, np.where(told, brackets.low + share * (brackets.high - brackets.low), _between(brackets))
+    share, slope = _root_between(np.array([at(values, after - 1 + node) for node in _NODES]))
+    told = inside & brackets.alone & (after + _NODES[-1] <= last + 1) & (share > 0.0) & (share < 1.0)
+    return brackets, _Curve(told, np.where(told, share, 0.5), slope)
 
 
-def _root_of_cubic(before: Array, low: Array, high: Array, after: Array) -> Array:
-    """Where the cubic through values at -1, 0, 1 and 2 is zero between 0 and 1, by Newton's steps."""
-    cubed, squared = (after - before) / 6.0 - 0.5 * (high - low), 0.5 * (before + high) - low
-    once, share = high - low - squared - cubed, low / (low - high)
+def _signed(below: Indices, logs: Array) -> Array:
+    """Determinants by the modes below and their logs."""
+    return np.asarray((1.0 - 2.0 * (below % 2)) * _exp(logs))
+
+
+def _root_between(values: Array) -> tuple[Array, Array]:
+    """(where the polynomial through values at `_NODES`, (6, ...), is zero past 0, by Newton's steps, its slope)."""
+    *others, highest = np.tensordot(np.linalg.inv(np.vander(_NODES, increasing=True)), values, 1)
+    share = values[2] / (values[2] - values[3])
     for _ in range(_NEWTON):
-        slope = (3.0 * cubed * share + 2.0 * squared) * share + once
-        share = share - (((cubed * share + squared) * share + once) * share + low) / slope
-    return np.asarray(share)
+        value, slope = highest, np.zeros_like(share)
+        for power in reversed(others):
+            slope = slope * share + value
+            value = value * share + power
+        share = share - value / slope
+    return share, slope
 
 
 def _exp(logs: Array) -> Array:
     return np.asarray(np.exp(np.clip(logs, -_ENDLESS, _ENDLESS)))
+
+
+def _bettered(curve: _Curve, brackets: _Brackets, at: Array, below: Indices, logs: Array) -> tuple[Array, _Brackets]:
+    """(where the polynomial through the points of a curve and its root is zero, the brackets with the count there)."""
+    root, narrowed = curve.root, _narrowed(brackets, at, below, logs)
+    value = _signed(below, logs)
+    # of the product of all distances to the points, which is zero there, the slope over itself
+    rise = np.asarray(sum(1.0 / (root - node) for node in _NODES))
+    found = at - value / (curve.slope + value * rise)
+    told = curve.told & (found > narrowed.low) & (found < narrowed.high)
+    return np.where(told, found, _between(narrowed)), narrowed
 
 
 def _between(brackets: _Brackets) -> Array:

@@ -20,7 +20,7 @@ from verify.models.eigen import distance_answered, forced_response, lowest, prob
 from verify.models.fields import RESONANCE, HarmonicField, check_forces, check_frequencies
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.models.places import Forces, Numbers, as_asked, keep_lines, places, real_array
-from verify.models.stacks import PencilStack, carried_along, lowest_of_each
+from verify.models.stacks import PencilStack, lowest_of_each
 
 MOST_VALUES = 50_000_000
 """Complex numbers that a sweep holds at once: 0.8 GB."""
@@ -28,8 +28,6 @@ FEW = 4
 """Frequencies up to which each is solved by itself."""
 LEAST = 8
 """Beams of one layout from which on a stack takes less time than each by itself."""
-MOST_IN_STACK = 4_000_000
-"""Numbers in the vectors of a stack."""
 TOGETHER, MODES_TOGETHER = 256, 4000
 """Beams in a stack, and modes of them, at most: enough to fill numpy's loops, few enough to share among cores."""
 MODES_WORTH, UNKNOWNS_WORTH = 4000, 2000
@@ -258,23 +256,16 @@ def _stacks(
     made: dict[int, tuple[FactoredPencil, float]],
 ) -> dict[int, Array]:
     """The lowest values, (n_modes,) each, of the beams that settled in a stack, by index."""
-    starts = {group[0]: start for group in groups if (start := _start(group, n_modes, *made[group[0]]))}
-    found: dict[int, Array] = {}
+    parts = [part for group in groups if _is_stack(group, n_modes, made) for part in _parts(group, n_modes)]
 
-    def solved(part: _Part) -> tuple[Array, BoolArray]:
+    def solved(part: list[int]) -> tuple[Array, BoolArray]:
         _keep_memory()
-        return lowest_of_each(model.stack([beams[i] for i in part.which]), n_modes, part.start, part.n_inverted)
+        return lowest_of_each(model.stack([beams[i] for i in part]), n_modes)
 
-    for attempt in range(2):
-        parts = [
-            part
-            for group in groups
-            if group[0] in starts
-            for part in _parts([i for i in group if i not in found], n_modes, starts[group[0]], attempt)
-        ]
-        worth = n_modes * sum(len(part.which) for part in parts) >= MODES_WORTH
-        for part, (values, settled) in zip(parts, _shared(solved, parts, worth), strict=True):
-            found |= {i: row for i, row, sure in zip(part.which, values.T, settled, strict=True) if sure}
+    worth = n_modes * sum(map(len, parts)) >= MODES_WORTH
+    found: dict[int, Array] = {}
+    for part, (values, settled) in zip(parts, _shared(solved, parts, worth), strict=True):
+        found |= {i: row for i, row, sure in zip(part, values.T, settled, strict=True) if sure}
     return found
 
 
@@ -283,31 +274,12 @@ def _shared(work: Callable[[Item], Found], items: Sequence[Item], worth: bool) -
     return at_once(work, items) if worth else [work(item) for item in items]
 
 
-class _Start(msgspec.Struct, frozen=True, eq=False):
-    """What the stacks of a group start from."""
-
-    vectors: Array
-    """(n, k), of its first beam, rigid motions first."""
-    rigid_modes: int
-    tried: tuple[tuple[int, int], ...]
-    """As `carried_along` has them."""
-
-
-class _Part(msgspec.Struct, frozen=True, eq=False):
-    """Beams of one layout that are solved as one stack."""
-
-    which: list[int]
-    start: Array
-    n_inverted: int
-
-
-def _start(group: list[int], n_modes: int, pencil: FactoredPencil, unit: float) -> _Start | None:
-    """Of a group that is worth a stack, whose first beam has this pencil."""
-    tried = carried_along(n_modes, pencil.n - pencil.rigid_modes)
-    if len(group) < LEAST or pencil.n > DENSE_UNKNOWNS or not tried:
-        return None
-    vectors = np.hstack([pencil.rigid, lowest(pencil, max(tried)[0]).vectors])
-    return _Start(vectors, pencil.rigid_modes, tried)
+def _is_stack(group: list[int], n_modes: int, made: dict[int, tuple[FactoredPencil, float]]) -> bool:
+    """Whether a group is worth a stack, and its beams have modes above those that are asked for."""
+    pencil, _ = made[group[0]]
+    return (
+        len(group) >= LEAST and pencil.n <= DENSE_UNKNOWNS and 3 * (n_modes + 2) <= 2 * (pencil.n - pencil.rigid_modes)
+    )
 
 
 def _keep_memory() -> None:
@@ -318,18 +290,14 @@ def _keep_memory() -> None:
     np.empty(31 * 2**20, dtype=np.uint8)
 
 
-def _parts(group: list[int], n_modes: int, start: _Start, attempt: int) -> list[_Part]:
-    """A group in equal parts of `TOGETHER`, `MODES_TOGETHER` and `MOST_IN_STACK` at most; none of a small one.
+def _parts(group: list[int], n_modes: int) -> list[list[int]]:
+    """A group in equal parts of `TOGETHER` and `MODES_TOGETHER` at most.
 
     However many cores there are: how they are cut may show in a last digit.
     """
-    if len(group) < LEAST:
-        return []
-    n_carried, n_inverted = start.tried[attempt]
-    vectors = start.vectors[:, : start.rigid_modes + n_carried]
-    most = min(TOGETHER, max(min(MOST_IN_STACK // vectors.size, MODES_TOGETHER // n_modes), LEAST))
+    most = min(TOGETHER, max(MODES_TOGETHER // n_modes, LEAST))
     size = ceil(len(group) / ceil(len(group) / most))
-    return [_Part(group[first : first + size], vectors, n_inverted) for first in range(0, len(group), size)]
+    return [group[first : first + size] for first in range(0, len(group), size)]
 
 
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.models.arrays import Array, Indices
-from verify.models.band_stack import of_unknowns
+from verify.models.band_stack import Pencils, banded, of_unknowns
 from verify.models.division import divide_each
 from verify.models.stacks import PencilStack
 from verify.segments.attached import felt_at, is_mended, mended, places_on
@@ -73,10 +73,8 @@ def chain_stack(beams: Sequence[Beam], n_segments: int, settings: dict[str, Any]
     springs = [chains.joints, *_present(chains.ground, chains.twist)]
     if chains.bodies is not None:
         springs += [*chains.bodies[2:]]
-    stiffness, mass = _matrices(chains)
     return PencilStack(
-        stiffness=stiffness,
-        mass=mass,
+        pencils=_pencils(chains),
         strain=lambda vectors: _strain(chains, vectors),
         loads=lambda forces: _loads(chains, forces),
         springs=np.concatenate(springs),
@@ -205,23 +203,23 @@ def _chain_of(beam: Beam, chains: Chains, index: int) -> Chain:
     )
 
 
-def _matrices(chains: Chains) -> tuple[Array, Array]:
-    """K and M over the free joints as bands."""
-    n = len(chains.joints)
-    felt, tilted = _body_rows(chains)
-    width = 1 + max(2, _reach(felt), _reach(tilted))
-    stiffness, mass = (np.zeros((n, width, chains.joints.shape[1])) for _ in range(2))
+def _pencils(chains: Chains) -> Pencils:
+    """K and M over the free joints."""
+    n, n_beams = chains.joints.shape
+    stiffness, mass = np.zeros((n, 3, n_beams)), np.zeros((n, 2, n_beams))
     _add_angles(chains, stiffness)
     _add_links(chains, mass, chains.masses, chains.inertias)
     if chains.ground is not None or chains.twist is not None:
         none = np.zeros_like(chains.lengths)
         ground, twist = (none if one is None else one for one in (chains.ground, chains.twist))
         _add_links(chains, stiffness, ground, twist)
-    if chains.bodies is not None:
-        for bands, of_places, of_turns in ((mass, *chains.bodies[:2]), (stiffness, *chains.bodies[2:])):
-            _add_rows(bands, felt, of_places)
-            _add_rows(bands, tilted, of_turns)
-    return of_unknowns(stiffness, chains.free), of_unknowns(mass, chains.free)
+    alone = banded(of_unknowns(stiffness, chains.free), of_unknowns(mass, chains.free))
+    if chains.bodies is None:
+        return alone
+    heavy, held = (np.concatenate(chains.bodies[one]) for one in (slice(2), slice(2, 4)))
+    there = np.flatnonzero(heavy.any(axis=1) | held.any(axis=1))
+    felt = _body_rows(chains)[there][:, chains.free].swapaxes(0, 1)
+    return replace(alone, felt=np.ascontiguousarray(felt), held=held[there], heavy=heavy[there])
 
 
 def _add_angles(chains: Chains, bands: Array) -> None:
@@ -244,33 +242,14 @@ def _add_links(chains: Chains, bands: Array, of_middles: Array, of_turns: Array)
     bands[:-1, 1] += of_middles / 4.0 - spin
 
 
-def _add_rows(bands: Array, rows: Array, weights: Array) -> None:
-    """Weights (bodies, n_beams) times the squares of rows (bodies, N + 1, n_beams)."""
-    n = len(bands)
-    for row, weight in zip(rows, weights, strict=True):
-        if weight.any():
-            for above in range(bands.shape[1]):
-                bands[: n - above, above] += weight * row[: n - above] * row[above:]
-
-
-def _body_rows(chains: Chains) -> tuple[Array, Array]:
-    """What bodies feel of the joints' positions and of the turns there, over the joints, (bodies, N + 1, n_beams)."""
-    if chains.felt is None or chains.turned is None:
-        return (np.zeros((0, *chains.joints.shape)),) * 2
+def _body_rows(chains: Chains) -> Array:
+    """What bodies feel of positions and then of turns, over the joints, (2 bodies, N + 1, n_beams)."""
+    assert chains.felt is not None
+    assert chains.turned is not None
     by_slope = chains.turned / chains.lengths
     padded = np.zeros((len(by_slope), len(chains.joints) + 1, by_slope.shape[2]))
     padded[:, 1:-1] = by_slope
-    return chains.felt, padded[:, :-1] - padded[:, 1:]
-
-
-def _reach(rows: Array) -> int:
-    """How far apart joints are that one row holds, at most."""
-    there = rows != 0.0
-    if not there.any():
-        return 0
-    n = rows.shape[1]
-    first, last = there.argmax(axis=1), n - 1 - there[:, ::-1].argmax(axis=1)
-    return int((last - first)[there.any(axis=1)].max())
+    return np.concatenate([chains.felt, padded[:, :-1] - padded[:, 1:]])
 
 
 def _padded(values: Array) -> Array:
@@ -298,7 +277,7 @@ def _strain(chains: Chains, vectors: Array) -> Array:
         found.append(turns)
     if chains.bodies is not None:
         found += _felt(chains, places, turns)
-    return np.concatenate(found)
+    return np.concatenate(found) if len(found) > 1 else found[0]
 
 
 def _loads(chains: Chains, forces: Array) -> Array:

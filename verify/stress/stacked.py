@@ -38,8 +38,7 @@ def together_error(model: str) -> Callable[[float], float]:
         together = import_module(f"verify.{room}.sweeps").sweep_modes(several, MODES, PARTS, **settings)
         alone = [MODELS[model].solve_modes(one, MODES, PARTS, **settings) for one in several]
         exact = np.array([modes.frequencies_hz for modes in alone])
-        stack, start = _stack_of(model, several, settings)
-        values, sure = lowest_of_each(stack, MODES, start)
+        values, sure = lowest_of_each(_stack_of(model, several, settings), MODES)
         ratios = np.sqrt(values).T * _units(several) / exact
         left = float((~np.asarray(sure)).sum())
         return max(float(abs(together / exact - 1.0).max()), float(abs(ratios - 1.0).max()), left)
@@ -54,30 +53,24 @@ def _units(beams: list[Beam]) -> Array:
     return np.array([beam.wave_constant * (PARTS / beam.length) ** 2 / (2.0 * pi) for beam in beams])[:, None]
 
 
-def _stack_of(model: str, beams: list[Beam], settings: dict[str, Any]) -> tuple[Any, Array]:
-    """(the stack, vectors of the first beam). Raises ArithmeticError where beams are not of one layout."""
-    from verify.models.eigen import lowest
-
+def _stack_of(model: str, beams: list[Beam], settings: dict[str, Any]) -> Any:
+    """The stack. Raises ArithmeticError where beams are not of one layout."""
     grading, theory = settings.get("grading", 1.0), settings.get("theory", "euler-bernoulli")
     if model == "fem":
-        from verify.elements.mesh import build_elements
-        from verify.elements.pencil import element_pencil
         from verify.elements.stacks import element_stack, layout
 
         shared = {layout(beam, PARTS, grading, theory) for beam in beams}
         stack = element_stack(beams, PARTS, grading, theory)
-        pencil = element_pencil(build_elements(beams[0], PARTS, grading, theory))
     else:
         from verify.segments import stacks
         from verify.segments.linear import settings_of
-        from verify.segments.links import build_chain, chain_pencil
 
         given = settings_of("gregory", "series", grading, theory, "reciprocal")
         shared = {stacks.layout(beam, **given) for beam in beams}
-        stack, pencil = stacks.chain_stack(beams, PARTS, given), chain_pencil(build_chain(beams[0], PARTS, **given))
+        stack = stacks.chain_stack(beams, PARTS, given)
     if len(shared) != 1 or None in shared:
         raise ArithmeticError("beams that are alike are not taken together")
-    return stack, np.hstack([pencil.rigid, lowest(pencil, MODES + 3).vectors])
+    return stack
 
 
 def _scaled(beam: Beam, part: float) -> Beam:

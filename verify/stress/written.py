@@ -239,41 +239,33 @@ def stacked_error(model: str) -> Callable[[float], float]:
         from importlib import import_module
 
         from verify.models.catalogue import MODELS
-        from verify.models.eigen import lowest
         from verify.models.stacks import lowest_of_each
 
         several = [_like(beams()[int(number)], 1.0 + 0.07 * i) for i in range(9)]
         room, settings = "elements" if model == "fem" else "segments", {} if number else {"attachment": "lever"}
         together = import_module(f"verify.{room}.sweeps").sweep_modes(several, 2, 20, **settings)
         alone = [MODELS[model].solve_modes(beam, 2, 20, **settings).frequencies_hz for beam in several]
-        stack, pencil = _stacked(model, several, 20, "reciprocal" if number else "lever")
-        start = np.hstack([pencil.rigid, lowest(pencil, 5).vectors])
-        left = sum(not sure for sure in lowest_of_each(stack, 2, start)[1])
+        stack = _stacked(model, several, 20, "reciprocal" if number else "lever")
+        left = sum(not sure for sure in lowest_of_each(stack, 2)[1])
         return max(float(abs(together / np.array(alone) - 1.0).max()), float(left))
 
     return error
 
 
-def _stacked(model: str, several: list[Beam], count: int, attachment: Attachment) -> tuple[Any, Any]:
-    """(a stack of beams, the pencil of the first). Raises ArithmeticError where they are not of one layout."""
+def _stacked(model: str, several: list[Beam], count: int, attachment: Attachment) -> Any:
+    """A stack of beams. Raises ArithmeticError where they are not of one layout."""
     if model == "fem":
-        from verify.elements.mesh import build_elements
-        from verify.elements.pencil import element_pencil
         from verify.elements.stacks import element_stack, layout
 
         shared = {layout(beam, count, 1.0, "euler-bernoulli") for beam in several}
-        found = (
-            element_stack(several, count, 1.0, "euler-bernoulli"),
-            element_pencil(build_elements(several[0], count, 1.0, "euler-bernoulli")),
-        )
+        found = element_stack(several, count, 1.0, "euler-bernoulli")
     else:
         from verify.segments import stacks
         from verify.segments.linear import settings_of
-        from verify.segments.links import build_chain, chain_pencil
 
         settings = settings_of("gregory", "series", 1.0, "euler-bernoulli", attachment)
         shared = {stacks.layout(beam, **settings) for beam in several}
-        found = stacks.chain_stack(several, count, settings), chain_pencil(build_chain(several[0], count, **settings))
+        found = stacks.chain_stack(several, count, settings)
     if len(shared) != 1 or None in shared:
         raise ArithmeticError("beams that are alike are not taken together")
     return found
