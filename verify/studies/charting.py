@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Dash, Line, Marker, Numbers
+from verify.units import Unit
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
@@ -30,6 +31,21 @@ BROAD = 4.0
 def numbers(values: "Iterable[float | None] | Array") -> Numbers:
     """Plain numbers, None where there is none or one that is not finite."""
     return tuple(None if v is None or not isfinite(v) else float(v) for v in values)
+
+
+def in_units(one: Line, x: Unit, y: Unit) -> Line:
+    """A line whose places are in SI, in these units, at every frame."""
+    return replace(
+        one,
+        x=_times(x.factor, one.x),
+        y=_times(y.factor, one.y),
+        moves=tuple(_times(y.factor, row) for row in one.moves),
+        shifts=tuple(_times(x.factor, row) for row in one.shifts),
+    )
+
+
+def _times(factor: float, values: Numbers) -> Numbers:
+    return tuple(None if v is None else factor * v for v in values)
 
 
 def line(name: str, colour: str, x: Iterable[Any], y: Iterable[Any], *, marker: Marker = "circle", **more: Any) -> Line:
