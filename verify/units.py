@@ -37,8 +37,9 @@ def unit_over(values: "Iterable[float | None]", symbol: str = "m") -> Unit:
 
 def in_words(value: float, symbol: str = "m", form: str = ".3g") -> str:
     """'1.53 mm': a figure in the unit that suits it as it is written, in digits: 0.9999 mm is 1 mm."""
-    unit = unit_of(float(format(value, form)), symbol)
-    return f"{format(unit.factor * value, form)} {unit.name}"
+    written = float(format(value, form))
+    unit = unit_of(written, symbol)
+    return f"{unit.factor * written:{'+' if form.startswith('+') else ''}g} {unit.name}"
 
 
 def time_in_words(seconds: float) -> str:

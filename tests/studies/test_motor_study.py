@@ -208,7 +208,7 @@ def test_a_mean_within_twice_its_error_is_not_told():
     beam = rest_field("analytic", "rigid", -0.4, 0.4, ends=(0.0, 0.0, 0.0, 0.0))
     apart = rest_field("chain", "rigid", -0.4, 0.4, ends=(3e-6, 4e-6, 3e-6, 4e-6))
     spread = rest_field("chain", "rigid", -0.4, 0.4, ends=(-9e-6, 10e-6, -9e-6, 10e-6))
-    assert "on rigid links +3.5 +- 0.29 um" in next(iter(what_stands(rest_of(beam, apart))))
+    assert "on rigid links +3.5 +- 0.29 µm" in next(iter(what_stands(rest_of(beam, apart))))
     assert "on rigid links no mean that is told from its error" in next(iter(what_stands(rest_of(beam, spread))))
 
 
@@ -231,7 +231,7 @@ def test_a_margin_that_is_not_small_has_its_sentence(study):
     assert "epsilon" not in doubted(study, k=1e5)
     assert "no wave travels" in doubted(study, epsilon=None, k=None)["epsilon"]
     assert "epsilon" not in doubted(study, k=None)
-    assert "bends the beam by 30 um, 2.1 times" in doubted(study, sag=30e-6)["sag"]
+    assert "bends the beam by 30 µm, 2.1 times" in doubted(study, sag=30e-6)["sag"]
     assert "push away or turn a beam that nothing holds" in doubted(study, sag=None)["sag"]
     assert "step" in doubted(study, step=0.4)
     assert "chain" not in doubted(study, chain=1e-4)
@@ -392,7 +392,7 @@ def test_what_has_not_settled_is_told_with_its_spread_and_what_stands_on_it_is_w
     assert "withheld, it comes to no speed" in facts
     overview, speeds, *_ = found.tables()
     heads = [column.head for column in overview.columns]
-    for head in ("free, cm/s", "stall, mN", "start", "stop", "turn"):
+    for head in ("free, cm/s", "stall, N", "start", "stop", "turn"):
         assert overview.rows[0][heads.index(head)] is None
     assert any("means at 1 of 3 held speeds have not settled after 11520 periods" in note for note in overview.notes)
     assert [column.head for column in speeds.columns][1:4] == ["49 segments, mN", "+-, mN", "power, mW"]

@@ -71,7 +71,7 @@ class AxialInertia(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 def steps_of(asked: AxialInertia, scene: "Scene") -> float:
     """Of each nonlinear chain, about."""
     fastest = 4.0 * 3.0**0.5 * (asked.count / scene.beam.length) ** 2 * scene.beam.wave_constant
-    return max(STEPS_PER_RADIAN * fastest * asked.duration, 1.0)
+    return float(max(STEPS_PER_RADIAN * fastest * asked.duration, 1.0))
 
 
 def n_stepped(asked: AxialInertia) -> int:

@@ -24,7 +24,7 @@ from verify.options import Links
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
 from verify.studies.motor import HELD, RUNS, case_of, places_from_rest
-from verify.units import in_words, time_in_words
+from verify.units import in_words, time_in_words, unit_over
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun
@@ -275,7 +275,8 @@ def _pm(mean: float, error: float) -> str:
 
 def _departs(found: FromRest, one: RestField) -> str:
     gone = found.departure(one)
-    mean = f"{in_words(gone.mean, form='+.3g')} +- {in_words(gone.error, form='.2g')}"
+    unit = unit_over((gone.mean, gone.error))
+    mean = f"{unit.factor * gone.mean:+.3g} +- {unit.factor * gone.error:.2g} {unit.name}"
     said = mean if gone.told else f"no mean that is told from its error ({mean})"
     return f"on {one.title} {said}, rms {in_words(gone.rms)}, halved steps {in_words(one.stepped, form='.2g')}"
 
