@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from verify.errors import InputError
 from verify.models.kind import Model
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from verify.models.time_basis import TimeBasis
 
 
-Given = ParamSpec("Given")
-Out = TypeVar("Out")
+Verb = TypeVar("Verb", bound=Callable[..., Any])
 
 
 class Exact(Model):
@@ -90,11 +89,11 @@ class Exact(Model):
         return buckling_load(beam)
 
 
-def named_count(verb: "Callable[Concatenate[Any, Given], Out]") -> "Callable[Concatenate[Any, Given], Out]":
+def named_count(verb: Verb) -> Verb:
     """A model's verb whose refusals name `count`, which its user wrote, where its module has a word of its own."""
 
     @wraps(verb)
-    def named(self: Any, *given: Given.args, **more: Given.kwargs) -> Out:
+    def named(self: "Discrete", *given: Any, **more: Any) -> Any:
         try:
             return verb(self, *given, **more)
         except InputError as error:
@@ -102,7 +101,7 @@ def named_count(verb: "Callable[Concatenate[Any, Given], Out]") -> "Callable[Con
                 raise
             raise type(error)(str(error).replace(self.field, "count")) from None
 
-    return named
+    return cast(Verb, named)
 
 
 class Discrete(Model):
