@@ -193,7 +193,7 @@ def of_waves() -> Iterator[Case]:
     yield Case("window = [0.15, 0.6]", _seen(0.2), _seen(0.01))
     yield Case("model = 'fems'", lambda: Rules(grading=2.0).variants(("fems",)))
     yield Case("wall = 'half' is", lambda: Rules(wall="half").variants(("fem",)), lambda: Rules().variants(("fem",)))
-    yield Case("n_segments = 0", lambda: comparable(STRIP, (0,), 1), lambda: comparable(STRIP, (9,), 1))
+    yield Case("count = 0", lambda: comparable(STRIP, (0,), 1), lambda: comparable(STRIP, (9,), 1))
 
 
 def _seen(first: float) -> Ask:
