@@ -119,6 +119,10 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         names = numbered([column.head for column in first.columns])
         return [dict(zip(names, map(in_its_unit, row, first.columns), strict=True)) for row in first.rows]
 
+    def under(self, overrides: tuple[str, ...]) -> "Found":
+        """The same, told as found in a run that `overrides` changed what exists for: 'beam.length=0.43'."""
+        return self
+
     def motions(self) -> int:
         """How many simulations in time were done for it."""
         return 0
