@@ -290,6 +290,41 @@ def test_bad_input_is_refused_with_the_scene(setting):
         load_scene("preloaded-motor", (setting,))
 
 
+def test_a_run_from_rest_beside_a_chain_is_bounded_by_periods_of_its_drive():
+    """By seconds a beam of kilometres was refused a period, and one of micrometres given millions."""
+    with pytest.raises(
+        InputError, match=r"motor.chain = 0.3 s is 1.28e\+03 periods of the drive: give at most 1000, 0.234"
+    ):
+        load_scene("preloaded-motor", ("motor.chain=0.3",))
+    assert load_scene("preloaded-motor", ("motor.chain=0.3", "drive.frequency_hz=2100.0")).motor.chain == 0.3
+
+
+def test_a_study_of_a_motor_that_its_beam_feels_is_estimated_as_a_whole(monkeypatch):
+    """Each held speed alone is waited for; all of them and the free runs are not."""
+    monkeypatch.setenv("VERIFY_PATIENCE", "3")
+    felt = small("slider.coupling=two-way", "motor.count=23", "motor.periods=100000")
+    with pytest.raises(
+        InputError, match=r"motor.periods = 100000 would take about .*, more than the 3 s .* lower it or motor"
+    ):
+        studied(felt)
+
+
+@pytest.mark.parametrize("number", [1, 5, 51, 52, 53, 54, 73, 76])
+def test_a_run_of_the_study_that_is_broken_off_ends_the_study(monkeypatch, number):
+    """One held, of the search, free, cut off, turned round, shot, drawn: the page was of runs that had no end."""
+    from verify.motor import carry
+
+    stages, calls = carry.run_stages, iter(range(1, 10**6))
+
+    def broken(*given):
+        stopped, *rest = stages(*given)
+        return ("interrupted" if next(calls) == number else stopped, *rest)
+
+    monkeypatch.setattr(carry, "run_stages", broken)
+    with pytest.raises(KeyboardInterrupt):
+        studied(small("motor.count=21", "motor.speeds=2", "motor.periods=20"))
+
+
 REFUSED = {
     'drive.kind="displacement"': "drive.kind",
     'slider.coupling="two-way"': "slider.coupling = 'two-way' on a nonlinear chain",

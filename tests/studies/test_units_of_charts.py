@@ -67,8 +67,8 @@ def motor(s):
     feet = [{"length": 0.027 * s, "points": 3, "face": face} for face in ("upper", "lower")]
     own = {"mass": 0.011 * s**3, "mu": 0.21, "law": "coulomb", "gravity": 0.0, "preload": 0.17 * s**2}
     own |= {"coupling": "one-way", "foot": feet, "contact": {"stiffness": 4.1e4 * s, "damping": 0.9 * s**2}}
-    asked = {"models": ["segment"], "count": 21, "speeds": 2, "periods": 20}
-    return scene_of(s, slider=own, motor=asked)
+    asked = {"models": ["segment", "chain"], "count": 21, "speeds": 2, "periods": 20, "chain": 2e-3 * s, "places": 2}
+    return scene_of(s, slider=own, motor=asked | {"chain_force": 11.0 * s**2})
 
 
 MADE = {"wave": wave, "motion": slider, "axial_inertia": axial, "methods": methods, "motor": motor}

@@ -20,6 +20,7 @@ from verify.models.catalogue import MODELS
 from verify.motor.case import MotorCase
 from verify.motor.combine import CHAIN
 from verify.motor.figures import crest_speed
+from verify.motor.result import uninterrupted
 from verify.options import Links
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
@@ -248,6 +249,8 @@ def _runs(
         samples=int(seconds * case.frequency_hz) + 2,
         steps_per_period=case.steps_per_period,
     )
+    for one in found:
+        uninterrupted(one)
     return [found[k : k + len(places)] for k in range(0, len(found), len(places))]
 
 
