@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from verify.beam import Beam
+from verify.cli import status_of
 
 pytest_plugins = ["pytester"]
 
@@ -53,3 +54,17 @@ def paper_beam():
 @pytest.fixture
 def titanium_strip():
     return Beam(length=0.73, width=0.031, thickness=0.0023, youngs_modulus=113e9, density=4470.0)
+
+
+@pytest.fixture
+def verify(capsys, tmp_path, monkeypatch):
+    """Run a command line in an empty folder: (status, standard output, error output)."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words):
+        capsys.readouterr()
+        status = status_of([str(word) for word in words])
+        out, err = capsys.readouterr()
+        return status, out, err
+
+    return call

@@ -6,29 +6,17 @@ from math import isfinite, isnan
 from typing import Any
 
 from verify.errors import written
+from verify.units import in_words
 
 
 def seconds_in_words(seconds: float | None) -> str:
     """A duration with a unit that suits it."""
-    if seconds is None:
-        return "–"
-    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
-        if seconds < limit:
-            return f"{seconds * factor:.3g} {unit}"
-    return f"{seconds:.3g} s"
+    return "–" if seconds is None else in_words(seconds, "s")
 
 
 def as_written(numbers: Iterable[float]) -> str:
     """Numbers as a person writes them: [0.03425, 0.10275], where a product left 0.10275000000000001."""
     return str([float(written(number)) for number in numbers])
-
-
-def metres_in_words(metres: float) -> str:
-    """A length to three digits, in m, mm, µm or nm."""
-    for unit, factor in (("m", 1.0), ("mm", 1e3), ("µm", 1e6)):
-        if abs(metres) * factor >= 1.0:
-            return f"{metres * factor:.3g} {unit}"
-    return f"{metres * 1e9:.3g} nm"
 
 
 def newtons(amplitudes: Iterable[float]) -> str:

@@ -9,22 +9,6 @@ import sys
 
 import pytest
 
-from verify.cli import status_of
-
-
-@pytest.fixture
-def verify(capsys, tmp_path, monkeypatch):
-    """Run a command line in an empty folder: (status, standard output, error output)."""
-    monkeypatch.chdir(tmp_path)
-
-    def call(*words):
-        capsys.readouterr()
-        status = status_of([str(word) for word in words])
-        out, err = capsys.readouterr()
-        return status, out, err
-
-    return call
-
 
 def test_run_paper_passes_and_writes_its_report(verify, tmp_path):
     status, out, err = verify("run", "paper")

@@ -144,7 +144,7 @@ def test_a_slider_at_rest_on_a_beam_at_rest_sticks_from_the_start():
         ({"duration": np.nan}, "duration = nan"),
         ({"duration": -1.0}, "duration = -1.0"),
         ({"count": None}, "count is missing"),
-        ({"count": 2.5}, "n_segments = 2.5"),
+        ({"count": 2.5}, "count = 2.5"),
         ({"count": 11, "model": "analytic"}, "count = 11 is for models of parts"),
         ({"modes": 5}, "modes = 5 is for model = analytic: segment keeps all it has, leave it out"),
         ({"modes": 5, "model": "fem", "start": "steady"}, "modes = 5 is for model = analytic: fem keeps all it has"),

@@ -5,24 +5,10 @@ import re
 
 import pytest
 
-from verify.cli import status_of
 from verify.report.sheets import index, markdown, sheet_of
 from verify.run.gates import judge
 from verify.run.runner import workbench_for
 from verify.scenes.scene import STARTER, load_scene, packaged_scenes, tables_of
-
-
-@pytest.fixture
-def verify(capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-    def call(*words):
-        capsys.readouterr()
-        status = status_of([str(word) for word in words])
-        out, err = capsys.readouterr()
-        return status, out, err
-
-    return call
 
 
 def sheet(name, *judged):

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from states_reference import frequency_near
 
 from verify.attached import PointMass, PointSpring
-from verify.beam import Beam
+from verify.beam import Beam, PointForce
 from verify.errors import InputError
 from verify.models.catalogue import MODELS
 from verify.section import Section
@@ -173,6 +173,24 @@ def test_a_thick_beam_under_axial_force_and_a_section_that_lacks_a_figure_are_re
         solve_modes(bare, 2, 9, theory=theory)
     with pytest.raises(InputError, match="did you mean"):
         solve_modes(THICK, 2, 9, theory=theory[:-1])
+
+
+REFUSED = (
+    ("segment", "solve_modes", (THICK, 2, 5), {"theory": "timoshenko", "joints": "tensioned"}),
+    ("segment", "solve_modes", (THICK, 9, 8), {}),
+    ("segment", "solve_harmonic", (THICK, (PointForce(position=0.1),), 90.0, 1), {}),
+    ("fem", "solve_modes", (THICK, 2, 0), {}),
+    ("fem", "solve_modes", (THICK, 40, 7), {}),
+)
+
+
+@pytest.mark.parametrize(("model", "verb", "given", "settings"), REFUSED)
+def test_a_refusal_of_a_size_names_count_to_who_wrote_count(model, verb, given, settings):
+    """As scenes, the command line and all verbs over models say it; `n_segments` is what a model's own page says."""
+    with pytest.raises(InputError, match=r"\bcount\b") as told:
+        getattr(MODELS[model], verb)(*given, **settings)
+    assert "n_segments" not in str(told.value)
+    assert "n_elements" not in str(told.value)
 
 
 def test_mended_joints_that_slip_take_six_links():

@@ -201,7 +201,7 @@ def test_the_terminal_names_linear_and_nonlinear(capsys):
         ("axial_inertia.shown=0.0", "axial_inertia.shown = 0.0"),
         ("axial_inertia.count=1", "axial_inertia.count = 1"),
         ("axial_inertia.count=251", "axial_inertia.count = 251"),
-        ("axial_inertia.duration=0.2", "axial_inertia.duration = 0.2: give a finite number above 0 and below 0.1"),
+        ("axial_inertia.duration=0.0", "axial_inertia.duration = 0.0: give a finite number above 0"),
         ("axial_inertia.x=0.6", "axial_inertia.x = 0.6 lies off the beam: give up to 0.5 m"),
         ("axial_inertia.x=-0.1", "axial_inertia.x = -0.1"),
         ("axial_inertia.force=1.0", "axial_inertia.force is not a known key: did you mean 'forces'"),
@@ -215,6 +215,12 @@ def test_the_terminal_names_linear_and_nonlinear(capsys):
 def test_a_scene_that_cannot_be_asked_is_refused(override, message):
     with pytest.raises(InputError, match=message):
         load_scene("chain", (override,))
+
+
+def test_a_run_that_would_take_too_long_is_refused_with_its_estimate():
+    """By steps of the fastest mode, not by seconds: those of a slow beam are long."""
+    with pytest.raises(InputError, match=r"axial_inertia.duration = 2.5 would take about .* shorten it, or give fewer"):
+        studied(small("axial_inertia.duration=2.5"))
 
 
 def test_a_place_that_does_not_move_is_refused():

@@ -13,6 +13,7 @@ from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
 from verify.studies.methods import Methods, MethodsStudy
 from verify.studies.methods_figures import methods_study, slider_speed
+from verify.units import unit_of
 from verify.waves.absorber import matched_device
 from verify.waves.devices import field_with_devices
 
@@ -223,11 +224,12 @@ def test_the_study_tells_its_charts_and_what_it_takes_home():
     ]
     assert not any(chart.empty for chart in charts)
     start, end = STRANGER.places
-    place = 1e3 * (start + (end - start) / 4)
-    assert any(f"Read at {place:g} mm" in chart.caption for chart in charts)
-    assert any(f"read at {place:g} mm" in fact for fact in STRANGER.facts())
-    assert any(f"are read at {place:g} mm" in note for table in STRANGER.tables() for note in table.notes)
-    assert STRANGER.in_short().startswith(f"The reflection at 1730 Hz, read at {place:g} mm, is 0 with the")
+    unit = unit_of(STRANGER.along.everywhere[-1])
+    place = f"{unit.factor * (start + (end - start) / 4):g} {unit.name}"
+    assert any(f"Read at {place}" in chart.caption for chart in charts)
+    assert any(f"read at {place}" in fact for fact in STRANGER.facts())
+    assert any(f"are read at {place}" in note for table in STRANGER.tables() for note in table.notes)
+    assert STRANGER.in_short().startswith(f"The reflection at 1730 Hz, read at {place}, is 0 with the")
     assert "37 Hz below it is " in STRANGER.in_short()
 
 

@@ -4,14 +4,29 @@ import re
 from itertools import combinations, pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import verify
 from verify.judge.variants import Variant
 from verify.judge.workbench import Workbench
 from verify.models.catalogue import MODELS
+from verify.report.drawing import drawn as drawing_of
+from verify.report.inks import dark_inks, ink
 from verify.scenes.scene import load_scene
-from verify.studies.charting import GREY, MEAN_COLOUR, OTHERS, PALETTE, PLATE, RAYLEIGH, TIMOSHENKO, other_line
+from verify.studies.chart import Axis, Chart
+from verify.studies.charting import (
+    GREY,
+    MEAN_COLOUR,
+    ON_DARK,
+    OTHERS,
+    PALETTE,
+    PLATE,
+    RAYLEIGH,
+    SHADES,
+    TIMOSHENKO,
+    other_line,
+)
 from verify.studies.convergence import Convergence
 from verify.studies.convergence_figures import Cell, ConvergenceFound, Row, _local_order, convergence
 from verify.studies.spectrum import Spectrum
@@ -159,13 +174,57 @@ def luminance(colour):
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
-def test_every_line_stands_out_from_a_dark_card():
-    """By three to one, as graphics have to."""
-    style = (Path(verify.__file__).parent / "report" / "page.css").read_text("utf-8")
-    dark = re.search(r"prefers-color-scheme: ?dark.*?--card:(#[0-9a-f]{6})", style, re.DOTALL)[1]
+GREEN_BLIND = np.array(
+    [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]]
+)
+"""Linear RGB as eyes without the green cones have it: Machado, Oliveira and Fernandes 2009, table 1, severity 1."""
+CONES = np.array(
+    [[0.4122215, 0.5363325, 0.0514460], [0.2119035, 0.6806995, 0.1073970], [0.0883025, 0.2817188, 0.6299787]]
+)
+OPPONENTS = np.array(
+    [[0.2104543, 0.7936178, -0.0040720], [1.9779985, -2.4285922, 0.4505937], [0.0259040, 0.7827718, -0.8086758]]
+)
+"""Ottosson's Oklab 2020: of the cube roots of what `CONES` makes of linear RGB."""
+
+
+def linear(colours):
+    parts = np.array([[int(one[i : i + 2], 16) for i in (1, 3, 5)] for one in colours]) / 255.0
+    return np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+
+
+def least_apart(colours, seen):
+    """The least distance of two colours that eyes with that matrix see, Oklab, in hundredths."""
+    lab = 100.0 * np.cbrt(np.clip(linear(colours) @ seen.T, 0.0, 1.0) @ CONES.T) @ OPPONENTS.T
+    return min(np.linalg.norm(a - b) for a, b in combinations(lab, 2))
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_every_line_stands_out_from_its_card_and_others_look_unlike_each_other(theme):
+    """By three to one, as graphics have to; lines told by colour alone also by eyes without the green cones."""
+    style = (Path(verify.__file__).parent / "report" / "page.css").read_text("utf-8") + dark_inks()
+    light, dark = re.findall(r"--card:(#[0-9a-f]+)", style)
+    card = light.replace("#fff", "#ffffff") if theme == "light" else dark
+
+    def shown(colour):
+        """As a page of the theme has it, read from what is drawn and from the style."""
+        if not (variable := re.fullmatch(r"var\((--[0-9a-f]+), (#[0-9a-f]{6})\)", ink(colour))):
+            return colour
+        return variable[2] if theme == "light" else re.search(rf"{variable[1]}:(#[0-9a-f]{{6}})", dark_inks())[1]
+
     models = [model.colour for model in MODELS.values()]
-    drawn = (*OTHERS, *PALETTE, *models, GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE)
-    assert min((luminance(one) + 0.05) / (luminance(dark) + 0.05) for one in drawn) > 3.0
+    drawn = (*OTHERS, *PALETTE, *models, *SHADES, *ON_DARK, GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE)
+    bright = [max(p) / min(p) for p in ((luminance(shown(c)) + 0.05, luminance(card) + 0.05) for c in drawn)]
+    assert min(bright) > 3.0
+    beside = [shown(colour) for colour in (*OTHERS, *models)]
+    assert least_apart(beside, np.eye(3)) > 8.0
+    assert least_apart(beside, GREEN_BLIND) > 8.0
+
+
+def test_a_drawn_chart_has_its_colours_by_the_theme():
+    chart = Chart(id="c", title="", caption="", x=Axis("x"), y=Axis("y"), lines=(other_line(2, "a", (0, 1), (1, 3)),))
+    svg = drawing_of(chart).svg
+    assert f"var(--{OTHERS[2][1:]}, {OTHERS[2]})" in svg
+    assert f"stroke: {OTHERS[2]}" not in svg
 
 
 def test_other_lines_look_unlike_each_other_when_colours_come_round_again():
@@ -173,8 +232,6 @@ def test_other_lines_look_unlike_each_other_when_colours_come_round_again():
     assert len({(one.colour, one.hollow, one.width) for one in lines}) == len(lines)
     known = {model.colour for model in MODELS.values()} | {GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, PLATE}
     assert not known & set(OTHERS)
-    rgb = [[int(one[i : i + 2], 16) for i in (1, 3, 5)] for one in (*known, *OTHERS)]
-    assert min(sum((a - b) ** 2 for a, b in zip(p, q, strict=True)) for p, q in combinations(rgb, 2)) > 30**2
 
 
 @pytest.mark.parametrize(("mode", "counts", "dips"), [(2, (12, 16, 20), True), (1, (5, 6), False)])

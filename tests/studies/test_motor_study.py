@@ -208,7 +208,7 @@ def test_a_mean_within_twice_its_error_is_not_told():
     beam = rest_field("analytic", "rigid", -0.4, 0.4, ends=(0.0, 0.0, 0.0, 0.0))
     apart = rest_field("chain", "rigid", -0.4, 0.4, ends=(3e-6, 4e-6, 3e-6, 4e-6))
     spread = rest_field("chain", "rigid", -0.4, 0.4, ends=(-9e-6, 10e-6, -9e-6, 10e-6))
-    assert "on rigid links +3.5 +- 0.29 um" in next(iter(what_stands(rest_of(beam, apart))))
+    assert "on rigid links +3.5 +- 0.29 µm" in next(iter(what_stands(rest_of(beam, apart))))
     assert "on rigid links no mean that is told from its error" in next(iter(what_stands(rest_of(beam, spread))))
 
 
@@ -231,7 +231,7 @@ def test_a_margin_that_is_not_small_has_its_sentence(study):
     assert "epsilon" not in doubted(study, k=1e5)
     assert "no wave travels" in doubted(study, epsilon=None, k=None)["epsilon"]
     assert "epsilon" not in doubted(study, k=None)
-    assert "bends the beam by 30 um, 2.1 times" in doubted(study, sag=30e-6)["sag"]
+    assert "bends the beam by 30 µm, 2.1 times" in doubted(study, sag=30e-6)["sag"]
     assert "push away or turn a beam that nothing holds" in doubted(study, sag=None)["sag"]
     assert "step" in doubted(study, step=0.4)
     assert "chain" not in doubted(study, chain=1e-4)
@@ -288,6 +288,41 @@ WRONG = {
 def test_bad_input_is_refused_with_the_scene(setting):
     with pytest.raises(InputError, match=WRONG[setting]):
         load_scene("preloaded-motor", (setting,))
+
+
+def test_a_run_from_rest_beside_a_chain_is_bounded_by_periods_of_its_drive():
+    """By seconds a beam of kilometres was refused a period, and one of micrometres given millions."""
+    with pytest.raises(
+        InputError, match=r"motor.chain = 0.3 s is 1.28e\+03 periods of the drive: give at most 1000, 0.234"
+    ):
+        load_scene("preloaded-motor", ("motor.chain=0.3",))
+    assert load_scene("preloaded-motor", ("motor.chain=0.3", "drive.frequency_hz=2100.0")).motor.chain == 0.3
+
+
+def test_a_study_of_a_motor_that_its_beam_feels_is_estimated_as_a_whole(monkeypatch):
+    """Each held speed alone is waited for; all of them and the free runs are not."""
+    monkeypatch.setenv("VERIFY_PATIENCE", "3")
+    felt = small("slider.coupling=two-way", "motor.count=23", "motor.periods=100000")
+    with pytest.raises(
+        InputError, match=r"motor.periods = 100000 would take about .*, more than the 3 s .* lower it or motor"
+    ):
+        studied(felt)
+
+
+@pytest.mark.parametrize("number", [1, 5, 51, 52, 53, 54, 73, 76])
+def test_a_run_of_the_study_that_is_broken_off_ends_the_study(monkeypatch, number):
+    """One held, of the search, free, cut off, turned round, shot, drawn: the page was of runs that had no end."""
+    from verify.motor import carry
+
+    stages, calls = carry.run_stages, iter(range(1, 10**6))
+
+    def broken(*given):
+        stopped, *rest = stages(*given)
+        return ("interrupted" if next(calls) == number else stopped, *rest)
+
+    monkeypatch.setattr(carry, "run_stages", broken)
+    with pytest.raises(KeyboardInterrupt):
+        studied(small("motor.count=21", "motor.speeds=2", "motor.periods=20"))
 
 
 REFUSED = {
@@ -392,7 +427,7 @@ def test_what_has_not_settled_is_told_with_its_spread_and_what_stands_on_it_is_w
     assert "withheld, it comes to no speed" in facts
     overview, speeds, *_ = found.tables()
     heads = [column.head for column in overview.columns]
-    for head in ("free, cm/s", "stall, mN", "start", "stop", "turn"):
+    for head in ("free, cm/s", "stall, N", "start", "stop", "turn"):
         assert overview.rows[0][heads.index(head)] is None
     assert any("means at 1 of 3 held speeds have not settled after 11520 periods" in note for note in overview.notes)
     assert [column.head for column in speeds.columns][1:4] == ["49 segments, mN", "+-, mN", "power, mW"]

@@ -1,8 +1,10 @@
 """The three models that come with the package, as the registry holds them: verbs, words, and the laws known of them."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+from verify.errors import InputError
 from verify.models.kind import Model
 
 if TYPE_CHECKING:
@@ -14,6 +16,9 @@ if TYPE_CHECKING:
     from verify.models.modes import Modes
     from verify.models.sweeps import HarmonicSweep
     from verify.models.time_basis import TimeBasis
+
+
+Verb = TypeVar("Verb", bound=Callable[..., Any])
 
 
 class Exact(Model):
@@ -84,11 +89,28 @@ class Exact(Model):
         return buckling_load(beam)
 
 
+def named_count(verb: Verb) -> Verb:
+    """A model's verb whose refusals name `count`, which its user wrote, where its module has a word of its own."""
+
+    @wraps(verb)
+    def named(self: "Discrete", *given: Any, **more: Any) -> Any:
+        try:
+            return verb(self, *given, **more)
+        except InputError as error:
+            if self.field not in str(error):
+                raise
+            raise type(error)(str(error).replace(self.field, "count")) from None
+
+    return cast(Verb, named)
+
+
 class Discrete(Model):
     """A model of parts whose verbs are the functions of a module, and whose dispersion is known."""
 
     home: str
     """The module of modes and fields."""
+    field: str
+    """What that module calls the number of its parts."""
     size_settings: tuple[str, ...] = ()
     """Settings that its number of unknowns depends on."""
     method_settings: tuple[str, ...] = ()
@@ -101,6 +123,7 @@ class Discrete(Model):
 
         return import_module(self.home)
 
+    @named_count
     def check(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> None:
         """Raise InputError for modes that it cannot solve."""
         self.verbs.check(beam, n_modes, count, **settings)
@@ -108,6 +131,7 @@ class Discrete(Model):
     def _of_size(self, settings: dict[str, Any]) -> dict[str, Any]:
         return {name: value for name, value in settings.items() if name in self.size_settings}
 
+    @named_count
     def n_elastic(self, beam: "Beam", count: int, **settings: Any) -> int:
         """How many elastic modes it has."""
         return int(self.verbs.n_elastic(beam, count, **self._of_size(settings)))
@@ -121,11 +145,13 @@ class Discrete(Model):
         known = {name: value for name, value in settings.items() if name in self.method_settings}
         return str(self.verbs.method(beam, n_modes, count, **known))
 
+    @named_count
     def solve_modes(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> "Modes":
         """The first elastic modes."""
         found: Modes = self.verbs.solve_modes(beam, n_modes, count, **settings)
         return found
 
+    @named_count
     def solve_harmonic(
         self, beam: "Beam", forces: "Sequence[PointForce]", frequency_hz: float, count: int | None, **settings: Any
     ) -> "HarmonicField":
@@ -133,6 +159,7 @@ class Discrete(Model):
         found: HarmonicField = self.verbs.solve_harmonic(beam, forces, frequency_hz, count, **settings)
         return found
 
+    @named_count
     def sweep_harmonic(
         self, beam: "Beam", forces: "Sequence[PointForce]", frequencies_hz: "Array", count: int | None, **settings: Any
     ) -> "HarmonicSweep":
@@ -143,6 +170,7 @@ class Discrete(Model):
         found: HarmonicSweep = sweeps.sweep_harmonic(beam, forces, frequencies_hz, count, **settings)
         return found
 
+    @named_count
     def unit_responses(
         self,
         beam: "Beam",
@@ -172,7 +200,7 @@ class Discrete(Model):
 class Segments(Discrete):
     """Rigid links and joint springs."""
 
-    name, home = "segment", "verify.segments.linear"
+    name, home, field = "segment", "verify.segments.linear", "n_segments"
     parts = title = "segments"
     colour = "#2f80ed"
     bounds = "below"
@@ -184,6 +212,7 @@ class Segments(Discrete):
     buckling_settings = ("wall", "joints", "grading", "attachment")
     lines = ("spline", "raw")
 
+    @named_count
     def buckling_load(self, beam: "Beam", count: int | None, **settings: Any) -> float:
         """Of its joints under the links' turns."""
         from verify.segments.buckling import buckling_load
@@ -200,6 +229,7 @@ class Segments(Discrete):
 
         return order_of(beam, **settings)
 
+    @named_count
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """All its modes."""
         from verify.segments.in_time import time_basis
@@ -211,7 +241,7 @@ class Segments(Discrete):
 class Elements(Discrete):
     """Hermite beam elements."""
 
-    name, home = "fem", "verify.elements.linear"
+    name, home, field = "fem", "verify.elements.linear", "n_elements"
     parts, title = "elements", "Hermite elements"
     colour = "#e8760c"
     bounds = "above"
@@ -222,6 +252,7 @@ class Elements(Discrete):
     size_settings = method_settings = ("theory",)
     library = "scikit-fem"
 
+    @named_count
     def buckling_load(self, beam: "Beam", count: int | None, **settings: Any) -> float:
         """Of the mesh."""
         from verify.elements.linear import buckling_load
@@ -233,6 +264,7 @@ class Elements(Discrete):
         """4: nodes stand on the steps."""
         return 4
 
+    @named_count
     def time_basis(self, beam: "Beam", count: int | None, modes: int, line: str) -> "TimeBasis":
         """All its modes."""
         from verify.elements.in_time import time_basis

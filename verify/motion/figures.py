@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.models.catalogue import MODELS
+from verify.units import time_in_words
 from verify.words import newtons
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ class Condition(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def run_words(self) -> str:
         """Kinematics, start and duration."""
-        return f"{self.kinematics} kinematics, {self.normal} slider, {self.start_words}, {1e3 * self.duration:g} ms"
+        return f"{self.kinematics} kinematics, {self.normal} slider, {self.start_words}, {time_in_words(self.duration)}"
 
     @property
     def words(self) -> str:

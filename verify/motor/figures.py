@@ -18,7 +18,7 @@ from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
 from verify.motor.repeated import blocks
-from verify.motor.result import MotorRun
+from verify.motor.result import MotorRun, uninterrupted
 from verify.motor.settling import (
     BALANCED,
     BLOCK,
@@ -130,12 +130,6 @@ def held(
     return found, run
 
 
-def _had(run: MotorRun | None) -> MotorRun:
-    """A run that there is."""
-    assert run is not None
-    return run
-
-
 def next_seconds(run: MotorRun, periods: int) -> float:
     """An estimate from above of the time that so many periods take, held as in a run of whole periods."""
     return run.statistics.estimated_s * periods / (len(run.times) - 1)
@@ -143,25 +137,29 @@ def next_seconds(run: MotorRun, periods: int) -> float:
 
 def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int) -> tuple[AtSpeed, MotorRun]:
     """The last of blocks, the first two that agree and carry what presses on; nothing has settled without such two."""
-    block, run, means, spreads, off = _block(case, speed, BLOCK), before, None, UNKNOWN, np.inf
-    number = 0
-    while number < most and (number < 2 or waited_for(next_seconds(_had(run), BLOCK * (number + 1)))):
-        if number == 1:
-            check_work("periods", 2 * BLOCK, next_seconds(_had(run), 2 * BLOCK), FEWER)
+    block = _block(case, speed, BLOCK)
+    run = _whole(block(before))
+    means, number = means_of(run), 1
+    found = _found(case, speed, means, UNKNOWN, BLOCK, BLOCK)
+    if most > 1:
+        check_work("periods", 2 * BLOCK, next_seconds(run, 2 * BLOCK), FEWER)
+    while number < most and (number < 2 or waited_for(next_seconds(run, BLOCK * (number + 1)))):
         number, last, run = number + 1, run, _whole(block(run))
-        now = Means(*map(float, rows(run).mean(axis=0)))
-        if means is not None and last is not None:
-            off = missed(case.slider, last.state, run)
-            spreads = apart(now, means, off, told_by_balance(case.slider))
-        means = now
+        earlier, means = means, means_of(run)
+        off = missed(case.slider, last.state, run)
+        spreads = apart(means, earlier, off, told_by_balance(case.slider))
         found = _found(case, speed, means, spreads, BLOCK * number, BLOCK)
         presses = max(found.normal_force, case.slider.normal_force)
         agree = found.spread <= SETTLED * case.slider.mu * presses and off <= BALANCED * presses
         if agree and not found.unsettled:
             return found, run
-    assert run is not None
     spread = max(found.spread, case.slider.mu * found.normal_spread)  # two blocks in flight agree
     return replace(found, spread=spread, unsettled=READINGS), run
+
+
+def means_of(run: MotorRun) -> Means:
+    """Over all its periods."""
+    return Means(*map(float, rows(run).mean(axis=0)))
 
 
 def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpeed, MotorRun]:
@@ -190,9 +188,7 @@ def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | 
 
 def _whole(run: MotorRun) -> MotorRun:
     """A run that has reached its end. Raises InputError."""
-    if run.statistics.interrupted:
-        raise KeyboardInterrupt
-    if not run.statistics.finished:
+    if not uninterrupted(run).statistics.finished:
         raise InputError(
             f"the slider {run.statistics.stopped} after {run.state.time:.6g} s: give more steps_per_period"
         )
@@ -336,6 +332,7 @@ def reversed_way(case: MotorCase, before: MotorRun, target: float, periods: int 
 
 
 def _timed(run: MotorRun, start: float, target: float) -> Timed:
+    uninterrupted(run)
     return Timed(start_speed=start, end_speed=float(run.speed[-1]), time=started_of(run, target), run=run)
 
 

@@ -122,3 +122,10 @@ class MotorRun(Ride, frozen=True, eq=False, kw_only=True):
     """Where the energy went."""
     state: MotorState
     """From where another run can go on (`continue_from`)."""
+
+
+def uninterrupted(run: MotorRun) -> MotorRun:
+    """A run that nobody broke off; of one that somebody did nothing is told. Raises KeyboardInterrupt."""
+    if run.statistics.interrupted:
+        raise KeyboardInterrupt
+    return run

@@ -10,7 +10,7 @@ from verify.motor import records
 from verify.motor.case import MotorCase
 from verify.motor.feet import Placed, feet_of
 from verify.motor.repeated import Block, blocks
-from verify.motor.result import MotorRun, MotorState
+from verify.motor.result import MotorRun, MotorState, uninterrupted
 
 MOST = 12
 SMALL = 1e-4
@@ -50,8 +50,12 @@ def periodic(case: MotorCase, speed: float = 0.0, *, tolerance: float = 1e-10, s
             f"slider.coupling = {case.slider.coupling!r}, start = {case.start!r}: shooting is of a steady beam that "
             "does not feel its slider, give 'one-way' and 'steady'"
         )
-    run = case.run(settle * case.period, held_speed=speed, frozen=True, samples=2, patient=False)
-    free, period = _free(case), blocks(case, speed, 1, 2)
+    run = uninterrupted(case.run(settle * case.period, held_speed=speed, frozen=True, samples=2, patient=False))
+    free, once = _free(case), blocks(case, speed, 1, 2)
+
+    def period(state: MotorState | None) -> MotorRun:
+        return uninterrupted(once(state))
+
     state, size, best = run.state, _size(run)[free], None
     for rounds in range(1, MOST + 1):
         run = period(state)

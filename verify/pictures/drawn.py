@@ -28,8 +28,8 @@ from verify.pictures.rows import (
     count_of,
     exaggerated,
     picture_of_rows,
+    scale_of,
     stage_of,
-    unit_of,
 )
 from verify.pictures.sizes import drawn_section
 from verify.scenes.scene import Scene
@@ -137,13 +137,12 @@ def _wave(scene: Scene, asked: Asked) -> Picture:
     ]
     stage = stage_of(scene.beam, rows, largest)
     loads = [one for row in rows for one in _loads(scene, stage.y(row), turn)] if scene.drive.kind == "force" else []
-    unit, factor = unit_of(largest)
     return picture_of_rows(
         scene,
         rows,
         title=f"{scene.name}: driven at {scene.drive.frequency_hz:g} Hz",
         said=exaggerated(scene.beam, stage, "over the period"),
-        scale=(f"-{factor * largest:.3g} {unit}", "deflection", f"+{factor * largest:.3g} {unit}"),
+        scale=scale_of(largest),
         largest=largest,
         notes=tuple(f"{one:.0f}° of the period" for one in degrees),
         seconds=3.0,

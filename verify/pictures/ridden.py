@@ -20,11 +20,12 @@ from verify.pictures.rows import (
     count_of,
     exaggerated,
     picture_of_rows,
+    scale_of,
     stage_of,
-    unit_of,
 )
 from verify.pictures.sizes import drawn_section
 from verify.scenes.scene import Scene
+from verify.units import in_words, unit_over
 
 RUN = 72
 """Frames."""
@@ -51,20 +52,21 @@ def ridden(scene: Scene, asked: Asked) -> Picture:
     stage = stage_of(scene.beam, rows, largest)
     for row, run in zip(rows, runs.values(), strict=True):
         blocks += _block(scene.beam, row, run, shown, stage, hardest)
-        unit, factor = unit_of(float(abs(run.travelled).max()))
-        told.append([f"{round(factor * x, 2) + 0.0:+.2f} {unit}" for x in run.travelled[shown].tolist()])
+        way = unit_over(run.travelled.tolist())
+        told.append([f"{round(way.factor * x, 2) + 0.0:+.2f} {way.name}" for x in run.travelled[shown].tolist()])
     instants = runs[CHAIN].times[shown]
+    time = unit_over(instants.tolist(), "s")
     notes = [
-        f"{1e3 * t:.3f} ms; travelled on segments {a}, on elements {b}" for t, a, b in zip(instants, *told, strict=True)
+        f"{time.factor * t:.3f} {time.name}; travelled on segments {a}, on elements {b}"
+        for t, a, b in zip(instants, *told, strict=True)
     ]
-    unit, factor = unit_of(largest)
     return picture_of_rows(
         scene,
         rows,
         title=f"{scene.name}: the slider and the friction on it",
         said=f"{exaggerated(scene.beam, stage, f'of {n} instants')}; the longest arrow of them is "
-        f"{1e3 * hardest:.3g} mN; the slider's travel is not enlarged",
-        scale=(f"-{factor * largest:.3g} {unit}", "deflection", f"+{factor * largest:.3g} {unit}"),
+        f"{in_words(hardest, 'N')}; the slider's travel is not enlarged",
+        scale=scale_of(largest),
         largest=largest,
         notes=tuple(notes),
         seconds=6.0,

@@ -10,6 +10,7 @@ from verify.pictures.parts import attached_parts, bar_solids, chain_solids, supp
 from verify.pictures.picture import Label, Picture, Solid, Trace
 from verify.pictures.sizes import drawn_section, times
 from verify.scenes.scene import Scene
+from verify.units import in_words
 
 CHAIN, ELEMENTS = "segment", "fem"
 COUNT, MOST = 49, 400
@@ -150,14 +151,10 @@ def check_moves(largest: float, what: str) -> None:
 
 def exaggerated(beam: Beam, stage: Stage, over: str) -> str:
     """How many times as large deflections are drawn, in words; the largest is that over a period or a run."""
-    unit, factor = unit_of(stage.largest)
     drawn = times(stage.amplitude * beam.length / stage.largest)
-    return f"Deflection drawn {drawn} (the largest {over} is {factor * stage.largest:.3g} {unit})"
+    return f"Deflection drawn {drawn} (the largest {over} is {in_words(stage.largest)})"
 
 
-def unit_of(size: float) -> tuple[str, float]:
-    """A unit of length that suits, and how many of it a metre has."""
-    for unit, factor in (("m", 1.0), ("mm", 1e3), ("µm", 1e6), ("nm", 1e9)):
-        if abs(size) * factor >= 1.0:
-            return unit, factor
-    return "pm", 1e12
+def scale_of(largest: float) -> tuple[str, str, str]:
+    """Words at the left, in the middle and at the right of a scale of colours: deflections to `largest`, metres."""
+    return f"-{in_words(largest)}", "deflection", f"+{in_words(largest)}"

@@ -12,6 +12,7 @@ import msgspec
 
 from verify.options import Support
 from verify.report.labels import Box, Label, placed, words_at
+from verify.units import in_words
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -91,10 +92,7 @@ def _told(scene: "Scene") -> str:
 
 def _metres(x: float) -> str:
     """A length with a unit that suits it."""
-    for limit, factor, unit in ((1e-6, 1e9, "nm"), (1e-3, 1e6, "µm"), (1.0, 1e3, "mm"), (1e3, 1.0, "m")):
-        if x < limit:
-            return f"{factor * x:.4g} {unit}"
-    return f"{1e-3 * x:.4g} km"
+    return in_words(x, form=".4g")
 
 
 def _line(*points: tuple[float, float], colour: str = INK, width: float = 1.4, more: str = "") -> str:
@@ -303,7 +301,7 @@ def _slider(slider: "Slider", view: View) -> Iterator[Drawn]:
     at, y = view.at(x), -_half(view.beam, x)
     yield f'<rect x="{at - 16:.1f}" y="{y - 17:.1f}" width="32" height="16" rx="2" fill="{STAGE}" fill-opacity=".8"/>'
     yield Box(at - 16, y - 17, at + 16, y)
-    yield Label(at, y - 19, (f"slider, {1e3 * slider.mass:.4g} g, mu {slider.mu:g}",))
+    yield Label(at, y - 19, (f"slider, {in_words(1e3 * slider.mass, 'g', '.4g')}, mu {slider.mu:g}",))
 
 
 def _feet(slider: "Slider", view: View) -> Iterator[Drawn]:
@@ -331,7 +329,7 @@ def _feet(slider: "Slider", view: View) -> Iterator[Drawn]:
         yield Box(left, min(near, far), left + length, max(near, far))
         tops.append(min(near, far))
     words = f"slider on {len(slider.foot)} f{'ee' if len(slider.foot) > 1 else 'oo'}t"
-    yield Label(view.at(x), min(tops) - 3, (f"{words}, {1e3 * slider.mass:.4g} g, mu {slider.mu:g}",))
+    yield Label(view.at(x), min(tops) - 3, (f"{words}, {in_words(1e3 * slider.mass, 'g', '.4g')}, mu {slider.mu:g}",))
 
 
 def _plate(left: float, length: float, edge: float) -> str:

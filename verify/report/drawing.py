@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 from msgspec.structs import replace
 
+from verify.report.inks import inked
 from verify.studies.chart import Axis, Bars, Chart, Line, Map, Mark
 from verify.studies.charting import BROAD
 
@@ -332,4 +333,4 @@ def _cleaned(text: str) -> str:
     text = re.sub(r"font: ([\d.]+)px [^;\"]*", r"font-size: \1px", text)
     for sentinel, variable in _VARIABLES.items():
         text = text.replace(sentinel, variable)
-    return text.replace("<svg ", '<svg class="drawn" ', 1)
+    return inked(text).replace("<svg ", '<svg class="drawn" ', 1)

@@ -10,6 +10,7 @@ import msgspec
 
 from verify.files import write_whole
 from verify.report.document import Document, PageTable, Section, document_of
+from verify.report.inks import dark_inks
 from verify.report.plain import finite
 from verify.run.gates import GateResult, reference_in_words, shown_expectation
 from verify.words import figure, seconds_in_words
@@ -142,7 +143,7 @@ def rendered(document: Document) -> str:
             groups=groups_of(document.gates),
             plots=plots,
             data=_safe_json([plot.data for plot in plots]),
-            css=part("page.css"),
+            css=part("page.css") + dark_inks(),
             js=part("page.js"),
         )
     )

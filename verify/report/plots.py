@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 
 from verify.report.drawing import Drawing, drawn
+from verify.report.inks import ink
 from verify.studies.chart import Chart, Line, Map
 from verify.words import number
 
@@ -63,8 +64,8 @@ def _swatch(line: Line) -> str:
     parts = []
     if line.joined:
         dash = f' stroke-dasharray="{_DASHES[line.dash]}"' if _DASHES[line.dash] else ""
-        parts.append(f'<path d="M1 6H29" stroke="{line.colour}" stroke-width="{min(line.width, 4):g}"{dash}/>')
-    marker = _marker(line.marker, line.colour)
+        parts.append(f'<path d="M1 6H29" stroke="{ink(line.colour)}" stroke-width="{min(line.width, 4):g}"{dash}/>')
+    marker = _marker(line.marker, ink(line.colour))
     hollow = bool(line.hollow) and all(line.hollow)
     parts.append(marker.replace("fill=", 'stroke-width="1.3" fill="none" stroke=') if hollow else marker)
     return f'<svg viewBox="0 0 30 12" aria-hidden="true">{"".join(parts)}</svg>'
@@ -159,7 +160,7 @@ def _line_data(line: Line) -> dict[str, Any]:
     if line.guide:
         data["guide"] = True
     if line.moves:
-        data |= {"colour": line.colour, "width": line.width, "dash": _DASHES[line.dash], "joined": line.joined}
+        data |= {"colour": ink(line.colour), "width": line.width, "dash": _DASHES[line.dash], "joined": line.joined}
         data |= {"size": line.size if line.marker else 0, "hollow": any(line.hollow), "square": line.marker == "square"}
         data["moves"] = [_short(row, MOVING_DIGITS) for row in line.moves]
         data |= {"shifts": [_short(row, DIGITS) for row in line.shifts]} if line.shifts else {}

@@ -10,6 +10,7 @@ import msgspec
 from verify.files import write_whole
 from verify.report.answer import answers_of, told_remarks
 from verify.report.document import environment
+from verify.report.inks import dark_inks
 from verify.words import seconds_in_words
 
 if TYPE_CHECKING:
@@ -206,7 +207,7 @@ def rendered(suite: Suite) -> str:
     from verify.report.html import part, templates
 
     keys = {MODELS[name].title or MODELS[name].parts: MODELS[name].colour for name in MODELS.built_in}
-    css = part("page.css") + part("suite.css")
+    css = part("page.css") + dark_inks() + part("suite.css")
     return templates().get_template("suite.html.j2").render(suite=suite, keys=keys, css=css)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from verify.errors import InputError
-from verify.quantities.catalogue import quantity
+from verify.quantities.catalogue import arguments_of, quantity
 from verify.quantities.kind import WHAT_EXISTS
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def that_change(name_or_path: "str | Path", overrides: tuple[str, ...]) -> tuple
         except InputError:
             return None
 
-    about = [text for text in overrides if keys_set((text,))]
+    about = [text for text in overrides if keys_set((text,)) or text.startswith("gate.")]
     own = alone() if about else None
     idle = {text for text in about if own is not None and alone(text) == own}
     return tuple(text for text in overrides if text not in idle)
@@ -44,10 +44,15 @@ def that_change(name_or_path: "str | Path", overrides: tuple[str, ...]) -> tuple
 def not_applicable(scene: "Scene", overrides: tuple[str, ...]) -> dict[str, str]:
     """Gates by id that were stated for something else than what `--set` makes of the scene, and why.
 
-    A gate keeps applying where its figure depends on none of what was set, and where its band was set as well.
+    A gate keeps applying where its figure depends on none of what was set, its own arguments among it, and where its
+    band was set as well.
     """
     keys = keys_set(overrides)
-    found = {gate.id: _why(gate, keys) for i, gate in enumerate(scene.gate) if not _restated(gate, i, overrides)}
+    found = {
+        gate.id: _of_its_own(gate, i, overrides) or _why(gate, keys)
+        for i, gate in enumerate(scene.gate)
+        if not _restated(gate, i, overrides)
+    }
     return {name: why for name, why in found.items() if why}
 
 
@@ -55,6 +60,17 @@ def _restated(gate: "Gate", i: int, overrides: tuple[str, ...]) -> bool:
     """Whether its expectation was set too."""
     keys = {text.partition("=")[0].strip() for text in overrides}
     return any(f"gate.{name}.{band}" in keys for name in (gate.id, i) for band in _STATED)
+
+
+def _of_its_own(gate: "Gate", i: int, overrides: tuple[str, ...]) -> str:
+    """The reason where it is asked for another figure than the one that it states."""
+    keys = dict.fromkeys(text.partition("=")[0].strip() for text in overrides)
+    about = [key for key in keys if any(key.startswith(f"gate.{name}.arguments") for name in (gate.id, i))]
+    try:
+        arguments_of(quantity(gate.quantity), gate.arguments)
+    except InputError:
+        return ""  # judged, so that its own sentence is read
+    return f"stated for other arguments: --set {', '.join(about)}" if about else ""
 
 
 def _why(gate: "Gate", keys: tuple[str, ...]) -> str:

@@ -1,14 +1,17 @@
 """What a scene will run, what it will not, and why: known before anything is solved."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import msgspec
+from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.judge.workbench import Key, Settings, merged, no_such_mode
 from verify.models.catalogue import MODELS
 from verify.run.applies import applicable, not_applicable
 from verify.run.asks import Ask, asks_of, every_work, kinds_of_work
+from verify.scenes.scene import MotionAsk
 from verify.studies.catalogue import STUDIES, asked_of
 from verify.words import in_a_row
 
@@ -199,9 +202,39 @@ def _skipped_slider(scene: "Scene", asks: list[Ask]) -> list[Choice]:
     if scene.slider is None:
         return [Choice("contact search", "the scene has no slider")]
     if not any(ask.slides for ask in asks):
-        section = "[motor]" if scene.slider.contact is not None else "[motion] with a duration"
-        return [Choice("slider", f"nothing runs it: add {section}")]
+        return [Choice("slider", f"nothing runs it: {_who_could_run_it(scene)}")]
     return []
+
+
+LONG = 10.0
+"""Periods of the drive that a run is advised to take where it is shorter than its forces take to grow unless given."""
+
+
+def _who_could_run_it(scene: "Scene") -> str:
+    """The section to add for a study that runs the slider as it stands; where none does, why not the one it is for."""
+    own = "motion" if scene.slider is not None and scene.slider.contact is None else "motor"
+    others = [name for name in STUDIES.built_in if STUDIES[name].slides and name not in ("motion", own)]
+    refused: dict[str, str] = {}
+    for name, more, asked in (one for study in (own, *others) for one in _as_it_comes(study, scene)):
+        try:
+            STUDIES[name].check_run(asked, replace(scene, **{name: asked}))
+        except InputError as error:
+            refused[name] = str(error)
+        else:
+            return f"add [{name}]{more}"
+    return f"[{own}] would be refused, {refused[own]}"
+
+
+def _as_it_comes(name: str, scene: "Scene") -> "Iterator[tuple[str, str, Any]]":
+    """(study, what to give its section, that section) where nothing is given, and where a run lasts long enough."""
+    section = STUDIES[name].section
+    if section is not None:
+        yield name, "", section()
+        return
+    yield name, "", MotionAsk()
+    if scene.drive is not None:
+        seconds = float(f"{LONG / scene.drive.frequency_hz:.2g}")
+        yield name, f" with duration = {seconds:g}", MotionAsk(duration=seconds)
 
 
 def _skipped_studies(scene: "Scene") -> list[Choice]:

@@ -90,7 +90,7 @@ def run_scene(
                 gates[number] = set_aside(gate, why) if why else judge(gate, asked_scene, bench)
             else:
                 study, asked = studies[number - len(asked_scene.gate)]
-                found[study.name] = _done(study, asked, asked_scene, bench, found, progress)
+                found[study.name] = _done(study, asked, asked_scene, bench, found, progress).under(overrides)
     return RunResult(
         scene=asked_scene,
         gates=tuple(gates[number] for number in range(len(gates))),

@@ -3,7 +3,8 @@
 from typing import TYPE_CHECKING
 
 from verify.errors import InputError
-from verify.words import metres_in_words, number
+from verify.units import in_words
+from verify.words import number
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -43,4 +44,4 @@ def _driven(scene: "Scene", bench: "Workbench") -> str:
         return ""
     imposed = "" if scene.drive.kind == "force" else " imposed"
     told = f"driven{imposed} at {number(scene.drive.frequency_hz, 5)} Hz, it deflects by up to"
-    return f"; {told} {metres_in_words(float(largest))} in the steady state"
+    return f"; {told} {in_words(float(largest))} in the steady state"

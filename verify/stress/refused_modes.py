@@ -117,8 +117,8 @@ ROWS: tuple[Row, ...] = (
         Case("n_modes = 19 is more than the 18", modes("fem", 19), modes("fem", 18)),
         *(Case("n_modes = 0", modes(model, 0), modes(model, 1)) for model in ("segment", "fem")),
         Case("n_modes = 0", modes("analytic", 0, None), modes("analytic", 1, None)),
-        Case("n_segments = 1", modes("segment", 1, 1), modes("segment", 1, 2)),
-        Case("n_elements = 0", modes("fem", 1, 0), modes("fem", 1, 1)),
+        Case("count = 1", modes("segment", 1, 1), modes("segment", 1, 2)),
+        Case("count = 0", modes("fem", 1, 0), modes("fem", 1, 1)),
         Case("wall = 'welds'", modes("segment", 1, wall="welds")),
         Case("joints = 'serial'", modes("segment", 1, joints="serial")),
         Case("attachment = 'rigid'", modes("segment", 1, attachment="rigid")),
@@ -132,7 +132,7 @@ ROWS: tuple[Row, ...] = (
         Case("wall = 'welded'", modes("segment", 1, of=replace(CANTILEVER, tension=1.0), wall="welded")),
         Case("wall = 'welded'", modes("segment", 1, of=CANTILEVER, wall="welded", theory="rayleigh")),
         Case(
-            "n_segments = 5: joints = 'tensioned'",
+            "count = 5: joints = 'tensioned'",
             modes("segment", 1, 5, joints="tensioned", theory="timoshenko"),
             modes("segment", 1, 6, joints="tensioned", theory="timoshenko"),
         ),
@@ -144,7 +144,7 @@ ROWS: tuple[Row, ...] = (
         Case("grading = 1000.5", modes("segment", 1, grading=1000.5), modes("segment", 1, grading=1000.0)),
         Case("grading = 0.000999", modes("fem", 1, grading=0.000999), modes("fem", 1, grading=0.001)),
         Case("count = 2: a beam of 3 sections", modes("segment", 1, 2, THREE), modes("segment", 1, 3, THREE)),
-        Case("n_elements = 2: the beam's steps", modes("fem", 1, 2, LOADED), modes("fem", 1, 3, LOADED)),
+        Case("count = 2: the beam's steps", modes("fem", 1, 2, LOADED), modes("fem", 1, 3, LOADED)),
         *(
             Case("beam.tension = 12.0 N with theory", modes(model, 1, of=TAUT, theory="rayleigh"), modes(model, 1))
             for model in ("segment", "fem")

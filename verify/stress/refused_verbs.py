@@ -108,15 +108,15 @@ def of_models() -> Iterator[Case]:
         yield Case("grading = -1.0", partial(MODELS[model].buckling_load, STRIP, 9, grading=-1.0))
         yield Case("count = 9: 9", partial(MODELS[model].check_carried, STRIP, 9, 1e5))
         yield Case("n_modes = 200000", partial(MODELS[model].check, STRIP, 200_000, 9))
-    yield Case("n_segments = 0", based("segment", 0), based("segment", 2))
-    yield Case("n_elements = 0", based("fem", 0), based("fem", 2))
+    yield Case("count = 0", based("segment", 0), based("segment", 2))
+    yield Case("count = 0", based("fem", 0), based("fem", 2))
     yield Case("modes = 0", based("analytic", None, 0), based("analytic", None, 1))
     buckled: Callable[..., float] = MODELS["segment"].buckling_load
     for given in (0, 1, "20"):
-        yield Case(f"n_segments = {given!r}: ", partial(buckled, STRIP, given))
+        yield Case(f"count = {given!r}: ", partial(buckled, STRIP, given))
     for setting in ("wall", "joints", "attachment"):
         yield Case(f"{setting} = 'rw' is not", partial(buckled, STRIP, 9, **{setting: "rw"}))
-    yield Case("n_elements = 0", partial(MODELS["fem"].buckling_load, STRIP, 0))
+    yield Case("count = 0", partial(MODELS["fem"].buckling_load, STRIP, 0))
     yield Case("load = 'levr'", swept("segment", 9, load="levr"), swept("segment", 9, load="lever"))
     yield Case("reading = 'rw'", swept("segment", 9, reading="rw"), swept("segment", 9, reading="raw"))
     yield Case("joint_dashpot and modal_damping together", dashed)
@@ -193,7 +193,7 @@ def of_waves() -> Iterator[Case]:
     yield Case("window = [0.15, 0.6]", _seen(0.2), _seen(0.01))
     yield Case("model = 'fems'", lambda: Rules(grading=2.0).variants(("fems",)))
     yield Case("wall = 'half' is", lambda: Rules(wall="half").variants(("fem",)), lambda: Rules().variants(("fem",)))
-    yield Case("n_segments = 0", lambda: comparable(STRIP, (0,), 1), lambda: comparable(STRIP, (9,), 1))
+    yield Case("count = 0", lambda: comparable(STRIP, (0,), 1), lambda: comparable(STRIP, (9,), 1))
 
 
 def _seen(first: float) -> Ask:

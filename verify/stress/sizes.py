@@ -175,7 +175,13 @@ def _one_mode(model: str) -> Figure:
 
 
 def _size_rows(model: str) -> tuple[Row, ...]:
+    """Rounding over the number of parts, and what a model has not or a machine does not hold."""
     parts = PARTS[model]
+    return (*_rounded(model, parts), _counted(model, parts), *_too_large(model, parts))
+
+
+def _rounded(model: str, parts: str) -> tuple[Row, ...]:
+    """Modes of many parts against their dispersion in closed form."""
     return (
         Floor(
             id=f"{parts}-parts",
@@ -203,26 +209,36 @@ def _size_rows(model: str) -> tuple[Row, ...]:
             seconds=240.0 if model == "fem" else 80.0,
             quick=False,
         ),
-        Floor(
-            id=f"{parts}-counted",
-            title=f"Mode 1 of a cantilever of {parts} against counts in 50 digits",
-            why="docs/findings: below 1e-12, counted in 50-digit arithmetic; a solver is no judge of a solver.",
-            along=parts,
-            at=(60, 400),
-            promise=1e-12,
-            error=counted_error(model),
-            beside=cantilever_beside if model == "fem" else None,
-            beside_at=(60, 400),
-            textbook="eigsh about 0 on assembled K and M" if model == "fem" else "",
-            seconds=4.0,
-        ),
+    )
+
+
+def _counted(model: str, parts: str) -> Row:
+    """A cantilever of parts against counts of eigenvalues in many digits."""
+    return Floor(
+        id=f"{parts}-counted",
+        title=f"Mode 1 of a cantilever of {parts} against counts in 50 digits",
+        why="docs/findings: below 1e-12, counted in 50-digit arithmetic; a solver is no judge of a solver.",
+        along=parts,
+        at=(60, 400),
+        promise=1e-12,
+        error=counted_error(model),
+        beside=cantilever_beside if model == "fem" else None,
+        beside_at=(60, 400),
+        textbook="eigsh about 0 on assembled K and M" if model == "fem" else "",
+        seconds=4.0,
+    )
+
+
+def _too_large(model: str, parts: str) -> tuple[Row, ...]:
+    """What is refused: modes that there are not, and parts that no memory holds."""
+    return (
         Refusal(
             id=f"{parts}-too-many-modes",
             title=f"More modes than {parts} have",
             why="DESIGN: more modes than the model has is bad input; docstring of solve_modes.",
             along=parts,
             at=(10, 1000, 100_000),
-            names=("n_modes", f"n_{parts}"),
+            names=("n_modes", "count"),
             ask=_too_many_modes(model),
         ),
         Refusal(
@@ -231,7 +247,7 @@ def _size_rows(model: str) -> tuple[Row, ...]:
             why="models/eigen.py: refused before anything large is allocated.",
             along=parts,
             at=(1e10, 1e12),
-            names=(f"n_{parts}", "GiB"),
+            names=("count", "GiB"),
             ask=_one_mode(model),
             taken=(1000,),
         ),

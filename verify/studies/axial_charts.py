@@ -6,9 +6,10 @@ import numpy as np
 
 from verify.chain.departure import departure_of, rms
 from verify.motion.validity import NONLINEAR
-from verify.studies.chart import Axis, Chart
-from verify.studies.charting import BROAD, GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, line, plain_line, thinned
+from verify.studies.chart import Axis, Chart, Line
+from verify.studies.charting import BROAD, GREY, MEAN_COLOUR, RAYLEIGH, TIMOSHENKO, in_units, line, plain_line, thinned
 from verify.studies.told import Column, Table
+from verify.units import time_in_words, unit_of, unit_over
 
 if TYPE_CHECKING:
     from verify.studies.axial_figures import AxialFound
@@ -40,24 +41,28 @@ def axial_charts(study: "AxialFound") -> tuple[Chart, ...]:
 
 
 def _lines(study: "AxialFound") -> Chart:
-    times = [1e3 * t for t in thinned(study.times)]
+    time, up = unit_of(study.duration, "s"), unit_over(w for values in study.lines.values() for w in values)
+    times = thinned(study.times)
     return Chart(
         id="axial-models",
         title=f"Deflection at x = {study.x:g} m under {study.shown:g} N, N = {study.count}",
         caption=_apart(study),
-        x=Axis("time, ms"),
-        y=Axis("deflection, µm"),
+        x=Axis(f"time, {time.name}"),
+        y=Axis(f"deflection, {up.name}"),
         lines=tuple(
-            plain_line(
-                NAMES[model],
-                _COLOURS[model],
-                times,
-                [1e6 * w for w in thinned(values)],
-                width=BROAD if model == "exact" else 1.6,
-                dash="dot" if model in ("transverse", "elastic") else "solid",
-            )
-            for model, values in study.lines.items()
+            in_units(_in_time(model, times, thinned(values)), time, up) for model, values in study.lines.items()
         ),
+    )
+
+
+def _in_time(model: str, times: list[float], values: list[float]) -> Line:
+    return plain_line(
+        NAMES[model],
+        _COLOURS[model],
+        times,
+        values,
+        width=BROAD if model == "exact" else 1.6,
+        dash="dot" if model in ("transverse", "elastic") else "solid",
     )
 
 
@@ -107,16 +112,16 @@ def axial_tables(study: "AxialFound") -> tuple[Table, ...]:
 
 
 def _forces_table(study: "AxialFound") -> Table:
-    return Table(
+    return Table.of(
         before="Rigid links cannot stretch: bending draws the sliding tip in and takes the mass of the chain along. "
         "This axial inertia, of relative size (kL)² ⟨θ²⟩, makes a chain of rigid links nonlinear, not the amplitude "
         "over the thickness. Below, how far each chain lies from the linear chain of as many links, over the linear "
-        f"chain's rms deflection at x = {study.x:g} m, at the end of {1e3 * study.duration:g} ms from rest (at end), "
-        "and as rms over that time (rms). A longer run may depart by more. Other places depart by more or less: "
+        f"chain's rms deflection at x = {study.x:g} m, at the end of {time_in_words(study.duration)} from rest (at "
+        "end), and as rms over that time (rms). A longer run may depart by more. Other places depart by more or less: "
         "beside it the range of the rigid links' figure at the end over the tenths of the beam.",
         columns=(
             Column("force", "g", unit=" N"),
-            Column("rms deflection, µm", ".3g", 1e6),
+            Column("rms deflection", ".3g", si="m"),
             Column("(kL)² ⟨θ²⟩", ".1e"),
             Column("decides for", left=True),
             Column("rigid links, at end", ".2e"),
@@ -148,12 +153,12 @@ def _forces_table(study: "AxialFound") -> Table:
 
 
 def _beside_table(study: "AxialFound") -> Table:
-    return Table(
+    return Table.of(
         title="Chains, elements and the exact field side by side",
         columns=(
             Column(f"model at {study.shown:g} N, N = {study.count}", left=True),
             Column("rms of the difference to the exact field over its rms", "size"),
-            Column(f"deflection at {1e3 * study.duration:g} ms, µm", "+.4f", 1e6),
+            Column(f"deflection at {time_in_words(study.duration)}", "+.4f", si="m"),
         ),
         rows=tuple((NAMES[row.model], row.error or None, row.at_end) for row in study.beside),
         notes=(

@@ -30,10 +30,12 @@ from verify.models.arrays import Array
 from verify.models.catalogue import MODELS
 from verify.motion.simulate import simulate
 from verify.motion.validity import NONLINEAR, axial_inertia_size, field_size
-from verify.studies.axial_inertia import STEPPED, AxialInertia
+from verify.patience import check_work
+from verify.studies.axial_inertia import LINK_STEP_S, STEPPED, AxialInertia, n_stepped, steps_of
 from verify.studies.chart import Chart
 from verify.studies.kind import Progress
 from verify.studies.told import Found, Table
+from verify.units import time_in_words
 from verify.words import percent
 
 if TYPE_CHECKING:
@@ -97,7 +99,7 @@ class AxialFound(Found, frozen=True, eq=False, kw_only=True):
         )
         first = min(beyond, key=lambda row: row.force, default=None)
         apart = f"; at {first.force:g} N they lie {percent(first.full.at_end, sign=False)} apart" if first else ""
-        return f"{upto}{apart} (N = {self.count}, x = {self.x:g} m, after {1e3 * self.duration:g} ms)."
+        return f"{upto}{apart} (N = {self.count}, x = {self.x:g} m, after {time_in_words(self.duration)})."
 
     def facts(self) -> tuple[str, ...]:
         """A sentence for each force."""
@@ -108,7 +110,8 @@ class AxialFound(Found, frozen=True, eq=False, kw_only=True):
         low, high = row.along
         return (
             f"{row.force:g} N: {verdict}, (kL)^2 <theta^2> {row.size:.1e}; rigid links lie {row.full.at_end:.1e} off "
-            f"after {1e3 * self.duration:g} ms at x = {self.x:g} m, {low:.1e} to {high:.1e} at the tenths of the beam"
+            f"after {time_in_words(self.duration)} at x = {self.x:g} m, {low:.1e} to {high:.1e} at the tenths of the "
+            "beam"
         )
 
     def tables(self) -> tuple[Table, ...]:
@@ -201,6 +204,8 @@ def _linear_beam(driven: Driven, force: float, model: str) -> Array:
 
 def axial_study(scene: "Scene", asked: AxialInertia, progress: Progress = lambda step: None) -> AxialFound:
     """Everything an [axial_inertia] of a scene asks for. Raises InputError."""
+    seconds = LINK_STEP_S * asked.count * n_stepped(asked) * steps_of(asked, scene)
+    check_work("axial_inertia.duration", asked.duration, seconds, "shorten it, or give fewer links or forces")
     driven = driven_chain(scene, "axial_inertia", asked.count, asked.duration, asked.x)
     unit, rows = linear_chain(driven), []
     for force in asked.forces:

@@ -7,6 +7,7 @@ from msgspec.structs import replace
 
 from verify.studies.chart import Axis, Chart, Line
 from verify.studies.charting import numbers
+from verify.units import unit_of
 
 if TYPE_CHECKING:
     from verify.beam import Beam
@@ -20,18 +21,16 @@ def bending_movie(beam: "Beam", colour: str) -> Chart:
 
     own = replace(beam, supports=("clamped", "free"))
     full = 2.0 * pi * beam.bending_stiffness / beam.length
-    shapes = [
-        bend(own, LINKS, moment=full * k / FRAMES, wall="half").joints * 1e3 if k else None for k in range(FRAMES + 1)
-    ]
-    found = [one for one in shapes if one is not None]
-    rows = [(numbers(one[:, 0]), numbers(one[:, 1])) for one in found]
+    unit = unit_of(beam.length)
+    shapes = [bend(own, LINKS, moment=full * k / FRAMES, wall="half").joints for k in range(1, FRAMES + 1)]
+    rows = [(numbers(unit.factor * one[:, 0]), numbers(unit.factor * one[:, 1])) for one in shapes]
     return Chart(
         id="chain-bending",
         title=f"The chain bent in the large, {LINKS} links",
         caption="The same section as a cantilever under an end moment that grows to 2πEI/L, where a beam closes into a "
         "circle; joints EI/l, at the wall 2EI/l, with which the chain closes too. Both axes have one scale.",
-        x=Axis("x, mm"),
-        y=Axis("y, mm"),
+        x=Axis(f"x, {unit.name}"),
+        y=Axis(f"y, {unit.name}"),
         lines=(
             Line(
                 name=f"{LINKS} rigid links",

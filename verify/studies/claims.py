@@ -6,6 +6,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.scenes.claims import READ, Claim
@@ -60,6 +61,10 @@ class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
 
     claims: tuple[ClaimResult, ...]
 
+    def under(self, overrides: tuple[str, ...]) -> "ClaimsFound":
+        """Each with what was set of what its figure is of: its source states it of the scene as it stands."""
+        return replace(self, claims=tuple(_under(claim, overrides) for claim in self.claims))
+
     def in_short(self) -> str:
         """How many hold, of those that could be evaluated."""
         held, known = sum(c.holds is True for c in self.claims), sum(c.holds is not None for c in self.claims)
@@ -111,6 +116,26 @@ class ClaimsFound(Found, frozen=True, eq=False, kw_only=True):
         """The same."""
         found: list[dict[str, Any]] = self.plain()
         return found
+
+
+def _under(claim: ClaimResult, overrides: tuple[str, ...]) -> ClaimResult:
+    about = [text for text in overrides if text.partition(".")[0].strip() in _tables_of(claim)]
+    if not about:
+        return claim
+    tables = " and ".join(dict.fromkeys(text.partition(".")[0].strip() for text in about))
+    told = f"another {tables} than the scene's own, --set {' '.join(about)}"
+    return replace(claim, condition=", ".join(one for one in (claim.condition, told) if one))
+
+
+def _tables_of(claim: ClaimResult) -> tuple[str, ...]:
+    """What exists that its figure depends on; of a quantity that there is not, nothing."""
+    from verify.quantities.catalogue import quantity
+
+    try:
+        reads: tuple[str, ...] = quantity(claim.quantity).arguments.reads
+    except InputError:
+        return ()
+    return reads
 
 
 def _page_cells(claim: ClaimResult) -> tuple[str | bool | None, ...]:

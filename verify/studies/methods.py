@@ -9,6 +9,7 @@ from verify.checks import check_number
 from verify.errors import InputError
 from verify.models.catalogue import discrete
 from verify.studies.kind import Progress, Study
+from verify.units import time_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -119,7 +120,7 @@ class MethodsStudy(Study[Methods, "MethodsFound"]):
     def told(self, asked: Methods, scene: "Scene") -> str:
         """How many fields, and runs."""
         titles = " and ".join(model.title for model in discrete("solve_harmonic", scene.beam))
-        rides = f", the slider for {1e3 * asked.duration:g} ms on each" if scene.slider else ""
+        rides = f", the slider for {time_in_words(asked.duration)} on each" if scene.slider else ""
         return f"exact fields over {2 * asked.span_hz:g} Hz, load and detuning, {titles} at N = {asked.count}{rides}"
 
     def n_steps(self, asked: Methods, scene: "Scene") -> int:

@@ -3,9 +3,10 @@
 from typing import TYPE_CHECKING
 
 from verify.studies.chart import Axis, Chart, Dash, Line, Mark
-from verify.studies.charting import GREY, MEAN_COLOUR, PALETTE, plain_line, unbroken
+from verify.studies.charting import GREY, MEAN_COLOUR, PALETTE, in_units, plain_line, unbroken
 from verify.studies.charting import line as dotted
 from verify.studies.methods_seen import WAYS, WORDS
+from verify.units import unit_of, unit_over
 
 if TYPE_CHECKING:
     from verify.studies.methods_figures import MethodsFound
@@ -32,7 +33,7 @@ def _frequency(found: "MethodsFound") -> Chart:
         id="methods-frequency",
         title="Reflection over frequency, nothing retuned",
         caption=_said(found) + "The device keeps its dashpot, spring and mass, the second force its phase. "
-        f"With two forces the beam keeps its resonances, where the wave stands. Read at {1e3 * found.read_at:g} mm: "
+        f"With two forces the beam keeps its resonances, where the wave stands. Read at {found.at(found.read_at)}: "
         "with losses reflection hangs on the place.",
         x=Axis("frequency, Hz"),
         y=Axis("reflection"),
@@ -47,19 +48,20 @@ def _frequency(found: "MethodsFound") -> Chart:
 
 
 def _amplitude(found: "MethodsFound") -> Chart:
+    up = unit_over(one.amplitude for way in WAYS for one in _all(found, way) if one)
     x = [found.hertz + row.value for row in found.frequencies]
     return Chart(
         id="methods-amplitude",
         title="Amplitude of the stronger wave over frequency",
         caption=_said(found) + "Where two forces meet a resonance the wave grows and stands.",
         x=Axis("frequency, Hz"),
-        y=Axis("amplitude, µm", log=True),
+        y=Axis(f"amplitude, {up.name}", log=True),
         lines=tuple(
             plain_line(
                 WORDS[way],
                 COLOURS[way],
                 x,
-                [1e6 * one.amplitude if one else None for one in _all(found, way)],
+                [up.factor * one.amplitude if one else None for one in _all(found, way)],
                 width=2.0,
             )
             for way in WAYS
@@ -102,7 +104,8 @@ def _detuning(found: "MethodsFound") -> Chart:
 
 
 def _along(found: "MethodsFound") -> Chart:
-    x = [1e3 * v for v in found.along.x]
+    unit = unit_of(found.along.everywhere[-1])
+    x = [unit.factor * v for v in found.along.x]
     first, second = found.along.modes
 
     def drawn(values: tuple[float, ...]) -> list[float | None]:
@@ -119,43 +122,45 @@ def _along(found: "MethodsFound") -> Chart:
         title="Local standing-wave ratio along the beam",
         caption=f"{found.damping.capitalize()}, at {found.hertz:g} Hz, between force and device. The lumped picture "
         f"has two modes alone and knows no actuator. Ratios above {MOST:g} are not drawn.",
-        x=Axis("x, mm"),
+        x=Axis(f"x, {unit.name}"),
         y=Axis("standing-wave ratio", log=True, ticks=(1.0, 2.0, 5.0, 10.0, 20.0)),
         lines=(*fields, lumped),
     )
 
 
 def _load(found: "MethodsFound") -> Chart:
-    grams = [1e3 * row.value for row in found.masses]
+    unit = unit_over((1e3 * row.value for row in found.masses), "g")
+    masses = [1e3 * unit.factor * row.value for row in found.masses]
     lines: list[Line] = []
     for way in WAYS:
         rows = [getattr(row, way) for row in found.masses]
         for name, of, dash in (("before it", "reflection", "solid"), ("behind it", "behind", "dot")):
             values = [getattr(one, of) if one else None for one in rows]
-            lines.append(dotted(f"{WORDS[way]}, {name}", COLOURS[way], grams, values, dash=dash))
+            lines.append(dotted(f"{WORDS[way]}, {name}", COLOURS[way], masses, values, dash=dash))
     return Chart(
         id="methods-load",
         title="Reflection under a mass that rides on the beam",
         caption=_said(found)
-        + f"At {found.hertz:g} Hz, the mass at {1e3 * found.load_position:g} mm; before it is towards "
+        + f"At {found.hertz:g} Hz, the mass at {found.at(found.load_position)}; before it is towards "
         "the force.",
-        x=Axis("mass, g", log=True),
+        x=Axis(f"mass, {unit.name}", log=True),
         y=Axis("reflection"),
         lines=tuple(lines),
     )
 
 
 def _envelopes(found: "MethodsFound") -> Chart:
-    x = [1e3 * v for v in found.along.everywhere]
-    widths = {"device": 2.0, "forces": 1.6}
+    unit = unit_of(found.along.everywhere[-1])
+    up = unit_over(v for values in found.along.amplitudes.values() for v in values)
+    x, widths = found.along.everywhere, {"device": 2.0, "forces": 1.6}
     return Chart(
         id="methods-envelopes",
         title="Envelope of the wave, both ways",
         caption=_said(found) + f"At {found.hertz:g} Hz. A pure travelling wave has a flat envelope.",
-        x=Axis("x, mm"),
-        y=Axis("amplitude, µm"),
+        x=Axis(f"x, {unit.name}"),
+        y=Axis(f"amplitude, {up.name}"),
         lines=tuple(
-            plain_line(WORDS[way], COLOURS[way], x, [1e6 * v for v in found.along.amplitudes[way]], width=widths[way])
+            in_units(plain_line(WORDS[way], COLOURS[way], x, found.along.amplitudes[way], width=widths[way]), unit, up)
             for way in WAYS
         ),
     )

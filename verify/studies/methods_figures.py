@@ -18,6 +18,7 @@ from verify.studies.chart import Chart
 from verify.studies.kind import Progress
 from verify.studies.methods_seen import WAYS, Seen, Setting, Way, seen_of, setting_of
 from verify.studies.told import Found, Table
+from verify.units import in_words, time_in_words, unit_of
 from verify.waves.driven import driven, measures
 from verify.waves.lumped import TwoModes, local_waves, standing_wave_ratios
 
@@ -91,7 +92,7 @@ def over_load(setting: Setting, asked: "Methods", bench: "Workbench") -> tuple[t
     masses = [Device(position=at, mass=mass) for mass in asked.load_mass]
     brakes = [Device(position=at, dashpot=dashpot) for dashpot in asked.load_dashpot]
     return (
-        tuple(row_of(setting, bench, f"{1e3 * load.mass:g} g", load.mass, load=load) for load in masses),
+        tuple(row_of(setting, bench, in_words(1e3 * load.mass, "g", "g"), load.mass, load=load) for load in masses),
         tuple(row_of(setting, bench, f"{load.dashpot:g} N s/m", load.dashpot, load=load) for load in brakes),
     )
 
@@ -222,6 +223,11 @@ class MethodsFound(Found, frozen=True, eq=False, kw_only=True):
     damping: str
     count: int
 
+    def at(self, place: float) -> str:
+        """A place in the unit in which the beam is drawn: '125 mm'."""
+        unit = unit_of(self.along.everywhere[-1])
+        return f"{unit.factor * place:g} {unit.name}"
+
     @property
     def read_at(self) -> float:
         """Metres: where reflections are read without a load, halfway from the force to the middle of both."""
@@ -323,8 +329,8 @@ def _rides(
         kind = f"free to leave the surface, one-way, pressed on with {slider.normal_force:.4g} N"
     return tuple(rides), (
         f"{kind}, mu = {slider.mu:g}, {law}, "
-        f"from x = {slider.start_on(scene.beam):g} m, mean of the last {1e3 * TAIL * asked.duration:g} of "
-        f"{1e3 * asked.duration:g} ms in the steady state"
+        f"from x = {slider.start_on(scene.beam):g} m, mean of the last {time_in_words(TAIL * asked.duration)} of "
+        f"{time_in_words(asked.duration)} in the steady state"
     )
 
 

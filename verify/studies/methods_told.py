@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from verify.studies.methods_figures import model_title, worst
 from verify.studies.methods_seen import WAYS, WORDS
 from verify.studies.told import Column, Table
+from verify.units import in_words, unit_of
 
 if TYPE_CHECKING:
     from verify.studies.methods_figures import MethodsFound
@@ -13,10 +14,10 @@ if TYPE_CHECKING:
 
 def condition(found: "MethodsFound") -> str:
     """What every figure is of."""
-    first, second = (f"{1e3 * place:g}" for place in found.places)
+    first, second = (found.at(place) for place in found.places)
     return (
-        f"exact beam, {found.damping}, {found.force:g} N from each actuator, force at {first} mm, device or second "
-        f"force ({found.phase_deg:g}°) at {second} mm"
+        f"exact beam, {found.damping}, {found.force:g} N from each actuator, force at {first}, device or second "
+        f"force ({found.phase_deg:g}°) at {second}"
     )
 
 
@@ -27,7 +28,7 @@ def short(found: "MethodsFound") -> str:
         return ""
     device, forces = driven.device.reflection, driven.forces.reflection
     at = (
-        f"The reflection at {found.hertz:g} Hz, read at {1e3 * found.read_at:g} mm, is {device:.2g} with the device "
+        f"The reflection at {found.hertz:g} Hz, read at {found.at(found.read_at)}, is {device:.2g} with the device "
         f"and {forces:.2g} with two forces"
     )
     sides = [
@@ -47,7 +48,7 @@ def _frequency(found: "MethodsFound") -> Iterator[str]:
     """Which way bears the span better, where one does."""
     device, forces = (worst(found.frequencies, way) for way in WAYS)
     n, span = len(found.frequencies), f"within {found.span_hz:g} Hz of {found.hertz:g} Hz"
-    span = f"{span}, {n} frequencies, {found.damping}, read at {1e3 * found.read_at:g} mm, nothing retuned"
+    span = f"{span}, {n} frequencies, {found.damping}, read at {found.at(found.read_at)}, nothing retuned"
     if device is None or forces is None:
         yield f"{span}: a frequency is a resonance of the undamped beam under two forces, where nothing is compared"
         return
@@ -73,10 +74,14 @@ def _power(found: "MethodsFound") -> Iterator[str]:
         one, (first, second) = driven.device, driven.forces.given
         yield (
             f"at {found.hertz:g} Hz with {found.force:g} N: the force beside the device gives "
-            f"{1e3 * one.given[0]:.4g} mW, of which the device takes {1e3 * one.absorbed:.4g} mW; of two forces the "
-            f"first gives {1e3 * first:.4g} mW and the second {1e3 * second:.4g} mW; the waves are "
-            f"{1e6 * one.amplitude:.4g} µm and {1e6 * driven.forces.amplitude:.4g} µm"
+            f"{_watts(one.given[0])}, of which the device takes {_watts(one.absorbed)}; of two forces the first gives "
+            f"{_watts(first)} and the second {_watts(second)}; the waves are {in_words(one.amplitude, form='.4g')} "
+            f"and {in_words(driven.forces.amplitude, form='.4g')}"
         )
+
+
+def _watts(power: float) -> str:
+    return in_words(power, "W", ".4g")
 
 
 def _detuning(found: "MethodsFound") -> Iterator[str]:
@@ -99,7 +104,7 @@ def _load(found: "MethodsFound") -> Iterator[str]:
     heaviest = found.masses[-1]
     device, forces = heaviest.device, heaviest.forces
     if device and forces:
-        at = f"{1e3 * found.load_position:g} mm, at {found.hertz:g} Hz, {found.damping}"
+        at = f"{found.at(found.load_position)}, at {found.hertz:g} Hz, {found.damping}"
         yield (
             f"with {heaviest.what} on the beam at {at}: behind it the reflection is {device.behind:.3g} with the "
             f"device and {forces.behind:.3g} with two forces, "
@@ -111,7 +116,7 @@ def _load(found: "MethodsFound") -> Iterator[str]:
 def _lumped(found: "MethodsFound") -> Iterator[str]:
     if found.picture:
         first, second = found.along.modes
-        at = ", ".join(f"{lumped:.4g} at {1e3 * x:g} mm" for x, lumped, _ in found.picture)
+        at = ", ".join(f"{lumped:.4g} at {found.at(x)}" for x, lumped, _ in found.picture)
         fields = [field for *_, field in found.picture]
         yield (
             f"modes {first} and {second} alone, equal and a quarter of a period apart, have a local standing-wave "
@@ -145,21 +150,21 @@ def _beside(found: "MethodsFound") -> Table:
             way_on = ("onwards" if seen.runs_on else "back") if seen else None
             speed = (getattr(ride, way) if ride else None,) if found.rides else ()
             rows.append((row.what, WORDS[way], way_on, *figures, *powers, *speed))
-    return Table(
-        title="Two ways of driving, side by side",
-        columns=(
+    return Table.of(
+        (
             Column("condition", left=True),
             Column("way", left=True),
             Column("runs", left=True),
             Column("reflection", ".3g"),
-            Column("wave, µm", ".4g", 1e6),
-            Column("force, mW", "+.4g", 1e3),
-            Column("other, mW", "+.4g", 1e3),
+            Column("wave", ".4g", si="m"),
+            Column("force", "+.4g", si="W"),
+            Column("other", "+.4g", si="W"),
             *((Column("slider, µm/s", "+.4g", 1e6),) if found.rides else ()),
         ),
-        rows=tuple(rows),
+        tuple(rows),
+        title="Two ways of driving, side by side",
         notes=(
-            f"E{condition(found)[1:]}; reflections and waves are read at {1e3 * found.read_at:g} mm: with losses they "
+            f"E{condition(found)[1:]}; reflections and waves are read at {found.at(found.read_at)}: with losses they "
             "hang on the place. Nothing is retuned. Power into the beam: of the force, and of device or second "
             "force.",
             *([f"Slider {found.slider}."] if found.slider else []),
@@ -194,7 +199,7 @@ def _off(found: "MethodsFound") -> Table:
         ),
         rows=tuple(rows),
         notes=(
-            f"At {found.hertz:g} Hz, {condition(found)}; loads at {1e3 * found.load_position:g} mm, read halfway to "
+            f"At {found.hertz:g} Hz, {condition(found)}; loads at {found.at(found.load_position)}, read halfway to "
             "the force and to the device. One thing is changed in each row.",
         ),
         folded=True,
@@ -211,11 +216,12 @@ def _models(found: "MethodsFound") -> Table:
 
 
 def _picture(found: "MethodsFound") -> Table:
+    along = unit_of(found.along.everywhere[-1])
     first, second = found.along.modes
     return Table(
         title="The lumped picture of the wave",
         columns=(
-            Column("x, mm", ".4g", 1e3),
+            Column(f"x, {along.name}", ".4g", along.factor),
             Column(f"modes {first} and {second} in quadrature", ".4f"),
             Column("field of two forces", ".4f"),
         ),

@@ -19,6 +19,7 @@ from verify.studies.charting import (
     MEAN_COLOUR,
     PLATE,
     RAYLEIGH,
+    SHADES,
     SYMBOLS,
     TIMOSHENKO,
     key,
@@ -312,10 +313,9 @@ def _work(found: "ConvergenceFound") -> Chart:
 
 def sensitivity_chart(study: "SensitivityFound") -> Chart:
     """The frequency over the modulus, a line for each density."""
-    shades = ("#56c7c2", "#3fa7d6", "#2f80ed", "#6d6fe0", RAYLEIGH)
     moduli = [e / 1e9 for e in study.moduli]
     lines = [
-        plain_line(f"ρ = {rho:.0f} kg/m³", shades[i], moduli, row, width=3.0 if i == 2 else 1.5)
+        plain_line(f"ρ = {rho:.0f} kg/m³", SHADES[i], moduli, row, width=3.0 if i == 2 else 1.5)
         for i, (rho, row) in enumerate(zip(study.densities, study.frequencies_hz, strict=True))
     ]
     caption = f"Exact Euler-Bernoulli: {_moved_by(study)}."

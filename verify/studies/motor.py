@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from verify.checks import Relative, check_number
-from verify.errors import InputError, near_name
+from verify.errors import InputError, near_name, written
 from verify.models.catalogue import MODELS
 from verify.models.naming import Among
 from verify.motor.combine import CHAIN
@@ -29,6 +29,8 @@ SECONDS, PLACES = 0.02, 8
 """Of the runs from rest, unless given."""
 PER_FIELD = 2
 """Steps of progress of one field: held, free."""
+REST_PERIODS = 1000
+"""Of the drive, at most, in which all fields are run from rest beside the chain."""
 FREE_RUNS = 3
 """Under way, cut off, turned round."""
 HELD = 3
@@ -94,7 +96,7 @@ class Motor(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                     f"motor.{name} = {given!r} is of runs from rest beside the nonlinear chain, which motor.models "
                     "has not: add 'chain' there, or leave it out"
                 )
-        check_number("motor.chain", self.seconds, "seconds", above=0, below=0.2)
+        check_number("motor.chain", self.seconds, "seconds", above=0)
         if self.chain_force is not None:
             check_number("motor.chain_force", self.chain_force, "newton", above=0)
         if self.links == ():
@@ -152,6 +154,13 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         if scene.slider is None or scene.slider.contact is None:
             missing = "[slider] with [slider.contact]" if scene.slider is None else "[slider.contact]"
             raise InputError(f"motor: its slider may leave the beam, add {missing}; one that never does is of [motion]")
+        assert scene.drive is not None
+        periods = asked.chain * scene.drive.frequency_hz
+        if CHAIN in asked.models and periods > REST_PERIODS:
+            raise InputError(
+                f"motor.chain = {asked.chain!r} s is {periods:.3g} periods of the drive: give at most {REST_PERIODS}, "
+                f"{written(float(f'{REST_PERIODS / scene.drive.frequency_hz:.3g}'))} s"
+            )
 
     def check_run(self, asked: Motor, scene: "Scene") -> None:
         """Raise InputError for what does not combine, feet that do not fit, a chain that is not run."""

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 from verify.models.catalogue import MODELS
 from verify.motor.combine import CHAIN
 from verify.studies.chart import Axis, Chart, Dash, Line
-from verify.studies.charting import BROAD, DASHES, PALETTE, key, line, plain_line
+from verify.studies.charting import BROAD, DASHES, PALETTE, in_units, key, line, plain_line
 from verify.studies.motor_movie import motor_movie
+from verify.units import in_words, unit_of, unit_over
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -64,30 +65,32 @@ def _efficient(at: "AtSpeed") -> float | None:
 
 
 def _force(found: "MotorFound") -> Chart:
-    limit = 1e3 * found.mu * found.fields[0].stall.normal_force
+    limit = found.mu * found.fields[0].stall.normal_force
+    unit = unit_of(limit, "N")
     speeds = [100.0 * at.speed for at in found.fields[0].curve]
     way = -1.0 if found.fields[0].stall.force < 0.0 else 1.0
-    guide = plain_line("mu N", "#8a8f98", speeds, [way * limit] * len(speeds), dash="dash", guide=True)
+    guide = plain_line("mu N", "#8a8f98", speeds, [way * unit.factor * limit] * len(speeds), dash="dash", guide=True)
     shaky = "" if all(at.settled("force") for one in found.fields for at in one.curve) else UNSETTLED
     return Chart(
         id="motor-force",
         title="Force over speed",
         caption="Friction on the slider along +x, held at each speed and kept at its place, means over periods. "
-        f"Dashed: mu N = {limit:.3g} mN, all points slipping one way.{shaky}",
+        f"Dashed: mu N = {in_words(limit, 'N')}, all points slipping one way.{shaky}",
         x=Axis("speed, cm/s"),
-        y=Axis("force, mN"),
-        lines=(guide, *_curves(found, lambda at: 1e3 * at.force if at.settled("force") else None)),
+        y=Axis(f"force, {unit.name}"),
+        lines=(guide, *_curves(found, lambda at: unit.factor * at.force if at.settled("force") else None)),
     )
 
 
 def _power(found: "MotorFound") -> Chart:
+    unit = unit_over((at.power for one in found.fields for at in one.curve), "W")
     return Chart(
         id="motor-power",
         title="Power over speed",
         caption="Force times speed: what the motor gives to a load at that speed. Below nought the load drives it.",
         x=Axis("speed, cm/s"),
-        y=Axis("power, mW"),
-        lines=_curves(found, lambda at: 1e3 * at.power if at.settled("force") else None),
+        y=Axis(f"power, {unit.name}"),
+        lines=_curves(found, lambda at: unit.factor * at.power if at.settled("force") else None),
     )
 
 
@@ -111,18 +114,19 @@ def _of_kind(found: "MotorFound", kind: str) -> "list[tuple[FieldFound, History]
 
 
 def _portrait(found: "MotorFound") -> Chart:
+    up = unit_over(z for _, kept in _of_kind(found, "portrait") for z in kept.x)
     return Chart(
         id="motor-portrait",
         title="The first foot across the beam: its rate over its height",
         caption="After the free run, over forty periods of the drive, about the mean of each. A motion that repeats "
         "itself is a closed loop; one that bounces without a pattern fills a patch.",
-        x=Axis("height from its mean, µm"),
+        x=Axis(f"height from its mean, {up.name}"),
         y=Axis("rate, mm/s"),
         lines=tuple(
             plain_line(
                 one.title,
                 MODELS[one.model].colour,
-                [1e6 * z for z in kept.x],
+                [up.factor * z for z in kept.x],
                 [1e3 * v for v in kept.y],
                 width=_width(one.model),
             )
@@ -151,12 +155,13 @@ _TOLD = {
 def _over_time(found: "MotorFound", name: str, kinds: dict[str, tuple[str, Dash]]) -> Chart:
     """Fields by colour, kinds by dash."""
     title, caption, axis, _ = _TOLD[name]
+    time = unit_over((t for kind in kinds for _, kept in _of_kind(found, kind) for t in kept.x), "s")
     fields = {one.model: one for kind in kinds for one, _ in _of_kind(found, kind)}
     lines = [
         plain_line(
             one.title,
             MODELS[one.model].colour,
-            [1e3 * t for t in kept.x],
+            [time.factor * t for t in kept.x],
             [100.0 * v for v in kept.y],
             dash=dash,
             width=_width(one.model) if dash == DASHES[0] else 1.6,
@@ -171,7 +176,7 @@ def _over_time(found: "MotorFound", name: str, kinds: dict[str, tuple[str, Dash]
         id=name,
         title=title,
         caption=caption,
-        x=Axis("time, ms"),
+        x=Axis(f"time, {time.name}"),
         y=Axis(axis),
         lines=(*lines, *(keys if fields else ())),
     )
@@ -182,6 +187,7 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
     rest = found.rest
     if rest is None:
         return ()
+    time, way = unit_of(rest.seconds, "s"), unit_over(x for run in rest.fields for x in run.way)
     order = sorted(rest.fields, key=lambda one: one.model != CHAIN and MODELS[one.model].sized)
     return (
         Chart(
@@ -189,9 +195,9 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
             title=f"From rest: the slider's way at {rest.force:g} N",
             caption="From its own place, undamped, forces switched on at once, which is how a nonlinear chain starts: "
             f"the wave never settles. (kL)² ⟨θ²⟩ = {rest.size:.2g} of the drive's own motion.",
-            x=Axis("time, ms"),
-            y=Axis("distance, µm"),
-            lines=tuple(_way(run) for run in order),
+            x=Axis(f"time, {time.name}"),
+            y=Axis(f"distance, {way.name}"),
+            lines=tuple(in_units(_way(run), time, way) for run in order),
         ),
         Chart(
             id="motor-rest-force",
@@ -228,8 +234,8 @@ def _way(run: "RestField") -> Line:
     return plain_line(
         run.title,
         CHAINS[run.links] if chain else MODELS[run.model].colour,
-        [1e3 * t for t in run.times],
-        [1e6 * x for x in run.way],
+        run.times,
+        run.way,
         width=1.6 if chain or MODELS[run.model].sized else BROAD,
         dash="dash" if chain else "solid",
     )

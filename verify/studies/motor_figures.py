@@ -13,12 +13,14 @@ from verify.models.fields import travelling_wavenumber
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
 from verify.motor.figures import (
+    FEWER,
     AtSpeed,
     Timed,
     comes_to_speed,
     crest_speed,
     held,
     mean_speed,
+    next_seconds,
     no_load,
     phase_portrait,
     reversed_way,
@@ -26,11 +28,12 @@ from verify.motor.figures import (
     started_of,
     stopped,
 )
-from verify.motor.result import MotorMargins, MotorRun
+from verify.motor.result import MotorMargins, MotorRun, uninterrupted
+from verify.patience import check_work
 from verify.studies.chart import Chart
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
-from verify.studies.motor import case_of
+from verify.studies.motor import FREE_RUNS, case_of
 from verify.studies.motor_rest import FromRest, rest_runs
 from verify.studies.motor_words import doubts, facts_of, in_short_of
 from verify.studies.told import Found, Table
@@ -42,6 +45,8 @@ if TYPE_CHECKING:
 
 HELD_PERIODS = 11_520
 """At most, at each held speed, until its means settle."""
+SEARCHED = 24
+"""Held speeds at most on the way to the one without force: both ends, rest, halvings to a millionth of the reach."""
 LAST = 0.25
 """Of a free run, at its end: of which means are taken."""
 PORTRAIT = (40, 12)
@@ -203,10 +208,11 @@ def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step
     """Run the scene's motor on every field that is asked for. Raises InputError."""
     fields, histories = [], _no_histories()
     speeds: tuple[float, ...] = ()
-    for model in asked.linear:
+    for number, model in enumerate(asked.linear):
         case = case_of(asked, scene, model)
         progress(f"held speeds on {model}")
         still, settled = held(case, 0.0, periods=HELD_PERIODS)
+        check_felt(asked, still, settled, len(asked.linear) - number)
         speeds = speeds or _speeds(case, still, asked.speeds)
         curve = (still, *(held(case, speed, settled, HELD_PERIODS)[0] for speed in speeds[1:]))
         free_of_load = _no_load(case, settled)
@@ -228,6 +234,21 @@ def motor_study(scene: "Scene", asked: "Motor", progress: Progress = lambda step
         drawn=Drawn(histories=histories, period=_picture(case_of(asked, scene, first.model), first), title=first.title),
         n_motions=len(fields) * (asked.speeds + 4) + (rest.n_runs if rest else 0) + 1,
     )
+
+
+def check_felt(asked: "Motor", still: AtSpeed, settled: MotorRun, n_fields: int) -> None:
+    """Raise InputError where the beam feels the motor and fields as this one would take too long.
+
+    Each held speed as long as standing still, `settled`, took to settle, and the runs that are free. Estimated from
+    above of a step that the beam feels; one that it does not feel takes a hundredth of that.
+    """
+    assert settled.coupling is not None
+    if not settled.coupling.two_way:
+        return
+    free = asked.periods * (FREE_RUNS if asked.start == "steady" else 1) + PORTRAIT[0]
+    periods = still.periods * (asked.speeds - 1 + SEARCHED) + free
+    remedy = f"lower it or motor.speeds, or {FEWER}"
+    check_work("motor.periods", asked.periods, n_fields * next_seconds(settled, periods), remedy)
 
 
 def _no_histories() -> dict[str, dict[str, History]]:
@@ -345,7 +366,7 @@ def _histories(case: MotorCase, under_way: Timed, cut_off: Timed | None, turned:
             kept[name] = _history(one.run.times[:m] - one.run.times[0], one.run.speed[:m])
     if run.statistics.finished:
         periods, samples = PORTRAIT
-        fine = case.run(periods * case.period, samples=periods * samples + 1, continue_from=run)
+        fine = uninterrupted(case.run(periods * case.period, samples=periods * samples + 1, continue_from=run))
         height, rate = phase_portrait(fine)
         kept["portrait"] = History(x=tuple(map(float, height - height.mean())), y=tuple(map(float, rate)))
     return kept
@@ -371,6 +392,8 @@ def _picture(case: MotorCase, field: FieldFound) -> MotorRun | None:
     places = np.clip(np.linspace(middle - 0.5 * span, middle + 0.5 * span, PLACES), 0.0, beam.length)
     speed = field.no_load.speed if field.no_load else 0.0
     settled = held(case, speed, periods=HELD_PERIODS)[1]
-    return case.run(
-        case.period, held_speed=speed, frozen=True, at=places.tolist(), samples=FRAMES + 1, continue_from=settled
+    return uninterrupted(
+        case.run(
+            case.period, held_speed=speed, frozen=True, at=places.tolist(), samples=FRAMES + 1, continue_from=settled
+        )
     )

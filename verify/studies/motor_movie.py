@@ -6,7 +6,8 @@ import numpy as np
 
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Chart, Line
-from verify.studies.charting import numbers
+from verify.studies.charting import in_units, numbers
+from verify.units import in_words, unit_of, unit_over
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
@@ -29,19 +30,21 @@ def motor_movie(found: "MotorFound") -> tuple[Chart, ...]:
         return ()
     title = found.drawn.title
     largest = float(run.pressures[1:].max()) or 1.0
+    along, up = unit_of(float(run.points[-1])), unit_over(run.deflection.ravel().tolist())
     swing = float(np.abs(run.deflection).max()) or 1e-9
     mirrored = run.slider is not None and any(foot.mirrored for foot in run.slider.feet)
+    drawn = (*_surfaces(run, swing, mirrored), *_feet(run, swing, largest))
     return (
         Chart(
             id="motor-moving",
             title=f"The contact line over one period, {title}",
             caption=f"Orange: the feet, rigid, which the crests press into. Bars: normal force of each contact point, "
-            f"{1e3 * largest:.3g} mN at its longest, up from feet on the upper face and down from those on the lower "
+            f"{in_words(largest, 'N')} at its longest, up from feet on the upper face and down from those on the lower "
             "one. Drawn without thickness; the slider runs without load."
             + (" Dashed: the mirror image of the beam, raised." if mirrored else ""),
-            x=Axis("x, mm"),
-            y=Axis("height, µm"),
-            lines=(*_surfaces(run, swing, mirrored), *_feet(run, swing, largest)),
+            x=Axis(f"x, {along.name}"),
+            y=Axis(f"height, {up.name}"),
+            lines=tuple(in_units(one, along, up) for one in drawn),
             frames=tuple(f"{round(360 * k / (len(run.times) - 1))}° of a period" for k in range(1, len(run.times))),
             plays=True,
         ),
@@ -55,14 +58,14 @@ def _surfaces(run: "MotorRun", swing: float, mirrored: bool) -> tuple[Line, ...]
         Line(
             name=name,
             colour=model.colour,
-            x=numbers(1e3 * run.points),
+            x=numbers(run.points),
             y=rows[-1],
             moves=rows,
             width=2.2,
             dash="dash" if up else "solid",
         )
         for name, turn, up in beams
-        for rows in [tuple(numbers(1e6 * (up + turn * w)) for w in run.deflection[1:])]
+        for rows in [tuple(numbers(up + turn * w) for w in run.deflection[1:])]
     )
 
 
@@ -95,11 +98,11 @@ def _foot(run: "MotorRun", foot: "Foot", f: int, raised: float) -> Line:
     """From end to end, a point as a block."""
     ends = 0.5 * foot.length * np.array([-1.0, 1.0])
     rows = raised + run.height[1:, f, None] + run.pitch[1:, f, None] * ends
-    moves = tuple(numbers(1e6 * row) for row in rows)
+    moves = tuple(numbers(row) for row in rows)
     return Line(
         name="feet",
         colour=FOOT,
-        x=numbers(1e3 * ((run.start or 0.0) + foot.offset + ends)),
+        x=numbers((run.start or 0.0) + foot.offset + ends),
         y=moves[-1],
         moves=moves,
         width=3.0,
@@ -111,13 +114,13 @@ def _foot(run: "MotorRun", foot: "Foot", f: int, raised: float) -> Line:
 
 def _bars(name: str, parts: "list[tuple[Array, Array, Array]]") -> Line:
     """All bars of one side as one broken line."""
-    x = [v for places, _, _ in parts for at in places for v in (1e3 * at, 1e3 * at, None)]
+    x = [v for places, _, _ in parts for at in places for v in (at, at, None)]
     moves: list[Numbers] = []
     for k in range(len(parts[0][1])):
         heights: list[float | None] = []
         for _, under, tips in parts:
             for low, high in zip(under[k], tips[k], strict=True):
-                heights += [1e6 * float(low), 1e6 * float(high), None]
+                heights += [float(low), float(high), None]
         moves.append(numbers(heights))
     return Line(
         name=name,

@@ -20,10 +20,12 @@ from verify.models.catalogue import MODELS
 from verify.motor.case import MotorCase
 from verify.motor.combine import CHAIN
 from verify.motor.figures import crest_speed
+from verify.motor.result import uninterrupted
 from verify.options import Links
 from verify.studies.charting import thinned
 from verify.studies.kind import Progress
 from verify.studies.motor import HELD, RUNS, case_of, places_from_rest
+from verify.units import in_words, time_in_words, unit_over
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun
@@ -247,6 +249,8 @@ def _runs(
         samples=int(seconds * case.frequency_hz) + 2,
         steps_per_period=case.steps_per_period,
     )
+    for one in found:
+        uninterrupted(one)
     return [found[k : k + len(places)] for k in range(0, len(found), len(places))]
 
 
@@ -255,9 +259,10 @@ def what_stands(found: FromRest) -> Iterator[str]:
     starts = 2 * len(found.places)
     first = found.fields[0].title
     yield (
-        f"from rest, undamped, {found.force:g} N switched on at once, {1e3 * found.seconds:g} ms, (kL)^2 <theta^2> = "
-        f"{found.size:.2g}, {starts} starts ({len(found.places)} places of one wavelength, the wave either way): where "
-        f"a slider ends against that on the {first}, " + "; ".join(_departs(found, one) for one in found.fields[1:])
+        f"from rest, undamped, {found.force:g} N switched on at once, {time_in_words(found.seconds)}, (kL)^2 <theta^2> "
+        f"= {found.size:.2g}, {starts} starts ({len(found.places)} places of one wavelength, the wave either way): "
+        f"where a slider ends against that on the {first}, "
+        + "; ".join(_departs(found, one) for one in found.fields[1:])
     )
     yield "held still in those runs, force over mu N that turns round with the wave, and that does not: " + "; ".join(
         f"{one.title} {_pm(*one.push)}, {_pm(*one.bias)}" for one in found.fields
@@ -273,9 +278,10 @@ def _pm(mean: float, error: float) -> str:
 
 def _departs(found: FromRest, one: RestField) -> str:
     gone = found.departure(one)
-    mean = f"{1e6 * gone.mean:+.3g} +- {1e6 * gone.error:.2g} um"
+    unit = unit_over((gone.mean, gone.error))
+    mean = f"{unit.factor * gone.mean:+.3g} +- {unit.factor * gone.error:.2g} {unit.name}"
     said = mean if gone.told else f"no mean that is told from its error ({mean})"
-    return f"on {one.title} {said}, rms {1e6 * gone.rms:.3g} um, halved steps {1e6 * one.stepped:.2g} um"
+    return f"on {one.title} {said}, rms {in_words(gone.rms)}, halved steps {in_words(one.stepped, form='.2g')}"
 
 
 def _nearer(found: FromRest, one: RestField, other: RestField) -> str:

@@ -7,6 +7,7 @@ import msgspec
 from verify.models.catalogue import MODELS
 from verify.studies.motor_words import unsettled
 from verify.studies.told import Column, Read, Table
+from verify.units import time_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -27,24 +28,24 @@ OVERVIEW: tuple[Read, ...] = (
     (Column("crests, cm/s", ".4f", 100.0, wide=True), lambda one: one.crest_speed),
     (Column("no load, cm/s", "+.4f", 100.0), lambda one: one.no_load.speed if one.no_load else None),
     (Column("free, cm/s", "+.4f", 100.0), lambda one: one.free.speed if one.free.settled else None),
-    (Column("stall, mN", "+.4f", 1e3), lambda one: one.stall.force if one.stall.settled("force") else None),
-    (Column("most power, mW", ".4g", 1e3, wide=True), lambda one: one.most_power),
+    (Column("stall", "+.4f", si="N"), lambda one: one.stall.force if one.stall.settled("force") else None),
+    (Column("most power", ".4g", wide=True, si="W"), lambda one: one.most_power),
     (Column("best efficiency", "bare size"), lambda one: one.best_efficiency),
     (Column("touching", "bare size", wide=True), lambda one: one.free.contact_share),
     (Column("sticking", "bare size", wide=True), lambda one: one.free.stuck_share),
     (Column("start", "duration"), lambda one: one.start_time if one.free.settled else None),
     (Column("stop", "duration"), lambda one: one.stop_time if one.free.settled else None),
     (Column("turn", "duration"), lambda one: one.reversal_time if one.free.settled else None),
-    (Column("wear, mW", ".4g", 1e3, wide=True), lambda one: one.free.wear_power),
-    (Column("dashpots, mW", ".4g", 1e3, wide=True), lambda one: one.free.damped_power),
+    (Column("wear", ".4g", wide=True, si="W"), lambda one: one.free.wear_power),
+    (Column("dashpots", ".4g", wide=True, si="W"), lambda one: one.free.damped_power),
     (Column("s per s", ".2g", wide=True), lambda one: one.free.run_ms_per_ms),
 )
 """Of a `FieldFound`."""
 MARGINS: tuple[Read, ...] = (
     (Column("field", left=True), lambda one: one.title),
     (Column("epsilon", ".3g"), lambda one: one.margins.epsilon),
-    (Column("sag, µm", ".3g", 1e6), lambda one: one.margins.sag),
-    (Column("amplitude, µm", ".4g", 1e6), lambda one: one.amplitude),
+    (Column("sag", ".3g", si="m"), lambda one: one.margins.sag),
+    (Column("amplitude", ".4g", si="m"), lambda one: one.amplitude),
     (Column("contact's radians a step", ".2g"), lambda one: one.margins.step),
     (Column("axial inertia", ".1e"), lambda one: one.margins.chain),
     (Column("normal load felt", ".1e"), lambda one: one.coupling.normal_size),
@@ -56,12 +57,12 @@ MARGINS: tuple[Read, ...] = (
 """The same."""
 FROM_REST: tuple[Read, ...] = (
     (Column("field", left=True), lambda row: row[0].title),
-    (Column("own place, µm", "+.4g", 1e6, wide=True), lambda row: row[0].own(False)),
-    (Column("wave turned, µm", "+.4g", 1e6, wide=True), lambda row: row[0].own(True)),
-    (Column("apart, µm", "+.3g", 1e6), lambda row: row[1].mean),
-    (Column("error, µm", ".2g", 1e6), lambda row: row[1].error),
-    (Column("rms, µm", ".3g", 1e6), lambda row: row[1].rms),
-    (Column("steps halved, µm", ".2g", 1e6, wide=True), lambda row: row[0].stepped),
+    (Column("own place", "+.4g", wide=True, si="m"), lambda row: row[0].own(False)),
+    (Column("wave turned", "+.4g", wide=True, si="m"), lambda row: row[0].own(True)),
+    (Column("apart", "+.3g", si="m"), lambda row: row[1].mean),
+    (Column("error", ".2g", si="m"), lambda row: row[1].error),
+    (Column("rms", ".3g", si="m"), lambda row: row[1].rms),
+    (Column("steps halved", ".2g", wide=True, si="m"), lambda row: row[0].stepped),
     (Column("push", "+.3f"), lambda row: row[0].push[0]),
     (Column("bias", "+.3f"), lambda row: row[0].bias[0]),
     (Column("error", ".2g"), lambda row: row[0].push[1]),
@@ -91,13 +92,13 @@ def _overview(found: "MotorFound") -> Table:
 def _force_speed(found: "MotorFound") -> Table:
     """With power and efficiency."""
     shaky = any(not at.settled() for one in found.fields for at in one.curve)
-    spread: tuple[Read, ...] = ((Column("+-, mN", ".1g", 1e3), lambda at: at.spread),) if shaky else ()
+    spread: tuple[Read, ...] = ((Column("+-", ".1g", si="N"), lambda at: at.spread),) if shaky else ()
     return _over_speed(
         [(one.title, one.curve) for one in found.fields],
         lambda title: (
-            (Column(f"{title}, mN", "+.4f", 1e3), lambda at: at.force),
+            (Column(title, "+.4f", si="N"), lambda at: at.force),
             *spread,
-            (Column("power, mW", "+.4g", 1e3, wide=True), lambda at: at.power if at.settled("force") else None),
+            (Column("power", "+.4g", wide=True, si="W"), lambda at: at.power if at.settled("force") else None),
             (
                 Column("efficiency %", "bare size", wide=True),
                 lambda at: at.efficiency if at.settled("force", "powers") else None,
@@ -143,7 +144,7 @@ def _rest(rest: "FromRest") -> Table:
     return Table.over(
         ((one, rest.departure(one)) for one in rest.fields),
         FROM_REST,
-        title=f"From rest, {1e3 * rest.seconds:g} ms under {rest.force:g} N",
+        title=f"From rest, {time_in_words(rest.seconds)} under {rest.force:g} N",
         before=f"Undamped, forces switched on at once, as a nonlinear chain starts; preload {rest.preload:.3g} N, the "
         f"slider put at {len(rest.places)} places of one wavelength, the wave either way.",
         notes=(

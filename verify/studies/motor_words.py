@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from verify.motion.contact import FELT
 from verify.motion.validity import NONLINEAR
 from verify.motor.settling import BLOCK
+from verify.units import in_words
 from verify.words import seconds_in_words
 
 if TYPE_CHECKING:
@@ -39,7 +40,9 @@ def in_short_of(found: "MotorFound") -> str:
         )
     if not one.stall.settled("force"):
         return f"The motor {runs} and bounces so that its force standing still has not settled, on the {one.title}."
-    return f"The motor {runs} and pushes with {1e3 * one.stall.force:+.4g} mN standing still, on the {one.title}."
+    return (
+        f"The motor {runs} and pushes with {in_words(one.stall.force, 'N', '+.4g')} standing still, on the {one.title}."
+    )
 
 
 def facts_of(found: "MotorFound") -> tuple[str, ...]:
@@ -95,14 +98,14 @@ def _stall(one: "FieldFound") -> str:
         return f"{held}, the same in the motion that repeats itself"
     said = "more than that" if apart > one.stall.spread else "no more than that"
     return (
-        f"{held}, {1e3 * one.shooting.force:+.5g} mN in the motion that repeats itself: {1e3 * apart:.1g} mN apart, "
-        f"{said}"
+        f"{held}, {in_words(one.shooting.force, 'N', '+.5g')} in the motion that repeats itself: "
+        f"{in_words(apart, 'N', '.1g')} apart, {said}"
     )
 
 
 def _held_still(at: "AtSpeed") -> str:
     """The mean, with what it is a mean of and how far it may be off."""
-    force, spread = f"{1e3 * at.force:+.5g} mN", f"{1e3 * at.spread:.1g} mN"
+    force, spread = in_words(at.force, "N", "+.5g"), in_words(at.spread, "N", ".1g")
     if not at.settled("force"):
         return (
             f"not settled after {at.periods} periods, {force} +- {spread} as a mean over the last {at.window} of them"
@@ -164,7 +167,7 @@ def doubts(
         )
     elif not margins.sag_taken and margins.sag > SAGS * one.amplitude:
         told.append(
-            f"sag: what presses bends the beam by {1e6 * margins.sag:.3g} um, {margins.sag / one.amplitude:.2g} times "
+            f"sag: what presses bends the beam by {in_words(margins.sag)}, {margins.sag / one.amplitude:.2g} times "
             "the wave's amplitude, which a one-way run leaves out"
         )
     worst = max(field.margins.step**2 / 24.0 for field in fields)

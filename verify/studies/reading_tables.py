@@ -74,7 +74,7 @@ def _turns(study: "ReadingsFound") -> Table:
 
 
 def _all(study: "ReadingsFound") -> Table:
-    return Table(
+    return Table.of(
         title=f"All {len(study.readings)} readings",
         columns=(
             *_HEAD[:3],
@@ -84,8 +84,8 @@ def _all(study: "ReadingsFound") -> Table:
             Column("K, s/m", "g"),
             Column("mass, g", ".3g", 1e3),
             Column("cm/s"),
-            Column("mean friction, mN", "+.3g", 1e3),
-            Column("largest, mN", "+.3g", 1e3),
+            Column("mean friction", "+.3g", si="N"),
+            Column("largest", "+.3g", si="N"),
             Column("mean surface speed, mm/s", "+.3g", 1e3),
             Column("holds", left=True),
         ),

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from verify.studies.reading_figures import NAMES, Reading, ReadingsFound
+from verify.units import time_in_words
 
 if TYPE_CHECKING:
     from verify.studies.reading_figures import Bound, Group
@@ -47,7 +48,7 @@ def searched_words(study: ReadingsFound) -> str:
     chain = len(study.readings) - n
     also = f"; those at once also on the nonlinear chain of {how.count} rigid links ({chain})" if chain else ""
     return (
-        f"{n} readings, every combination of {lists} and no other; {how.model_words}, {1e3 * how.duration:g} ms "
+        f"{n} readings, every combination of {lists} and no other; {how.model_words}, {time_in_words(how.duration)} "
         f"from the start{also}; {study.n_runs} runs in all. Nothing is fitted."
     )
 

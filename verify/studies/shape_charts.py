@@ -9,6 +9,7 @@ from verify.judge.variants import Variant
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Chart, Line
 from verify.studies.charting import BROAD, numbers
+from verify.units import unit_of
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -38,7 +39,7 @@ def shapes_chart(bench: "Workbench", variants: tuple[Variant, ...], count: int, 
             title=f"Mode shapes, N = {count}",
             caption="Normalised to the same modal mass. Points of a model are where it knows its shape: joints or ends "
             "of elements. Of the chain, raw are the joints themselves, corrected what y + δ²y/12 makes of them.",
-            x=Axis("x, mm"),
+            x=Axis(f"x, {unit_of(bench.beam.length).name}"),
             y=Axis("deflection, 1/√kg"),
             lines=tuple(lines),
             frames=tuple(f"mode {mode}" for mode in chosen),
@@ -85,7 +86,7 @@ def _moving(
     return Line(
         name=name,
         colour=colour,
-        x=numbers(1e3 * x),
+        x=numbers(unit_of(float(x[-1])).factor * x),
         y=moves[-1],
         moves=moves,
         width=width,

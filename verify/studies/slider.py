@@ -50,11 +50,13 @@ class SliderStudy(Study[MotionAsk, "SliderFound"]):
     def check_run(self, asked: MotionAsk, scene: "Scene") -> None:
         """Raise InputError for a beam that the exact model does not move in time, or a run that is not begun."""
         from verify.exact.in_time import check_beam
+        from verify.models.underfoot import surface_distance_at
         from verify.motion.case import MotionCase
 
         check_beam(scene.beam, MEASURED)
         if scene.drive is None or scene.slider is None or scene.drive.kind != "force":
             return
+        surface_distance_at(scene.beam, scene.slider.start_on(scene.beam))  # which has to be known
         case = MotionCase(
             beam=scene.beam,
             forces=scene.forces,

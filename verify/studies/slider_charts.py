@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Bars, Chart, Line
 from verify.studies.charting import BROAD, GREY, model_line, plain_line, thinned
+from verify.units import Unit, unit_of, unit_over
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,52 +48,59 @@ def _set_up(study: "SliderFound") -> str:
     return f"the set-up before the loop is not counted: {' and '.join(spans)}"
 
 
-def _lines(study: "SliderFound", read: "Callable[[Motion], Array]", scale: float) -> tuple[Line, ...]:
-    """One line for every model, those without parts broad and first."""
-    order = sorted(study.runs, key=lambda name: MODELS[name].sized)
+def _lines(study: "SliderFound", read: "Callable[[Motion], Array]", unit: Unit) -> tuple[Line, ...]:
+    """One line for every model, in this unit, those without parts broad and first."""
+    time, order = _time(study), sorted(study.runs, key=lambda name: MODELS[name].sized)
     return tuple(
         plain_line(
             MODELS[name].title,
             MODELS[name].colour,
-            [1e3 * t for t in thinned(study.runs[name].times)],
-            [scale * v for v in thinned(read(study.runs[name]))],
+            [time.factor * t for t in thinned(study.runs[name].times)],
+            [unit.factor * v for v in thinned(read(study.runs[name]))],
             width=1.6 if MODELS[name].sized else BROAD,
         )
         for name in order
     )
 
 
+def _time(study: "SliderFound") -> Unit:
+    """Of the axis of time."""
+    return unit_of(study.condition.duration, "s")
+
+
 def _trajectory(study: "SliderFound") -> Chart:
+    unit = unit_over(x for run in study.runs.values() for x in run.travelled.tolist())
     return Chart(
         id="slider-trajectory",
         title=f"Way of the slider, N = {study.count}",
         caption=f"Distance from the start, along +x: {_how(study)}.",
-        x=Axis("time, ms"),
-        y=Axis("distance, nm"),
-        lines=_lines(study, lambda run: run.travelled, 1e9),
+        x=Axis(f"time, {_time(study).name}"),
+        y=Axis(f"distance, {unit.name}"),
+        lines=_lines(study, lambda run: run.travelled, unit),
     )
 
 
 def _force(study: "SliderFound") -> Chart:
+    unit = unit_over((f for run in study.runs.values() for f in run.friction.tolist()), "N")
     return Chart(
         id="slider-force",
         title=f"Tangential force on the slider, N = {study.count}",
         caption=f"{SATURATES[study.condition.law]}: {_how(study)}.",
-        x=Axis("time, ms"),
-        y=Axis("force, mN"),
-        lines=_lines(study, lambda run: run.friction, 1e3),
+        x=Axis(f"time, {_time(study).name}"),
+        y=Axis(f"force, {unit.name}"),
+        lines=_lines(study, lambda run: run.friction, unit),
     )
 
 
 def _speeds(study: "SliderFound") -> Chart:
     run = study.subject
-    times = [1e3 * t for t in thinned(run.times)]
+    times = [_time(study).factor * t for t in thinned(run.times)]
     speeds = (("surface under the slider", run.surface_speed, GREY), ("slider", run.speed, SLIDER))
     return Chart(
         id="slider-speeds",
         title="Speed of the slider and of the surface under it, segments",
         caption=f"In the mean over the run the slider goes at {1e3 * run.mean_speed:+.4g} mm/s: {_how(study)}.",
-        x=Axis("time, ms"),
+        x=Axis(f"time, {_time(study).name}"),
         y=Axis("speed, mm/s"),
         lines=tuple(
             plain_line(name, colour, times, [1e3 * v for v in thinned(values)]) for name, values, colour in speeds
@@ -118,11 +126,12 @@ def _books(study: "SliderFound") -> tuple[Chart, ...]:
         "missed by the books": ledger.residual,
     }
     told = [(name, value) for name, value in entries.items() if value or name.startswith("missed")][::-1]
+    unit = unit_over((value for _, value in told), "J")
     bars = Bars(
         names=tuple(name for name, _ in told),
-        values=tuple(1e6 * value for _, value in told),
+        values=tuple(unit.factor * value for _, value in told),
         colours=tuple(GREY if name.startswith("missed") else SLIDER for name, _ in told),
-        words=tuple(f"{1e6 * value:.3g}" for _, value in told),
+        words=tuple(f"{unit.factor * value:.3g}" for _, value in told),
     )
     return (
         Chart(
@@ -131,7 +140,7 @@ def _books(study: "SliderFound") -> tuple[Chart, ...]:
             caption="From the start of the run to its end, segments; kinetic and elastic are what is in the beam at "
             "the end, a sag under the slider that it had from the start with it. What the books miss is quadrature "
             f"over a step; under one-way coupling the beam is not charged with friction: {_how(study)}.",
-            x=Axis("energy, µJ"),
+            x=Axis(f"energy, {unit.name}"),
             y=Axis(""),
             bars=bars,
         ),

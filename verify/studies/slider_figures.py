@@ -23,6 +23,7 @@ from verify.studies.work_precision import (
     run_once,
     work_of,
 )
+from verify.units import in_words, unit_over
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -156,7 +157,7 @@ def slider_study(scene: "Scene", progress: Progress = lambda step: None) -> Slid
 def places_of(scene: "Scene", count: int | None) -> list[float]:
     """Joints of a chain of equal links, (count + 1,), metres."""
     n = count or 1
-    return [scene.beam.length * k / n for k in range(n + 1)]
+    return [scene.beam.length * (k / n) for k in range(n + 1)]
 
 
 def figures_of(run: Ride, back: Ride | None) -> dict[str, float]:
@@ -206,6 +207,7 @@ def _findings(
     coefficient = slider.mu if slider.mu_static is None else slider.mu_static
     limit = coefficient * slider.normal_force
     named = "mu N" if slider.mu_static is None else "mu_static N"
+    way = unit_over((chain.displacement, exact.displacement))
     off = f", {100 * (chain.displacement / exact.displacement - 1):+.3g} % off it" if exact.displacement else ""
     return (
         Finding(
@@ -215,12 +217,13 @@ def _findings(
         ),
         Finding(
             what="displacement in that run",
-            found=f"{1e9 * chain.displacement:+.4g} nm on {chain.count} segments, {1e9 * exact.displacement:+.4g} "
-            f"nm on the exact beam{off}",
+            found=f"{way.factor * chain.displacement:+.4g} {way.name} on {chain.count} segments, "
+            f"{way.factor * exact.displacement:+.4g} {way.name} on the exact beam{off}",
         ),
         Finding(
             what="largest friction in that run",
-            found=f"{1e3 * float(abs(chain.friction).max()):.4g} mN of {named} = {1e3 * limit:.4g} mN",
+            found=f"{in_words(float(abs(chain.friction).max()), 'N', '.4g')} of {named} = "
+            f"{in_words(limit, 'N', '.4g')}",
         ),
         Finding(
             what=f"mean speed over {drift_seconds(scene):g} s of steady wave ({how.kinematics}, one-way, its "

@@ -6,8 +6,8 @@ import numpy as np
 
 from verify.models.catalogue import bounding
 from verify.studies.chart import Axis, Chart, Line
-from verify.studies.charting import numbers
-from verify.words import metres_in_words
+from verify.studies.charting import in_units, numbers
+from verify.units import in_words, unit_of, unit_over
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
@@ -30,16 +30,18 @@ def slider_movie(study: "SliderFound") -> tuple[Chart, ...]:
         return ()
     kept = np.unique(np.linspace(0, len(run.times) - 1, FRAMES).round().astype(int))
     largest = float(abs(run.friction).max()) or 1.0
+    along, up = unit_of(float(run.points[-1])), unit_over(run.deflection[kept].ravel().tolist())
+    time = unit_over(run.times.tolist(), "s")
     return (
         Chart(
             id="slider-moving",
             title=f"The ride, N = {study.count}",
-            caption=f"Links straight from joint to joint. Pink: friction on the slider, {1e3 * largest:.3g} mN at its "
-            f"longest. {_way_in_words(run)}",
-            x=Axis("x, mm"),
-            y=Axis("deflection, µm"),
-            lines=_parts(run, kept, largest),
-            frames=tuple(f"{1e3 * t:.3f} ms" for t in run.times[kept]),
+            caption=f"Links straight from joint to joint. Pink: friction on the slider, {in_words(largest, 'N')} at "
+            f"its longest. {_way_in_words(run)}",
+            x=Axis(f"x, {along.name}"),
+            y=Axis(f"deflection, {up.name}"),
+            lines=tuple(in_units(one, along, up) for one in _parts(run, kept, largest)),
+            frames=tuple(f"{time.factor * t:.3f} {time.name}" for t in run.times[kept]),
             plays=True,
         ),
     )
@@ -49,17 +51,19 @@ def _way_in_words(run: "Motion") -> str:
     """Where the slider goes along the beam, which is drawn to scale, and whether that can be seen."""
     low, high = float(run.position.min()), float(run.position.max())
     if high - low >= SEEN * float(run.points[-1]):
-        return f"Along the beam the slider stands between {1e3 * low:.4g} and {1e3 * high:.4g} mm, to scale."
+        at = unit_of(float(run.points[-1]))
+        between = f"{at.factor * low:.4g} and {at.factor * high:.4g} {at.name}"
+        return f"Along the beam the slider stands between {between}, to scale."
     return (
-        f"Along the beam the slider stands within {metres_in_words(high - low)}, too little to be seen; its way is "
+        f"Along the beam the slider stands within {in_words(high - low)}, too little to be seen; its way is "
         "charted above."
     )
 
 
 def _parts(run: "Motion", kept: "Array", largest: float) -> tuple[Line, ...]:
     """Chain, friction, slider at the samples `kept`, (n_frames,)."""
-    x, w = 1e3 * run.points, 1e6 * run.deflection[kept]
-    places, tips = 1e3 * run.position[kept], 1e3 * run.position[kept] + ARROW * x[-1] * run.friction[kept] / largest
+    x, w, places = run.points, run.deflection[kept], run.position[kept]
+    tips = places + ARROW * x[-1] * run.friction[kept] / largest
     heights = [float(np.interp(at, x, row)) for at, row in zip(places, w, strict=True)]
     model, joints = bounding()[0], tuple(numbers(row) for row in w)
     chain = Line(

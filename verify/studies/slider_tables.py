@@ -24,24 +24,28 @@ COUPLING = (
     f"held on the surface, is below {FELT:g}, unless the scene says which."
 )
 
+MARGINS = (
+    Column("model", left=True),
+    Column("displacement", "+.4g", si="m"),
+    Column("steps"),
+    Column("coupling", left=True, said=COUPLING),
+    Column("lift-off", ".3g", said=LIFT_OFF),
+    Column("nonlinearity", ".1e", said=NONLINEARITY),
+    Column("theory", "percent", said=f"Theory is Timoshenko against Euler-Bernoulli{NEAREST}"),
+    Column("division", "percent", said=f"Division is the discrete frequency error{NEAREST}"),
+    Column("energy left over", ".1e", said=LEFT_OVER),
+)
+"""Of how far a run can be believed."""
+
 
 def margins_table(study: "SliderFound") -> Table:
     """Every run with its coupling, its margins and its books."""
-    return Table(
+    rows = tuple((MODELS[model].title, *_margins(run)) for model, run in study.runs.items())
+    return Table.of(
+        MARGINS,
+        rows,
         title="How far these runs can be believed",
         before=f"{study.condition.words[:1].upper()}{study.condition.words[1:]}; all models under the same condition.",
-        columns=(
-            Column("model", left=True),
-            Column("displacement, nm", "+.4g", 1e9),
-            Column("steps"),
-            Column("coupling", left=True, said=COUPLING),
-            Column("lift-off", ".3g", said=LIFT_OFF),
-            Column("nonlinearity", ".1e", said=NONLINEARITY),
-            Column("theory", "percent", said=f"Theory is Timoshenko against Euler-Bernoulli{NEAREST}"),
-            Column("division", "percent", said=f"Division is the discrete frequency error{NEAREST}"),
-            Column("energy left over", ".1e", said=LEFT_OVER),
-        ),
-        rows=tuple((MODELS[model].title, *_margins(run)) for model, run in study.runs.items()),
     )
 
 
@@ -91,7 +95,7 @@ WORK: tuple[Read, ...] = (
     (Column("model", left=True), lambda r: r.model),
     (Column("N"), lambda r: r.count),
     (Column("modes"), lambda r: r.rows),
-    (Column("displacement, nm", "+.6f", 1e9), lambda r: r.displacement),
+    (Column("displacement", "+.6f", si="m"), lambda r: r.displacement),
     (Column("error %", "bare percent"), lambda r: r.error),
     (Column("order", ".2f"), lambda r: r.order),
     (Column("ms per ms", ".3g"), lambda r: r.run_ms_per_ms),

@@ -4,9 +4,11 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, TypeAlias
 
 import msgspec
+from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.studies.chart import Chart
+from verify.units import unit_over
 
 PERCENTS = ("percent", "size", "bare percent", "bare size")
 """Forms that write a relative figure in per cent."""
@@ -29,6 +31,8 @@ class Column(msgspec.Struct, frozen=True):
     """Left out where there is no room."""
     said: str = ""
     """Of what it is, a sentence for below a table that shows it."""
+    si: str = ""
+    """SI unit of what stands in it; `Table.of` takes the unit that suits, and its factor, from there."""
 
 
 Read: TypeAlias = tuple[Column, Callable[[Any], Any]]
@@ -54,7 +58,12 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     def over(cls, things: Iterable[Any], columns: Sequence[Read], **told: Any) -> "Table":
         """A row for each thing, read off column by column; `told` is all else."""
         rows = tuple(tuple(read(one) for _, read in columns) for one in things)
-        return cls(columns=tuple(column for column, _ in columns), rows=rows, **told)
+        return cls.of([column for column, _ in columns], rows, **told)
+
+    @classmethod
+    def of(cls, columns: "Sequence[Column]", rows: tuple[tuple[Any, ...], ...], **told: Any) -> "Table":
+        """With columns of one SI unit all in the unit that suits their largest figure; `told` is all else."""
+        return cls(columns=_suited(columns, rows), rows=rows, **told)
 
     def below(self, shown: Iterable[int]) -> tuple[str, ...]:
         """Sentences below it where these columns are shown: what they are, then its notes."""
@@ -65,6 +74,17 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
         for row in self.rows:
             if len(row) != len(self.columns):
                 raise InputError(f"a table has a row of {len(row)} cells under {len(self.columns)} columns: match them")
+
+
+def _suited(columns: Sequence[Column], rows: Sequence[Sequence[Any]]) -> tuple[Column, ...]:
+    units = {
+        si: unit_over((row[i] for row in rows for i, one in enumerate(columns) if one.si == si), si)
+        for si in {one.si for one in columns if one.si}
+    }
+    return tuple(
+        replace(one, head=f"{one.head}, {units[one.si].name}", factor=units[one.si].factor) if one.si else one
+        for one in columns
+    )
 
 
 class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -98,6 +118,10 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         first = next(iter(self.tables()), Table(columns=(), rows=()))
         names = numbered([column.head for column in first.columns])
         return [dict(zip(names, map(in_its_unit, row, first.columns), strict=True)) for row in first.rows]
+
+    def under(self, overrides: tuple[str, ...]) -> "Found":
+        """The same, told as found in a run that `overrides` changed what exists for: 'beam.length=0.43'."""
+        return self
 
     def motions(self) -> int:
         """How many simulations in time were done for it."""

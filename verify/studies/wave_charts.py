@@ -7,7 +7,8 @@ from msgspec.structs import replace
 
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Chart, Line, Map, Marker
-from verify.studies.charting import BROAD, model_line, numbers, plain_line, sizes_axis
+from verify.studies.charting import BROAD, in_units, model_line, numbers, plain_line, sizes_axis
+from verify.units import Unit, unit_of, unit_over
 from verify.waves.operating_point import OFF
 
 if TYPE_CHECKING:
@@ -45,20 +46,20 @@ def _damping(study: "WaveFound") -> str:
 
 
 def _envelopes(study: "WaveFound") -> Chart:
-    x = [1e3 * v for v in study.x]
+    along, up = unit_of(study.x[-1]), unit_over(v for values in study.envelopes.values() for v in values)
     broad_first = sorted(study.envelopes.items(), key=lambda item: MODELS[item[0]].sized)
     return Chart(
         id="wave-envelopes",
         title=f"Envelope of the wave, N = {study.count}",
         caption=_damping(study) + "On one section without losses a pure travelling wave has a flat envelope; "
         "ripples are reflection. Next to forces and ends there is a part that decays.",
-        x=Axis("x, mm"),
-        y=Axis("amplitude, µm"),
-        lines=tuple(_envelope(model, x, [1e6 * v for v in values]) for model, values in broad_first),
+        x=Axis(f"x, {along.name}"),
+        y=Axis(f"amplitude, {up.name}"),
+        lines=tuple(in_units(_envelope(model, study.x, values), along, up) for model, values in broad_first),
     )
 
 
-def _envelope(name: str, x: list[float], y: list[float]) -> Line:
+def _envelope(name: str, x: "Sequence[float]", y: "Sequence[float]") -> Line:
     model = MODELS[name]
     return plain_line(model.title, model.colour, x, y, width=1.6 if model.sized else BROAD)
 
@@ -67,15 +68,16 @@ def _ellipses(study: "WaveFound") -> Chart:
     """Paths of surface points, drawn where they are; across enlarged against up, and saying so."""
     magnified = magnification(study.ellipses)
     wide = [float(np.ptp(e.across) / max(np.ptp(e.up), TINY)) for e in study.ellipses]
+    along, up = unit_of(study.x[-1]), unit_over(v for e in study.ellipses for v in e.up)
     return Chart(
         id="wave-ellipses",
         title="Surface ellipses along the beam, exact field",
         caption=f"Drawn to scale they are {_from_to(wide)} times as wide as high. Here motion along the beam is drawn "
         f"{magnified:.2g} times as large, and across it the axis has its own scale. Dots: where each point is at "
         "t = 0.",
-        x=Axis("x, mm"),
-        y=Axis("up, µm"),
-        lines=tuple(one for e in study.ellipses for one in _path(e, magnified)),
+        x=Axis(f"x, {along.name}"),
+        y=Axis(f"up, {up.name}"),
+        lines=tuple(in_units(one, along, up) for e in study.ellipses for one in _path(e, magnified, along)),
     )
 
 
@@ -85,12 +87,11 @@ def _from_to(values: list[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _path(one: "Ellipse", magnified: float) -> tuple[Line, Line]:
+def _path(one: "Ellipse", magnified: float, along: Unit) -> tuple[Line, Line]:
     """The path of a surface point, and where it is at t = 0."""
-    x = [1e3 * (one.x + magnified * v) for v in one.across]
-    y = [1e6 * v for v in one.up]
+    x, y = [one.x + magnified * v for v in one.across], one.up
     path = plain_line("path", _ELLIPSE, x, y, keyed=False, guide=True)
-    said = (f"x = {1e3 * one.x:.1f} mm",)
+    said = (f"x = {along.factor * one.x:.4g} {along.name}",)
     start = Line(
         name="at t = 0",
         colour=_POINT,

@@ -20,6 +20,7 @@ from verify.studies.kind import Progress
 from verify.studies.slider import EXACT, ROUNDS
 from verify.studies.told import Found, Table
 from verify.timing import forget, spread
+from verify.units import time_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -383,7 +384,7 @@ def answer_in_words(answer: "Comparison | NotCompared") -> str:
         "Hermite elements take "
         f"{_times(answer.ratio, answer.spread)} as segments in the loop ({fem.run_ms_per_ms:.2g} and "
         f"{segment.run_ms_per_ms:.2g} ms for a simulated ms), {_times(answer.whole_ratio, answer.whole_spread)} for "
-        f"the whole run of {1e3 * answer.duration:g} ms, with a set-up of {fem.set_up_ms:.2g} and "
+        f"the whole run of {time_in_words(answer.duration)}, with a set-up of {fem.set_up_ms:.2g} and "
         f"{segment.set_up_ms:.2g} ms (processor time in one thread)"
     )
 
