@@ -100,12 +100,12 @@ def turns_error(clamped: float) -> float:
         zero = brentq(law, 50.0, 400.0)
         top = brentq(lambda n: law(n + 0.01) - law(n - 0.01), 1.1 * zero, 900.0)
         falls, hump = last_hump("segment", held(*ends), 3)
-        return max(abs(falls / zero - 1.0), abs(hump / top - 1.0))
+        return float(max(abs(falls / zero - 1.0), abs(hump / top - 1.0)))
     cancel = brentq(lambda mu: turned_error("segment", mu) + 3.0 * turned_error("fem", mu), 1.5, 3.0, xtol=1e-14)
     top = brentq(lambda mu: turned_error("fem", mu + 1e-4) - turned_error("fem", mu - 1e-4), 2.7, 3.1)
     hump = last_hump("fem", STRIP, 7)[1]
     never = (*last_hump("fem", held("clamped", "free"), 2), *last_hump("segment", STRIP, 7))
-    return max(abs(MEAN_LIMIT / cancel - 1.0), abs(7.0 * pi / hump / top - 1.0), *never)
+    return float(max(abs(MEAN_LIMIT / cancel - 1.0), abs(7.0 * pi / hump / top - 1.0), *never))
 
 
 # --- Devices against turning at the ends ------------------------------------------------------------------------------
@@ -132,12 +132,9 @@ def turned_ends_error(hertz: float) -> float:
     turning = [one.rotational - omega**2 * one.rotary_inertia + 1j * omega * one.rotational_dashpot for one in devices]
     resists = {one.position: (0.0j, stiffness) for one, stiffness in zip(devices, turning, strict=True)}
     pushing = Device(position=PUSHED[1].position, amplitude=PUSHED[1].amplitude, phase_deg=PUSHED[1].phase_deg)
-    pairs = (
-        (field_with_devices(solve_harmonic, beam, PUSHED, hertz, devices), resists),
-        (field_with_devices(solve_harmonic, beam, PUSHED[:1], hertz, pushing), {}),
-    )
-    worst = 0.0
-    for found, resisted in pairs:
+    worst, none = 0.0, dict[float, tuple[complex, complex]]()
+    for forces, acting, resisted in ((PUSHED, devices, resists), (PUSHED[:1], (pushing,), none)):
+        found = field_with_devices(solve_harmonic, beam, forces, hertz, acting)
         states = States(beam, "euler-bernoulli", omega**2, STOPS, resisted)
         under = states.under(PUSHED)
         exact = np.array([states.read(under, x, 0) for x in PLACES.tolist()])
@@ -212,7 +209,9 @@ class _Alone:
         there[:, :2] = 0.0
         self.there, self.stiffness = there, stiffness
 
-    def solved(self, jumps: ComplexArray, come: float, couple: float = 0.0, force: float = 0.0) -> ComplexArray:
+    def solved(
+        self, jumps: tuple[complex, complex], come: float, couple: float = 0.0, force: float = 0.0
+    ) -> ComplexArray:
         """All six, where moment and force of a device jump by so much of the slope and the deflection."""
         rows, left = self.here.copy(), np.concatenate([-come * self.come, [0.0, 0.0]])
         for row, order, jump in ((2, 1, jumps[0]), (3, 0, jumps[1])):
@@ -225,12 +224,12 @@ class _Alone:
     def left(self, impedance: complex, turning: bool) -> float:
         """What a device leaves of a wave that comes."""
         jump = 1j * self.omega * impedance / self.stiffness
-        found = self.solved(np.array([jump, 0.0] if turning else [0.0, -jump]), 1.0)
+        found = self.solved((jump, 0.0j) if turning else (0.0j, -jump), 1.0)
         return float(abs(found[0]))
 
     def own(self, turning: bool) -> complex:
         """Force over speed of the place, or couple over its speed of turning."""
-        found = self.solved(np.zeros(2), 0.0, couple=float(turning), force=float(not turning))
+        found = self.solved((0.0j, 0.0j), 0.0, couple=float(turning), force=float(not turning))
         return complex(1.0 / (1j * self.omega * (self.here[int(turning), :2] @ found[:2])))
 
 

@@ -1,12 +1,14 @@
 """How many parts an accuracy takes and where the cheaper method changes, against every size tried one by one."""
 
+from collections.abc import Iterator
 from functools import cache, partial
 from math import cos, log, pi, sin, sqrt
 
 import numpy as np
 from msgspec.structs import replace
 
-from verify.attached import PointMass
+from verify.attached import PointMass, PointSpring
+from verify.beam import PointForce
 from verify.errors import InputError
 from verify.judge.workbench import Workbench
 from verify.stress.beams import STEPPED, STRIP, held
@@ -122,8 +124,21 @@ def carried_error(count: float) -> float:
             root = (2.0 * pi * hertz / beam.wave_constant * part**2) ** 2 / (1.0 + 0.04j)
             turn = discrete_wavenumber(model, beam, int(count), hertz) * part
             left, above, below = (_node(model, turn * (1.0 + d), root) for d in (0.0, 1e-5, -1e-5))
-            worst = max(worst, abs(left / ((above - below) / 2e-5)), turn.imag > 0.0)
+            off = abs(left / ((above - below) / 2e-5))
+            worst = max(worst, off, turn.imag > 0.0, *_laden_turns(model, count, turn, hertz))
     return worst
+
+
+def _laden_turns(model: str, count: float, turn: complex, hertz: float) -> Iterator[float]:
+    """By how much waves of fields with a body, or a spring, alone on the beam turn otherwise than without."""
+    from verify.models.catalogue import MODELS
+    from verify.waves.driven import own_wavenumber
+
+    laden = ({"mass": (PointMass(position=0.41, mass=0.06),)}, {"spring": (PointSpring(position=0.2, stiffness=90.0),)})
+    for added in laden:
+        beam = replace(STRIP, loss_factor=0.04, **added)
+        field = MODELS[model].solve_harmonic(beam, [PointForce(position=0.3)], hertz, int(count))
+        yield abs(own_wavenumber(field) * beam.length / count - turn)
 
 
 def _node(model: str, turn: complex, root: complex) -> complex:

@@ -7,10 +7,12 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
+from verify.models.underfoot import check_one_ground
 from verify.motion.free_vibration import Shape, free_vibration
 from verify.motion.simulate import simulate
+from verify.motor.combine import check_combines
 from verify.slider import Contact, Foot, Slider
-from verify.stress.beams import STRIP, held
+from verify.stress.beams import STEPPED, STRIP, held
 from verify.stress.kind import Row
 from verify.stress.refusals import Ask, Case, refusals
 
@@ -50,6 +52,17 @@ def let_go(shape: Shape | None = 1, amplitude: float | None = 1e-4, duration: fl
 def slider(**more: Any) -> Ask:
     """A light one with other figures."""
     return lambda: replace(LIGHT, **more)
+
+
+def between(**more: Any) -> Ask:
+    """A slider between two beams that feel it."""
+    own = {"preload": 2.0, "coupling": "two-way", "contact": Contact(stiffness=1e5), "foot": (Foot(mirrored=True),)}
+    return lambda: check_combines("segment", "rest", replace(LIGHT, **(own | more)))
+
+
+def apart(*places: float) -> Ask:
+    """Sliders on a beam with a step at 0.4 m."""
+    return lambda: check_one_ground(STEPPED, places)
 
 
 def growing(seconds: float, *coefficients: float) -> dict[str, Any]:
@@ -118,6 +131,9 @@ ROWS: tuple[Row, ...] = (
         "refused-sliders",
         "What no slider is",
         "slider.py: laws, contacts and feet that go together.",
+        Case("slider.gravity = 9.80665 with slider.foot.mirrored", between(), between(gravity=0.0)),
+        Case("slider.preload_stiffness = 7.0 with", between(gravity=0.0, preload_stiffness=7.0)),
+        Case("slider.position = 0.5 m stands on another", apart(0.2, 0.5), apart(0.2, 0.39)),
         Case("slider.mass = 0.0", slider(mass=0.0), slider(mass=1e-9)),
         Case("slider.mu = 0.0", slider(mu=0.0), slider(mu=1e-9)),
         Case("slider.slope = 0.0", slider(slope=0.0), slider(slope=1e-9)),
