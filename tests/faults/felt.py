@@ -96,7 +96,7 @@ def stacks_a_little_heavy(patch):
 
         def heavy(*given, _true=true, **more):
             stack = _true(*given, **more)
-            return replace(stack, mass=1.0001 * stack.mass)
+            return replace(stack, pencils=replace(stack.pencils, mass=1.0001 * stack.pencils.mass))
 
         patch.setattr(room, name, heavy)
 
