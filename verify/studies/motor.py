@@ -155,10 +155,10 @@ class MotorStudy(Study[Motor, "MotorFound"]):
             missing = "[slider] with [slider.contact]" if scene.slider is None else "[slider.contact]"
             raise InputError(f"motor: its slider may leave the beam, add {missing}; one that never does is of [motion]")
         assert scene.drive is not None
-        periods = asked.chain * scene.drive.frequency_hz
+        periods = asked.seconds * scene.drive.frequency_hz
         if CHAIN in asked.models and periods > REST_PERIODS:
             raise InputError(
-                f"motor.chain = {asked.chain!r} s is {periods:.3g} periods of the drive: give at most {REST_PERIODS}, "
+                f"motor.chain = {asked.seconds!r} s is {periods:.3g} periods of the drive: give at most {REST_PERIODS}, "
                 f"{written(float(f'{REST_PERIODS / scene.drive.frequency_hz:.3g}'))} s"
             )
 
