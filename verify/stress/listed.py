@@ -141,7 +141,7 @@ def _soft() -> Any:
     spring = PointSpring(position=0.0, rotational=50.0 * beam.bending_stiffness / beam.length)
     soft = replace(beam, supports=("pinned", "free"), spring=(spring,))
     hertz = Elements(soft, np.linspace(0.0, beam.length, count + 1)).hertz(MODES)
-    found = told_of(lines(hertz), beam, count=count)
+    found = told_of(lines(hertz), beam, count=count, kind="elements")
     clamps = [one["clamp"] for one in found["causes"]]
     wrong = clamps[0] is None or abs(clamps[0]["k_r_L_over_EI"] / 50.0 - 1.0) > 1e-6 or clamps[0]["ends"] != ["left"]
     own = {"model": "fem", "mass": "consistent", "count": count}

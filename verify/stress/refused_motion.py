@@ -131,7 +131,7 @@ ROWS: tuple[Row, ...] = (
         "refused-sliders",
         "What no slider is",
         "slider.py: laws, contacts and feet that go together.",
-        Case("slider.gravity = 9.80665 with slider.foot.mirrored", between(), between(gravity=0.0)),
+        Case("slider.gravity = 9.81 with slider.foot.mirrored", between(), between(gravity=0.0)),
         Case("slider.preload_stiffness = 7.0 with", between(gravity=0.0, preload_stiffness=7.0)),
         Case("slider.position = 0.5 m stands on another", apart(0.2, 0.5), apart(0.2, 0.39)),
         Case("slider.mass = 0.0", slider(mass=0.0), slider(mass=1e-9)),
