@@ -76,10 +76,10 @@ def judged(stack: PencilStack, vectors: Array, carried: Array, top: Array) -> tu
     residuals = np.sqrt(ground.energy(rest) / squares / (values + tau))
     order = np.argsort(values, axis=0)
     values, residuals = (np.take_along_axis(each, order, axis=0) for each in (values, residuals))
-    sure = _sure(tau, values, residuals, top) & _alike(stack)
-    return values, sure & _counted(
-        stack, above, values, vectors / np.sqrt(squares), np.minimum(top - values[-1], values[0] + tau)
-    )
+    moved = _moved(stack.pencils, above, vectors, squares)
+    told_apart = moved < 0.1 * np.minimum(top - values[-1], values[0] + tau)
+    counted = (above.below == len(values) + stack.rigid_modes) & told_apart
+    return values, np.asarray(_sure(tau, values, residuals, top) & _alike(stack) & counted, dtype=bool)
 
 
 def _alike(stack: PencilStack) -> BoolArray:
@@ -108,20 +108,17 @@ def _sure(tau: Array, values: Array, residuals: Array, top: Array) -> BoolArray:
     return np.asarray((sharp & (gaps > _APART) & (gaps > 2.0 * residuals)).all(axis=0), dtype=bool)
 
 
-def _counted(stack: PencilStack, above: Factors, values: Array, vectors: Array, margin: Array) -> BoolArray:
-    """Whose eigenvalues below a place are as many as `values`, by a `margin` that rounding leaves, (n_beams,).
+def _moved(pencils: Pencils, factors: Factors, vectors: Array, squares: Array) -> Array:
+    """How far rounding of the factors of a stack moves its eigenvalues, at most, (n_beams,).
 
-    `above` are the factors there. Vectors (n, k, n_beams) have v^T M v = 1: what rounding does to K moves an eigenvalue
-    by as much as it does to the energy of its vector, with the motions of bodies beside it.
+    `squares` are v^T M v, (k, n_beams). What rounding does to K moves an eigenvalue by as much as it does to the energy
+    of its vector, with the motions of bodies beside it.
     """
-    pencils, grown, n = stack.pencils, above.grown, len(vectors)
-    rows = 2 * (pencils.stiffness.shape[1] + len(pencils.held)) - 1
-    beside = above.roots[:, None] * np.einsum("irn,ikn->rkn", pencils.felt, vectors)
-    shares = sum(
-        np.einsum("in,ikn,ikn->kn", *each) for each in ((grown[:n], vectors, vectors), (grown[n:], beside, beside))
-    )
-    moved = _CAUTION * rows * np.finfo(float).eps * np.asarray(shares).max(axis=0)
-    return np.asarray((above.below == len(values) + stack.rigid_modes) & (moved < 0.1 * margin), dtype=bool)
+    rows, grown, n = 2 * (pencils.stiffness.shape[1] + len(pencils.held)) - 1, factors.grown, len(vectors)
+    beside = factors.roots[:, None] * np.einsum("irn,ikn->rkn", pencils.felt, vectors)
+    shares = np.einsum("in,ikn,ikn->kn", grown[:n], vectors, vectors)
+    shares += np.einsum("rn,rkn,rkn->kn", grown[n:], beside, beside)
+    return np.asarray(_CAUTION * rows * np.finfo(float).eps * (shares / squares).max(axis=0))
 
 
 def _homed(pencils: Pencils, shifts: Array) -> tuple[Array, Array]:
