@@ -115,13 +115,14 @@ def _one_point(**given):
     return replace(case, beam=beam, forces=forces, frequency_hz=7300.0, slider=slider, **given)
 
 
-def test_friction_that_the_beam_feels_is_off_by_no_more_than_its_turn_in_a_step():
+@pytest.mark.parametrize("steps", [61, 64])
+def test_friction_that_the_beam_feels_is_that_of_many_steps_in_the_usual_ones(steps):
+    """Within 2e-4 of mu N: turned round with the steps it was up to 2e-2 off, the whole force being 2.4e-2."""
     case = _one_point(model="fem", count=9)
     felt = case.on(replace(case.slider, coupling="two-way"))
-    coarse, fine = (stall(replace(felt, steps_per_period=steps)) for steps in (61, 900))
-    assert abs(coarse.force - fine.force) < coarse.turned
-    assert fine.turned == pytest.approx(2.0 * 0.25 * 8.0 / 900, rel=0.01)
-    assert stall(case).turned == 0.0
+    coarse, fine = (stall(replace(felt, steps_per_period=each)).force for each in (steps, 900))
+    assert coarse == pytest.approx(fine, abs=2e-4 * 0.25 * 8.0)
+    assert abs(fine) > 0.02 * 0.25 * 8.0
 
 
 @pytest.mark.parametrize(("model", "count"), [("analytic", None), ("segment", 40)])
