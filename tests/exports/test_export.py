@@ -199,11 +199,34 @@ def test_long_tables_are_cut_under_their_heads():
     assert "{95} & {$-$47.5}" in text
 
 
-def test_latex_takes_the_tables(export, tmp_path):
+def wide(n_columns):
+    """Eighteen figures of three beams: much wider than a page."""
+    columns = (Column("field", left=True), *(Column(f"best efficiency {i}, %", ".4f") for i in range(1, n_columns)))
+    rows = tuple((f"{10 * k} segments", *(k + i / 7.0 for i in range(1, n_columns))) for k in (1, 2, 3))
+    return document("wide", (Table(columns=columns, rows=rows),))
+
+
+def test_wide_tables_are_cut_into_those_that_a_line_holds_each_with_its_first_column():
+    found = list(tabulars(wide(19)))
+    assert [n for n, _ in found] == [3, 3, 3, 3, 3, 3, 3, 3, 3]
+    assert [cell.strip() for _, rows in found for cell in rows[0][1:]] == [
+        f"{{best efficiency {i}, \\%}}" for i in range(1, 19)
+    ]
+    assert {rows[2][0] for _, rows in found} == {"{20 segments} "}
+    assert found[-1][1][3][2].strip() == "{5.5714}"  # 3 + 18/7
+
+
+@pytest.mark.parametrize("text", [None, wide(19)], ids=["a scene's", "wide"])
+def test_latex_takes_the_tables_and_none_runs_off_the_page(export, tmp_path, text):
     latex = shutil.which("pdflatex") or pytest.skip("there is no pdflatex here")
-    export("paper", to="t.tex")
+    if text is None:
+        export("paper", to="t.tex")
+    else:
+        (tmp_path / "t.tex").write_text(text)
     (tmp_path / "d.tex").write_text("\\documentclass{article}\\begin{document}\\input{t.tex}\\end{document}")
-    subprocess.run([latex, "-interaction=nonstopmode", "-halt-on-error", "d.tex"], cwd=tmp_path, check=True)
+    call = [latex, "-interaction=nonstopmode", "-halt-on-error", "d.tex"]
+    said = subprocess.run(call, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    assert "Overfull \\hbox" not in said
 
 
 # --- what is refused, and what is left behind ----------------------------------------------------------------------

@@ -8,6 +8,8 @@ from verify.words import cell
 
 ROWS, WIDE = 40, 36
 """Rows on a page; characters of words from which on a column is broken into lines."""
+LINE, LETTER, BETWEEN, BROKEN = 345.0, 5.0, 12.0, 0.35
+"""Points: of an article's line, of a character, between two columns; and the share of the line of a broken column."""
 _CHARACTERS = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "_": r"\_", "%": r"\%",
     "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}",
@@ -46,25 +48,39 @@ def _told(table: Table) -> Iterator[str]:
     before = f"\\par\\noindent {escaped(table.before)}" if table.before else ""
     yield f"{title}{before}\\par\\nobreak\\smallskip\n"
     for first in range(0, len(table.rows), ROWS):
-        yield _tabular(table, first)
+        yield from _tabulars(table, first)
     for note in table.below(range(len(table.columns))):
         yield f"\\par\\noindent\\footnotesize {escaped(note)}\\normalsize\n"
 
 
-def _tabular(table: Table, first: int) -> str:
-    """At most ROWS rows under their head, so that a page holds them."""
+def _tabulars(table: Table, first: int) -> Iterator[str]:
+    """At most ROWS rows under their head, so that a page holds them; as many columns in each as a line holds."""
     written = [
         [cell(value, column.form, column.factor, column.unit) for value, column in zip(row, table.columns, strict=True)]
         for row in table.rows[first : first + ROWS]
     ]
-    sides = []
-    for i, column in enumerate(table.columns):
-        longest = max(len(row[i]) for row in written)
-        sides.append("p{0.35\\linewidth}" if longest > WIDE else "l" if column.left else "r")
-    lines = [f"\\noindent\\begin{{tabular}}{{{''.join(sides)}}}", "\\hline"]
-    if any(column.head for column in table.columns):
-        lines += [_row([column.head for column in table.columns]), "\\hline"]
-    return "\n".join([*lines, *map(_row, written), "\\hline", "\\end{tabular}\\par\n"])
+    longest = [max(len(column.head), *(len(row[i]) for row in written)) for i, column in enumerate(table.columns)]
+    widths = [BETWEEN + (BROKEN * LINE if long > WIDE else LETTER * long) for long in longest]
+    for shown in _on_lines(widths):
+        sides = [
+            f"p{{{BROKEN}\\linewidth}}" if longest[i] > WIDE else "l" if table.columns[i].left else "r" for i in shown
+        ]
+        lines = [f"\\noindent\\begin{{tabular}}{{{''.join(sides)}}}", "\\hline"]
+        if any(column.head for column in table.columns):
+            lines += [_row([table.columns[i].head for i in shown]), "\\hline"]
+        rows = (_row([row[i] for i in shown]) for row in written)
+        yield "\n".join([*lines, *rows, "\\hline", "\\end{tabular}\\par\\smallskip\n"])
+
+
+def _on_lines(widths: list[float]) -> Iterator[list[int]]:
+    """Which columns, of these widths in points, stand on one line: the first, which says of what a row is, on each."""
+    shown = [0]
+    for i in range(1, len(widths)):
+        if len(shown) > 1 and sum(widths[j] for j in shown) + widths[i] > LINE:
+            yield shown
+            shown = [0]
+        shown.append(i)
+    yield shown
 
 
 def _row(cells: list[str]) -> str:
