@@ -66,7 +66,7 @@ def feet_of(placed: Sequence[Placed]) -> Feet:
         state=np.zeros((len(feet), 4)),
         given=np.array([_given(placed[b].slider, foot) for b, foot in feet]),
         points=points,
-        touch=np.zeros((len(points), 19)),
+        touch=np.zeros((len(points), records.TOUCH)),
         foot=_whole(np.repeat(np.arange(len(feet)), lengths)),
         owner=_whole(np.repeat(keeper, lengths)),
         first=np.searchsorted(np.repeat(keeper, lengths), np.arange(len(placed) + 1)).astype(np.int64),

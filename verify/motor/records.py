@@ -24,11 +24,13 @@ OFFSET, ARM, STIFF, DASHPOT, GRIP, FACE, IMAGE, INSET, WEIGHT = range(9)
 """Columns of `Feet.points`: place from the stage's x and from the middle of its foot, metres; stiffness, damping and
 stiffness along the surface; on which face, +1 or -1, and of which beam, +1 or -1 for the mirror image; how deep it
 sits in the straight beam at height 0, metres; 1/2 of a point between two beams, which stand for each other, else 1."""
+TOUCH = 19
+"""Columns of `Feet.touch`, each named:"""
 (
     PUSH, RUB, SURFACE, SURFACE_BEFORE, DEPTH, STRETCH, AT, SLOPE, CLOSING, LIFT, STUCK, ANSWER, ABOVE, RAMP,
     PUSH_BEFORE, MOST, GAINED, AHEAD, BEYOND,
-) = range(19)  # fmt: skip
-"""Columns of `Feet.touch`: normal force, friction on the stage, speed of the surface, now and a step before; how
+) = range(TOUCH)  # fmt: skip
+"""Normal force, friction on the stage, speed of the surface, now and a step before; how
 deep it is pressed in (below 0: the gap), how far it is stretched along; where on its piece the material under it lies,
 its slope; how fast the gap closes, how fast the surface rises, both without the foot's own kick; whether it sticks;
 what the step's forces give the beam of that closing; where on the piece the point itself is; how much of that rise is
@@ -81,7 +83,7 @@ class Feet(NamedTuple):
     points: Array
     """(points, 9)"""
     touch: Array
-    """(points, 19)"""
+    """(points, TOUCH)"""
     foot: Indices
     """(points,), the foot of each."""
     owner: Indices

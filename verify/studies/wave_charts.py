@@ -108,7 +108,7 @@ def _path(one: "Ellipse", magnified: float, along: Unit) -> tuple[Line, Line]:
 def _marked(point: "OperatingPoint", symbol: Marker) -> Line:
     """An operating point on the map."""
     return Line(
-        name=f"{point.what}: {point.frequency_hz:.1f} Hz, {point.phase_deg:.1f}°",
+        name=f"{point.what}: {point.frequency_hz:.5g} Hz, {point.phase_deg:.1f}°",
         x=(point.frequency_hz,),
         y=(point.phase_deg,),
         colour="#ff5a36",
