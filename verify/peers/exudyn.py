@@ -10,8 +10,6 @@ raises an error that says neither when nor why; its solver's records do. A run h
 
 from collections.abc import Callable
 from contextlib import redirect_stdout
-from functools import partial
-from inspect import signature
 from io import StringIO
 from time import perf_counter
 from typing import Any
@@ -83,7 +81,7 @@ def assemble(case: Case) -> tuple[Any, list[int], list[int]]:
         for i in range(case.n)
     ]
     bodies = [
-        system.AddObject(_named(items.ObjectRigidBody2D, mass=case.mass, inertia=case.inertia)(nodeNumber=node))
+        system.AddObject(items.ObjectRigidBody2D(mass=case.mass, inertia=case.inertia, nodeNumber=node))
         for node in nodes
     ]
 
@@ -109,13 +107,6 @@ def assemble(case: Case) -> tuple[Any, list[int], list[int]]:
         load = items.LoadForceVector(markerNumber=marker, loadVector=[0.0, 1.0, 0.0], loadVectorUserFunction=pull)
         system.AddLoad(load)
     return system, nodes, bodies
-
-
-def _named(item: Callable[..., Any], **physics: float) -> Callable[..., Any]:
-    """An item with its masses under the names that it takes: before version 1.10 they began with 'physics'."""
-    if not set(physics) <= set(signature(item).parameters):
-        physics = {f"physics{name.capitalize()}": value for name, value in physics.items()}
-    return partial(item, **physics)
 
 
 def _mid_span(case: Case, system: Any, bodies: list[int]) -> int:
@@ -144,7 +135,7 @@ def _add_slider(case: Case, sled: Sled, system: Any, nodes: list[int]) -> list[i
     node = system.AddNode(
         items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[sled.speed])
     )
-    system.AddObject(_named(items.Mass1D, mass=sled.mass)(nodeNumber=node))
+    system.AddObject(items.Mass1D(mass=sled.mass, nodeNumber=node))
     marker = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
 
     def rub(mbs: Any, t: float, load: object) -> float:
