@@ -11,8 +11,9 @@ from verify.beam import PointForce
 from verify.errors import InputError
 from verify.peers import references
 from verify.peers.breaking import pushed
-from verify.peers.case import case_of, surface_speed
+from verify.peers.case import case_of, sled_of, surface_speed
 from verify.peers.catalogue import PEERS, adapter, installed
+from verify.slider import Slider
 
 MODULES = {"Exudyn": "exudyn", "MuJoCo": "mujoco", "Pinocchio": "pinocchio"}
 STEPS = {"Exudyn": 4e-6, "MuJoCo": 4e-5, "Pinocchio": 4e-5}
@@ -175,6 +176,18 @@ def test_exudyns_error_still_falls_at_order_2_in_short_steps_of_short_links(tita
     run = adapter(PEERS["Exudyn"]).prepare(case)
     errors = [deflection_error(run(step, 6e-5), lambda t: references.deflection(case, t)) for step in (4e-8, 2e-8)]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.02)
+
+
+def test_exudyns_slider_does_not_depend_on_when_newtons_iteration_stops(titanium_strip, monkeypatch):
+    """Friction is a small part of the residual: where the chain's tolerance is met, the slider's way is 3e-5 off."""
+    pytest.importorskip("exudyn", reason="the peers extra is not installed")
+    case = case_of(titanium_strip, 99, FORCES, FREQUENCY)
+    near = Slider(mass=2.3e-3, mu=0.31, slope=3e3, position=0.12, coupling="one-way")
+    run = adapter(PEERS["Exudyn"]).prepare(case, sled_of(titanium_strip, near))
+    taken = run(3e-8, 6e-5).distance
+    monkeypatch.setattr("verify.peers.exudyn.WITH_SLIDER", 1e-11)
+    strict = run(3e-8, 6e-5).distance
+    assert np.linalg.norm(taken - strict) < 3e-6 * np.linalg.norm(strict)
 
 
 def test_how_an_engine_from_outside_breaks_is_not_known(asymmetric_case):

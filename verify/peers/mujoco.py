@@ -119,11 +119,10 @@ class Mujoco:
 @cache
 def _push() -> tuple[Any, Any, Array]:
     """(the callback as a C function, the whole numbers and the numbers that it reads), made once in a process."""
-    from verify.models.kernels import callback
-    from verify.peers.push_kernels import EACH, FORCE, PLACES, push
+    from verify.peers.push_kernels import EACH, FORCE, PLACES, pushing
 
     places, numbers = np.zeros(PLACES, dtype=np.int64), np.zeros(FORCE + EACH * MOST_FORCES)
-    return callback(push, places, numbers), places, numbers
+    return pushing(places, numbers), places, numbers
 
 
 def _pushing(case: Case, sled: Sled | None, data: Any) -> Any:

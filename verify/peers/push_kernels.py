@@ -8,7 +8,7 @@ slider's start; then of each force its body, amplitude, phase, and lever about t
 from math import cos, isfinite, tanh
 from typing import Any
 
-from verify.models.kernels import numbers_at, part
+from verify.models.kernels import callback, numbers_at, part
 
 PLACES, ROW = 8, 6
 """How many `places` there are; numbers of a body's applied force and moment."""
@@ -50,3 +50,8 @@ def rub(position: Any, speed: Any, applied: Any, links: Any, numbers: Any) -> No
     s = x / length - i
     cubic = 2.0 * b + s * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)))
     applied[links] = -numbers[2] * tanh(numbers[3] * (speed[links] + 0.5 * numbers[4] * cubic))
+
+
+def pushing(places: Any, numbers: Any) -> Any:
+    """`push` on these two arrays, which have to live on, as a C function that the engine calls."""
+    return callback(push, places, numbers)
