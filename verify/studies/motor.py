@@ -158,8 +158,8 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         periods = asked.seconds * scene.drive.frequency_hz
         if CHAIN in asked.models and periods > REST_PERIODS:
             raise InputError(
-                f"motor.chain = {asked.seconds!r} s is {periods:.3g} periods of the drive: give at most {REST_PERIODS}, "
-                f"{written(float(f'{REST_PERIODS / scene.drive.frequency_hz:.3g}'))} s"
+                f"motor.chain = {asked.seconds!r} s is {periods:.3g} periods of the drive: give at most "
+                f"{REST_PERIODS}, {written(float(f'{REST_PERIODS / scene.drive.frequency_hz:.3g}'))} s"
             )
 
     def check_run(self, asked: Motor, scene: "Scene") -> None:
