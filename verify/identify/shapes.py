@@ -302,15 +302,15 @@ def _mean_square(error: Callable[[Array, Array, Array], float], own: Array, thei
 
 
 def _sizes_tell(near: tuple[_Near, ...]) -> bool:
-    """Whether sizes tell models apart: the nearest by size leaves less than models differ by, and is so in form too.
+    """Whether sizes tell models apart: those of the nearest fit as well as its forms do, and no forms fit better.
 
-    Shapes of another normalisation, by chance about as large, leave more in any model than one model in another.
+    Shapes of another normalisation, by chance about as large, are as large as those of no model.
     """
     if not near:
         return False
-    sizes, forms = [one.by_size.error for one in near], [one.by_form.error for one in near]
-    best = min(sizes)
-    return best <= max(sizes) - best and forms[sizes.index(best)] <= max(ALIKE * min(forms), ROUNDING)
+    best = min(near, key=lambda one: one.by_size.error)
+    least = min(one.by_form.error for one in near)
+    return max(best.by_size.error, best.by_form.error) <= max(ALIKE * min(best.by_form.error, least), ROUNDING)
 
 
 def _models(
