@@ -976,6 +976,12 @@ DEAD = [
         "friction acts along: one way it moves nothing across",
         lambda a: a.scene["slider"]["coupling"] == "one-way",
     ),
+    Dead(
+        "slider.normal_mean",
+        "arguments.speed",
+        "kept at its place it goes along no slope, and friction acts along",
+        lambda a: a.scene["slider"]["coupling"] == "one-way",
+    ),
     Dead("slider.*", "slider.preload", "given instead", given("preload")),
     Dead(
         "slider.efficiency",
