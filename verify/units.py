@@ -1,4 +1,7 @@
-"""Units that suit a size: of all that is told or drawn the SI unit with the prefix in which it is at least one."""
+"""Units that suit a size: of all that is told or drawn the SI unit with the prefix in which it is at least one.
+
+What is beyond the last prefix, or the largest that a unit is taken in, is in that.
+"""
 
 from collections.abc import Iterable
 from math import isfinite

@@ -52,6 +52,7 @@ def test_a_line_that_is_exactly_as_dear_stands_at_one():
         ((1e-2, -1e-3, 1e-4), "a change of sign"),
         ((1e-2, 6e-4, 3e-5, 4e-5), "not at order 4"),
         ((1e-2, 6e-4, -3e-5, 2e-6), "a change of sign"),
+        ((3e-2, 2e-3, 1.2e-4, 0.7), "not at order 4"),
         ((1e-13, 2e-13, 1e-14), "rounding"),
         ((0.96, 0.06, 0.0038), "errors up to 96 % are no answers"),
     ],
@@ -98,6 +99,7 @@ def test_the_time_at_an_error_is_that_of_the_coarsest_size_from_which_on_all_are
     assert within(points, 2e-2) == 2.0  # before it stands no answer
     assert within(points, 1e-3) == pytest.approx(2.0 * 2.0**0.5, rel=1e-12)
     assert within(points, 1e-4) == pytest.approx(4.0, rel=1e-12)
+    assert within(points, 1e-3, between=False) == 4.0  # of the sizes that ran
     assert within(points[2:], 1e-2) == 4.0  # as coarse as it goes: nothing is foretold
     assert within(points, 1e-7) is None
     assert within([], 1e-3) is None

@@ -175,11 +175,11 @@ def test_a_sentence_is_withheld_where_errors_do_not_converge_and_says_why():
 
 
 def test_at_errors_that_are_asked_for_times_are_told_of_methods_that_converge_at_no_known_order():
-    """One of them, b, is of order 1: within 1 % from N = 3 on and so as coarse as it goes, within 0.1 % from 30 on; a at once."""
+    """One of them, b, is of order 1: within 1 % from N = 3 on and so as coarse as it goes, within 0.1 % from 40 on; a at once."""
     told = compared((0.05, 1.0, None), (0.02, 2.0, lambda n: EXACT * (1.0 + 0.03 / n)), wanted=(1e-2, 1e-3, 1e-5))
     assert not told.earned
-    assert told.at == ((1e-2, pytest.approx(0.4)), (1e-3, pytest.approx(0.4 * 3**2)))
-    assert "at 1 % 2.50 times as long by a, at 0.1 % 3.60 times as long by b, each at the coarsest" in told.text
+    assert told.at == ((1e-2, pytest.approx(0.4)), (1e-3, pytest.approx(0.4 * 4**2)))
+    assert "at 1 % 2.50 times as long by a, at 0.1 % 6.40 times as long by b, each at the coarsest" in told.text
     assert "not told, b: errors fall not at order 4 but at 1.00, 1.00, 1.00; give finer ones" in told.text
     alike = compared((0.05, 1.0, None), (0.05, 1.0, lambda n: EXACT * (1.0 + 0.003 / n)), wanted=(1e-2, 1e-3))
     assert "at 1 % and 0.1 % as long by either within the spread of 0 %" in alike.text

@@ -93,6 +93,9 @@ def test_a_gate_that_is_asked_for_another_figure_than_it_states_is_set_aside(nam
     stated = (*asked, "gate.segment-mode-22.expect=-0.00177")
     assert not_applicable(load_scene("paper", stated), stated) == {}
     assert that_change("paper", (f"{key}=49",)) == ()
+    same = next(gate.expect for gate in scene.gate if gate.id == "segment-order")
+    stated = (LONGER, f"gate.segment-order.expect={same!r}")
+    assert that_change("paper", stated) == stated  # a band that stays as it is has been stated all the same
 
 
 def test_the_width_of_a_band_alone_does_not_state_it_anew():

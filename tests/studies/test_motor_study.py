@@ -293,10 +293,11 @@ def test_bad_input_is_refused_with_the_scene(setting):
 def test_a_run_from_rest_beside_a_chain_is_bounded_by_periods_of_its_drive():
     """By seconds a beam of kilometres was refused a period, and one of micrometres given millions."""
     with pytest.raises(
-        InputError, match=r"motor.chain = 0.3 s is 1.28e\+03 periods of the drive: give at most 1000, 0.234"
+        InputError, match=r"motor.chain = 0.3 s is 1.28e\+03 periods of the drive: give at most 1000, 0.233 s"
     ):
         load_scene("preloaded-motor", ("motor.chain=0.3",))
     assert load_scene("preloaded-motor", ("motor.chain=0.3", "drive.frequency_hz=2100.0")).motor.chain == 0.3
+    assert load_scene("preloaded-motor", ("motor.chain=0.233",)).motor.chain == 0.233  # as it says
 
 
 def test_a_study_of_a_motor_that_its_beam_feels_is_estimated_as_a_whole(monkeypatch):
@@ -432,6 +433,7 @@ def test_what_has_not_settled_is_told_with_its_spread_and_what_stands_on_it_is_w
     assert any("means at 1 of 3 held speeds have not settled after 11520 periods" in note for note in overview.notes)
     assert [column.head for column in speeds.columns][1:4] == ["49 segments, mN", "+-, mN", "power, mW"]
     assert speeds.rows[0][2:] == (0.007, None, None)
+    assert speeds.records()[0]["+-, N"] == 0.007  # data are in one unit whatever their size
     assert "+-, mN" not in [column.head for column in study.tables()[1].columns]
     force = next(chart for chart in found.charts() if chart.id == "motor-force")
     assert force.lines[-1].y[0] is None

@@ -148,6 +148,11 @@ def test_the_bent_chain_and_the_shapes_are_in_the_units_of_the_beam():
     shapes = next(chart for chart in charts if chart.id == "mode-shapes")
     assert shapes.x.title == "x, µm"
     assert shapes.lines[0].x[-1] == pytest.approx(40.0)
+    rounded = scene_of(1.0 / 0.37, spectrum={"modes": 3, "count": 49})  # 49 parts end at 1 - 1e-16
+    charts = study.run(rounded.spectrum, rounded, workbench_for(rounded), {}, lambda step: None).charts()
+    shapes = next(chart for chart in charts if chart.id == "mode-shapes")
+    assert shapes.x.title == "x, m"
+    assert [line.x[-1] for line in shapes.lines] == pytest.approx([1.0] * len(shapes.lines))
 
 
 def test_pictures_and_drawings_tell_their_lengths_in_units_that_suit():

@@ -34,8 +34,9 @@ class BenchFound(Found, frozen=True, eq=False, kw_only=True):
     """Against an earlier run: what moved."""
 
     def in_short(self) -> str:
-        """The first comparison that was earned."""
-        return next((one.text for one in self.sentences if one.earned), "")
+        """The first comparison that was earned, else the first at errors that are asked for."""
+        told = sorted((one for one in self.sentences if one.earned or one.at), key=lambda one: not one.earned)
+        return next((one.text for one in told), "")
 
     def facts(self) -> tuple[str, ...]:
         """What moved against an earlier run, where there is one; a sentence for each comparison; what cannot be run."""

@@ -56,7 +56,7 @@ class Sentence(msgspec.Struct, frozen=True, kw_only=True):
     methods: tuple[str, str]
     text: str
     earned: bool
-    """Whether errors of both fall at their order."""
+    """Whether errors of both fall at their order; of steps raced at wanted errors, whether both come to one."""
     ratio: float | None = None
     """Time of the second over that of the first, at the smallest error that both reach."""
     at_error: float | None = None

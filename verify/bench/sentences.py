@@ -69,8 +69,10 @@ class _Ratio(Struct, frozen=True):
     """Of the first, relative."""
 
 
-def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[str, str]) -> _Ratio | str:
-    """Each at the coarsest size from which on all are within an error; why there is no ratio."""
+def _race(
+    case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[str, str], *, between: bool = True
+) -> _Ratio | str:
+    """Each at the coarsest size, or `between` two, from which on all are within an error; why there is no ratio."""
     seconds: list[tuple[float, float]] = []
     spread = 0.0
     for name in methods:
@@ -83,7 +85,7 @@ def _race(case: Case, found: Sequence[Outcome], wanted: float, methods: tuple[st
         alone = [replace(p, seconds=o.row.warm_s or 0.0) for p, o in zip(points, own, strict=True)]
         if any(_untimed(o.row) or (o.point and not o.row.warm_s) for o in ran):
             return f"at {percent(wanted)} nothing is said, {name}: {UNTIMED}"
-        whole, run = within(points, wanted), within(alone, wanted)
+        whole, run = (within(ran_in, wanted, between=between) for ran_in in (points, alone))
         if whole is None or run is None:
             least = min((abs(p.error) for p in points), default=None)
             why = "has no figure" if least is None else f"comes to {percent(least)}"
@@ -127,7 +129,7 @@ def _end(name: str, stretch: Stretch) -> str:
 def _at_wanted(case: Case, found: Sequence[Outcome], scene: str, methods: tuple[str, str], why: str) -> Sentence:
     """Ratios at errors that somebody asks for, where times cannot be compared over all of them; or nothing."""
     first, second = methods
-    told = {wanted: _race(case, found, wanted, methods) for wanted in case.wanted}
+    told = {wanted: _race(case, found, wanted, methods, between=False) for wanted in case.wanted}
     ratios = {wanted: ratio for wanted, ratio in told.items() if isinstance(ratio, _Ratio)}
     about = f"{case.name}: {first} against {second}"
     if not ratios:

@@ -9,7 +9,7 @@ from verify.judge.workbench import Workbench
 from verify.run.gates import shown_expectation
 from verify.run.runner import RunResult
 from verify.scenes.scene import Scene
-from verify.studies.told import Column, Table, in_its_unit, numbered
+from verify.studies.told import Column, Table
 from verify.words import figure, percent
 
 _VERDICT = {True: "passed", False: "failed", None: "set aside"}
@@ -51,15 +51,12 @@ def frequency_table(scene: Scene, wanted: Wanted) -> Table:
 
 
 def as_plain(tables: tuple[Table, ...]) -> list[dict[str, Any]]:
-    """For JSON: every figure with all its digits in the unit of its head."""
+    """For JSON: every figure with all its digits."""
     return [
         {
             "title": table.title,
             "notes": list(table.below(range(len(table.columns)))),
-            "rows": [
-                dict(zip(numbered([c.head for c in table.columns]), map(in_its_unit, row, table.columns), strict=True))
-                for row in table.rows
-            ],
+            "rows": table.records(),
         }
         for table in tables
     ]

@@ -86,17 +86,17 @@ def at_error(errors: Sequence[float], values: Sequence[float], error: float) -> 
     return exp(log(values[coarse]) + part * log(values[fine] / values[coarse]))
 
 
-def within(points: Sequence[Point], wanted: float) -> float | None:
+def within(points: Sequence[Point], wanted: float, *, between: bool = True) -> float | None:
     """Seconds at the coarsest size from which on all errors are within a wanted one; None where there is none.
 
-    `points` from coarse to fine. Between sizes by the line through the two on either side; nothing is foretold beyond
-    them, so that a method whose coarsest size is good enough takes the time of that.
+    `points` from coarse to fine. `between` sizes by the line through the two on either side, else of the sizes alone;
+    nothing is foretold beyond them, so that a method whose coarsest size is good enough takes the time of that.
     """
     errors = [abs(p.error) for p in points]
     first = max((i + 1 for i, error in enumerate(errors) if error > wanted), default=0)
     if first == len(points):
         return None
-    if not first or errors[first - 1] >= NO_ANSWER or not errors[first]:
+    if not (first and between) or errors[first - 1] >= NO_ANSWER or not errors[first]:
         return points[first].seconds
     pair = slice(first - 1, first + 1)
     return at_error(errors[pair], [p.seconds for p in points[pair]], wanted)
@@ -119,12 +119,13 @@ def converging(
 ) -> Stretch | Unearned:
     """The finest stretch whose observed orders lie within ASTRAY of the known ones, up to an error that all keep.
 
-    `points` from coarse to fine; errors up to `floor` are rounding, those from NO_ANSWER on are none. Finer sizes than
-    those of the stretch may fall otherwise, or no further, but exceed its smallest error nowhere: what is said of the
-    errors within it holds at all sizes from there on. `finer` is what to do where there is none, while errors fall.
+    `points` from coarse to fine; errors up to `floor` are rounding, the first from NO_ANSWER on are none. Finer sizes
+    than those of the stretch may fall otherwise, or no further, but exceed its smallest error nowhere: what is said of
+    the errors within it holds at all sizes from there on. `finer` is what to do without one, while errors fall.
     """
     known = f"{orders[0]:g}" if orders[0] == orders[1] else f"{orders[0]:.3g} to {orders[1]:.3g}"
-    above = [p for p in points if floor < abs(p.error) < NO_ANSWER]
+    first_answer = next((i for i, p in enumerate(points) if abs(p.error) < NO_ANSWER), len(points))
+    above = [p for p in points[first_answer:] if floor < abs(p.error)]
     if len(points) < LEAST:
         return Unearned(too_few(len(points)), "give three or more")
     if len(above) < LEAST:

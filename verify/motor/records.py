@@ -35,8 +35,8 @@ deep it is pressed in (below 0: the gap), how far it is stretched along; where o
 its slope; how fast the gap closes, how fast the surface rises, both without the foot's own kick; whether it sticks;
 what the step's forces give the beam of that closing; where on the piece the point itself is; how much of that rise is
 a slope that the slider goes along; normal force a step before; what Coulomb's friction can do there, what the surface
-gains in speed in a step, by how much it is faster than the slider at an instant within it; power of friction on that
-beyond what the means of the step say."""
+gains in speed in a step (two-way, what the forces of the step have given it by its middle), by how much it is faster
+than the slider at an instant within it; power of friction on that beyond what the means of the step say."""
 (
     ACROSS, ALONG, PULLED, RUBBED, DAMPED, PRESSED, MEAN_RUB, MEAN_PUSH, TOUCHING, STICKING, STORED, MEAN_SPEED, LIFTED,
     UPHILL,

@@ -129,7 +129,10 @@ def _pushing(case: Case, sled: Sled | None, data: Any) -> Any:
     """The callback, told of the run that is about to begin (`push_kernels`). Raises InputError for too many forces."""
     made, places, numbers = _push()
     if len(case.forces) > MOST_FORCES:
-        raise InputError(f"force: MuJoCo's callback has room for {MOST_FORCES}, {len(case.forces)} are too many")
+        raise InputError(
+            f"force: MuJoCo's callback has room for {MOST_FORCES}, {len(case.forces)} are too many: give at "
+            f"most {MOST_FORCES}, or leave MuJoCo out"
+        )
     arrays = (data.qpos, data.qvel, data.xfrc_applied, data.qfrc_applied)
     addresses = [_time_at(data), *(array.ctypes.data for array in arrays)]
     places[:] = [*addresses, case.n, len(case.forces), sled is not None]

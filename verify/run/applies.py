@@ -35,10 +35,15 @@ def that_change(name_or_path: "str | Path", overrides: tuple[str, ...]) -> tuple
         except InputError:
             return None
 
-    about = [text for text in overrides if keys_set((text,)) or text.startswith("gate.")]
+    about = [text for text in overrides if keys_set((text,)) or _asks_otherwise(text)]
     own = alone() if about else None
     idle = {text for text in about if own is not None and alone(text) == own}
     return tuple(text for text in overrides if text not in idle)
+
+
+def _asks_otherwise(text: str) -> bool:
+    """Whether an override is of what a gate asks, not of its band, which is stated even where it stays the same."""
+    return text.startswith("gate.") and ".arguments" in text.partition("=")[0]
 
 
 def not_applicable(scene: "Scene", overrides: tuple[str, ...]) -> dict[str, str]:

@@ -215,7 +215,7 @@ def shapes_error(unlike: float) -> float:
 ROWS: tuple[Row, ...] = (
     Floor(
         id="lists-of-members",
-        title="Lists by the dispersions of seven discrete beams, told which they are, their errors and enough parts",
+        title="Lists by the dispersions of six discrete beams, told which they are, their errors and enough parts",
         why="identify: members of the family are known by their frequencies alone.",
         along="member",
         at=tuple(range(len(MEMBERS))),

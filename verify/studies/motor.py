@@ -159,7 +159,7 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         if CHAIN in asked.models and periods > REST_PERIODS:
             raise InputError(
                 f"motor.chain = {asked.seconds!r} s is {periods:.3g} periods of the drive: give at most "
-                f"{REST_PERIODS}, {written(float(f'{REST_PERIODS / scene.drive.frequency_hz:.3g}'))} s"
+                f"{REST_PERIODS}, {written(float(f'{0.995 * REST_PERIODS / scene.drive.frequency_hz:.3g}'))} s"
             )
 
     def check_run(self, asked: Motor, scene: "Scene") -> None:

@@ -9,7 +9,7 @@ from verify.judge.variants import Variant
 from verify.models.catalogue import MODELS
 from verify.studies.chart import Axis, Chart, Line
 from verify.studies.charting import BROAD, numbers
-from verify.units import unit_of
+from verify.units import Unit, unit_of
 
 if TYPE_CHECKING:
     from verify.judge.workbench import Workbench
@@ -30,16 +30,17 @@ def shapes_chart(bench: "Workbench", variants: tuple[Variant, ...], count: int, 
         exact = [_exact(bench, mode, x, theory) for mode in chosen]
     except InputError:
         return ()
-    lines = [_moving(MODELS[EXACT].title, MODELS[EXACT].colour, x, exact, width=BROAD)]
+    unit = unit_of(bench.beam.length)
+    lines = [_moving(MODELS[EXACT].title, MODELS[EXACT].colour, unit.factor * x, exact, width=BROAD)]
     for one in _first(variants, theory):
-        lines += _readings(bench, one, count, chosen)
+        lines += _readings(bench, one, count, chosen, unit)
     return (
         Chart(
             id="mode-shapes",
             title=f"Mode shapes, N = {count}",
             caption="Normalised to the same modal mass. Points of a model are where it knows its shape: joints or ends "
             "of elements. Of the chain, raw are the joints themselves, corrected what y + δ²y/12 makes of them.",
-            x=Axis(f"x, {unit_of(bench.beam.length).name}"),
+            x=Axis(f"x, {unit.name}"),
             y=Axis("deflection, 1/√kg"),
             lines=tuple(lines),
             frames=tuple(f"mode {mode}" for mode in chosen),
@@ -62,7 +63,7 @@ def _exact(bench: "Workbench", mode: int, x: "Array", theory: str) -> "Array":
     return mode_shape(bench.beam, mode, x, theory=theory)
 
 
-def _readings(bench: "Workbench", one: Variant, count: int, modes: list[int]) -> list[Line]:
+def _readings(bench: "Workbench", one: Variant, count: int, modes: list[int], unit: Unit) -> list[Line]:
     """A line for each way in which a model reads its shape; none where it has not as many modes."""
     try:
         found = bench.modes(one.model, count, modes[-1], one.settings)
@@ -74,8 +75,8 @@ def _readings(bench: "Workbench", one: Variant, count: int, modes: list[int]) ->
     for i, (name, read) in enumerate(found.readings.items()):
         values = read()
         words = f"{model.title}, {name}" if len(found.readings) > 1 else model.title
-        rows = [values[k] for k in index]
-        lines.append(_moving(words, model.colour, found.nodes, rows, marker="square" if i else "circle", hollow=i > 0))
+        rows, x = [values[k] for k in index], unit.factor * found.nodes
+        lines.append(_moving(words, model.colour, x, rows, marker="square" if i else "circle", hollow=i > 0))
     return lines
 
 
@@ -86,7 +87,7 @@ def _moving(
     return Line(
         name=name,
         colour=colour,
-        x=numbers(unit_of(float(x[-1])).factor * x),
+        x=numbers(x),
         y=moves[-1],
         moves=moves,
         width=width,

@@ -33,6 +33,8 @@ class Column(msgspec.Struct, frozen=True):
     """Of what it is, a sentence for below a table that shows it."""
     si: str = ""
     """SI unit of what stands in it; `Table.of` takes the unit that suits, and its factor, from there."""
+    data_head: str = ""
+    """What stands above it in data, where its unit depends on nothing; its head unless given."""
 
 
 Read: TypeAlias = tuple[Column, Callable[[Any], Any]]
@@ -70,6 +72,14 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
         said = " ".join(self.columns[i].said for i in shown if self.columns[i].said)
         return (said, *self.notes) if said else self.notes
 
+    def records(self) -> list[dict[str, Any]]:
+        """Its rows as data: in the unit that stands above them, an SI one where heads for a person have what suits.
+
+        A head that stands twice is numbered.
+        """
+        names = numbered([column.data_head or column.head for column in self.columns])
+        return [dict(zip(names, map(_as_data, row, self.columns), strict=True)) for row in self.rows]
+
     def __post_init__(self) -> None:
         for row in self.rows:
             if len(row) != len(self.columns):
@@ -82,7 +92,14 @@ def _suited(columns: Sequence[Column], rows: Sequence[Sequence[Any]]) -> tuple[C
         for si in {one.si for one in columns if one.si}
     }
     return tuple(
-        replace(one, head=f"{one.head}, {units[one.si].name}", factor=units[one.si].factor) if one.si else one
+        replace(
+            one,
+            head=f"{one.head}, {units[one.si].name}",
+            factor=units[one.si].factor,
+            data_head=f"{one.head}, {one.si}",
+        )
+        if one.si
+        else one
         for one in columns
     )
 
@@ -111,13 +128,8 @@ class Found(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return msgspec.to_builtins(self)
 
     def records(self) -> list[dict[str, Any]]:
-        """Rows with one level of names, for CSV and Markdown: those of the first table unless a study knows better.
-
-        Numbers are in the unit that stands above them; a head that stands twice is numbered.
-        """
-        first = next(iter(self.tables()), Table(columns=(), rows=()))
-        names = numbered([column.head for column in first.columns])
-        return [dict(zip(names, map(in_its_unit, row, first.columns), strict=True)) for row in first.rows]
+        """Rows with one level of names, for CSV and Markdown: those of the first table unless a study knows better."""
+        return next(iter(self.tables()), Table(columns=(), rows=())).records()
 
     def under(self, overrides: tuple[str, ...]) -> "Found":
         """The same, told as found in a run that `overrides` changed what exists for: 'beam.length=0.43'."""
@@ -138,9 +150,9 @@ def numbered(heads: list[str]) -> list[str]:
     return names
 
 
-def in_its_unit(value: Any, column: Column) -> Any:
-    """A number as its column writes it, with all digits; anything else as it is."""
+def _as_data(value: Any, column: Column) -> Any:
+    """A number in its column's unit, in the SI unit where that is what suits, with all digits; all else as it is."""
     if not isinstance(value, float | int) or isinstance(value, bool):
         return value
-    scale = 100.0 if column.form in PERCENTS else column.factor
+    scale = 100.0 if column.form in PERCENTS else 1.0 if column.si else column.factor
     return value if scale == 1.0 else scale * value
