@@ -439,6 +439,13 @@ def gently(**drive):
     return strip(drive=STRIP["drive"] | {"force": force} | drive)
 
 
+def test_an_engine_whose_chain_is_too_short_for_a_mode_is_left_out_there_with_the_reason(ghost):
+    found = found_of(strip(), sets=("modes",), counts=(8, 30), modes=(9,), peers=True)
+    short, enough = rows(found, set="modes", method="Ghost")
+    assert short.left_out == "mode = 9: the Ghost model at count = 8 has 7 elastic modes, raise count"
+    assert enough.error == pytest.approx(900.0 / Workbench(strip().beam).exact_hz(9) - 1)
+
+
 def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_is_not_is_named(ghost):
     found = found_of(
         gently(), sets=("modes", "chain", "slider"), counts=(30,), modes=(2,), duration=6e-4, seconds=90.0, peers=True

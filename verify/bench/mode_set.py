@@ -36,9 +36,9 @@ def mode_cases(scene: "Scene", its: Settled, bench: Workbench) -> Iterator[Case]
     able = discrete("solve_modes", scene.beam)
     variants = (*(Variant(model.name) for model in able), *every_rule(scene.beam))
     beside, why_not = _beside(scene.beam, its)
-    theirs, absent = frequency_entries(scene, its) if its.peers else ((), ())
     refused = [f"{m.title} takes no part: {why}" for m in discrete("solve_modes") if (why := m.refuses(scene.beam))]
     for mode in its.modes:
+        theirs, absent = frequency_entries(scene, its, mode) if its.peers else ((), ())
         entries = [_variant_entry(scene.beam, one, n, mode) for one in variants for n in its.counts]
         entries += [make(scene.beam, n, mode) for make in beside for n in its.counts]
         entries += [*theirs, _exact_entry(scene.beam, mode)]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from verify.bench.kind import Entry, Line, Run, Told
 from verify.bench.study import Settled
 from verify.errors import InputError
+from verify.judge.workbench import no_such_mode
 from verify.peers.breaking import Break, pushed
 from verify.peers.case import Case as Links
 from verify.peers.case import Sled, case_of, clocks, since
@@ -47,8 +48,8 @@ def versions() -> dict[str, str]:
     return {peer.name: version for peer in PEERS.values() if (version := installed(peer))}
 
 
-def frequency_entries(scene: "Scene", its: Settled) -> tuple[tuple[Entry, ...], tuple[str, ...]]:
-    """Natural frequencies of the chain in other engines, all of them at once, and who is left out."""
+def frequency_entries(scene: "Scene", its: Settled, mode: int) -> tuple[tuple[Entry, ...], tuple[str, ...]]:
+    """Natural frequencies of the chain in other engines, all up to a mode at least, and who is left out."""
     ready, absent = engines()
     entries, refused = [], list(absent)
     for name, engine in ready.items():
@@ -59,16 +60,18 @@ def frequency_entries(scene: "Scene", its: Settled) -> tuple[tuple[Entry, ...], 
             except InputError as error:
                 refused.append(f"{name} is left out: {error}")
                 break
-            prepare: Callable[[], Run] = partial(partial, _frequencies, name, engine, links)
+            prepare: Callable[[], Run] = partial(partial, _frequencies, name, engine, links, mode)
             seconds = START_S + MODES_S * count**3
             entries.append(Entry(line=line, size=1.0 / count, count=count, estimate_s=seconds, prepare=prepare))
     return tuple(entries), tuple(dict.fromkeys(refused))
 
 
-def _frequencies(name: str, engine: PeerAdapter, links: Links) -> Told:
+def _frequencies(name: str, engine: PeerAdapter, links: Links, mode: int) -> Told:
     found = engine.frequencies(links)
     if found is None:
         raise InputError(f"{name} has no natural frequencies")
+    if len(found) < mode:
+        raise InputError(no_such_mode(mode, name, links.n, len(found)))
     return Told(found)
 
 
