@@ -5,22 +5,12 @@ import tomllib
 
 import pytest
 
-from verify.cli import status_of
-
 
 @pytest.fixture
-def verify(capsys, tmp_path, monkeypatch):
-    """Run a command line in an empty folder of a narrow terminal: (status, standard output, error output)."""
-    monkeypatch.chdir(tmp_path)
+def verify(verify, monkeypatch):
+    """As everywhere, in a narrow terminal."""
     monkeypatch.setenv("COLUMNS", "80")
-
-    def call(*words):
-        capsys.readouterr()
-        status = status_of([str(word) for word in words])
-        out, err = capsys.readouterr()
-        return status, out, err
-
-    return call
+    return verify
 
 
 def words_of(text):

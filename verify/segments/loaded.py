@@ -390,16 +390,9 @@ def _rigid(chain: Chain, placed: _Placed) -> Array:
     left, right = chain.held
     found = np.zeros((n_unknowns(chain), len(chain.lines)))
     for column, (start, tilt) in enumerate(chain.lines):
-        line = _unfelt(placed, start / chain.unit + tilt * x)
+        line = start / chain.unit + tilt * x
+        # about the beam's one spring, if there is one, which unequal links feel a little beside its place
+        line = line - (placed.felt @ line)[placed.springs][:1].sum()
         found[: _n_free(chain), column] = line[int(left) : len(x) - right]
         found[_n_free(chain) : _n_free(chain) + len(_turning(chain)), column] = tilt
     return found
-
-
-def _unfelt(placed: _Placed, line: Array) -> Array:
-    """A straight line (N + 1,) about the place of the beam's one spring, put where the chain itself feels none of it.
-
-    Among links of unequal lengths the weights of a place read a line a little beside it.
-    """
-    felt = np.asarray(placed.felt @ line)[placed.springs]
-    return line - (felt[0] if len(felt) else 0.0)
