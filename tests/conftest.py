@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from functools import lru_cache
 
 import packaged
 import pytest
@@ -28,6 +29,21 @@ settings.load_profile("any machine")  # how long drawing takes is the machine's 
 
 KEEPERS = ("verify.elements.linear", "verify.segments.linear", "verify.exact.", "verify.motor.repeated")
 """Modules that keep what they solved for the next who asks: a fault planted below would not be seen."""
+READERS = ("verify.field_docs", "verify.registry", "verify.scenes", "verify.models.kernels", "verify.pictures")
+"""Modules that keep what they read in files, which no planted fault is in."""
+
+
+@lru_cache(maxsize=2)
+def clears(kept, n_modules):
+    """What makes every module so named forget, as long as no module is added."""
+    modules = [module for name, module in list(sys.modules.items()) if name.startswith(kept)]
+    values = [value for module in modules if not module.__name__.startswith(READERS) for value in vars(module).values()]
+    return [value.cache_clear for value in values if hasattr(value, "cache_clear")]
+
+
+def forget(kept):
+    for clear in clears(kept, len(sys.modules)):
+        clear()
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -40,10 +56,16 @@ def runs_are_shared(tmp_path_factory):
 
 @pytest.fixture(autouse=True)
 def nothing_kept():
-    for module in [module for name, module in sys.modules.items() if name.startswith(KEEPERS)]:
-        for value in list(vars(module).values()):
-            if hasattr(value, "cache_clear"):
-                value.cache_clear()
+    forget(KEEPERS)
+
+
+@pytest.fixture
+def monkeypatch(monkeypatch):
+    """Of which no module keeps what it worked out under a fault, or sees less of one for what it kept before."""
+    forget("verify.")
+    yield monkeypatch
+    monkeypatch.undo()
+    forget("verify.")
 
 
 @pytest.fixture
