@@ -446,6 +446,12 @@ def test_an_engine_whose_chain_is_too_short_for_a_mode_is_left_out_there_with_th
     assert enough.error == pytest.approx(900.0 / Workbench(strip().beam).exact_hz(9) - 1)
 
 
+def test_an_engine_that_refuses_one_size_stands_at_the_others(ghost):
+    found = found_of(strip(), sets=("modes",), counts=(4, 30), modes=(2,), peers=True)
+    assert row(found, set="modes", method="Ghost").count == 30
+    assert any(note.startswith("Ghost is left out of some sizes: count = 4: ") for note in found.notes)
+
+
 def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_is_not_is_named(ghost):
     found = found_of(
         gently(), sets=("modes", "chain", "slider"), counts=(30,), modes=(2,), duration=6e-4, seconds=90.0, peers=True

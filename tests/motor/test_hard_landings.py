@@ -54,6 +54,16 @@ def test_a_point_bounces_as_parabolas_do_whatever_the_step(ratio, restitution, s
     assert lands[0] == pytest.approx(wanted[0], abs=3e-9)
 
 
+@pytest.mark.parametrize(("ratio", "restitution", "periods"), [(1.01, 0.99, 10), (1.001, 0.999, 2)])
+def test_bounces_that_lose_little_die_away_and_the_point_leaves_again_at_the_same_phase(ratio, restitution, periods):
+    """After a thousand blows and more, of which rounding feeds the last."""
+    run, lands, leaves = flown(ratio, Contact(restitution=restitution), periods=periods)
+    assert run.statistics.stopped == "end"
+    assert len(lands) > 700 * periods
+    assert leaves - 2.0 * pi * np.arange(periods) == pytest.approx(np.full(periods, asin(1.0 / ratio)), abs=1e-6)
+    assert abs(run.ledger.residual) < 1e-8 * run.ledger.impacts
+
+
 @pytest.mark.parametrize(("ratio", "restitution"), [(1.9, 0.4), (2.3, 0.5), (1.7, 0.0)])
 def test_blows_lose_what_restitution_leaves_out_and_the_books_close(ratio, restitution):
     """M (1 - e^2)/2 times the square of every relative speed of landing."""

@@ -51,19 +51,24 @@ def versions() -> dict[str, str]:
 def frequency_entries(scene: "Scene", its: Settled, mode: int) -> tuple[tuple[Entry, ...], tuple[str, ...]]:
     """Natural frequencies of the chain in other engines, all up to a mode at least, and who is left out."""
     ready, absent = engines()
-    entries, refused = [], list(absent)
-    for name, engine in ready.items():
-        line = Line(name=name, orders=(4.0, 4.0), settings={"engine": name})
-        for count in its.counts:
-            try:
-                links = case_of(scene.beam, count, (), scene.drive.frequency_hz if scene.drive else 1.0)
-            except InputError as error:
-                refused.append(f"{name} is left out: {error}")
-                break
-            prepare: Callable[[], Run] = partial(partial, _frequencies, name, engine, links, mode)
-            seconds = START_S + MODES_S * count**3
-            entries.append(Entry(line=line, size=1.0 / count, count=count, estimate_s=seconds, prepare=prepare))
-    return tuple(entries), tuple(dict.fromkeys(refused))
+    hertz = scene.drive.frequency_hz if scene.drive else 1.0
+    chains, refused = [], []
+    for count in its.counts:
+        try:
+            chains.append(case_of(scene.beam, count, (), hertz))
+        except InputError as error:
+            refused.append(str(error))
+    entries = tuple(_modes_of(name, engine, links, mode) for name, engine in ready.items() for links in chains)
+    left = (f"{name} is left out{' of some sizes' * bool(chains)}: {why}" for name in ready for why in refused)
+    return entries, (*absent, *dict.fromkeys(left))
+
+
+def _modes_of(name: str, engine: PeerAdapter, links: Links, mode: int) -> Entry:
+    """One engine's modes of one chain."""
+    line = Line(name=name, orders=(4.0, 4.0), settings={"engine": name})
+    prepare: Callable[[], Run] = partial(partial, _frequencies, name, engine, links, mode)
+    seconds = START_S + MODES_S * links.n**3
+    return Entry(line=line, size=1.0 / links.n, count=links.n, estimate_s=seconds, prepare=prepare)
 
 
 def _frequencies(name: str, engine: PeerAdapter, links: Links, mode: int) -> Told:

@@ -15,6 +15,7 @@ from verify.motor.logging_kernels import keep, write
 from verify.motor.records import (
     ACROSS,
     ALONG,
+    CHATTERS,
     CLIMB,
     DAMPED,
     DONE,
@@ -56,10 +57,12 @@ from verify.motor.records import (
 from verify.motor.surface_kernels import draw, material
 
 HALVINGS = 100
-BLOWS = 10_000
-"""In a step, at most; a bounce that dies away has far fewer."""
+BLOWS = 100_000
+"""In a step, at most; a bounce that dies away has far fewer, one that loses next to nothing is told."""
 SETTLED = 1e-6
 """Of a step: a bounce that lasts no longer is a rest."""
+TOLD = 2e-15
+"""Rounding of the surface, of its height and of what it rises in all time so far, by which its phase is rounded."""
 ALIKE = 1e-9
 """Of the speeds at hand: a slip that is no more than that is none."""
 
@@ -285,23 +288,34 @@ def _move_riding(
 
 
 @part()
+def _rests(t: float, dt: float, away: float, presses: float, level: float, hard: Hard, touch: Array) -> bool:
+    """Whether a bounce that begins at t is none: too short for the step, or fed by the rounding of the surface.
+
+    Of its height away^2/(2 presses) a blow takes the share 1 - e^2, and the rounding of the level may add as much.
+    """
+    known = TOLD * (abs(level) + abs(touch[0, LIFT]) * (t + dt))
+    lost = (1.0 - hard.restitution) * away**2
+    return 2.0 * away <= SETTLED * dt * presses or lost <= 2.0 * presses * known
+
+
+@part()
 def _step(
     t: float, dt: float, surface: Surface, rubbing: Rubbing, hard: Hard, line: Line, before: Array, feet: Feet, log: Log
-) -> bool:
-    """One step, cut where the point leaves or lands and where its friction turns; whether it is still on the beam."""
+) -> int:
+    """One step, cut where the point leaves or lands and where its friction turns; why it ended."""
     done, x = 0.0, feet.body[0, X]
     origin = surface.drive.origin
     for _ in range(BLOWS):
         left = dt - done
         if left <= 1e-15 * dt:
-            break
+            return DONE
         riding = before[0, 0] > 0.0
         s = _lasts(riding, t + done, left, surface, rubbing, hard, line, feet)
         if riding:
             turns = _slides(t + done, s, surface, rubbing, hard, line, feet) if rubbing.slope is None else s
             leaves, s = s < left and turns >= s, turns
             if not _move_riding(t + done, s, surface, rubbing, hard, line, feet, rubbing.slope):
-                return False
+                return OFF_BEAM
             if leaves:
                 before[0, 0] = -1.0
                 write(origin + t + done + s, LEAVES, 0, x, log.events, log.tally)
@@ -310,16 +324,16 @@ def _step(
             feet.touch[0, PUSH] = 0.0
             level = _under(t + done + s, feet.body[0, X], feet.body[0, V], surface, rubbing.half, line, feet)
             if not np.isfinite(level):
-                return False
+                return OFF_BEAM
             if s < left:
                 feet.state[0, HEIGHT] = level
                 away = _land(rubbing, hard, feet, rubbing.slope)
                 presses = hard.press + feet.kick[0, 0]
                 write(origin + t + done + s, LANDS, 0, x, log.events, log.tally)
-                if presses > 0.0 and 2.0 * away <= SETTLED * dt * presses:
+                if presses > 0.0 and _rests(t, dt, away, presses, level, hard, feet.touch):
                     before[0, 0] = 1.0
         done += s
-    return True
+    return CHATTERS
 
 
 @lean()
@@ -337,8 +351,9 @@ def hop(
     """Advance a hard point by n_steps from step tally[STEP]; why it came back. `before` is (1, 2): above 0 it rides."""
     tally = log.tally
     for _ in range(n_steps):
-        if not _step(tally[STEP] * dt, dt, surface, rubbing, hard, line, before, feet, log):
-            return OFF_BEAM
+        why = _step(tally[STEP] * dt, dt, surface, rubbing, hard, line, before, feet, log)
+        if why != DONE:
+            return why
         tally[STEP] += 1
         if not np.isfinite(feet.body[0, V] + feet.state[0, HEIGHT]):
             return NOT_FINITE

@@ -303,5 +303,9 @@ def _run_hard(
 
 RIDES_FROM_HERE = 2.0
 """In place of a depth: a hard point is put on the surface with the first step."""
-WHY = {records.OFF_BEAM: LEFT_BEAM, records.NOT_FINITE: "diverged"}
+WHY = {
+    records.OFF_BEAM: LEFT_BEAM,
+    records.NOT_FINITE: "diverged",
+    records.CHATTERS: "bounced 100 000 times within one step and more",
+}
 """Why a run stopped early."""
