@@ -76,6 +76,15 @@ def named(kernel, types):
     return Kernel(f"{kernel.py_func.__module__.removeprefix('verify.')}.{kernel.__name__}", str(tuple(types)))
 
 
+INNER = {"chain.recursion_kernels.hub_motion"}
+"""Compiled ahead by itself since several others have it in them; Python does not call it."""
+
+
+def names(kernels):
+    """Without the types that they are called with."""
+    return {name for name, _ in kernels} - INNER
+
+
 def listening(called):
     """Kernels that Python calls for the first time are noted; those that were called before are forgotten first."""
     from numba.core.dispatcher import _DispatcherBase

@@ -389,6 +389,26 @@ def test_a_short_logarithmic_axis_has_several_ticks_and_zero_has_no_place_on_it(
     assert 1e-8 < picture.y[0] < 1e-7
 
 
+@pytest.mark.parametrize("apart", [1.0, 1.02, 1.07, 0.93])
+def test_sizes_beside_points_that_nearly_meet_stand_apart(apart):
+    """Run times are the machine's: two models may take as long to be as good, one above the other or below it."""
+    from verify.report.drawing import drawn
+    from verify.studies.chart import Axis, Chart
+    from verify.studies.charting import model_line
+
+    errors, costs, sizes = (1e-2, 3e-3, 1e-3), (1.0, 2.0, 3.7), ("49", "98", "196")
+    lines = [
+        model_line(model, [scale * error for error in errors], [scale * one for one in costs], beside=sizes)
+        for model, scale in (("segment", 1.0), ("fem", apart))
+    ]
+    axes = Axis("e", log=True), Axis("ms", log=True)
+    svg = drawn(Chart(id="c", title="t", caption="", x=axes[0], y=axes[1], lines=tuple(lines))).svg
+    for size in sizes:
+        texts = re.findall(rf'<text[^>]* x="([0-9.]+)" y="([0-9.]+)"[^>]*>{size}</text>', svg)
+        (x, y), (its_x, its_y) = [tuple(map(float, one)) for one in texts]
+        assert abs(x - its_x) > 6.0 * len(size) or abs(y - its_y) > 10.0
+
+
 @pytest.mark.parametrize("bars", [4, 14])
 def test_bars_of_long_names_keep_most_of_the_picture_and_their_ticks_stand_apart(bars):
     from verify.report.drawing import WIDTH, drawn

@@ -1,6 +1,6 @@
 """What a plan says is compiled, against what really runs: of every quantity, and of every packaged scene.
 
-Quantities and rows in a process of its own, in which a kernel is asked for when it is first called; what ran is forgotten in between.
+Quantities in a process of its own, in which a kernel is asked for when it is first called; what ran is forgotten in between.
 """
 
 import json
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from msgspec.structs import replace
-from packaged import ran
+from packaged import names, ran
 
 from verify.run.asks import Ask, studies_in_turn
 from verify.run.kernels_asked import ready_first
@@ -19,8 +19,6 @@ from verify.run.runner import run_scene
 from verify.scenes.scene import load_scene, packaged_scenes
 
 TESTS = Path(__file__).parent.parent
-INNER = {"chain.recursion_kernels.hub_motion"}
-"""Compiled ahead by itself since several others have it in them; Python does not call it."""
 START = """
 import json
 from packaged import forget, listening, named
@@ -43,16 +41,6 @@ for name, cases in CASES.items():
         found[f"{name} {i}"] = told(QUANTITIES[name].kernels(arguments, scene))
 print(json.dumps(found))
 """
-OF_ROWS = """
-from verify.stress.catalogue import rows
-found = {}
-for name, row in rows().items():
-    if row.quick:
-        forget(), ran.clear()
-        row.run()
-        found[name] = told(row.kernels())
-print(json.dumps(found))
-"""
 
 
 def compared(code, *given):
@@ -66,10 +54,6 @@ def compared(code, *given):
     return {name: tuple({tuple(k) for k in one[kind]} for kind in ("ran", "planned")) for name, one in found.items()}
 
 
-def names(kernels):
-    return {name for name, _ in kernels} - INNER
-
-
 def test_every_quantity_says_which_kernels_it_runs():
     """Whether a beam feels its slider only a size may tell: then both loops are planned, and one of them runs."""
     found = compared(OF_QUANTITIES)
@@ -78,15 +62,6 @@ def test_every_quantity_says_which_kernels_it_runs():
         assert called <= planned, name
         assert names(planned) == names(called), name
     assert sum(bool(called) for called, _ in found.values()) > 45
-
-
-def test_every_quick_row_of_the_stress_table_says_which_kernels_it_runs():
-    found = compared(OF_ROWS)
-    assert len(found) > 60
-    for name, (called, planned) in found.items():
-        assert called <= planned, name
-        assert names(planned) == names(called), name
-    assert sum(bool(called) for called, _ in found.values()) > 15
 
 
 @pytest.mark.parametrize("scene", packaged_scenes())

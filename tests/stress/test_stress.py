@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from faults.stress import assembled_instead_of_factored, heavy_masses_unseen, unlike_parts_unseen
 from msgspec.structs import replace
+from packaged import listening, named, names
 
 from verify import beam
 from verify.cli import status_of
@@ -77,10 +78,21 @@ def test_there_are_rows_enough_of_every_kind():
 
 
 @pytest.mark.parametrize("name", light())
-def test_a_quick_row_is_held(name):
-    found = row(name).run()
+def test_a_quick_row_is_held_and_says_which_kernels_it_runs(name, monkeypatch):
+    monkeypatch.setenv("VERIFY_JOBS", "1")  # nobody compiles ahead
+    asked, called = row(name), []
+    with listening(called):
+        found = asked.run()
+    planned = {named(kernel, map(kernel.typeof_pyval, given)) for kernel, given in asked.kernels()}
     assert found.held, found.reason
     assert found.share <= 1.0
+    assert set(called) <= planned
+    assert names(called) == names(planned)
+
+
+def test_some_rows_run_kernels_and_most_none():
+    """Else nothing would be compared above."""
+    assert 15 < sum(bool(row(name).kernels()) for name in light()) < 0.5 * len(light())
 
 
 def a_frequency_wrong_in_its_twelfth_digit(patch):

@@ -6,13 +6,14 @@ Ink and grid lines are CSS variables with a fall-back, so that a dark page shows
 import re
 from collections.abc import Sequence
 from io import StringIO
-from math import floor, isfinite, log10, nan
+from math import floor, isfinite, isnan, log10, nan
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 from msgspec.structs import replace
 
+from verify.models.arrays import Array
 from verify.report.inks import inked
 from verify.studies.chart import Axis, Bars, Chart, Line, Map, Mark
 from verify.studies.charting import BROAD
@@ -30,6 +31,8 @@ CLOSEST = 27.0
 """Between two ticks that were chosen."""
 FEW, MANY = (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)
 """Times a power of ten: ticks of an axis that is short."""
+LETTER = 7.0
+"""Width of one beside a point, as broad as any page shows it."""
 NAMED = 26
 """Letters of a bar's name in a row; what is longer is broken, and the picture higher."""
 ROW = 13.0
@@ -99,6 +102,7 @@ def drawn(chart: Chart) -> Drawing:
             _mark(axes, mark, i)
         _axis(axes, "x", chart.x, chart)
         _axis(axes, "y", chart.y, chart)
+        _beside(axes, chart.lines)
         box = _settle(figure, axes)
         if chart.equal:
             axes.set_aspect("equal", adjustable="datalim")
@@ -119,16 +123,33 @@ def _lines(axes: "Axes", chart: Chart) -> None:
                 _gaps(line.x), _gaps(before.y), _gaps(line.y), color="#8a8f98", alpha=0.18, lw=0, zorder=1
             )
         _line(axes, replace(line, width=UNDER * line.width) if i in lowest else line, f"{chart.id}-{i}")
-        _beside(axes, line, below=before is not None)
         before = line
         _room(axes, line)
 
 
-def _beside(axes: "Axes", line: Line, *, below: bool) -> None:
-    """Words over the points of the first line and under those of the others."""
-    for x, y, words in zip(line.x, line.y, line.beside, strict=False):
-        style: dict[str, Any] = {"ha": "center", "va": "top" if below else "bottom", "fontsize": FONT - 2}
-        axes.annotate(words, (x, y), (0, -5 if below else 5), textcoords="offset points", **style)
+def _beside(axes: "Axes", lines: Sequence[Line]) -> None:
+    """Words over the points of the first line and under those of the others; elsewhere where words stand there."""
+    style: dict[str, Any] = {"ha": "center", "va": "baseline", "fontsize": FONT - 2}
+    over, taken = True, list[tuple[float, float, float]]()
+    for line in (one for one in lines if one.beside):
+        for x, y, words in zip(_gaps(line.x), _gaps(line.y), line.beside, strict=False):
+            if isnan(x + y):
+                continue
+            reach = LETTER * len(words)
+            beside = 0.5 * reach + 7.0
+            level = (5.0, -13.0) if over else (-13.0, 5.0)
+            places = [(0.0, level[0]), (0.0, level[1]), (beside, -3.0), (-beside, -3.0)]
+            spot = axes.transData.transform((x, y))
+            free = (place for place in places if _is_free(spot + place, reach, taken))
+            place = next(free, places[0])
+            taken.append((*(spot + place), reach))
+            axes.annotate(words, (x, y), place, textcoords="offset points", **style)
+        over = False
+
+
+def _is_free(spot: Array, reach: float, taken: Sequence[tuple[float, float, float]]) -> bool:
+    """Whether words of such a width, in points, their middle there, lie on no others."""
+    return all(abs(spot[0] - x) > 0.5 * (reach + other) or abs(spot[1] - y) > FONT for x, y, other in taken)
 
 
 def _room(axes: "Axes", line: Line) -> None:
