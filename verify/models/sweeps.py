@@ -120,7 +120,7 @@ def _turned(fields: Sequence[HarmonicField]) -> Callable[[Array, int], ComplexAr
 
 def swept_frequencies(beam: Beam, forces: Forces, frequencies_hz: Numbers, unknowns: int) -> Array:
     """The frequencies in a row, (n,). Raises InputError as `check_drive` does, by index, and for too many."""
-    found = real_array(FIELD, frequencies_hz, "hertz").ravel()
+    found = real_array(FIELD, frequencies_hz, "hertz").flatten()  # a copy, as what is kept is to be
     if not found.size:
         raise InputError(f"{FIELD} is empty: give at least one frequency in hertz")
     check_held(len(found), unknowns, FIELD)

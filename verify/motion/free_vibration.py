@@ -132,7 +132,7 @@ def free_vibration(
     check_whole("samples", samples, 2)
     if samples > MOST_SAMPLES:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
-    points = in_a_row("at", at, "metres")
+    points = in_a_row("at", at, "metres").copy()  # which is kept
     if not np.all((points >= 0.0) & (points <= beam.length)):
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     MODELS.named(model)

@@ -166,7 +166,7 @@ def _check_samples(samples: int) -> None:
 
 def _points(beam: Beam, at: Numbers) -> Array:
     """Positions as an array, metres. Raises InputError off the beam."""
-    points = in_a_row("at", at, "metres")
+    points = in_a_row("at", at, "metres").copy()  # which is kept
     if not np.all((points >= 0.0) & (points <= beam.length)):
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     return points
