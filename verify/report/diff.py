@@ -114,7 +114,7 @@ class Differences(msgspec.Struct, frozen=True, kw_only=True):
     only_before: tuple[str, ...]
     only_after: tuple[str, ...]
     unjudged: int
-    """Gates that were held, of which nothing is known now: they are gone, with their scene or without, or do not apply."""
+    """Gates that were held and of which nothing is known now: they, or their scene, are gone, or they do not apply."""
 
     @property
     def broken(self) -> int:

@@ -67,7 +67,8 @@ def measure_series(
     Between the positions the field is that of a cubic spline through their phasors; slopes come from the two fitted
     waves. What drives or holds the beam between the positions is not known here, but for its masses and springs: a
     large `waves.residual` tells that two waves are not alone there. Raises InputError for series or spans that are too
-    short, positions off the beam and a `k` that is no wavenumber, and WindowError where the beam has a mass or a spring between the positions.
+    short, positions off the beam and a `k` that is no wavenumber, WindowError where the beam has a mass or a spring
+    between the positions.
     """
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
     start, x = wavenumber(beam, frequency_hz), places("x", in_a_row("x", x, "metres"), beam.length)

@@ -91,15 +91,15 @@ def check_clear(beam: Beam, span: tuple[float, float], told: str, remedy: str) -
 def stated_wavenumber(field: str, given: object, span: tuple[float, float]) -> complex:
     """The wavenumber that is stated for the waves of a span, metres, in 1/m.
 
-    Raises InputError for what is none of a wave e^{-ikx} towards +x, and for one whose half waves the span does not hold
-    or that are too many.
+    Raises InputError for what is none of a wave e^{-ikx} towards +x, and where the span holds less than one of its half
+    waves, or too many.
     """
     k = plain(given)
     number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) <= LARGEST
     if not number or not 0.0 <= -k.imag <= k.real or not k.real:
         raise InputError(
-            f"{field} = {shown(given)}: give a finite k of e^{{-ikx}} in 1/m, its real part above 0, its imaginary part "
-            "at most 0 and no larger than that"
+            f"{field} = {shown(given)}: give a finite k of e^{{-ikx}} in 1/m, its real part above 0, its imaginary "
+            "part at most 0 and no larger than that"
         )
     halves = (span[1] - span[0]) * k.real / float(np.pi)
     if not 1.0 - 1e-9 <= halves <= MOST_HALVES:
