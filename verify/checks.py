@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     import msgspec
 
 LARGEST = float_info.max
-LARGEST_WHOLE = 10**18
-"""What counts in 64 bits."""
+MOST_PARTS = 10**100
+"""Its cube, by which work is estimated, is a number too."""
 RELATIVE = "relative"
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
 """A number without a unit, which a command line takes in per cent as well: 0.001 or 0.1%."""
@@ -117,10 +117,10 @@ def whole_number(value: object) -> int | None:
         return None
 
 
-def check_whole(field: str, value: object, least: int) -> None:
-    """Raise InputError unless `value` is a whole number of at least `least`."""
+def check_whole(field: str, value: object, least: int, most: float = inf) -> None:
+    """Raise InputError unless `value` is a whole number from `least` to `most`."""
     whole = whole_number(value)
     if whole is None or whole < least:
         raise InputError(f"{field} = {shown(value)}: give a whole number of at least {least}")
-    if whole > LARGEST_WHOLE:
-        raise InputError(f"{field} = {shown(value)}: give a whole number of at most {LARGEST_WHOLE:.0e}")
+    if whole > most:
+        raise InputError(f"{field} = {shown(value)}: give a whole number of at most {most:.0e}")

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_number, check_whole, check_word
+from verify.checks import MOST_PARTS, check_number, check_whole, check_word
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import KEPT, Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import (
@@ -83,7 +83,7 @@ def check(
 def check_asked(beam: Beam, n_modes: int, n_elements: int, grading: float, theory: Theory) -> None:
     """Raise InputError, before anything is allocated, for what elements cannot be asked for."""
     check_whole("n_modes", n_modes, 1)
-    check_whole(FIELD, n_elements, 1)
+    check_whole(FIELD, n_elements, 1, MOST_PARTS)
     check_theory(beam, theory)
     check_cuts(beam, n_elements, grading)
     free, elastic = unknowns(beam, n_elements, theory), n_elastic(beam, n_elements, theory)

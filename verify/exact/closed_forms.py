@@ -9,7 +9,6 @@ from math import atan, exp, pi, sqrt
 from verify.beam import Beam
 from verify.checks import check_word, whole_number
 from verify.errors import InputError, shown
-from verify.models.places import as_typed
 from verify.options import THEORIES
 
 HIGHEST = 10**30
@@ -74,7 +73,6 @@ def wavenumber_length(supports: tuple[str, str], mode: int) -> float:
     return turns * pi + remainder
 
 
-@as_typed
 def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:
     """The exact frequency of one mode, Hz, by a beam theory.
 

@@ -151,8 +151,8 @@ def _check_phase(basis: TimeBasis, duration: float) -> None:
     hertz = float(basis.omegas[-1]) / (2.0 * np.pi)
     if duration > MOST_PERIODS / hertz:
         raise InputError(
-            f"duration = {duration!r} s is more than {MOST_PERIODS:.0e} periods of the highest mode, at {hertz:.4g} Hz, "
-            "of whose phase rounding leaves nothing: shorten it"
+            f"duration = {duration!r} s is more than {MOST_PERIODS:.0e} periods of the highest mode, at {hertz:.4g} "
+            "Hz, of whose phase rounding leaves nothing: shorten it"
         )
 
 

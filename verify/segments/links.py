@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.checks import check_whole, check_word
+from verify.checks import MOST_PARTS, check_whole, check_word
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
@@ -153,7 +153,7 @@ def check_set_up(n_segments: int, wall: str, joints: str, attachment: str) -> No
     words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
     for field, word, known in words:
         check_word(field, word, known)
-    check_whole(FIELD, n_segments, 2)
+    check_whole(FIELD, n_segments, 2, MOST_PARTS)
 
 
 def build_chain(
