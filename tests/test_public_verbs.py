@@ -43,6 +43,10 @@ VERBS = {
     "mode_shapes": (analytic_modes.mode_shapes, (BEAM, 3, 0.1)),
     "modes_below": (analytic_modes.modes_below, (BEAM, 20.0)),
 }
+ON_A_BEAM = {
+    **{name: verb for name, verb in VERBS.items() if not name.endswith("sweep_modes")},
+    "buckling_load": (analytic_modes.buckling_load, (BEAM,)),
+}
 UNSIZED = [analytic_modes.frequency_hz, analytic_modes.exact_frequency_hz, analytic_modes.stepped_frequency_hz]
 
 
@@ -54,9 +58,9 @@ def test_a_theory_is_one_of_the_words(verb, theory):
         called(*given, theory=theory)
 
 
-@pytest.mark.parametrize("verb", [verb for verb in VERBS if not verb.endswith("sweep_modes")])
+@pytest.mark.parametrize("verb", ON_A_BEAM)
 def test_a_verb_on_a_beam_is_of_a_beam(verb):
-    called, given = VERBS[verb]
+    called, given = ON_A_BEAM[verb]
     with pytest.raises(InputError, match=r"beam = \[0.31\]: give a Beam"):
         called([0.31], *given[1:])
 
@@ -166,3 +170,5 @@ def test_times_and_sizes_of_which_no_figure_can_be_made_are_refused():
 def test_a_bent_chain_takes_numbers_of_numpys():
     rod = Beam(**SIZES, supports=("clamped", "free"))
     assert bend(rod, np.int8(12), np.float32(0.5)).deflection == bend(rod, 12, 0.5).deflection
+    with pytest.raises(InputError, match=r"joints = .* is not known: known are series"):
+        bend(rod, 12, 0.5, joints=np.array(["series", "printed"]))
