@@ -122,7 +122,7 @@ def test_nothing_inside_stands_on_a_face():
 
 
 def test_closed_forms_take_the_beam_alone():
-    assert imports_of(PACKAGE / "exact" / "closed_forms.py", typing_too=True) == {"beam", "errors", "options"}
+    assert imports_of(PACKAGE / "exact" / "closed_forms.py", typing_too=True) == {"beam", "checks", "errors", "options"}
 
 
 def test_numba_is_imported_by_one_module_and_used_by_kernels_alone():

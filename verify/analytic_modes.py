@@ -1,7 +1,7 @@
 """The exact beam: modes, shapes, harmonic fields, buckling, motion in time. The room is `verify.exact`."""
 
 from verify.exact.buckling import buckling_load
-from verify.exact.closed_forms import frequency_hz
+from verify.exact.closed_forms import frequency_hz as closed_form
 from verify.exact.harmonic import solve_harmonic, unit_responses
 from verify.exact.in_time import time_basis
 from verify.exact.modes import (
@@ -13,6 +13,7 @@ from verify.exact.modes import (
     stepped_frequency_hz,
 )
 from verify.exact.sweeps import sweep_harmonic, sweep_modes
+from verify.models.places import as_typed
 
 __all__ = [
     "buckling_load",
@@ -29,3 +30,5 @@ __all__ = [
     "time_basis",
     "unit_responses",
 ]
+
+frequency_hz = as_typed(closed_form)

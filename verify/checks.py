@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeVar
 
 from msgspec import Meta
 
-from verify.errors import InputError, shown
+from verify.errors import InputError, near_name, shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import msgspec
 
 LARGEST = float_info.max
+MOST_PARTS = 10**100
+"""Its cube, by which work is estimated, is a number too."""
 RELATIVE = "relative"
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
 """A number without a unit, which a command line takes in per cent as well: 0.001 or 0.1%."""
@@ -37,12 +39,19 @@ def check_sizes(field: str, sizes: "Sequence[float]") -> None:
 
 def several(field: str, given: Any, kind: type[Kind]) -> tuple[Kind, ...]:
     """One of a kind, or many of them, as a tuple. Raises InputError, naming the field, for anything else."""
-    one = isinstance(given, kind) or not hasattr(given, "__iter__")
+    one = isinstance(given, kind) or not hasattr(given, "__iter__") or getattr(given, "shape", None) == ()
     found = (given,) if one else tuple(given)
     for each in found:
         if not isinstance(each, kind):
             raise InputError(f"{field} has {shown(each)}: give a {kind.__name__}, or a list of them")
     return found
+
+
+def check_word(field: str, given: object, known: "Sequence[str]") -> None:
+    """Raise InputError, with the nearest that is, unless what was given is one of the words that are known."""
+    if not isinstance(given, str) or given not in known:
+        word = given if isinstance(given, str) else ""
+        raise InputError(f"{field} = {shown(given)} is not known: {near_name(word, tuple(known))}")
 
 
 def check_kind(field: str, given: Any, *kinds: type) -> None:
@@ -59,7 +68,7 @@ def settle(value: "msgspec.Struct", where: str = "", **kinds: type) -> None:
     for field, slot in _slots(type(value)):
         given = kept = slot.__get__(value)
         if field in kinds:
-            kept = several(f"{where}.{field}", given, kinds[field]) if given != () else given
+            kept = given if type(given) is tuple and not given else several(f"{where}.{field}", given, kinds[field])
         elif type(given) not in _SETTLED:
             kept = tuple(map(plain, given)) if _in_a_row(given) else plain(given)
         if kept is not given:
@@ -100,11 +109,18 @@ def check_number(
     raise InputError(f"{field} = {shown(value)}: give {wanted} ({unit})")
 
 
-def check_whole(field: str, value: object, least: int) -> None:
-    """Raise InputError unless `value` is a whole number of at least `least`."""
+def whole_number(value: object) -> int | None:
+    """A whole number as Python's own; None for what is none, as true and false are not."""
     try:
-        whole = index(value)  # type: ignore[arg-type]
+        return None if isinstance(value, bool) else index(value)  # type: ignore[arg-type]
     except TypeError:
-        raise InputError(f"{field} = {shown(value)}: give a whole number of at least {least}") from None
-    if isinstance(value, bool) or whole < least:
+        return None
+
+
+def check_whole(field: str, value: object, least: int, most: float = inf) -> None:
+    """Raise InputError unless `value` is a whole number from `least` to `most`."""
+    whole = whole_number(value)
+    if whole is None or whole < least:
         raise InputError(f"{field} = {shown(value)}: give a whole number of at least {least}")
+    if whole > most:
+        raise InputError(f"{field} = {shown(value)}: give a whole number of at most {most:.0e}")

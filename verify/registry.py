@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from verify.errors import InputError, near_name, one_line
+from verify.errors import InputError, near_name, one_line, shown
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -63,6 +63,8 @@ class Registry(MutableMapping[str, T]):
 
     def named(self, name: str, field: str = "") -> T:
         """The one of that name. Raises InputError, with the nearest name, for one that nobody has."""
+        if not isinstance(name, str):
+            raise InputError(f"{field or self._what} = {shown(name)}: give a name, {near_name('', tuple(self))}")
         try:
             return self[name]
         except KeyError:

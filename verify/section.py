@@ -5,8 +5,8 @@ from math import log10, pi
 
 import msgspec
 
-from verify.checks import check_number, settle
-from verify.errors import InputError, near_name
+from verify.checks import check_number, check_word, settle
+from verify.errors import InputError
 from verify.field_docs import Value
 from verify.options import SHAPES, Shape
 
@@ -66,8 +66,8 @@ class Sizes(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
         for field, unit in _UNITS.items():
             if (value := _given(self, field)) is not None:
                 check_number(f"{where}.{field}", value, unit, above=0)
-        if self.shape is not None and self.shape not in SHAPES:
-            raise InputError(f"{where}.shape = {self.shape!r} is not known: {near_name(str(self.shape), SHAPES)}")
+        if self.shape is not None:
+            check_word(f"{where}.shape", self.shape, SHAPES)
 
 
 class Section(Sizes, frozen=True, kw_only=True, forbid_unknown_fields=True):

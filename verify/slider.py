@@ -5,8 +5,8 @@ from typing import Any, get_args
 from msgspec.structs import replace
 
 from verify.beam import Beam
-from verify.checks import check_kind, check_number, check_whole, settle
-from verify.errors import InputError, near_name
+from verify.checks import check_kind, check_number, check_whole, check_word, settle
+from verify.errors import InputError
 from verify.field_docs import Value
 from verify.options import CouplingChoice, Face, Kinematics, Law, Line, NormalChoice
 
@@ -109,10 +109,9 @@ class Foot(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
         check_number("slider.foot.length", self.length, "metres", at_least=0)
         check_whole("slider.foot.points", self.points, 1)
         check_number("slider.foot.offset", self.offset, "metres")
-        if self.face not in get_args(Face):
-            raise InputError(
-                f"slider.foot.face = {self.face!r} is not known: {near_name(str(self.face), get_args(Face))}"
-            )
+        check_word("slider.foot.face", self.face, get_args(Face))
+        for name in ("pitches", "mirrored"):
+            check_kind(f"slider.foot.{name}", getattr(self, name), bool)
         for name, unit in (("mass", "kg"), ("inertia", "kg m^2")):
             if (value := getattr(self, name)) is not None:
                 check_number(f"slider.foot.{name}", value, unit, above=0)
@@ -180,9 +179,7 @@ class Slider(Value, frozen=True, kw_only=True, forbid_unknown_fields=True):
             check_kind("slider.contact", self.contact, Contact)
         self._check_feet()
         for name, kind in _WORDS.items():
-            word, known = getattr(self, name), get_args(kind)
-            if word not in known:
-                raise InputError(f"slider.{name} = {word!r} is not known: {near_name(str(word), known)}")
+            check_word(f"slider.{name}", getattr(self, name), get_args(kind))
         check_number("slider.mass", self.mass, "kg", above=0)
         check_number("slider.mu", self.mu, "coefficient of friction", above=0)
         if self.slope is not None:

@@ -45,7 +45,7 @@ def figure(value: Any) -> str:
 
 def number(value: float, digits: int) -> str:
     """A number to so many digits; a standing wave's ratio is infinity."""
-    return f"{value:.{digits}g}" if isfinite(value) else "–" if isnan(value) else "infinity"
+    return f"{value:.{digits}g}" if isfinite(value) else "–" if isnan(value) else f"{'-' * (value < 0)}infinity"
 
 
 def work_in_words(solves: int, fields: int, motions: int, others: dict[str, int] | None = None) -> str:

@@ -10,6 +10,7 @@ from motion_reference import FORCES, FREQUENCY, STRIP
 
 from verify.errors import InputError
 from verify.motion import stepping as slider_run
+from verify.motion.free_vibration import free_vibration
 from verify.motion.records import SLIPS
 from verify.motion.simulate import simulate
 from verify.slider import Slider, changed
@@ -250,3 +251,15 @@ def test_what_a_run_says_of_its_time_is_no_longer_than_the_clock_saw():
     said = run.statistics.set_up_s, run.statistics.wall_s
     assert min(said) > 0.0
     assert sum(said) < perf_counter() - began
+
+
+@pytest.mark.parametrize("verb", ["simulate", "free_vibration"])
+def test_what_is_kept_is_no_array_of_who_asked(verb):
+    """Places that were given as an array are those at which was read, whatever is written into it."""
+    given = np.array([0.1, 0.2])
+    if verb == "simulate":
+        found = simulate(STRIP, FORCES, FREQUENCY, 1e-3, count=8, samples=2, at=given)
+    else:
+        found = free_vibration(STRIP, 2, 1e-3, amplitude=1e-3, count=8, samples=2, at=given)
+    given[:] = 0.0
+    assert found.points.tolist() == [0.1, 0.2]

@@ -1,6 +1,7 @@
 """The answer of a report: of studies, or of what the gates found, never only that they are held."""
 
 import pytest
+from strip import STRIP
 
 from verify import run_scene
 from verify.report.answer import answers_of, gates_in_short
@@ -42,3 +43,30 @@ def test_a_scene_without_gates_or_studies_answers_with_its_scale_alone():
     bare = load_scene("driving-layer").bare
     found = RunResult(scene=bare, gates=(), found={}, solves=(), n_fields=0, n_motions=0, seconds=0.1)
     assert answers_of(found) == ("The beam's first mode is at 9.2354 Hz.",)
+
+
+LONE = """
+[[gate]]
+id = "lone"
+quantity = "mode.frequency"
+arguments = {{ {asked}, mode = 2 }}
+expect = 49.9
+within = 9.0
+why = "Near it."
+"""
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ('model = "segment", count = 9', "49.89118 Hz at mode = 2, of 9 segments."),
+        ('model = "fem", count = 3', "50.49024 Hz at mode = 2, of 3 Hermite elements."),
+        ('model = "analytic"', "49.90041 Hz at mode = 2, of the exact beam."),
+    ],
+)
+def test_a_figure_that_stands_alone_says_of_which_model_it_is(asked, told, tmp_path):
+    """Nine segments' and forty's were both "49.9 Hz at mode = 2"."""
+    path = tmp_path / "strip.toml"
+    path.write_text(STRIP.partition("[[gate]]")[0] + LONE.format(asked=asked))
+    answer, *_ = answers_of(run_scene(str(path)))
+    assert answer == f"mode.frequency (frequency of one mode) is {told}"

@@ -4,7 +4,7 @@ import json
 from itertools import count
 
 import pytest
-from strip import DRAWN
+from strip import DRAWN, STRIP
 
 from verify import run_scene
 from verify.cli import status_of
@@ -188,3 +188,67 @@ def test_the_page_of_a_difference_has_its_verdict_and_links_to_what_broke(kept, 
     assert 'id="strip-gate-second"' in page
     assert "49.90041 ± 0.001 to 50 ± 0.001" in page.replace("50.0", "50")
     assert page.rstrip().endswith("</html>")
+
+
+ASKED = """
+[[gate]]
+id = "too-high"
+quantity = "mode.frequency"
+arguments = { model = "segment", mode = 19, count = 19 }
+expect = 66.8
+within = 1.0
+why = "More modes than a chain has."
+"""
+
+
+def test_what_a_gate_asks_is_an_input_though_its_figure_is_the_same_to_the_last_digit(kept, tmp_path, capsys):
+    """No mode 19 of 19 segments and no mode 31 of 23: both gates fail without a figure; a wall at no end moves none."""
+    (tmp_path / "before.toml").write_text(STRIP + ASKED)
+    asked = ASKED.replace("mode = 19, count = 19", 'mode = 31, count = 23, wall = "half"')
+    (tmp_path / "after.toml").write_text(STRIP.replace("2 pi", "two pi") + asked)
+    before, after = kept(scene="before.toml"), kept(scene="after.toml")
+    _, out = told(capsys, before, after)
+    assert out.startswith("strip: 2 gates the same to the last digit, not all else\n")
+    (scene,) = json.loads(told(capsys, before, after, "--json")[1])["scenes"]
+    changed = {one["what"]: (one["before"], one["after"]) for one in scene["inputs"]}
+    asks = "gate.too-high.arguments"
+    assert changed == {
+        f"{asks}.mode": ("19", "31"),
+        f"{asks}.count": ("19", "23"),
+        f"{asks}.wall": (None, "half"),
+        "gate.second.why": ("2 pi sqrt(E h^2 / 12 rho) / L^2.", "two pi sqrt(E h^2 / 12 rho) / L^2."),
+    }
+
+
+def test_gates_that_were_held_and_are_judged_no_more_are_counted_beside_the_verdict(kept, tmp_path, capsys):
+    """One is gone, one does not apply: of neither is known whether it would be held."""
+    (tmp_path / "more.toml").write_text(DRAWN + MORE)
+    before, aside = kept(scene="more.toml"), kept("beam.length=0.4", scene="more.toml")
+    last = "No gate that was held fails now, {} judged no more\n"
+    assert told(capsys, before, kept())[1].endswith(last.format("1 is"))
+    assert told(capsys, before, aside)[1].endswith(last.format("2 are"))
+    assert told(capsys, aside, before)[1].endswith("No gate that was held fails now\n")
+
+
+def test_runs_of_which_none_is_in_both_are_refused(kept, capsys):
+    """Nothing would be compared, and nothing be said to fail."""
+    for name, folder in (("bar", "reports"), ("strip", "reports"), ("rod", "other"), ("tube", "other")):
+        kept(folder=folder, name=name)
+    status = status_of(["diff", "reports", "other"])
+    assert (status, *capsys.readouterr()) == (
+        2,
+        "",
+        "verify: A = 'reports' holds bar, strip and B = 'other' holds rod, tube, nothing of one name: give two runs of "
+        "the same\n",
+    )
+
+
+def test_of_two_folders_of_one_name_the_newest_run_is_compared(kept, tmp_path, capsys):
+    """Whatever the folders are called, and whatever lies beside a run."""
+    older = kept(folder="first")
+    newest = kept("gate.second.expect=50", folder="second")
+    (newest / "notes.txt").write_text("mine")
+    older.parent.rename(tmp_path / "second" / "zzz")
+    kept(folder="before")
+    assert told(capsys, "before", "second")[0] == 1
+    assert told(capsys, "before", newest.parent)[0] == 1

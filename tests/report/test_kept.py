@@ -124,6 +124,31 @@ def test_a_page_rendered_again_is_the_page_that_was(name, tmp_path, capsys):
     assert (written.folder / "index.html").read_text("utf-8") == was
 
 
+STANDING = """
+[drive]
+frequency_hz = 777.0
+force = [{ position = 0.05 }]
+[[gate]]
+id = "standing"
+quantity = "wave.standing_wave_ratio"
+arguments = { model = "analytic", window = [0.1, 0.4] }
+at_least = 5.0
+why = "One force and no loss: nothing travels."
+"""
+
+
+def test_a_figure_without_bound_is_kept_as_what_it_is(tmp_path, monkeypatch):
+    """JSON has no number for it: an undamped beam's standing-wave ratio under one force."""
+    from verify.report.html import rendered
+
+    (tmp_path / "strip.toml").write_text(STRIP + STANDING)
+    monkeypatch.chdir(tmp_path)
+    written = keep(run_scene("strip.toml"), tmp_path, "strip", "verify run")
+    document = read_kept(written.folder / "run.json", "A").document
+    assert document.gates[-1].measured == float("inf")
+    assert rendered(document) == written.latest.read_text("utf-8")
+
+
 def test_numbers_of_numpy_in_a_chart_of_somebodys_study_are_kept_as_numbers(strip, tmp_path):
     import numpy as np
     from msgspec.structs import replace

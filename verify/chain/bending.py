@@ -9,12 +9,12 @@ from verify.beam import Beam
 from verify.chain.load_path import led_to
 from verify.chain.system import LinkLoad, build_system
 from verify.chain.work import STATIC_LINKS, check_links
-from verify.checks import check_number, check_whole
+from verify.checks import check_number, check_whole, check_word
 from verify.errors import InputError, shown
 from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.places import Numbers, as_typed, in_a_row
-from verify.options import Joints, Wall
+from verify.options import JOINTS, Joints, Wall
 from verify.segments.linear import check
 
 
@@ -106,6 +106,7 @@ def _check_cantilever(beam: Beam, joints: Joints) -> None:
         raise InputError(f"beam.supports = {beam.supports!r}: bend takes a cantilever, give ('clamped', 'free')")
     if beam.tension:
         raise InputError(f"beam.tension = {beam.tension!r} N: bend takes it as load = (along, across), leave it out")
+    check_word("joints", joints, JOINTS)
     if joints == "tensioned":
         raise InputError("joints = 'tensioned' are of a beam.tension, bend has none: give 'series' or 'printed'")
 

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_number, check_whole
+from verify.checks import MOST_PARTS, check_number, check_whole, check_word
 from verify.elements.cuts import check_cuts
 from verify.elements.mesh import KEPT, Elements, build_elements, interpolate, point_loads
 from verify.elements.pencil import (
@@ -27,20 +27,27 @@ from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.theory import check_theory
-from verify.options import Theory
+from verify.options import THEORIES, Theory
 
 FIELD = "n_elements"
 
 
+@as_typed
 def unknowns(beam: Beam, n_elements: int, theory: Theory = "euler-bernoulli") -> int:
-    """How many nodal values the supports leave free, and two shear strains in each of Timoshenko's elements."""
+    """How many nodal values the supports leave free, and two shear strains in each of Timoshenko's elements.
+
+    Raises InputError for a count or a theory that is none.
+    """
+    check_whole(FIELD, n_elements, 1)
+    check_word("theory", theory, THEORIES)
     held = {"pinned": 1, "clamped": 2, "guided": 1, "free": 0}
     inside = 2 * n_elements if theory == "timoshenko" else 0
     return 2 * n_elements + 2 + inside - sum(held[support] for support in beam.supports)
 
 
+@as_typed
 def n_elastic(beam: Beam, n_elements: int, theory: Theory = "euler-bernoulli") -> int:
-    """How many elastic modes the model has."""
+    """How many elastic modes the model has. Raises InputError likewise."""
     return unknowns(beam, n_elements, theory) - beam.rigid_motions
 
 
@@ -63,6 +70,7 @@ def solve_modes(
     return _modes(elements, nodal / sqrt(beam.mass_per_length * elements.parts.unit), pairs)
 
 
+@as_typed
 def check(
     beam: Beam, n_modes: int, n_elements: int, *, grading: float = 1.0, theory: Theory = "euler-bernoulli"
 ) -> None:
@@ -75,7 +83,7 @@ def check(
 def check_asked(beam: Beam, n_modes: int, n_elements: int, grading: float, theory: Theory) -> None:
     """Raise InputError, before anything is allocated, for what elements cannot be asked for."""
     check_whole("n_modes", n_modes, 1)
-    check_whole(FIELD, n_elements, 1)
+    check_whole(FIELD, n_elements, 1, MOST_PARTS)
     check_theory(beam, theory)
     check_cuts(beam, n_elements, grading)
     free, elastic = unknowns(beam, n_elements, theory), n_elastic(beam, n_elements, theory)
@@ -238,6 +246,7 @@ def modes_around(beam: Beam, n_modes: int, n_elements: int, *, grading: float, t
     return solve_modes(beam, min(wanted, most), n_elements, grading=grading, theory=theory)
 
 
+@as_typed
 def unit_responses(
     beam: Beam,
     positions: Numbers,

@@ -5,21 +5,25 @@ from functools import lru_cache
 from msgspec.structs import replace
 
 from verify.beam import Beam
-from verify.checks import check_kind
 from verify.errors import InputError
 from verify.exact.lineup import line_up
 from verify.exact.minors import Found, trial
 from verify.exact.roots import nth_root
+from verify.models.places import as_typed
 
 
-@lru_cache(maxsize=256)
+@as_typed
 def buckling_load(beam: Beam) -> float:
     """The smallest compression at which the beam is no longer stable, newton, whatever its own axial force is.
 
     Euler's load of any beam: the force keeps its size and direction. 0 where supports and springs let the beam turn as
     a whole. Masses do not matter. By Euler-Bernoulli's theory. Raises InputError for what is no beam.
     """
-    check_kind("beam", beam, Beam)
+    return _load(beam)
+
+
+@lru_cache(maxsize=256)
+def _load(beam: Beam) -> float:
     bare = replace(beam, tension=0.0)
     lines = bare.rigid_lines
     if any(slope for _, slope in lines):

@@ -7,7 +7,8 @@ pinned-pinned beam by Rayleigh's and Timoshenko's theories beside them (model fo
 from math import atan, exp, pi, sqrt
 
 from verify.beam import Beam
-from verify.errors import InputError, near_name, shown
+from verify.checks import check_word, whole_number
+from verify.errors import InputError, shown
 from verify.options import THEORIES
 
 HIGHEST = 10**30
@@ -30,9 +31,10 @@ _ROOTS: dict[frozenset[str], tuple[float, int | str, int]] = {
 
 def check_mode(mode: int) -> None:
     """Raise InputError unless `mode` counts from 1, and not beyond what formulas hold."""
-    if not hasattr(mode, "__index__") or mode < 1:
+    whole = whole_number(mode)
+    if whole is None or whole < 1:
         raise InputError(f"mode = {shown(mode)}: modes are numbered from 1, elastic modes only")
-    if mode > HIGHEST:
+    if whole > HIGHEST:
         raise InputError(f"mode = {shown(mode)}: no formula holds one so high, give at most {HIGHEST:.0e}")
 
 
@@ -77,8 +79,7 @@ def frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> floa
     `euler-bernoulli` for all supports; `rayleigh` adds the rotary inertia of the section, `timoshenko` also
     its shear flexibility (Timoshenko, Phil. Mag. 41, 1921), both for pinned-pinned beams. Raises InputError.
     """
-    if theory not in THEORIES:
-        raise InputError(f"theory = {theory!r} is not known: {near_name(theory, THEORIES)}")
+    check_word("theory", theory, THEORIES)
     check_uniform(beam)
     beta = wavenumber_length(beam.supports, mode) / beam.length
     omega = beta * beta * beam.wave_constant

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.checks import check_word
 from verify.errors import InputError, ResonanceError
 from verify.exact.closed_forms import frequency_hz as mode_frequency_hz
 from verify.models.arrays import Array, BoolArray, ComplexArray, Indices
@@ -24,6 +25,7 @@ from verify.models.fields import (
 )
 from verify.models.ordered import distinct
 from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.options import THEORIES
 
 
 @as_typed
@@ -36,6 +38,7 @@ def solve_harmonic(beam: Beam, forces: Forces, frequency_hz: float, theory: str 
     springs, foundation or axial force. Raises InputError; an undamped resonance is refused.
     """
     forces = as_forces(forces)
+    check_word("theory", theory, THEORIES)
     if theory != "euler-bernoulli" or not beam.uniform:
         from verify.exact.driven import general_field
 
@@ -304,6 +307,7 @@ def _exponentials(k: Any, ends: Array, span: int, x: Array, derivative: int) -> 
     return np.array(rows)
 
 
+@as_typed
 def unit_responses(
     beam: Beam, positions: Numbers, frequencies_hz: Numbers, x: Numbers, theory: str = "euler-bernoulli"
 ) -> ComplexArray:
@@ -311,6 +315,7 @@ def unit_responses(
 
     NaN at the frequencies of undamped resonances. Raises InputError.
     """
+    check_word("theory", theory, THEORIES)
     positions, frequencies_hz, x = unit_drives(beam, positions, frequencies_hz, x)
     responses = np.full((len(frequencies_hz), len(positions), len(x)), np.nan, dtype=complex)
     if not responses.size:

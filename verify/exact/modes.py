@@ -7,7 +7,7 @@ from math import exp, pi, sqrt
 import numpy as np
 
 from verify.beam import Beam
-from verify.checks import check_whole
+from verify.checks import check_whole, check_word
 from verify.exact.buckling import check_stable
 from verify.exact.closed_forms import HIGHEST, check_mode, frequency_hz, root_parts
 from verify.exact.harmonic import solve_harmonic, unit_responses
@@ -81,11 +81,13 @@ def solve_modes(beam: Beam, n_modes: int, theory: str = "euler-bernoulli") -> Mo
 def check_n_modes(beam: Beam, n_modes: int, theory: str, n_beams: int = 1) -> None:
     """Raise InputError where there are no modes to be found, or where finding them takes longer than is waited for."""
     check_whole("n_modes", n_modes, 1)
+    check_word("theory", theory, THEORIES)
     closed = has_closed_form(beam, min(n_modes, HIGHEST), theory)
     each = _CLOSED_S if closed else _COUNTED_S * (1 + len(beam.pieces))
     check_work("n_modes", n_modes, min(n_modes, HIGHEST) * n_beams * each, "ask for fewer modes")
 
 
+@as_typed
 def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
     """Mass-normalised shape of one exact mode or a derivative of any order at x, SI; a number x is a row of one.
 
@@ -97,14 +99,17 @@ def mode_shape(beam: Beam, mode: int, x: Numbers, derivative: int = 0, theory: s
     return np.asarray(_shapes(beam, (mode,), x, derivative, theory)[0])
 
 
+@as_typed
 def mode_shapes(beam: Beam, n_modes: int, x: Numbers, derivative: int = 0, theory: str = "euler-bernoulli") -> Array:
-    """The same of the first `n_modes` modes, (n_modes, *shape of x)."""
+    """The same of the first `n_modes` modes, (n_modes, *shape of x). Raises InputError likewise."""
+    check_n_modes(beam, n_modes, theory)
     return _shapes(beam, range(1, n_modes + 1), x, derivative, theory)
 
 
 def _shapes(beam: Beam, modes: Sequence[int], x: Numbers, derivative: int, theory: str) -> Array:
     at = np.atleast_1d(places("x", x, beam.length))
     check_whole("derivative", derivative, 0)
+    check_word("theory", theory, THEORIES)
     if theory != "euler-bernoulli" or not beam.uniform:
         return _general(beam, modes, at.ravel(), derivative, theory).reshape(len(modes), *at.shape)
     xi = at.ravel() / beam.length
@@ -198,6 +203,7 @@ def _coefficients(
     return side, -side * sigma, a, b
 
 
+@as_typed
 def exact_frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -> float:
     """The exact frequency of one elastic mode of any beam by a beam theory, Hz, to rounding.
 
@@ -205,6 +211,7 @@ def exact_frequency_hz(beam: Beam, mode: int, theory: str = "euler-bernoulli") -
     are counted by, so that none is missed. Modes rank by frequency: above its cut-off sqrt(kappa G A / rho I) a
     Timoshenko beam has a second family among them. Raises InputError, also for compression beyond buckling.
     """
+    check_word("theory", theory, THEORIES)
     if theory == "euler-bernoulli" and beam.uniform:
         return frequency_hz(beam, mode)
     check_mode(mode)
@@ -227,6 +234,7 @@ def has_closed_form(beam: Beam, mode: int, theory: str) -> bool:
     return 2.0 * pi * frequency_hz(beam, mode, theory) < sqrt(shear / turning)
 
 
+@as_typed
 def stepped_frequency_hz(beam: Beam, mode: int) -> float:
     """The exact frequency of one elastic mode of a beam of any number of sections, Hz; as `exact_frequency_hz`."""
     check_mode(mode)

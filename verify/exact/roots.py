@@ -5,9 +5,14 @@ from functools import lru_cache
 from math import pi
 
 from verify.beam import Beam
+from verify.checks import check_number, check_word
 from verify.exact.lineup import Lineup, line_up
 from verify.exact.minors import Found, trial
+from verify.models.places import as_typed
+from verify.options import THEORIES
 
+LARGEST_TRIAL = 1e60
+"""Beta L: its fourth power and the squares of that are numbers too."""
 _DIGITS = 4e-16
 """Relative, where a search ends."""
 
@@ -18,8 +23,14 @@ def trials(line: Lineup) -> Callable[[float], Found]:
     return lru_cache(maxsize=20_000)(lambda beta_length: trial(line, beta_length**4))
 
 
+@as_typed
 def modes_below(beam: Beam, beta_length: float, theory: str = "euler-bernoulli") -> int:
-    """How many frequencies, rigid ones included, lie below omega = beta^2 sqrt(EI / rho A), by beta L."""
+    """How many frequencies, rigid ones included, lie below omega = beta^2 sqrt(EI / rho A), by beta L.
+
+    Raises InputError for a beta L that is none, or so large that its fourth power is no number.
+    """
+    check_number("beta_length", beta_length, "beta L", at_least=0.0, at_most=LARGEST_TRIAL)
+    check_word("theory", theory, THEORIES)
     return trials(line_up(beam, theory))(beta_length).below
 
 

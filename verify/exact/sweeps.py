@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_whole, several
+from verify.checks import check_whole, check_word, several
 from verify.errors import InputError
 from verify.exact.closed_forms import wavenumber_length
 from verify.exact.harmonic import check_off_resonance, resonant, solve_harmonic, uniform_shapes
@@ -16,6 +16,7 @@ from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.sweeps import FIELD, HarmonicSweep, check_held, of_each, one_by_one, swept_frequencies
+from verify.options import THEORIES
 
 _Swept: TypeAlias = Callable[[Array, int], ComplexArray]
 """(x, derivative) -> (n, len(x))."""
@@ -32,6 +33,7 @@ def sweep_harmonic(beam: Beam, forces: Forces, frequencies_hz: Numbers, theory: 
     `solve_harmonic` does, by index: of several resonances the first.
     """
     forces = as_forces(forces)
+    check_word("theory", theory, THEORIES)
     frequencies = swept_frequencies(beam, forces, frequencies_hz, UNKNOWNS * (len(forces) + 1))
     shapes, turned = _shapes(beam, forces, frequencies, theory)
     return HarmonicSweep(
@@ -83,6 +85,7 @@ def sweep_modes(beams: Iterable[Beam], n_modes: int, theory: str = EULER) -> Arr
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
     check_held(len(beams), n_modes, "beams")
+    check_word("theory", theory, THEORIES)
     slowest = max(beams, key=lambda beam: (not beam.uniform, len(beam.pieces)))
     check_n_modes(slowest, n_modes, theory, 1 if theory == EULER and slowest.uniform else len(beams))
     plain = np.array([theory == EULER and beam.uniform for beam in beams])

@@ -10,7 +10,7 @@ import numpy as np
 from verify.beam import Beam, PointForce
 from verify.checks import check_kind, check_whole, plain, several
 from verify.errors import InputError, shown
-from verify.models.arrays import Array
+from verify.models.arrays import Array, ComplexArray
 
 Numbers: TypeAlias = float | Sequence[float] | Array
 """One, a list or an array."""
@@ -60,6 +60,17 @@ def real_array(field: str, value: object, unit: str) -> Array:
     if given.dtype.kind not in "iuf":
         raise InputError(f"{field} = {shown(value)}: give a number, a list or an array of numbers ({unit})")
     return given.astype(float, copy=False)
+
+
+def complex_array(field: str, value: object, unit: str) -> ComplexArray:
+    """Numbers in any arrangement, real or complex, likewise."""
+    try:
+        given = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        given = np.empty(0, dtype=object)
+    if given.dtype.kind not in "iufc":
+        raise InputError(f"{field} = {shown(value)}: give a number, a list or an array of numbers ({unit})")
+    return given.astype(complex, copy=False)
 
 
 def places(field: str, value: object, length: float) -> Array:

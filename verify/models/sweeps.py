@@ -11,8 +11,9 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.checks import check_word, plain
 from verify.cores import at_once
-from verify.errors import InputError
+from verify.errors import InputError, shown
 from verify.field_docs import Value
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
@@ -21,6 +22,7 @@ from verify.models.fields import RESONANCE, HarmonicField, check_forces, check_f
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.models.places import Forces, Numbers, as_asked, keep_lines, places, real_array
 from verify.models.stacks import PencilStack, lowest_of_each
+from verify.options import THEORIES
 
 MOST_VALUES = 50_000_000
 """Complex numbers that a sweep holds at once: 0.8 GB."""
@@ -81,8 +83,9 @@ class HarmonicSweep(Value, frozen=True, eq=False, kw_only=True):
 
     def field(self, index: int) -> HarmonicField:
         """The field at one of the frequencies, counted from 0. Raises InputError for one that is not there."""
-        if not -len(self) <= index < len(self):
-            raise InputError(f"index = {index!r}: the sweep has {len(self)} frequencies, counted from 0")
+        index = plain(index)
+        if isinstance(index, bool) or not isinstance(index, int) or not -len(self) <= index < len(self):
+            raise InputError(f"index = {shown(index)}: the sweep has {len(self)} frequencies, counted from 0")
         turned = self.turned
         return HarmonicField(
             model=self.model,
@@ -120,7 +123,7 @@ def _turned(fields: Sequence[HarmonicField]) -> Callable[[Array, int], ComplexAr
 
 def swept_frequencies(beam: Beam, forces: Forces, frequencies_hz: Numbers, unknowns: int) -> Array:
     """The frequencies in a row, (n,). Raises InputError as `check_drive` does, by index, and for too many."""
-    found = real_array(FIELD, frequencies_hz, "hertz").ravel()
+    found = real_array(FIELD, frequencies_hz, "hertz").flatten()  # a copy, as what is kept is to be
     if not found.size:
         raise InputError(f"{FIELD} is empty: give at least one frequency in hertz")
     check_held(len(found), unknowns, FIELD)
@@ -213,6 +216,7 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     """
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
+    check_word("theory", theory, THEORIES)
     check_held(len(beams), n_modes, "beams")
     leaders = _leaders(beams, theory)
     groups = _groups(sorted(set(leaders)), beams, model.layout)

@@ -1,7 +1,8 @@
 """Which theory of a beam is asked for, and whether a beam has what it takes."""
 
 from verify.beam import Beam
-from verify.errors import InputError, near_name
+from verify.checks import check_word
+from verify.errors import InputError
 from verify.options import THEORIES
 
 _TAKES = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "shear_stiffness")}
@@ -10,8 +11,7 @@ _TAKES = {"rayleigh": ("rotary_inertia",), "timoshenko": ("rotary_inertia", "she
 
 def check_theory(beam: Beam, theory: str) -> None:
     """Raise InputError for a theory that is unknown, that a section lacks a figure for, or beside an axial force."""
-    if theory not in THEORIES:
-        raise InputError(f"theory = {theory!r} is not known: {near_name(theory, THEORIES)}")
+    check_word("theory", theory, THEORIES)
     if theory == "euler-bernoulli":
         return
     if beam.tension:

@@ -13,6 +13,7 @@ from verify.errors import InputError, shown
 from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
+from verify.models.fields import LARGEST_SLOPE
 from verify.models.intervals import extremes
 from verify.models.places import Numbers, as_typed, in_a_row, real_array
 from verify.models.time_basis import TimeBasis
@@ -29,6 +30,8 @@ FINE = 3
 POINTS = 30_000_000
 """Shapes at places, or modes at times, held at once."""
 MOST_SAMPLES = 1_000_000
+MOST_PERIODS = 1e12
+"""Of the highest mode that is kept: its phase is known to 1e-3 rad by then."""
 STEP = 5e-4
 """Of the beam's length: between the five values that a function's slope is read from, at most."""
 FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
@@ -132,14 +135,25 @@ def free_vibration(
     check_whole("samples", samples, 2)
     if samples > MOST_SAMPLES:
         raise InputError(f"samples = {samples!r}: keep between 2 and {MOST_SAMPLES} of them")
-    points = in_a_row("at", at, "metres")
+    points = in_a_row("at", at, "metres").copy()  # which is kept
     if not np.all((points >= 0.0) & (points <= beam.length)):
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     MODELS.named(model)
     basis = basis_of(beam, model, count, kept_modes(model, modes, EXACT_MODES))
+    _check_phase(basis, duration)
     q, rates, unread = _start(basis, shape, amplitude, velocity)
     found = _told(basis, zeta, points, np.linspace(0.0, duration, samples), q, rates, unread)
     return msgspec.structs.replace(found, notes=(*found.notes, *_missed(basis, shape, q)))
+
+
+def _check_phase(basis: TimeBasis, duration: float) -> None:
+    """Raise InputError where the highest mode has swung so often that rounding is all there is of its phase."""
+    hertz = float(basis.omegas[-1]) / (2.0 * np.pi)
+    if duration > MOST_PERIODS / hertz:
+        raise InputError(
+            f"duration = {duration!r} s is more than {MOST_PERIODS:.0e} periods of the highest mode, at {hertz:.4g} "
+            "Hz, of whose phase rounding leaves nothing: shorten it"
+        )
 
 
 def _start(
@@ -171,7 +185,8 @@ def _mode(basis: TimeBasis, mode: int, amplitude: float | None) -> Array:
         raise InputError(f"shape = {mode}: the {basis.model} model has {len(basis.omegas)} modes, raise count or modes")
     if amplitude is None:
         raise InputError(f"amplitude is missing: give mode {mode} its largest deflection in metres")
-    check_number("amplitude", amplitude, "metres")
+    most = LARGEST_SLOPE * basis.beam.length
+    check_number("amplitude", amplitude, "metres", at_least=-most, at_most=most)
 
     def along(x: Array) -> Array:
         return np.asarray(basis.shapes(x, 0)[mode - 1])

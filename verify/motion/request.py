@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_number, check_whole
+from verify.checks import check_kind, check_number, check_whole
 from verify.errors import InputError, shown, written
 from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 STEPS_PER_PERIOD = 64
 """At least: more where the start excites faster modes (`step_size`) or a slider's way asks for it (`judged_step`)."""
+SHORTEST = 1e-100
+"""Seconds of a motion, and periods of its growth: their squares are numbers."""
 COARSEST = 0.25
 """Of a period: longer steps of a slider are refused."""
 MOST_STEPS = 2e9
@@ -120,6 +122,8 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
     beam, hertz = driven.beam, driven.frequency_hz
     check_drive(beam, driven.forces, hertz)
     check_number("duration", driven.duration, "seconds", above=0)
+    check_number("duration", driven.duration, "seconds", at_least=SHORTEST)
+    check_kind("ledger", watched.ledger, bool)
     _check_start(modelled.model, started)
     _check_samples(watched.samples)
     zeta = 0.5 * beam.loss_factor if modelled.damping is None else modelled.damping
@@ -166,7 +170,7 @@ def _check_samples(samples: int) -> None:
 
 def _points(beam: Beam, at: Numbers) -> Array:
     """Positions as an array, metres. Raises InputError off the beam."""
-    points = in_a_row("at", at, "metres")
+    points = in_a_row("at", at, "metres").copy()  # which is kept
     if not np.all((points >= 0.0) & (points <= beam.length)):
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     return points
@@ -175,6 +179,8 @@ def _points(beam: Beam, at: Numbers) -> Array:
 def _check_start(model: str, started: Started) -> None:
     start, soft, envelope, before = started.start, started.soft, started.envelope, started.before
     check_number("soft_start_periods", soft, "periods of the drive", at_least=0)
+    if 0.0 < soft < SHORTEST:
+        raise InputError(f"soft_start_periods = {soft!r}: give 0, or at least {SHORTEST:g}, whose square is a number")
     MODELS.named(model)
     if before is not None and not isinstance(getattr(before, "end", None), EndState):
         raise InputError(f"continue_from = {shown(before)}: give a Motion or a FreeVibration")

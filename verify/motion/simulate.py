@@ -75,6 +75,7 @@ def simulate(
     put in. Raises InputError.
     """
     began = perf_counter()
+    check_kind("patient", patient, bool)
     if slider is not None:
         check_kind("slider", slider, Slider)
         slider.check_stays()

@@ -122,7 +122,8 @@ def run_motors(
 
 def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
     """One for each slider. Raises InputError."""
-    found = tuple(given) if isinstance(given, Sequence) else (given,) * n
+    row = given.tolist() if getattr(given, "shape", ()) else given
+    found = tuple(row) if isinstance(row, Sequence) else (row,) * n
     if len(found) != n:
         raise InputError(f"{field} has {len(found)} of them for {n} sliders: give one for each, or one for all")
     return found
@@ -133,6 +134,7 @@ def _run(
 ) -> tuple[MotorRun, ...]:
     """The runs of sliders, each with its held speed and whether it stays at its place. Raises InputError."""
     began, beam, model, start = perf_counter(), asked.driven.beam, asked.modelled.model, asked.started.start
+    check_kind("patient", asked.patient, bool)
     check_together(model, start, [slider for slider, _, _ in put])
     for _, speed, stays in put:
         if speed is not None:

@@ -54,7 +54,7 @@ def gates_in_short(gates: "tuple[GateResult, ...]") -> Iterator[str]:
     first, *others = side
     off = [f"{_parts(one)} are {percent(_apart(one.measured, first.measured))} off" for one in others]
     unit = "" if first.unit == "1" else f" {first.unit}"
-    told = f"{_named(first)} is {figure(first.measured)}{unit}{_at(first)}"
+    told = f"{_named(first)} is {figure(first.measured)}{unit}{_at(first)}{'' if others else _of(first)}"
     sure = [abs(_apart(gate.measured, gate.band.expect)) for gate in known if _value(gate.band.expect)]
     n = len(sure)
     agree = f"{n} known figures are met to {percent(max(sure), sign=False)} or better" if n > 1 else ""
@@ -101,13 +101,28 @@ def _named(gate: "GateResult") -> str:
     return f"{gate.quantity} ({about[:1].lower()}{about[1:]})" if about else gate.quantity
 
 
+def _conditions(gate: "GateResult") -> dict[str, Any]:
+    """Its arguments beside the model."""
+    return {key: value for key, value in gate.arguments.items() if key not in ("model", "count")}
+
+
 def _at(gate: "GateResult") -> str:
     """Under which arguments, or as which gate has them."""
-    given = {key: value for key, value in gate.arguments.items() if key not in ("model", "count")}
+    given = _conditions(gate)
     if len(given) > SAID_AT:
         return f" as gate {gate.id} has it"
     told = ", ".join(f"{key} = {f'{value:.4g}' if isinstance(value, float) else value}" for key, value in given.items())
     return f" at {told}" if told else ""
+
+
+def _of(gate: "GateResult") -> str:
+    """Of which model, in how many parts, where nothing beside it says so."""
+    name = _model(gate)
+    if not name or len(_conditions(gate)) > SAID_AT:
+        return ""
+    if not MODELS[name].sized:
+        return f", of the {MODELS[name].title}"
+    return f", of {_parts(gate)}" if gate.arguments.get("count") else f", of {MODELS[name].title}"
 
 
 def _value(told: Any) -> complex | float | None:

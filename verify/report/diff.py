@@ -5,6 +5,7 @@ from typing import Any
 
 import msgspec
 
+from verify.errors import InputError
 from verify.report.document import Document
 from verify.report.kept import Kept
 from verify.run.gates import GateResult
@@ -14,6 +15,8 @@ WORDS = {True: "pass", False: "FAIL", None: "n/a"}
 """Verdicts of gates."""
 ABSENT = "–"
 _VERDICTS = set(VERDICTS.values())
+_REFERRED = ("reference", "uncertainty", "source", "why")
+"""Fields of a gate that say where its expectation comes from."""
 
 
 class GateChange(msgspec.Struct, frozen=True, kw_only=True):
@@ -27,6 +30,11 @@ class GateChange(msgspec.Struct, frozen=True, kw_only=True):
     def broken(self) -> bool:
         """Whether it was held and fails now."""
         return bool(self.before and self.after and self.before.passed is True and self.after.passed is False)
+
+    @property
+    def unjudged(self) -> bool:
+        """Whether it was held, and is gone or does not apply."""
+        return bool(self.before and self.before.passed and (self.after is None or self.after.passed is None))
 
     @property
     def verdict(self) -> str:
@@ -105,6 +113,8 @@ class Differences(msgspec.Struct, frozen=True, kw_only=True):
     scenes: tuple[Difference, ...]
     only_before: tuple[str, ...]
     only_after: tuple[str, ...]
+    unjudged: int
+    """Gates that were held and of which nothing is known now: they, or their scene, are gone, or they do not apply."""
 
     @property
     def broken(self) -> int:
@@ -114,27 +124,40 @@ class Differences(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def verdict(self) -> str:
         """In one line."""
+        n = self.unjudged
+        gone = f", {n} {'is' if n == 1 else 'are'} judged no more" if n else ""
         if self.broken:
-            return f"{_counted(self.broken, 'gate')} held before and fail{'s' * (self.broken == 1)} now"
-        return "No gate that was held fails now"
+            return f"{_counted(self.broken, 'gate')} held before and fail{'s' * (self.broken == 1)} now{gone}"
+        return f"No gate that was held fails now{gone}"
 
 
 def differences(before: dict[str, Kept], after: dict[str, Kept], names: tuple[str, str]) -> Differences:
-    """What changed between runs of the same names; two single runs are compared whatever they are called."""
+    """What changed between runs of the same names; two single runs are compared whatever they are called.
+
+    Raises InputError where there is nothing to compare.
+    """
     if len(before) == len(after) == 1:
         (one,), (other,) = before.values(), after.values()
         title = one.report if one.report == other.report else f"{one.report} to {other.report}"
         pairs = {title: (one.document, other.document)}
     else:
         pairs = {name: (before[name].document, after[name].document) for name in before if name in after}
+    if not pairs:
+        raise InputError(
+            f"A = {names[0]!r} holds {', '.join(before)} and B = {names[1]!r} holds {', '.join(after)}, nothing of one "
+            "name: give two runs of the same"
+        )
     single = len(before) == len(after) == 1
-    scenes = (difference(name, *pair) for name, pair in pairs.items())
+    scenes = [difference(name, *pair) for name, pair in pairs.items()]
+    gone = [] if single else [kept.document for name, kept in before.items() if name not in after]
     return Differences(
         before=names[0],
         after=names[1],
         scenes=tuple(sorted(scenes, key=lambda one: not one.broken)),
         only_before=() if single else tuple(name for name in before if name not in after),
         only_after=() if single else tuple(name for name in after if name not in before),
+        unjudged=sum(gate.unjudged for one in scenes for gate in one.gates)
+        + sum(gate.passed is True for one in gone for gate in one.gates),
     )
 
 
@@ -149,7 +172,10 @@ def difference(name: str, before: Document, after: Document) -> Difference:
         same=len({gate.id for gate in (*before.gates, *after.gates)}) - len(gates),
         said=(*_held(before, after), *_lines("answer", before.answers, after.answers), *_facts(before, after)),
         versions=tuple(_values(before.environment, after.environment)),
-        inputs=tuple(_values(_inputs(before.problem.toml), _inputs(after.problem.toml))),
+        inputs=(
+            *_values(_inputs(before.problem.toml), _inputs(after.problem.toml)),
+            *_questions(before.gates, after.gates),
+        ),
     )
 
 
@@ -160,6 +186,18 @@ def _gates(before: Iterable[GateResult], after: Iterable[GateResult]) -> Iterato
         one, other = old.get(name), new.get(name)
         if one is None or other is None or _judged(one) != _judged(other):
             yield GateChange(id=name, before=one, after=other)
+
+
+def _questions(before: Iterable[GateResult], after: Iterable[GateResult]) -> Iterator[Change]:
+    """What gates that are in both runs ask, and what they refer to: by that their figures can differ, or not at all."""
+    old, new = ({gate.id: dict(_asked(gate)) for gate in gates} for gates in (before, after))
+    for name in (name for name in old if name in new):
+        yield from _values(old[name], new[name])
+
+
+def _asked(gate: GateResult) -> Iterator[tuple[str, str]]:
+    told = {name: getattr(gate, name) for name in ("quantity", "arguments", *_REFERRED)}
+    return _flat({name: value for name, value in told.items() if value not in (None, "")}, f"gate.{gate.id}")
 
 
 def _judged(gate: GateResult) -> tuple[Any, ...]:
@@ -215,7 +253,7 @@ def _values(before: dict[str, str], after: dict[str, str]) -> Iterator[Change]:
 
 
 def _inputs(toml: str) -> dict[str, str]:
-    """Every value of a scene by its key, its gates left out: they are compared by what they expect."""
+    """Every value of a scene by its key, its gates left out: they are compared one by one."""
     import tomllib
 
     data = tomllib.loads(toml)
@@ -271,6 +309,7 @@ def as_plain(found: Differences) -> dict[str, Any]:
         "before": found.before,
         "after": found.after,
         "broken": found.broken,
+        "unjudged": found.unjudged,
         "scenes": [msgspec.to_builtins(one) | {"broken": [gate.id for gate in one.broken]} for one in found.scenes],
         "only_before": list(found.only_before),
         "only_after": list(found.only_after),

@@ -10,8 +10,9 @@ point to nothing, and Windows makes links for administrators alone.
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,8 @@ LAYOUT = 1
 """Of the file; another number where what is kept can no longer be read."""
 KEPT = 5
 """Runs of one name that are kept, unless told."""
+_WORDS = ("inf", "-inf", "nan")
+"""Of figures that are not finite, as Python writes and reads them."""
 _TIME = re.compile(r"(\d{4}-\d{2}-\d{2}_\d{2}-\d{2}-\d{2})(?:-(\d+))?")
 
 
@@ -93,13 +96,39 @@ def keep(result: "RunResult", reports: Path, name: str, command: str, most: int 
 def as_text(document: Document, name: str, figures: dict[str, Any]) -> str:
     """The file of a run."""
     plain = json.dumps(finite(figures), allow_nan=False, separators=(",", ":"))
+    document = _with_measured(document, _in_words)
     kept = Kept(layout=LAYOUT, verify=__version__, report=name, document=document, figures=msgspec.Raw(plain.encode()))
     return msgspec.json.encode(kept, enc_hook=float).decode() + "\n"  # numpy's numbers of a study from elsewhere
 
 
+def _with_measured(document: Document, told: Callable[[Any], Any]) -> Document:
+    """A document with what its gates measured told otherwise."""
+    replace = msgspec.structs.replace
+    return replace(document, gates=tuple(replace(gate, measured=told(gate.measured)) for gate in document.gates))
+
+
+def _in_words(measured: Any) -> Any:
+    """What is not finite as a word, for JSON has no number for it."""
+    if isinstance(measured, dict):
+        return {name: _in_words(value) for name, value in measured.items()}
+    return str(float(measured)) if isinstance(measured, float) and not isfinite(measured) else measured
+
+
+def _in_numbers(measured: Any) -> Any:
+    """The same as it was."""
+    if isinstance(measured, dict):
+        return {name: _in_numbers(value) for name, value in measured.items()}
+    return float(measured) if isinstance(measured, str) and measured in _WORDS else measured
+
+
 def runs_in(home: Path) -> list[Path]:
     """Folders that hold a kept run and nothing else, from the oldest to the newest."""
-    found = [(when, path) for path in _folders(home) if (when := _when(path)) and _is_ours(path)]
+    return [path for path in _all_runs_in(home) if _is_ours(path)]
+
+
+def _all_runs_in(home: Path) -> list[Path]:
+    """Folders that hold a kept run, whatever lies beside it, from the oldest to the newest."""
+    found = [(when, path) for path in _folders(home) if (when := _when(path)) and (path / FILE).is_file()]
     return [path for _, path in sorted(found)]
 
 
@@ -133,7 +162,8 @@ def read_kept(path: Path, field: str) -> Kept:
         raise InputError(f"{field} = {str(path)!r} is no run that was kept: {remedy}") from None
     try:
         if head.layout == LAYOUT:
-            return msgspec.json.decode(data, type=Kept)
+            kept = msgspec.json.decode(data, type=Kept)
+            return msgspec.structs.replace(kept, document=_with_measured(kept.document, _in_numbers))
         why = f"layout {head.layout} for {LAYOUT}"
     except msgspec.DecodeError as error:
         why = shortened(str(error), 120)
@@ -161,15 +191,15 @@ def runs_at(path: Path, field: str) -> dict[str, Kept]:
         return _named(read_kept(path, field))
     if (path / FILE).is_file():
         return _named(read_kept(path / FILE, field))
-    if own := runs_in(path):
+    if own := _all_runs_in(path):
         return _named(read_kept(own[-1] / FILE, field))
-    newest = [runs[-1] for home in _folders(path) if (runs := runs_in(home))]
+    newest = [runs[-1] for home in _folders(path) if (runs := _all_runs_in(home))]
     if not newest:
         raise InputError(f"{field} = {str(path)!r} holds no run that was kept: give a {FILE}, or a folder of runs")
     found: dict[str, Kept] = {}
-    for one in newest:
+    for one in sorted(newest, key=lambda run: _when(run) or ("", 0)):  # of two folders of one name the newest is last
         found |= _named(read_kept(one / FILE, field))
-    return found
+    return dict(sorted(found.items()))
 
 
 def _named(kept: Kept) -> dict[str, Kept]:

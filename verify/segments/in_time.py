@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam
-from verify.errors import InputError, near_name
+from verify.checks import check_word
 from verify.models.arrays import Array
 from verify.models.driven_pencil import check_dense
 from verify.models.eigen import modal_basis
 from verify.models.places import as_typed
 from verify.models.time_basis import TimeBasis, check_held
-from verify.options import LINES, Attachment, Joints, Line, Load, Wall
+from verify.options import LINES, LOADS, Attachment, Joints, Line, Load, Wall
 from verify.segments.linear import check, leading_sign
 from verify.segments.links import Chain, build_chain, chain_pencil
 from verify.segments.loads import joint_weights
@@ -40,8 +40,8 @@ def time_basis(
     """
     check(beam, 1, n_segments, wall=wall, joints=joints, attachment=attachment)
     check_held(beam)
-    if line not in LINES:
-        raise InputError(f"line = {line!r} is not known: {near_name(line, LINES)}")
+    check_word("load", load, LOADS)
+    check_word("line", line, LINES)
     chain = build_chain(beam, n_segments, wall=wall, joints=joints, attachment=attachment)
     uniform = beam.supports == ("pinned", "pinned") and beam.uniform and not beam.section
     omegas, read, method, turns = _pinned(beam, n_segments) if uniform else _dense(beam, chain)

@@ -9,8 +9,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_number, check_whole
-from verify.errors import InputError, near_name
+from verify.checks import check_number, check_whole, check_word
+from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
 from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
@@ -21,8 +21,10 @@ from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.theory import check_theory
 from verify.options import (
+    ATTACHMENTS,
     LOADS,
     READINGS,
+    THEORIES,
     Attachment,
     Joints,
     Load,
@@ -46,10 +48,17 @@ _FEWEST_MENDED = 6
 """Links of which mended joints that slip leave a positive mass, whatever stands at the ends."""
 
 
+@as_typed
 def unknowns(
     beam: Beam, n_segments: int, theory: Theory = "euler-bernoulli", attachment: Attachment = "reciprocal"
 ) -> int:
-    """How many joint positions the supports leave free, slips of joints and turns of bodies beyond end joints."""
+    """How many joint positions the supports leave free, slips of joints and turns of bodies beyond end joints.
+
+    Raises InputError for a count, a theory or an attachment that is none.
+    """
+    check_whole(FIELD, n_segments, 1)
+    check_word("theory", theory, THEORIES)
+    check_word("attachment", attachment, ATTACHMENTS)
     held = sum(support in ("pinned", "clamped") for support in beam.supports)
     slips = n_segments - 1 + held if theory == "timoshenko" else 0
     weighty = {m.position for m in beam.mass if m.rotary_inertia}
@@ -57,10 +66,11 @@ def unknowns(
     return n_segments + 1 - held + slips + sum(elastic and at in weighty for at, elastic in ends)
 
 
+@as_typed
 def n_elastic(
     beam: Beam, n_segments: int, theory: Theory = "euler-bernoulli", attachment: Attachment = "reciprocal"
 ) -> int:
-    """How many elastic modes the chain has: unknowns less rigid motions."""
+    """How many elastic modes the chain has: unknowns less rigid motions. Raises InputError likewise."""
     return max(unknowns(beam, n_segments, theory, attachment) - beam.rigid_motions, 0)
 
 
@@ -106,6 +116,7 @@ def settings_of(wall: Wall, joints: Joints, grading: float, theory: Theory, atta
     return {"wall": wall, "joints": joints, "grading": grading, "theory": theory, "attachment": attachment}
 
 
+@as_typed
 def check(
     beam: Beam,
     n_modes: int,
@@ -262,10 +273,8 @@ def damped(beam: Beam, chain: Chain, pencil: FactoredPencil, dashpots: float) ->
 
 def check_settings(load: str, reading: str, zeta: float, dashpot: float) -> None:
     """Raise InputError for a load or a reading that is not known, or a damping that is none."""
-    if load not in LOADS:
-        raise InputError(f"load = {load!r} is not known: {near_name(load, LOADS)}")
-    if reading not in READINGS:
-        raise InputError(f"reading = {reading!r} is not known: {near_name(reading, READINGS)}")
+    check_word("load", load, LOADS)
+    check_word("reading", reading, READINGS)
     check_number("modal_damping", zeta, "0 means none", at_least=0, below=1)
     check_number("joint_dashpot", dashpot, "N m s, 0 means none", at_least=0)
 
@@ -334,6 +343,7 @@ def _link_reading(chain: Chain, free: ComplexArray, x: Array, derivative: int) -
     return np.asarray(0.5 * (ends[0] + ends[1]))
 
 
+@as_typed
 def unit_responses(
     beam: Beam,
     positions: Numbers,

@@ -13,8 +13,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
-from verify.checks import check_whole
-from verify.errors import InputError, near_name
+from verify.checks import MOST_PARTS, check_whole, check_word
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
@@ -153,9 +152,8 @@ def check_set_up(n_segments: int, wall: str, joints: str, attachment: str) -> No
     """Raise InputError for a number of links that is none, a single link, which does not bend, or an unknown word."""
     words = (("wall", wall, WALLS), ("joints", joints, JOINTS), ("attachment", attachment, ATTACHMENTS))
     for field, word, known in words:
-        if word not in known:
-            raise InputError(f"{field} = {word!r} is not known: {near_name(str(word), known)}")
-    check_whole(FIELD, n_segments, 2)
+        check_word(field, word, known)
+    check_whole(FIELD, n_segments, 2, MOST_PARTS)
 
 
 def build_chain(

@@ -32,7 +32,7 @@ from verify.segments.linear import (
     swept_shapes,
     swept_turns,
 )
-from verify.segments.links import Chain, build_chain, chain_pencil
+from verify.segments.links import Chain, build_chain, chain_pencil, check_set_up
 from verify.segments.stacks import chain_stack, layout
 
 
@@ -116,6 +116,7 @@ def sweep_modes(
     """
     beams = several("beams", beams, Beam)
     check_whole("n_modes", n_modes, 1)
+    check_set_up(n_segments, wall, joints, attachment)
     settings = settings_of(wall, joints, grading, theory, attachment)
 
     def make(beam: Beam) -> tuple[FactoredPencil, float]:

@@ -19,12 +19,13 @@ Without a loss factor Z_m = conj(Z_b) and |Gamma_held| = 1.
 import msgspec
 import numpy as np
 
-from verify.beam import Beam
-from verify.checks import check_number
+from verify.beam import Beam, check_frequency
+from verify.checks import check_kind, check_number
 from verify.device import Device, of_impedance
 from verify.errors import InputError
 from verify.models.arrays import ComplexArray
 from verify.models.fields import wavenumber
+from verify.models.places import as_typed
 
 _ENDS = {"pinned": (0, 2), "clamped": (0, 1), "free": (2, 3), "guided": (1, 3)}
 """Derivatives of the deflection that a support sets to zero."""
@@ -132,11 +133,14 @@ def best_dashpot(end: Ending) -> tuple[float, float]:
     return best, reflection(complex(best), end)
 
 
+@as_typed
 def matched_device(beam: Beam, frequency_hz: float, position: float, *, turning: bool = False) -> Device:
     """The device at a place (metres from the left end) that takes up what comes from the beam's longer side.
 
     Beyond it the beam ends on its nearer support. Raises InputError.
     """
+    check_frequency("frequency_hz", frequency_hz, beam)
+    check_kind("turning", turning, bool)
     check_number("position", position, "metres on the beam", at_least=0.0, below=beam.length * (1.0 + 1e-12))
     right = position > 0.5 * beam.length
     distance = max(beam.length - position, 0.0) if right else position

@@ -21,13 +21,13 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.attached import PointSpring
-from verify.beam import Beam, PointForce
-from verify.checks import several
+from verify.beam import Beam, PointForce, check_frequency
+from verify.checks import check_kind, several
 from verify.device import Device
-from verify.errors import InputError, ResonanceError
+from verify.errors import InputError, ResonanceError, shown
 from verify.models.arrays import ComplexArray
 from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response, wavenumber
-from verify.models.places import Forces, as_forces
+from verify.models.places import Forces, as_forces, as_typed
 from verify.waves.imposed import Solve
 from verify.waves.poles import Conditions, UnsettledError, field_at_pole, is_near, is_resonant, looked_at
 
@@ -47,6 +47,7 @@ _LOOKED_AT = 97
 """Places at which two fields are held against each other."""
 
 
+@as_typed
 def field_with_devices(
     solve: SolveOn, beam: Beam, forces: Forces, frequency_hz: float, devices: Device | Sequence[Device]
 ) -> HarmonicField:
@@ -55,6 +56,10 @@ def field_with_devices(
     `solve` is a model's: (beam, forces, hertz) -> its field, such as `analytic_modes.solve_harmonic`. Raises
     InputError for a device off the beam or on a support that makes it idle, and where nothing drives the beam.
     """
+    if not callable(solve):
+        raise InputError(f"solve = {shown(solve)}: give a model's solve, such as analytic_modes.solve_harmonic")
+    check_kind("beam", beam, Beam)
+    check_frequency("frequency_hz", frequency_hz, beam)
     forces, devices = as_forces(forces), several("devices", devices, Device)
     for device in devices:
         device.check_on(beam)

@@ -13,16 +13,17 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam
+from verify.checks import check_kind, check_number, plain
 from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField, phasor, unit_response
 from verify.models.intervals import Rule, extremes, mean_over, rule_over, whole_halves
-from verify.models.places import Numbers, real_array
+from verify.models.places import Numbers, complex_array, in_a_row
 from verify.models.search import least_over
 from verify.models.underfoot import standing_at, surface_distance_at
 from verify.waves.found import TwoWaves, WaveMeasures
 from verify.waves.medium import Medium
-from verify.waves.window import check_window
+from verify.waves.window import check_window, stated_wavenumber
 
 SHARPNESS = 24
 """Points for each half wavelength of the window, to draw from and to look for extremes around."""
@@ -36,6 +37,7 @@ REACH = 0.04
 
 def middle_half(beam: Beam) -> tuple[float, float]:
     """The window [L/4, 3L/4], metres, where none is given."""
+    check_kind("beam", beam, Beam)
     return 0.25 * beam.length, 0.75 * beam.length
 
 
@@ -76,15 +78,17 @@ def _seen(field: HarmonicField, window: tuple[float, float], wave_number: comple
 
 def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: complex | None = None) -> TwoWaves:
     """The two waves alone, fitted in the mean square over the whole window. Raises as `measure` does."""
+    check_kind("field", field, HarmonicField)
     places = [force.position for force in field.forces]
     check_window(field.beam, places, field.frequency_hz, window, field.turning_held)
-    start = field.wavenumber
+    start, span = field.wavenumber, (float(window[0]), float(window[1]))
+    stated = None if wave_number is None else stated_wavenumber("wave_number", wave_number, span)
     rule = window_rule(window, start.real)
     deflection = field.deflection(rule.x)
     check_moving(field, deflection)
-    if wave_number is None:
-        wave_number = fitted_wavenumber(rule.x, deflection, start, rule.weights)
-    return fit_waves(rule.x, deflection, wave_number, rule.weights)
+    if stated is None:
+        stated = fitted_wavenumber(rule.x, deflection, start, rule.weights)
+    return _fitted(rule.x, deflection, stated, rule.weights)
 
 
 def check_moving(field: HarmonicField, deflection: ComplexArray) -> None:
@@ -232,8 +236,13 @@ def surface_motion(beam: Beam, slope: ComplexArray, turn: float = 1.0, x: Number
     the part of it that the section turns by. h/2 is that of the section that stands at x (metres, of the shape of
     `slope`); where two meet, the one to the right. Raises InputError without x for a beam whose surface has steps.
     """
+    check_kind("beam", beam, Beam)
+    slope = complex_array("slope", slope, "radians")
+    check_number("turn", plain(turn), "part of the slope")
     if x is not None:
-        return np.asarray(-surface_distance_at(beam, x) * turn * np.asarray(slope))
+        if np.atleast_1d(x).shape != np.atleast_1d(slope).shape:
+            raise InputError(f"x has the shape {np.shape(x)} and slope {slope.shape}: give a place for each")
+        return np.asarray(-surface_distance_at(beam, x) * turn * slope)
     if len({piece.extreme_fibre for piece in beam.pieces}) > 1:
         raise InputError("x is missing: the surface has steps where beam.section changes, say where the slope is")
     return lifted(standing_at(beam, 0.0), slope, turn)
@@ -248,8 +257,11 @@ def ellipse(across: ComplexArray, up: ComplexArray) -> tuple[Array, Array, Array
     """(signed axis ratio tan chi, tilt in degrees, signed area S3) of the paths of surface points, of their shape each.
 
     Stokes parameters: S0 = |u_x|^2 + |u_y|^2, S1 = |u_x|^2 - |u_y|^2, S2 = 2 Re(conj(u_x) u_y), sin 2 chi = S3/S0.
+    Raises InputError for shapes that differ.
     """
-    across, up = np.asarray(across, dtype=complex), np.asarray(up, dtype=complex)
+    across, up = complex_array("across", across, "metres"), complex_array("up", up, "metres")
+    if across.shape != up.shape:
+        raise InputError(f"across has the shape {across.shape} and up {up.shape}: give as many of both")
     total, difference = abs(across) ** 2 + abs(up) ** 2, abs(across) ** 2 - abs(up) ** 2
     product = 2.0 * np.conj(across) * up
     with np.errstate(invalid="ignore"):
@@ -305,10 +317,27 @@ def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | N
     """Forward and backward amplitude by least squares on the phasors, exact on two-wave fields.
 
     x (n,), metres; deflection (n,), complex; weights (n,): what each point counts, all the same where they are left
-    out. Amplitudes are meant in the middle.
+    out. Amplitudes are meant in the middle. Raises InputError for rows of other lengths or fewer than two numbers, what
+    is not finite, weights that are not above 0, a wavenumber that is none and a deflection that is 0 everywhere.
     """
-    x, deflection = real_array("x", x, "metres"), np.asarray(deflection, dtype=complex)
-    root = np.sqrt(np.full(len(x), 1.0) if weights is None else weights)
+    at, seen = in_a_row("x", x, "metres"), complex_array("deflection", deflection, "metres")
+    counted = np.ones(len(at)) if weights is None else in_a_row("weights", weights, "what each point counts")
+    if len(at) < 2 or seen.shape != at.shape or counted.shape != at.shape:
+        raise InputError(
+            f"x, deflection and weights have the shapes {at.shape}, {seen.shape} and {counted.shape}: give two or more "
+            "numbers in a row, as many of each"
+        )
+    if not (np.isfinite(at).all() and np.isfinite(seen).all() and np.isfinite(counted).all() and (counted > 0).all()):
+        raise InputError("x, deflection and weights have to be finite and weights above 0: leave out what is not")
+    if not seen.any():
+        raise zero_field()
+    span = (float(at.min()), float(at.max()))
+    return _fitted(at, seen, stated_wavenumber("k", k, span), counted)
+
+
+def _fitted(x: Array, deflection: ComplexArray, k: complex, weights: Array) -> TwoWaves:
+    """The same of what is known to fit."""
+    root = np.sqrt(weights)
     basis, values = wave_basis(x, k, 0.5 * (x[0] + x[-1])) * root[:, None], deflection * root
     amplitudes = np.linalg.lstsq(basis, values, rcond=None)[0]
     rest = np.linalg.norm(values - basis @ amplitudes) / np.linalg.norm(values)
@@ -329,10 +358,10 @@ def fitted_wavenumber(x: Array, deflection: ComplexArray, start: complex, weight
 
     Raises InputError where the residual still falls at the edge of the search.
     """
-    halves = float(x[-1] - x[0]) * start.real / np.pi
+    halves, weights = float(x[-1] - x[0]) * start.real / np.pi, np.ones(len(x)) if weights is None else weights
     grid = np.linspace(1.0 - REACH, 1.0 + REACH, 2 * int(np.ceil(4.0 * REACH * halves)) + 9)
     least = least_over(
-        lambda factors: np.array([fit_waves(x, deflection, complex(f * start), weights).residual for f in factors]),
+        lambda factors: np.array([_fitted(x, deflection, complex(f * start), weights).residual for f in factors]),
         grid,
         1e-10,
     )

@@ -7,12 +7,12 @@ from verify.checks import check_number
 from verify.errors import InputError, ZeroFieldError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import wavenumber
-from verify.models.places import real_array
+from verify.models.places import as_typed, in_a_row, places, real_array
 from verify.models.spline import natural_or_flat
 from verify.waves.found import WaveMeasures
 from verify.waves.measures import STILL, fit_waves, fitted_wavenumber, measures_of
 from verify.waves.medium import Medium
-from verify.waves.window import check_clear
+from verify.waves.window import check_clear, stated_wavenumber
 
 
 def check_series(times: Array, values: Array, frequency_hz: float) -> None:
@@ -33,6 +33,7 @@ def check_series(times: Array, values: Array, frequency_hz: float) -> None:
         )
 
 
+@as_typed
 def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
     """Complex amplitudes of series at one frequency, over the last whole number of periods, (n_points,).
 
@@ -57,6 +58,7 @@ def phasors(times: Array, values: Array, frequency_hz: float) -> ComplexArray:
     return np.asarray(fitted[2] + 1j * fitted[3])
 
 
+@as_typed
 def measure_series(
     beam: Beam, x: Array, times: Array, values: Array, frequency_hz: float, k: complex | None = None
 ) -> WaveMeasures:
@@ -65,10 +67,11 @@ def measure_series(
     Between the positions the field is that of a cubic spline through their phasors; slopes come from the two fitted
     waves. What drives or holds the beam between the positions is not known here, but for its masses and springs: a
     large `waves.residual` tells that two waves are not alone there. Raises InputError for series or spans that are too
-    short, and WindowError where the beam has a mass or a spring between the positions.
+    short, positions off the beam and a `k` that is no wavenumber, WindowError where the beam has a mass or a spring
+    between the positions.
     """
     check_number("frequency_hz", frequency_hz, "hertz", above=0)
-    start, x = wavenumber(beam, frequency_hz), real_array("x", x, "metres")
+    start, x = wavenumber(beam, frequency_hz), places("x", in_a_row("x", x, "metres"), beam.length)
     if not (np.isfinite(x).all() and (np.diff(x) > 0).all() and np.shape(values)[1:] == x.shape):
         raise InputError("x has to be finite, ascending and as long as values are wide")
     if len(x) < 4 or (x[-1] - x[0]) * start.real < np.pi:
@@ -78,7 +81,8 @@ def measure_series(
     deflection = phasors(times, values, frequency_hz)
     if not abs(deflection).max() > STILL * abs(np.asarray(values)).max():
         raise ZeroFieldError(f"values do not move at frequency_hz = {frequency_hz!r}: there is no wave to measure")
-    waves = fit_waves(x, deflection, k if k is not None else fitted_wavenumber(x, deflection, start))
+    near = fitted_wavenumber(x, deflection, start) if k is None else stated_wavenumber("k", k, ends)
+    waves = fit_waves(x, deflection, near)
     middle = 0.5 * (x[0] + x[-1])
 
     def slope(at: Array) -> ComplexArray:

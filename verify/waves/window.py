@@ -6,6 +6,7 @@ from itertools import accumulate
 import numpy as np
 
 from verify.beam import Beam
+from verify.checks import LARGEST, plain
 from verify.errors import InputError, WindowError, shown
 from verify.models.fields import wavenumber
 from verify.words import as_written
@@ -85,6 +86,28 @@ def check_clear(beam: Beam, span: tuple[float, float], told: str, remedy: str) -
             f"{told} holds a mass or a spring at {as_written(standing)} m: two waves alone live beside it, "
             f"{remedy} without one"
         )
+
+
+def stated_wavenumber(field: str, given: object, span: tuple[float, float]) -> complex:
+    """The wavenumber that is stated for the waves of a span, metres, in 1/m.
+
+    Raises InputError for what is none of a wave e^{-ikx} towards +x, and where the span holds less than one of its half
+    waves, or too many.
+    """
+    k = plain(given)
+    number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) <= LARGEST
+    if not number or not 0.0 <= -k.imag <= k.real or not k.real:
+        raise InputError(
+            f"{field} = {shown(given)}: give a finite k of e^{{-ikx}} in 1/m, its real part above 0, its imaginary "
+            "part at most 0 and no larger than that"
+        )
+    halves = (span[1] - span[0]) * k.real / float(np.pi)
+    if not 1.0 - 1e-9 <= halves <= MOST_HALVES:
+        raise InputError(
+            f"{field} = {shown(given)} 1/m: {as_written(span)} m hold {halves:.3g} half waves of it, give one of which "
+            f"they hold 1 to {MOST_HALVES}"
+        )
+    return complex(k)
 
 
 def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -> None:
