@@ -278,6 +278,9 @@ def test_a_slider_that_starts_on_a_joint_and_leaves_is_told_which_and_how_many_s
         ride_from_rest(paper_beam, forces(1.0), 4276.0, middle, 24, 4e-4, step=STEP)
     assert ride_from_rest(paper_beam, forces(1.0), 4276.0, middle, 25, 4e-4, step=STEP).displacement < 0.0
     beside = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=0.2403, speed=-3.0)
+    last = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=0.5, speed=0.01)
+    with pytest.raises(InputError, match=r"it starts at the end of the beam at 0.5 m; start it farther in$"):
+        ride_from_rest(paper_beam, forces(1.0), 4276.0, last, 24, 4e-4, step=STEP)
     with pytest.raises(InputError, match="shorten time or start it elsewhere"):
         ride_from_rest(paper_beam, forces(1.0), 4276.0, beside, 25, 4e-4, step=STEP)
 

@@ -242,10 +242,15 @@ def ride_from_rest(
 
 
 def _start_elsewhere(system: ChainSystem, start: float) -> str:
-    """What to do about a slider that leaves its piece: at once where it starts on a joint, as mid-span of even N."""
+    """What to do about a slider that leaves its piece: at once where it starts on a joint, as mid-span of even N.
+
+    At an end of the beam no number of segments helps.
+    """
     joint = float(system.nodes[np.argmin(abs(system.nodes - start))])
     if abs(joint - start) > 1e-6 * system.length / system.n_links:
         return "shorten time or start it elsewhere"
+    if joint in (system.nodes[0], system.nodes[-1]):
+        return f"it starts at the end of the beam at {joint:.6g} m; start it farther in"
     return (
         f"it starts on the joint at {joint:.6g} m, where pieces meet; give a number of segments that has none there "
         "(an odd one for mid-span), or start it between two joints"
