@@ -57,8 +57,8 @@ class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):
     rubbed: float
     """Lost in friction."""
     residual: float
-    """What the books miss: forces by the law at the steps' ends, integrated through a cubic spline (order 4 where
-    friction is smooth, 2 where it sticks, 1 where it jumps), against the speed that the steps have made."""
+    """What the books miss: forces by the law at the steps' ends, integrated through a cubic spline, against the speed
+    that the steps have made; order 4 where friction is smooth, 1 where it jumps, or sticks and is the step's mean."""
 
 
 class ChainRide(Ride, frozen=True, eq=False, kw_only=True):

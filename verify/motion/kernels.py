@@ -239,11 +239,9 @@ def _keep(dt: float, motion: Array, law: Law, kept: Kept, space: Space) -> None:
 def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array, space: Space) -> int:
     """The same steps on a surface that is given at every half step, one way; how many were done on its piece.
 
-    `kept` is (n_steps + 1, 4), `KEPT_X` and so on; friction that sticks is what the surface's own acceleration at that
-    instant asks for.
+    `kept` is (n_steps + 1, 4), `KEPT_X` and so on; friction that sticks is the step's mean.
     """
     motion, law, seen, edges = rider.motion, rider.law, space.seen, given.edges
-    grip = space.slip[CHANGE] / dt
     for number in range(n_steps + 1):
         x, v, stuck = motion[X], motion[V], motion[STUCK] > 0.0
         if x < edges[0] or x > edges[1]:
@@ -252,7 +250,7 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         seen[0, SURFACE] += between(given.along[2 * number], edges, NOUGHT, x)
         rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
         kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
-        kept[number, KEPT_FRICTION] = grip if stuck else rate - seen[0, PULL]
+        kept[number, KEPT_FRICTION] = space.slip[CHANGE] / dt if stuck else rate - seen[0, PULL]
         if number == n_steps:
             break
         ahead = v + seen[0, DRIFT]
@@ -264,5 +262,4 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
         advance(dt, rate, motion, law, seen, space.slip)
-        grip = (seen[0, SURFACE] - 4.0 * seen[1, SURFACE] + 3.0 * seen[2, SURFACE]) / dt - seen[2, PULL]
     return n_steps
