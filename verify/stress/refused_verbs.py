@@ -257,7 +257,6 @@ def of_chains() -> Iterator[Case]:
     yield Case("x = -1e-09", lambda: moved().points([-1e-9]), lambda: moved().points([0.0]))
     check = confirmed.check_moved
     yield Case("the chain's motion diverged", lambda: check(diverged()), lambda: check(moved()))
-    check = confirmed.check_moved
     yield Case("the chain's motion diverged", lambda: problems._finished(diverged()))
     tall = partial(problems.first_shape, CHAIN)
     yield Case("amplitude: a link would rise", partial(tall, 0.26), partial(tall, 0.25))
