@@ -185,7 +185,8 @@ def stretching_motion(system, axial, duration):
 def ridden(system, seen, slider, half, duration, max_step=1e-6):
     """(way, speed, friction's work at the slider) of a tanh slider on equal links between hinges, by DOP853.
 
-    The surface is a natural cubic spline through y + delta^2 y / 12; the material under x stands at x + h/2 w'(x).
+    The surface is a natural cubic spline through y + delta^2 y / 12; the material under x stands at x + h/2 w'(x), and
+    goes along with the link's own point there.
     """
     nodes, start = np.append(0.0, np.cumsum(system.lengths)), slider.position
     piece = int(np.searchsorted(nodes, start, side="right") - 1)
@@ -198,10 +199,12 @@ def ridden(system, seen, slider, half, duration, max_step=1e-6):
         heights, rises, drawn = seen(t)
         a, b = line @ heights, line @ rises
         s = start + gone - nodes[piece]
+        share = s / system.lengths[piece]
+        carried = (1.0 - share) * drawn[piece] + share * drawn[piece + 1]
         s = s + half * (a[1] + 2 * a[2] * s + 3 * a[3] * s**2)
         slope, bend = a[1] + 2 * a[2] * s + 3 * a[3] * s**2, 2 * a[2] + 6 * a[3] * s
         rise, turn = b[0] + b[1] * s + b[2] * s**2 + b[3] * s**3, b[1] + 2 * b[2] * s + 3 * b[3] * s**2
-        surface = (rise * slope - half * turn) / np.hypot(1, slope) + 0.5 * (drawn[piece] + drawn[piece + 1])
+        surface = (rise * slope - half * turn) / np.hypot(1, slope) + carried
         friction = -slider.mu * slider.normal_force * np.tanh(slider.slope * (v - surface))
         pull, drift = 0.0, 0.0
         if slider.kinematics == "following":

@@ -9,10 +9,12 @@ from verify.beam import Beam, PointForce
 from verify.chain import far, problems
 from verify.chain.dynamics import energies
 from verify.chain.problems import first_shape, transient
+from verify.chain.ride import ride_from_rest
 from verify.chain.splitting import modal_basis, simulate_modal
 from verify.chain.stepping import simulate
 from verify.chain.system import ChainState, build_system
 from verify.errors import InputError
+from verify.slider import Slider
 
 STRIP = Beam(length=0.8, width=0.025, thickness=0.001, youngs_modulus=210e9, density=7850)
 HERTZ, LINKS = 12.0, 8
@@ -146,3 +148,17 @@ def test_the_second_run_of_a_far_motion_is_the_smaller_part_of_the_work():
         for t in (1e-9, far.second("adaptive", 1e-9))
     )
     assert again < 0.75 * first
+
+
+def test_links_that_stretch_and_turn_far_are_confirmed_by_half_their_step_or_refused():
+    """Where the slider's figures and the departure's come from."""
+    slider = Slider(mass=1e-3, mu=0.2, slope=100.0, position=0.31, coupling="one-way")
+
+    def carried(force):
+        forces = [PointForce(position=0.31, amplitude=force, phase_deg=30.0)]
+        return ride_from_rest(STRIP, forces, HERTZ, slider, LINKS, 0.02, step=1e-3, links="stretching")
+
+    assert abs(carried(200.0).chain.displacements[..., 1]).max() > 0.1
+    with pytest.raises(InputError, match=r"step of the stretching chain = .* leaves the motion unknown after") as why:
+        carried(4e4)
+    assert str(why.value).endswith("; give a shorter time or smaller forces")

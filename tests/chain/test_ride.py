@@ -218,7 +218,7 @@ def test_a_slider_says_with_its_figure_why_it_may_ride_one_way(paper_beam):
     ],
 )
 def test_a_slider_that_the_chain_would_feel_is_refused_before_the_chain_moves(paper_beam, changed, words, monkeypatch):
-    monkeypatch.setattr("verify.chain.ride.simulate", lambda *given, **more: pytest.fail("the chain moved"))
+    monkeypatch.setattr("verify.chain.confirmed.simulate", lambda *given, **more: pytest.fail("the chain moved"))
     slider = replace(replace(SLIDER, coupling="auto"), **changed)
     with pytest.raises(InputError, match=words):
         ride_from_rest(paper_beam, forces(1.0), 4276.0, slider, 25, 1e-4, step=STEP)
@@ -259,17 +259,16 @@ def test_the_straight_chain_has_the_frequencies_of_the_nonlinear_one_at_rest(tit
     assert np.sqrt(values) == pytest.approx(linearise(system, at_rest(system)).frequencies()[:5], rel=1e-9)
 
 
-def test_the_middle_of_a_rigid_link_goes_along_x_as_its_place_changes():
-    """Of three unequal links: the rate of the sum of l cos(theta) up to half the link, by a complex step."""
+def test_the_joints_of_rigid_links_go_along_x_as_their_places_change():
+    """Of three unequal links: the rate of the sum of l cos(theta) up to the joint, by a complex step."""
     lengths, angles, rates = np.array([0.11, 0.07, 0.16]), np.array([0.31, -0.52, 0.83]), np.array([2.3, -4.1, 1.7])
     motion = SimpleNamespace(
         directions=lambda: angles[None], rates=rates[None], system=SimpleNamespace(lengths=lengths)
     )
     turned = angles + 1e-30j * np.cumsum(rates)
     for piece in range(3):
-        shares = np.where(np.arange(3) < piece, 1.0, np.where(np.arange(3) == piece, 0.5, 0.0))
-        speed = (shares * lengths * np.cos(turned)).sum().imag / 1e-30
-        assert _of_rigid(motion, piece)[2][0] == pytest.approx(speed, rel=1e-13)
+        speeds = [(lengths * np.cos(turned))[: piece + end].sum().imag / 1e-30 for end in (0, 1)]
+        assert _of_rigid(motion, piece)[2][0] == pytest.approx(speeds, rel=1e-13)
 
 
 def test_a_slider_that_starts_on_a_joint_and_leaves_is_told_which_and_how_many_segments_have_none_there(paper_beam):
@@ -279,5 +278,14 @@ def test_a_slider_that_starts_on_a_joint_and_leaves_is_told_which_and_how_many_s
         ride_from_rest(paper_beam, forces(1.0), 4276.0, middle, 24, 4e-4, step=STEP)
     assert ride_from_rest(paper_beam, forces(1.0), 4276.0, middle, 25, 4e-4, step=STEP).displacement < 0.0
     beside = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=0.2403, speed=-3.0)
+    last = Slider(mass=1e-3, mu=0.2, slope=100.0, coupling="one-way", position=0.5, speed=0.01)
+    with pytest.raises(InputError, match=r"it starts at the end of the beam at 0.5 m; start it farther in$"):
+        ride_from_rest(paper_beam, forces(1.0), 4276.0, last, 24, 4e-4, step=STEP)
     with pytest.raises(InputError, match="shorten time or start it elsewhere"):
         ride_from_rest(paper_beam, forces(1.0), 4276.0, beside, 25, 4e-4, step=STEP)
+
+
+def test_a_step_in_which_a_slider_would_not_see_the_drive_is_refused(paper_beam):
+    """A third of a period; a quarter is taken."""
+    with pytest.raises(InputError, match=r"is 0.333 periods of the drive, which a slider would not see: give at most"):
+        ride_from_rest(paper_beam, forces(1.0), 4276.0, SLIDER, 9, 1e-3, step=1.0 / (3.0 * 4276.0))

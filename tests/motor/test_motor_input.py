@@ -75,6 +75,9 @@ def test_a_contact_that_cannot_be_is_refused_by_field_value_and_remedy(make, fie
         ({"coupling": "auto"}, {"model": "chain", "count": 9}, "slider.coupling = 'auto'", "one-way"),
         ({}, {"model": "chain", "count": 9}, "start = 'steady'", "'rest'"),
         ({}, {"model": "chain", "count": 9, "start": "rest"}, "modal_damping = 0.005", "0.0"),
+        ({}, {"model": "chain", "count": 9, "links": "elastic"}, "links = 'elastic'", "rigid"),
+        ({}, {"model": "chain", "count": None}, "count is missing", "number of links for model = chain"),
+        ({}, {"model": "chain", "count": 9, "modes": 4}, "modes = 4", "leave it out"),
         ({"contact": Contact(), "coupling": "two-way"}, {}, "slider.coupling = 'two-way'", "one-way"),
         ({"contact": Contact(), "foot": (Foot(offset=0.003),)}, {}, "slider.foot.offset = 0.003", "leave it out"),
         (

@@ -204,6 +204,31 @@ def test_which_chain_is_nearer_is_said_where_errors_allow_and_withheld_otherwise
     assert "is withheld" in list(what_stands(rest_of(beam, rigid, as_far)))[-1]
 
 
+def test_of_pushes_on_either_side_of_the_beams_its_own_error_counts_twice():
+    """0.3 below it, 0.35 above: apart by 0.05, with an error of 0.01 each and twice 0.02 of the beam."""
+    beam = rest_field("analytic", "rigid", -0.4, 0.4, error=0.02 * sqrt(2.0))
+    below, above = rest_field("chain", "rigid", -0.1, 0.1), rest_field("chain", "stretching", -0.75, 0.75)
+    assert "is withheld" in list(what_stands(rest_of(beam, below, above)))[-1]
+    assert (
+        "is withheld" not in list(what_stands(rest_of(beam, below, rest_field("chain", "stretching", -0.15, 0.15))))[-1]
+    )
+
+
+def test_how_fast_a_chain_is_drawn_in_is_told_beside_what_it_pushes():
+    beam = rest_field("analytic", "rigid", -0.4, 0.4)
+    drawn = replace(rest_field("chain", "rigid", -0.1, 0.1), drawn=2.31)
+    assert "over the crests' speed, rigid links 2.3; linear fields have none" in " ".join(
+        what_stands(rest_of(beam, drawn))
+    )
+
+
+def test_an_error_of_hundreds_is_written_out():
+    beam = rest_field("analytic", "rigid", -0.4, 0.4, ends=(0.0, 0.0, 0.0, 0.0))
+    spread = rest_field("chain", "rigid", -0.4, 0.4, ends=(-1e-6, 0.6e-6, -1e-6, 0.6e-6))
+    assert " nm)" in next(iter(what_stands(rest_of(beam, spread))))
+    assert "e+02" not in next(iter(what_stands(rest_of(beam, spread))))
+
+
 def test_a_mean_within_twice_its_error_is_not_told():
     beam = rest_field("analytic", "rigid", -0.4, 0.4, ends=(0.0, 0.0, 0.0, 0.0))
     apart = rest_field("chain", "rigid", -0.4, 0.4, ends=(3e-6, 4e-6, 3e-6, 4e-6))
@@ -331,6 +356,8 @@ REFUSED = {
     'slider.coupling="two-way"': "slider.coupling = 'two-way' on a nonlinear chain",
     "slider.position=0.03": "off the beam",
     "slider.foot.0.length=0.7": "longer than the beam",
+    "beam.loss_factor=0.01": "beam.loss_factor = 0.01: the nonlinear chain moves in time",
+    "beam.mass=[{position=0.1, mass=0.01}]": "beam.mass: the nonlinear chain takes none, .* take chain out",
 }
 
 
@@ -390,6 +417,15 @@ def test_every_chart_has_something_to_show(study, chained):
         "motor-way",
     ]
     assert [chart.id for chart in chained.charts()][-2:] == ["motor-rest", "motor-rest-force"]
+    (rest,) = (chart for chart in chained.charts() if chart.id == "motor-rest-force")
+    assert rest.lines[0].x[-1] < 0.0
+    assert "On the left the wave as the scene says, on the right turned round." in rest.caption
+    other = replace(
+        chained.rest, fields=tuple(replace(one, curve=one.turned, turned=one.curve) for one in chained.rest.fields)
+    )
+    caption = next(chart.caption for chart in replace(chained, rest=other).charts() if chart.id == "motor-rest-force")
+    assert "On the right the wave as the scene says, on the left turned round." in caption
+    assert all(one.drawn > 0.0 for one in chained.rest.fields[1:])
     assert not [chart.id for chart in (*study.charts(), *chained.charts()) if chart.empty]
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from verify.bench.field_set import forces_of, relative_rms
 from verify.bench.kind import Case, Entry, Judged, Line, Reference, Told
 from verify.bench.study import Settled
+from verify.chain.confirmed import check_moved
 from verify.chain.dynamics import at_rest
-from verify.chain.ride import check_moved
 from verify.chain.splitting import linear_deflection, modal_basis, simulate_modal
 from verify.chain.stepping import simulate, step_limit
 from verify.chain.system import ChainState, ChainSystem, build_system

@@ -13,6 +13,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
+from verify.chain.confirmed import confirm_stretching
 from verify.chain.dynamics import at_rest
 from verify.chain.from_rest import point_forces
 from verify.chain.problems import Progress, transient, unheard
@@ -134,6 +135,7 @@ def elastic_chain(driven: Driven, force: float) -> Array:
     motion = simulate_elastic(system, axial_stiffness(driven.beam, driven.count), driven.times, most=MOST)
     if not motion.finished:
         raise InputError(f"the stretching chain under {force!r} N {motion.statistics.stopped}: give a smaller force")
+    confirm_stretching(motion, MOST)
     return np.asarray(motion.deflection([driven.x])[:, 0])
 
 

@@ -7,39 +7,46 @@ first. Links that turn less than `FAR` are spared it.
 """
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 
 from verify.chain.result import ChainMotion
+from verify.chain.stretching import ElasticMotion
 from verify.errors import InputError
 from verify.models.arrays import Array
 
+Moved = TypeVar("Moved", ChainMotion, ElasticMotion)
 FAR = 0.3
 """Radians. Links that turn no further swing nearly as linear ones, whose errors grow with time alone."""
 KNOWN = 0.01
 """Of the largest deflection: two runs that lie no further apart are one motion."""
-SECOND = {"tolerance": 10.0, "rk4": 0.5, "modal": 2.0}
+SECOND = {"tolerance": 10.0, "rk4": 0.5, "modal": 2.0, "stretching": 0.5}
 """Tolerance or step of the second run over the first's: twice RK4's may lie above its stability limit."""
+STEPPED = {"rk4": "step", "modal": "step", "stretching": "step of the stretching chain"}
+"""What the step of a method is called."""
 COARSE = 1e-3
 """A tolerance above this is compared with a tenth of it instead."""
 
 
 def second(method: str, given: float) -> float:
-    """The step of a second run by "rk4" or "modal", the tolerance of an adaptive one."""
-    if method in ("rk4", "modal"):
+    """The step of a second run by a method of `STEPPED`, the tolerance of an adaptive one."""
+    if method in STEPPED:
         return given * SECOND[method]
     return given * SECOND["tolerance"] if given <= COARSE else given / SECOND["tolerance"]
 
 
-def refuse_unknown(motion: ChainMotion, method: str, given: float, again: Callable[[float], ChainMotion]) -> None:
+def refuse_unknown(
+    motion: Moved, method: str, given: float, again: Callable[[float], Moved], *, settable: bool = True
+) -> None:
     """Raise InputError for a far motion that another step, or another tolerance, does not confirm.
 
-    `given` is the first run's; `again` runs the motion with another, kept at the same times. A motion that stopped
-    early is left to whoever asked for it.
+    `given` is the first run's, and `settable` by whoever asked; `again` runs the motion with another, kept at the same
+    times. A motion that stopped early is left to whoever asked for it.
     """
-    if not motion.finished or motion.statistics.furthest <= FAR:
+    if not motion.finished or (turned := _furthest(motion)) <= FAR:
         return
-    name, other = "step" if method in ("rk4", "modal") else "tolerance", second(method, given)
+    name, other = STEPPED.get(method, "tolerance"), second(method, given)
     check = again(other)
     if check.statistics.interrupted:
         raise KeyboardInterrupt
@@ -54,12 +61,12 @@ def refuse_unknown(motion: ChainMotion, method: str, given: float, again: Callab
     )
     raise InputError(
         f"{name} = {given:g} leaves the motion unknown after {motion.times[first]:.4g} s: links turn by up to "
-        f"{motion.statistics.furthest:.2g} rad, and with {name} = {other:g} {seen}; give a smaller {name}, a shorter "
+        f"{turned:.2g} rad, and with {name} = {other:g} {seen}; give {f'a smaller {name}, ' * settable}a shorter "
         "time or smaller forces"
     )
 
 
-def gaps(one: ChainMotion, other: ChainMotion) -> Array:
+def gaps(one: Moved, other: Moved) -> Array:
     """How far the joints of two motions lie apart across, (n,), over the first's largest deflection until then.
 
     Infinite at times that the other did not reach.
@@ -71,6 +78,16 @@ def gaps(one: ChainMotion, other: ChainMotion) -> Array:
     return found
 
 
-def _heights(motion: ChainMotion) -> Array:
+def _furthest(motion: ChainMotion | ElasticMotion) -> float:
+    """The largest turn of a link from the straight chain, of links that stretch at the times kept, radians."""
+    if isinstance(motion, ChainMotion):
+        return motion.statistics.furthest
+    spans = np.diff(motion.displacements, axis=1)
+    return float(abs(np.arctan2(spans[..., 1], motion.system.lengths + spans[..., 0])).max())
+
+
+def _heights(motion: ChainMotion | ElasticMotion) -> Array:
     """Y of joints 1..N at the times kept, (n, N), metres."""
+    if isinstance(motion, ElasticMotion):
+        return motion.displacements[:, 1:, 1]
     return np.asarray(np.cumsum(motion.system.lengths * np.sin(motion.directions()), axis=1))

@@ -2,22 +2,19 @@
 
 One way: the chain moves first, kept twice in every step of the slider, which is refused where the chain would feel it.
 Its joints give the paper's C2 line over the material coordinate (`segments.reading.contact_line`); its links shorten
-the chain, and the surface moves along with them.
+the chain, and the surface moves along with every point of them.
 """
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from time import perf_counter
 
 import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.chain.dynamics import at_rest
-from verify.chain.far import refuse_unknown
+from verify.chain.confirmed import check_known, from_rest
 from verify.chain.result import ChainMotion
-from verify.chain.stepping import simulate
-from verify.chain.stretching import ElasticMotion, simulate_elastic
+from verify.chain.stretching import ElasticMotion
 from verify.chain.system import (
     ChainSystem,
     LinkLoad,
@@ -29,15 +26,16 @@ from verify.chain.system import (
 )
 from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
 from verify.checks import check_number
-from verify.errors import InputError, near_name, written
+from verify.errors import InputError, written
 from verify.models.arrays import Array, ComplexArray
 from verify.models.eigen import forced_response
 from verify.models.underfoot import standing_at
 from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.records import Given, Rider
+from verify.motion.request import check_seen
 from verify.motion.result import END, Ride, Statistics
 from verify.motion.stepping import contact_space, fresh_motion
-from verify.options import LINKS, Links
+from verify.options import Links
 from verify.segments.links import Chain, chain_pencil, free_joints, with_ends
 from verify.segments.loads import joint_weights
 from verify.segments.reading import contact_line, contact_piece
@@ -59,8 +57,8 @@ class SliderLedger(msgspec.Struct, frozen=True, kw_only=True):
     rubbed: float
     """Lost in friction."""
     residual: float
-    """What the books miss: forces by the law at the steps' ends, integrated through a cubic spline (order 4 where
-    friction is smooth, 1 where it jumps), against the speed that the steps have made."""
+    """What the books miss: forces by the law at the steps' ends, integrated through a cubic spline, against the speed
+    that the steps have made; order 4 where friction is smooth, 1 where it jumps, or sticks and is the step's mean."""
 
 
 class ChainRide(Ride, frozen=True, eq=False, kw_only=True):
@@ -225,20 +223,15 @@ def ride_from_rest(
     before the chain moves, for whatever `ride` or the chain refuses; also for a run that takes too much, breaks off, or
     takes the slider off the piece of the chain that it began on.
     """
-    if links not in LINKS:
-        raise InputError(f"links = {links!r} is not known: {near_name(links, LINKS)}")
+    check_known(links)
+    check_number("step", step, "seconds", above=0)
+    check_seen(step, frequency_hz)
     system, times = _driven(beam, forces, frequency_hz, n_segments), half_steps(duration, step)
     check_kept(len(times), n_segments, f"time = {written(duration)} s in steps of {step:.3g} s")
     check_rideable(system, beam, slider)
     coupling_on_chain(system, beam, slider)
-    moved: ChainMotion | ElasticMotion
-    if links == "stretching":
-        moved = simulate_elastic(system, axial_stiffness(beam, n_segments), times, most=most)
-    else:
-        run = partial(simulate, system, at_rest(system), times, ledger=False, most=most)
-        moved = run(tolerance=tolerance, progress=progress)
-        refuse_unknown(moved, "adaptive", tolerance, lambda other: run(tolerance=other))
-    check_moved(moved)
+    axial = axial_stiffness(beam, n_segments)
+    moved = from_rest(system, links, axial, times, tolerance=tolerance, settable=True, most=most, progress=progress)
     found = ride(moved, beam, slider)
     if not found.statistics.finished:
         raise InputError(
@@ -249,22 +242,19 @@ def ride_from_rest(
 
 
 def _start_elsewhere(system: ChainSystem, start: float) -> str:
-    """What to do about a slider that leaves its piece: at once where it starts on a joint, as mid-span of even N."""
+    """What to do about a slider that leaves its piece: at once where it starts on a joint, as mid-span of even N.
+
+    At an end of the beam no number of segments helps.
+    """
     joint = float(system.nodes[np.argmin(abs(system.nodes - start))])
     if abs(joint - start) > 1e-6 * system.length / system.n_links:
         return "shorten time or start it elsewhere"
+    if joint in (system.nodes[0], system.nodes[-1]):
+        return f"it starts at the end of the beam at {joint:.6g} m; start it farther in"
     return (
         f"it starts on the joint at {joint:.6g} m, where pieces meet; give a number of segments that has none there "
         "(an odd one for mid-span), or start it between two joints"
     )
-
-
-def check_moved(moved: ChainMotion | ElasticMotion) -> None:
-    """Raise InputError for a chain's motion that broke off, KeyboardInterrupt for one that was broken off."""
-    if moved.statistics.interrupted:
-        raise KeyboardInterrupt
-    if not moved.finished:
-        raise InputError(f"the chain's motion {moved.statistics.stopped}: give smaller forces")
 
 
 def _driven(beam: Beam, forces: Sequence[PointForce], frequency_hz: float, n_segments: int) -> ChainSystem:
@@ -313,9 +303,9 @@ def _power_sum(coefficients: Array, at: Array, derivative: int) -> Array:
 
 
 def _surface(chain: ChainMotion | ElasticMotion, x: float) -> tuple[Array, Array, Array]:
-    """(polynomials of deflection and velocity on the piece at x, speed of its middle along x, its ends).
+    """(polynomials of deflection and velocity on the piece at x, speeds of its ends along x, these ends).
 
-    (n, 2, 4) in the local coordinate from 0 to 1, (n,) in m/s, (2,) metres.
+    (n, 2, 4) in the local coordinate from 0 to 1, (n, 2) in m/s, (2,) metres.
     """
     piece = _piece_at(chain.system, x)
     heights, rises, along = (
@@ -340,15 +330,15 @@ def _piece_at(system: ChainSystem, x: float) -> int:
 
 
 def _of_rigid(chain: ChainMotion, piece: int) -> tuple[Array, Array, Array]:
-    """From joint to joint the step across and its rate, (n, N) each, and the speed of a link's middle along x, (n,)."""
+    """From joint to joint the step across and its rate, (n, N) each, and speeds of a link's ends along x, (n, 2)."""
     theta, lengths = chain.directions(), chain.system.lengths
     spins = np.cumsum(chain.rates, axis=1)
     back = -lengths * np.sin(theta) * spins
-    along = np.cumsum(back, axis=1)[:, piece] - 0.5 * back[:, piece]
-    return lengths * np.sin(theta), lengths * np.cos(theta) * spins, along
+    far = np.cumsum(back, axis=1)[:, piece]
+    return lengths * np.sin(theta), lengths * np.cos(theta) * spins, np.stack([far - back[:, piece], far], axis=1)
 
 
 def _of_stretching(chain: ElasticMotion, piece: int) -> tuple[Array, Array, Array]:
     """The same of links that stretch evenly."""
     heights, rises = (np.diff(parts[:, :, 1], axis=1) for parts in (chain.displacements, chain.velocities))
-    return heights, rises, chain.velocities[:, piece : piece + 2, 0].mean(axis=1)
+    return heights, rises, chain.velocities[:, piece : piece + 2, 0]

@@ -51,7 +51,7 @@ from verify.motion.records import (
     V,
     X,
 )
-from verify.motion.surface_kernels import climb, find_piece, rotate_half, set_factors, set_local, touch
+from verify.motion.surface_kernels import between, climb, find_piece, rotate_half, set_factors, set_local, touch
 
 
 @part(forceinline=True)
@@ -239,7 +239,7 @@ def _keep(dt: float, motion: Array, law: Law, kept: Kept, space: Space) -> None:
 def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array, space: Space) -> int:
     """The same steps on a surface that is given at every half step, one way; how many were done on its piece.
 
-    `kept` is (n_steps + 1, 4), `KEPT_X` and so on.
+    `kept` is (n_steps + 1, 4), `KEPT_X` and so on; friction that sticks is the step's mean.
     """
     motion, law, seen, edges = rider.motion, rider.law, space.seen, given.edges
     for number in range(n_steps + 1):
@@ -247,7 +247,7 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         if x < edges[0] or x > edges[1]:
             return number - 1 if number > 0 else 0
         touch(given.local[2 * number], edges, NOUGHT, x, v, law, seen, AT_START)
-        seen[0, SURFACE] += given.along[2 * number]
+        seen[0, SURFACE] += between(given.along[2 * number], edges, NOUGHT, x)
         rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
         kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
         kept[number, KEPT_FRICTION] = space.slip[CHANGE] / dt if stuck else rate - seen[0, PULL]
@@ -256,8 +256,9 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
         ahead = v + seen[0, DRIFT]
         for row in range(1, 3):
             t, half = 0.5 * row * dt, 2 * number + row
-            touch(given.local[half], edges, NOUGHT, x + t * ahead + 0.5 * t * t * rate, v + t * rate, law, seen, row)
-            seen[row, SURFACE] += given.along[half]
+            there = x + t * ahead + 0.5 * t * t * rate
+            touch(given.local[half], edges, NOUGHT, there, v + t * rate, law, seen, row)
+            seen[row, SURFACE] += between(given.along[half], edges, NOUGHT, there)
         give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
         advance(dt, rate, motion, law, seen, space.slip)

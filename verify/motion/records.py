@@ -163,6 +163,6 @@ class Given(NamedTuple):
     local: Array
     """(2 n + 1, 2, degree + 1), polynomials of deflection and velocity."""
     along: Array
-    """(2 n + 1,), a speed of the whole surface along x, m/s."""
+    """(2 n + 1, 2), speed of the piece's ends along x, m/s; between them it changes evenly."""
     edges: Array
     """(2,), metres from where the slider started."""

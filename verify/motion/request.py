@@ -202,16 +202,22 @@ def _longest(
     check_whole("steps_per_period", steps_per_period, 1)
     longest = 1.0 / (steps_per_period * frequency_hz) if step is None else step
     check_number("step", longest, "seconds", above=0)
-    if slider is not None and longest * frequency_hz > COARSEST:
-        raise InputError(
-            f"step = {longest!r} s is {longest * frequency_hz:.3g} periods of the drive, which a slider would not see: "
-            f"give at most {COARSEST / frequency_hz:.3g} s"
-        )
+    if slider is not None:
+        check_seen(longest, frequency_hz)
     if duration / longest > MOST_STEPS:
         raise InputError(
             f"step = {longest!r} takes more than {MOST_STEPS:g} steps: lengthen the step or shorten the duration"
         )
     return longest
+
+
+def check_seen(step: float, frequency_hz: float) -> None:
+    """Raise InputError for a slider's step, seconds, in which too much of a period of the drive passes."""
+    if step * frequency_hz > COARSEST:
+        raise InputError(
+            f"step = {step!r} s is {step * frequency_hz:.3g} periods of the drive, which a slider would not see: "
+            f"give at most {COARSEST / frequency_hz:.3g} s"
+        )
 
 
 def _check_growth(duration: float, grown: Sequence[tuple[float, Array]]) -> None:

@@ -112,6 +112,13 @@ def touch(local: Array, edges: Array, piece: int, x: float, speed: float, law: L
 
 
 @part()
+def between(ends: Array, edges: Array, piece: int, x: float) -> float:
+    """What changes evenly along a piece, at x; `ends` are its values at all edges."""
+    share = (x - edges[piece]) / (edges[piece + 1] - edges[piece])
+    return float((1.0 - share) * ends[piece] + share * ends[piece + 1])
+
+
+@part()
 def climb(local: Array, edges: Array, piece: int, x: float, along: float, half: float) -> float:
     """Speed across the beam of a point on the surface over x that moves along x: dw/dt + w' dX/dt at its material."""
     length = edges[piece + 1] - edges[piece]

@@ -33,7 +33,7 @@ def on_chain(law: str) -> Iterator[Call]:
     """A slider on a surface that is given."""
     from verify.motion import kernels
 
-    given = Given(local=np.zeros((1, 1, 1)), along=np.zeros(1), edges=np.zeros(1))
+    given = Given(local=np.zeros((1, 1, 1)), along=np.zeros((1, 2)), edges=np.zeros(1))
     rider = Rider(fresh_motion(), _law(LAWS[law]), None)
     yield kernels.slide_given, (1, 0.0, given, rider, np.zeros((1, 1)), contact_space(1))
 

@@ -2,9 +2,13 @@
 
 from collections.abc import Sequence
 from itertools import product
+from typing import TYPE_CHECKING
 
 from verify.errors import InputError
 from verify.slider import Slider
+
+if TYPE_CHECKING:
+    from verify.motor.result import MotorState
 
 CHAIN = "chain"
 """The nonlinear chain as a field under a slider, beside the linear models by their names."""
@@ -26,6 +30,18 @@ def check_together(model: str, start: str, sliders: Sequence[Slider]) -> None:
             raise InputError(f"slider.{name} differs among sliders on one beam, {sorted(found)!r}: give all the same")
     if len(sliders) > 1 and any(slider.contact and slider.contact.hard for slider in sliders):
         raise InputError("sliders: a hard contact is of one slider by itself, give slider.contact.stiffness")
+
+
+def check_goes_on(model: str, before: Sequence["MotorState"]) -> None:
+    """Raise InputError for a run that goes on, on a nonlinear chain or from one: it starts at rest, none is kept."""
+    if before and model == CHAIN:
+        raise InputError(
+            "continue_from on a nonlinear chain, which starts at rest: leave it out, and give a longer time"
+        )
+    if any(state.model == CHAIN for state in before):
+        raise InputError(
+            "continue_from is a run on a nonlinear chain, whose motion is not kept: give one on a linear model"
+        )
 
 
 def check_combines(model: str, start: str, slider: Slider) -> None:

@@ -5,7 +5,7 @@ import numpy as np
 from verify.models.arrays import Array
 from verify.models.kernels import lean, part
 from verify.motion.records import MOVING, STILL, Surface
-from verify.motion.surface_kernels import find_piece, rotate_half, set_factors
+from verify.motion.surface_kernels import between, find_piece, rotate_half, set_factors
 from verify.motor.beam_kernels import bear, clear, leave, match, moved
 from verify.motor.cross_kernels import cross
 from verify.motor.feet_kernels import drift, gone, kick, place, press, see, stored
@@ -255,7 +255,7 @@ def ride_given(
                 line.local[piece, MOVING, d] = given.local[number, piece, MOVING, d]
             length = given.edges[piece + 1] - given.edges[piece]
             see(i, x, given.edges[piece], length, gone(i, feet), rubbing.half, line, feet)
-            feet.touch[i, SURFACE] += given.along[number, piece]
+            feet.touch[i, SURFACE] += between(given.along[number], given.edges, piece, x)
         press(dt, feet, before)
         _rub(dt, feet, rubbing.slope, before)
         if not _take((number + 0.5) * dt, dt, before, feet, log):

@@ -6,18 +6,16 @@ from time import perf_counter
 import numpy as np
 from msgspec.structs import replace
 
-from verify.chain.dynamics import at_rest
+from verify.chain.confirmed import check_known, from_rest
 from verify.chain.result import ChainMotion
-from verify.chain.ride import check_moved
-from verify.chain.stepping import simulate
-from verify.chain.stretching import ElasticMotion, simulate_elastic
+from verify.chain.stretching import ElasticMotion
 from verify.chain.system import ChainSystem, axial_stiffness, build_system, straight_chain
 from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.places import SLACK
 from verify.models.underfoot import LEFT_BEAM
-from verify.motion.request import Request
+from verify.motion.request import Modelled, Request
 from verify.motion.surface import Stage
 from verify.motor import records
 from verify.motor.carry import begin
@@ -34,6 +32,17 @@ from verify.segments.reading import contact_line
 BESIDE = 2
 """Links beside those under the feet on which the slider may run."""
 TOLERANCE = 1e-9
+
+
+def check_links_asked(modelled: Modelled, links: str) -> None:
+    """Raise InputError for links that no chain has, for no number of them, and for modes, which it does not keep."""
+    check_known(links)
+    if modelled.count is None:
+        raise InputError("count is missing: give the number of links for model = chain")
+    if modelled.modes is not None:
+        raise InputError(
+            f"modes = {modelled.modes!r} is for model = analytic: a nonlinear chain has none, leave it out"
+        )
 
 
 def check_chain(request: Request, soft_start_periods: float) -> None:
@@ -66,17 +75,15 @@ def run_on_chain(
     times: Array = np.linspace(0.0, stage.duration, 2 * stage.n_steps + 1)
     check_kept(len(times), request.count, f"duration = {stage.duration!r} s in steps of {stage.dt:.3g} s")
     system = build_system(request.beam, request.count, request.forces, request.frequency_hz, load="reciprocal")
-    moved: ChainMotion | ElasticMotion = (
-        simulate_elastic(system, axial_stiffness(request.beam, request.count), times, most=MOST)
-        if links == "stretching"
-        else simulate(system, at_rest(system), times, tolerance=TOLERANCE, ledger=False, most=MOST, progress=progress)
-    )
-    check_moved(moved)
+    axial = axial_stiffness(request.beam, request.count)
+    moved = from_rest(system, links, axial, times, tolerance=TOLERANCE, most=MOST, progress=progress)
     ready = perf_counter()
     note = f"the nonlinear chain, {links} links, from rest; margins are those of the linear chain's steady field"
     given = surface_given(moved, plan)
     runs = [_ride(replace(plan, placed=(one,)), given, (began, ready), progress) for one in placed]
-    return tuple(replace(run, model=CHAIN, notes=(note, *run.notes[1:])) for run in runs)
+    return tuple(
+        replace(run, model=CHAIN, state=replace(run.state, model=CHAIN), notes=(note, *run.notes[1:])) for run in runs
+    )
 
 
 def _ride(plan: Plan, given: GivenSurface, begun: tuple[float, float], progress: Callable[[float], None]) -> MotorRun:
@@ -91,11 +98,19 @@ def _ride(plan: Plan, given: GivenSurface, begun: tuple[float, float], progress:
     riding.feet.piece[:] = np.clip(
         np.searchsorted(given.edges[1:-1], riding.feet.points[:, records.OFFSET]), 0, len(given.edges) - 2
     )
+    drawn = _drawn(given, riding)
     stopped = _run(given, stage.n_steps, stage.dt, riding, progress)
     stopped = _gone(given, stage, riding) if stopped == LEFT_BEAM else stopped
     state = stage.state(np.zeros((2, 0)), 0.0) if not len(stage.modal.omegas) else (np.zeros(0), np.zeros(0))
     began, ready = begun
-    return outcome(0, plan, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
+    run = outcome(0, plan, riding, Ended(stopped, *state, ready - began, perf_counter() - ready))
+    return replace(run, motor_margins=replace(run.motor_margins, drawn=drawn))
+
+
+def _drawn(given: GivenSurface, riding: Riding) -> float:
+    """Speed along x of the links under all points, m/s, rms over time and over the links' ends."""
+    first, last = int(riding.feet.piece.min()), int(riding.feet.piece.max())
+    return float(np.sqrt(np.mean(given.along[:, first : last + 2] ** 2)))
 
 
 def _run(given: GivenSurface, n_steps: int, dt: float, riding: Riding, progress: Callable[[float], None]) -> str:
@@ -138,7 +153,7 @@ def surface_given(moved: ChainMotion | ElasticMotion, plan: Plan) -> GivenSurfac
     rows = _line_rows(system)[:, first : last + 1]  # (N, pieces, 4)
     local = np.stack([np.einsum("tn,npd->tpd", steps, rows) for steps in (heights, rises)], axis=2)
     edges = system.nodes[first : last + 2]
-    return GivenSurface(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 1]), edges)
+    return GivenSurface(np.ascontiguousarray(local), np.ascontiguousarray(along[:, first : last + 2]), edges)
 
 
 def _link_at(system: ChainSystem, x: float) -> int:
@@ -154,11 +169,10 @@ def _line_rows(system: ChainSystem) -> Array:
 
 
 def _moved(moved: ChainMotion | ElasticMotion) -> tuple[Array, Array, Array]:
-    """Steps across from joint to joint, their rates, and the speed of links' middles along x, (n, N) each."""
+    """Steps across from joint to joint and their rates, (n, N) each, and the joints' speeds along x, (n, N + 1)."""
     if isinstance(moved, ElasticMotion):
         heights, rises = (np.diff(parts[:, :, 1], axis=1) for parts in (moved.displacements, moved.velocities))
-        ends = moved.velocities[:, :, 0]
-        return heights, rises, np.asarray(0.5 * (ends[:, 1:] + ends[:, :-1]))
+        return heights, rises, moved.velocities[:, :, 0]
     theta, lengths, spins = moved.directions(), moved.system.lengths, np.cumsum(moved.rates, axis=1)
-    back = -lengths * np.sin(theta) * spins
-    return lengths * np.sin(theta), lengths * np.cos(theta) * spins, np.cumsum(back, axis=1) - 0.5 * back
+    back = np.cumsum(-lengths * np.sin(theta) * spins, axis=1)
+    return lengths * np.sin(theta), lengths * np.cos(theta) * spins, np.pad(back, ((0, 0), (1, 0)))

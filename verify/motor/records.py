@@ -139,7 +139,7 @@ class GivenSurface(NamedTuple):
     local: Array
     """(n, pieces, 2, degree + 1), polynomials of deflection and velocity."""
     along: Array
-    """(n, pieces), a speed of the whole surface along x, m/s."""
+    """(n, pieces + 1), speed of the edges along x, m/s; between them it changes evenly."""
     edges: Array
     """(pieces + 1,), metres from where the slider started."""
 

@@ -24,6 +24,9 @@ class MotorMargins(Value, frozen=True, kw_only=True):
     """Whether the run has it."""
     chain: float | None
     """(kL)^2 <theta^2> of the drive: the axial inertia of a roller-ended chain that linear theory leaves out."""
+    drawn: float | None = None
+    """Speed along x of the links under the slider where it was put, m/s, rms over the run: bending draws a nonlinear
+    chain in. None of a linear field, which leaves that out."""
 
 
 class MotorLedger(Value, frozen=True, kw_only=True):

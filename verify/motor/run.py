@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.motion.request import Driven, Modelled, Started, Watched, requested
 from verify.motor.carry import carry_out
-from verify.motor.combine import CHAIN, check_together
+from verify.motor.combine import CHAIN, check_goes_on, check_together
 from verify.motor.feet import Placed
 from verify.motor.plan import lay_out
 from verify.motor.result import MotorRun, MotorState
@@ -136,10 +136,15 @@ def _run(
     began, beam, model, start = perf_counter(), asked.driven.beam, asked.modelled.model, asked.started.start
     check_kind("patient", asked.patient, bool)
     check_together(model, start, [slider for slider, _, _ in put])
+    check_goes_on(model, before)
     for _, speed, stays in put:
         if speed is not None:
             check_number("held_speed", speed, "m/s")
         check_kind("frozen", plain(stays), bool)
+    if model == CHAIN:
+        from verify.motor.on_chain import check_links_asked
+
+        check_links_asked(asked.modelled, asked.links)
     linear = msgspec.structs.replace(asked.modelled, model="segment") if model == CHAIN else asked.modelled
     request = requested(asked.driven, linear, asked.started, asked.watched, put[0][0])
     placed = tuple(Placed(slider, slider.start_on(beam), speed, bool(stays)) for slider, speed, stays in put)

@@ -43,7 +43,7 @@ def on_chain(law: str) -> Iterator[Call]:
     from verify.motor import kernels
 
     feet, log = _ridden()
-    given = GivenSurface(np.zeros((1, 1, 2, 4)), np.zeros((1, 1)), np.zeros(2))
+    given = GivenSurface(np.zeros((1, 1, 2, 4)), np.zeros((1, 2)), np.zeros(2))
     yield kernels.ride_given, (1, 0.0, given, feet, _rubbing(law), _line(), np.zeros((1, 2)), log)
 
 

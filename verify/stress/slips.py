@@ -157,20 +157,23 @@ def smooth_error(belt: float) -> float:
 
 CUBIC, EDGES, HALF, TURN = np.array([1.3, -0.7, 2.9, -1.9]) * 1e-3, (-0.02, 0.05), 4e-3, 2.0 * pi * 97.0
 """Powers of the place on a piece, its ends, half the thickness, rad/s."""
+DRAWN = np.array([0.03, -0.017])
+"""Speeds of those ends along x at their largest, m/s."""
 LONG, KEPT = 6e-3, 6000
 """Seconds, and steps."""
 
 
 def _surface(t: float, x: float) -> tuple[float, ...]:
-    """Deflection's slope and bend at the material under x and their rates with its own; speed of the whole surface."""
+    """Deflection's slope and bend at the material under x and their rates with its own; speed along x over it."""
     length = EDGES[1] - EDGES[0]
     powers = [np.polynomial.polynomial.polyder(CUBIC, d) / length**d for d in range(3)]
     c, s = cos(TURN * t + 0.4), -TURN * sin(TURN * t + 0.4)
     value = np.polynomial.polynomial.polyval
     z = (x - EDGES[0]) / length
+    whole = float(DRAWN[0] + z * (DRAWN[1] - DRAWN[0])) * sin(211.0 * t)
     z += HALF * c * float(value(z, powers[1])) / length
     w, slope, bend = (float(value(z, power)) for power in powers)
-    return c * slope, c * bend, s * w, s * slope, 0.03 * sin(211.0 * t)
+    return c * slope, c * bend, s * w, s * slope, whole
 
 
 def _moved(t: float, x: float, v: float, follows: bool) -> tuple[float, float, float]:
@@ -208,7 +211,9 @@ def given_error(number: float) -> float:
     half = np.arange(2 * KEPT + 1) * 0.5 * LONG / KEPT
     swings = np.stack([np.cos(TURN * half + 0.4), -TURN * np.sin(TURN * half + 0.4)], axis=1)
     given = Given(
-        local=swings[:, :, None] * CUBIC, along=0.03 * np.sin(211.0 * half), edges=np.array(EDGES, dtype=float)
+        local=swings[:, :, None] * CUBIC,
+        along=DRAWN * np.sin(211.0 * half)[:, None],
+        edges=np.array(EDGES, dtype=float),
     )
     rider = Rider(fresh_motion(speed, sticks), law(static, kinetic, HALF, follows), None)
     kept = np.zeros((KEPT + 1, 4))

@@ -17,6 +17,7 @@ from verify.studies.kind import Progress, Study
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from verify.beam import Beam
     from verify.judge.workbench import Workbench
     from verify.models.compiling import Call
     from verify.motor.case import MotorCase
@@ -194,11 +195,8 @@ class MotorStudy(Study[Motor, "MotorFound"]):
         for model in asked.linear:
             if MODELS[model].sized:
                 MODELS[model].check_carried(scene.beam, asked.count, scene.drive.frequency_hz)
-        if CHAIN in asked.models and scene.beam.supports != ("pinned", "pinned"):
-            raise InputError(
-                f"motor.models has the chain, with beam.supports = {list(scene.beam.supports)!r}: give a beam that is "
-                "pinned at both ends, or leave the chain out"
-            )
+        if CHAIN in asked.models:
+            _check_chained(scene.beam)
 
     def models(self, asked: Motor, scene: "Scene") -> tuple[str, ...]:
         """The linear fields."""
@@ -244,6 +242,19 @@ class MotorStudy(Study[Motor, "MotorFound"]):
 
         self._check_models(asked, scene)
         return motor_study(scene, asked, step)
+
+
+def _check_chained(beam: "Beam") -> None:
+    """Raise InputError for a beam that no nonlinear chain of [motor] is made of."""
+    from verify.chain.system import check_buildable
+
+    if beam.supports != ("pinned", "pinned"):
+        raise InputError(
+            f"motor.models has the chain, with beam.supports = {list(beam.supports)!r}: give a beam that is "
+            "pinned at both ends, or leave the chain out"
+        )
+    check_buildable(beam)
+    beam.check_added("the nonlinear chain", ("section",), "take chain out of motor.models")
 
 
 def _titled(model: str) -> str:

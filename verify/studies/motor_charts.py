@@ -189,6 +189,7 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
         return ()
     time, way = unit_of(rest.seconds, "s"), unit_over(x for run in rest.fields for x in run.way)
     order = sorted(rest.fields, key=lambda one: one.model != CHAIN and MODELS[one.model].sized)
+    own, turned = ("left", "right") if rest.fields[0].curve[-1].speed < 0.0 else ("right", "left")
     return (
         Chart(
             id="motor-rest",
@@ -202,9 +203,9 @@ def _rest(found: "MotorFound") -> tuple[Chart, ...]:
         Chart(
             id="motor-rest-force",
             title=f"From rest: force over speed at {rest.force:g} N",
-            caption="Means over the last half of those runs and over all places, over mu N. Left and right: the wave "
-            "as the scene says, and turned round. A motor that pushes with its wave is below nought on one side of "
-            "standing still and above it on the other.",
+            caption="Means over the last half of those runs and over all places, over mu N. "
+            f"On the {own} the wave as the scene says, on the {turned} turned round. A motor that pushes with its wave "
+            "is below nought on one side of standing still and above it on the other.",
             x=Axis("speed, cm/s"),
             y=Axis("force over mu N"),
             lines=tuple(line for one in order for line in _held_lines(one)),

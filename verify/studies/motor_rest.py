@@ -81,6 +81,9 @@ class RestField(msgspec.Struct, frozen=True, kw_only=True):
     """Metres, at those times, of the slider at the scene's own place."""
     whole: bool
     """Whether all runs reached their end."""
+    drawn: float | None = None
+    """Speed along x of a chain's links under sliders that stand still, over that of the crests, rms over time and all
+    starts: bending draws them in. None of a linear field, which leaves that out."""
 
     @property
     def title(self) -> str:
@@ -198,8 +201,17 @@ def _field(case: MotorCase, asked: "Motor", places: tuple[float, ...], crests: f
         times=tuple(thinned(shown.times, 200)),
         way=tuple(thinned(shown.travelled, 200)),
         whole=all(_whole(rows) for rows in (there, back, fine, fine_back)),
+        drawn=_drawn((*there[1], *back[1]), crests),
     )
     return found, shown.motor_margins.chain or 0.0
+
+
+def _drawn(runs: "Sequence[MotorRun]", crests: float) -> float | None:
+    """Of `RestField`; `crests` is their speed, m/s."""
+    speeds = [run.motor_margins.drawn for run in runs]
+    if crests == 0.0 or None in speeds:
+        return None
+    return float(np.sqrt(np.mean(np.square(np.array(speeds, dtype=float)))) / abs(crests))
 
 
 def _whole(rows: "list[tuple[MotorRun, ...]]") -> bool:
@@ -268,6 +280,11 @@ def what_stands(found: FromRest) -> Iterator[str]:
         f"{one.title} {_pm(*one.push)}, {_pm(*one.bias)}" for one in found.fields
     )
     chains = [one for one in found.fields if one.model == CHAIN]
+    if drawn := [f"{one.title} {one.drawn:.2g}" for one in chains if one.drawn is not None]:
+        yield (
+            "bending draws a chain in, and its surface goes along x with it: under sliders held still, rms over the "
+            f"crests' speed, {', '.join(drawn)}; linear fields have none of that, whatever the axial inertia"
+        )
     for one, other in pairwise(chains):
         yield _nearer(found, one, other)
 
@@ -279,20 +296,27 @@ def _pm(mean: float, error: float) -> str:
 def _departs(found: FromRest, one: RestField) -> str:
     gone = found.departure(one)
     unit = unit_over((gone.mean, gone.error))
-    mean = f"{unit.factor * gone.mean:+.3g} +- {unit.factor * gone.error:.2g} {unit.name}"
+    error = float(f"{unit.factor * gone.error:.2g}")
+    mean = f"{unit.factor * gone.mean:+.3g} +- {error:g} {unit.name}"
     said = mean if gone.told else f"no mean that is told from its error ({mean})"
     return f"on {one.title} {said}, rms {in_words(gone.rms)}, halved steps {in_words(one.stepped, form='.2g')}"
+
+
+def _error_of(beam: RestField, one: RestField, other: RestField) -> float:
+    """Standard error of how much nearer one of two pushes is to the beam's, whose own counts where it lies between."""
+    between = (one.push[0] - beam.push[0]) * (other.push[0] - beam.push[0]) < 0.0
+    return sqrt(one.push[1] ** 2 + other.push[1] ** 2 + (2.0 * beam.push[1] * between) ** 2)
 
 
 def _nearer(found: FromRest, one: RestField, other: RestField) -> str:
     """Which of two pushes more nearly as the first field does, standing still."""
     beam = found.fields[0]
     far = [abs(each.push[0] - beam.push[0]) for each in (one, other)]
-    error, stepped = sqrt(one.push[1] ** 2 + other.push[1] ** 2), one.push_stepped + other.push_stepped
+    error, stepped = _error_of(beam, one, other), one.push_stepped + other.push_stepped
     pair = f"{one.title} push {far[0]:.3f} mu N otherwise, {other.title} {far[1]:.3f}"
     if abs(far[0] - far[1]) <= max(SURE * error, stepped):
         return (
             f"which chain pushes more nearly as the {beam.title} does is withheld ({pair}, apart by less than errors)"
         )
     near = other if far[0] > far[1] else one
-    return f"{near.title} push more nearly as the {beam.title} does where the axial inertia is that large ({pair})"
+    return f"{near.title} push more nearly as the {beam.title} does in these runs ({pair})"

@@ -67,6 +67,7 @@ FROM_REST: tuple[Read, ...] = (
     (Column("bias", "+.3f"), lambda row: row[0].bias[0]),
     (Column("error", ".2g"), lambda row: row[0].push[1]),
     (Column("steps halved", ".1e", wide=True), lambda row: row[0].push_stepped),
+    (Column("drawn in", ".2g", wide=True), lambda row: row[0].drawn),
 )
 """Of a `RestField` and its `Departure` from the first."""
 
@@ -151,7 +152,8 @@ def _rest(rest: "FromRest") -> Table:
             "Own place: where the slider ends that starts where the scene puts it. Apart: mean, over all "
             "starts, of how much farther along +x it ends than on the first field, with its standard error and its "
             "rms. Steps halved: what that changes, rms. Push and bias: the force on a slider that stands still, over "
-            "mu N, that turns round with the wave, and that does not.",
+            "mu N, that turns round with the wave, and that does not. Drawn in: speed along x of the links under it, "
+            "rms over that of the crests.",
         ),
         shown="both",
     )
