@@ -25,9 +25,10 @@ from numba.core import event
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
 from numba.core.compiler_machinery import PassManager
+from numba.core.typed_passes import NativeLowering
 from numba.extending import intrinsic
 
-from verify.models import compiling, quick_entries, quick_typing
+from verify.models import compiling, quick_entries, quick_lowering, quick_typing
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
@@ -79,6 +80,8 @@ NEEDLESS = {
 class _ScalarCompiler(Compiler):
     """Numba's, without the passes that kernels do not need."""
 
+    lowering: Any = quick_lowering.KernelLowering
+
     def compile_extra(self, func: Any) -> Any:
         """A function, by the pipeline."""
         with quick_entries.taken():
@@ -87,13 +90,16 @@ class _ScalarCompiler(Compiler):
     def define_pipelines(self) -> list[Any]:
         """The one pipeline."""
         whole, short = DefaultPassBuilder.define_nopython_pipeline(self.state), PassManager("kernels")  # type: ignore
-        short.passes.extend([one for one in whole.passes if one[0].__name__ not in NEEDLESS])
+        lowering = {NativeLowering: self.lowering}
+        short.passes.extend([(lowering.get(one, one), why) for one, why in whole.passes if one.__name__ not in NEEDLESS])
         short.finalize()  # type: ignore[no-untyped-call]
         return [short]
 
 
 class _PartCompiler(_ScalarCompiler):
     """The same, into a part's library."""
+
+    lowering = quick_lowering.PartLowering
 
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
         into = library or _PartLibrary(targetctx.codegen(), "part")  # type: ignore[no-untyped-call]
