@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from llvmlite.ir import IRBuilder
+from llvmlite.ir.instructions import LoadInstr
 from numba.core import cgutils, ir
 from numba.core import types as numbas_types
 from numba.core.analysis import compute_use_defs, must_use_alloca
@@ -266,9 +267,9 @@ def _place(builder: Any, record: Any) -> Any:
 
 
 def _field(lower: QuickLower, value: Any, kind: Any, name: str) -> Any:
-    """What a record holds, read at the beginning of the function, once."""
+    """What a record holds that was handed on by its address, read at the beginning of the function, once."""
     address, place = _places(lower.builder).get(value), kind.fields.index(name)
-    if address is None:
+    if address is None or not isinstance(value, LoadInstr):  # a record at hand is written there after that beginning
         return None
     if (value, place) not in lower._fields:
         with lower.builder.goto_entry_block():
