@@ -7,6 +7,8 @@ over whole numbers count. What is asked of them is the same, in the same order; 
 that this stands on, everything is left to it.
 """
 
+# mypy: disable-error-code="no-untyped-call,attr-defined,no-any-return"
+
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -15,17 +17,20 @@ from llvmlite.ir.instructions import LoadInstr
 from numba.core import cgutils, ir
 from numba.core import types as numbas_types
 from numba.core.analysis import compute_use_defs, must_use_alloca
+from numba.core.base import OverloadSelector
 from numba.core.callconv import CPUCallConv
+from numba.core.compiler_machinery import register_pass
 from numba.core.datamodel.packer import ArgPacker
 from numba.core.imputils import fix_returning_optional
-from numba.core.base import OverloadSelector
-from numba.core.compiler_machinery import register_pass
 from numba.core.ir_utils import compute_cfg_from_blocks
 from numba.core.lowering import Lower
 from numba.core.typed_passes import NativeLowering
 
 types: Any = numbas_types
 """Not all of its names are typed."""
+NAMES = ("_find_singly_assigned_variable", "extract_function_arguments", "setup_function", "lower_expr", "loadvar")
+KNOWN = all(hasattr(Lower, name) for name in NAMES) and hasattr(CPUCallConv, "_get_arg_packer")
+"""Whether this numba lowers by the names that this stands on."""
 STEP_FREE = 2
 """Arguments of a range that has no step."""
 
@@ -35,7 +40,7 @@ class QuickLower(Lower):
 
     def _find_singly_assigned_variable(self) -> None:
         """Those that numba finds, which live in one block, and those whose one value is there wherever it is asked."""
-        super()._find_singly_assigned_variable()  # type: ignore[no-untyped-call]
+        super()._find_singly_assigned_variable()
         self._ranges: dict[Any, tuple[Any, Any, Any]] = {}
         self._fields: dict[tuple[Any, int], Any] = {}
         if not self.context.enable_nrt and not self.func_ir.func_id.is_generator:
@@ -43,7 +48,7 @@ class QuickLower(Lower):
 
     def extract_function_arguments(self) -> Any:
         """Those of the function; records stand in memory, from where parts read what they ask for."""
-        values = super().extract_function_arguments()  # type: ignore[no-untyped-call]
+        values = super().extract_function_arguments()
         for kind, value in zip(self.fndesc.argtypes, values, strict=True):
             if isinstance(kind, types.BaseNamedTuple):
                 _places(self.builder).setdefault(value, _place(self.builder, value))
@@ -53,10 +58,10 @@ class QuickLower(Lower):
         """By the short way where there is one."""
         quick = QUICK.get(expr.op)
         found = quick(self, expr) if quick else None
-        return super().lower_expr(resty, expr) if found is None else found  # type: ignore[no-untyped-call]
+        return super().lower_expr(resty, expr) if found is None else found
 
 
-def _with_one_value(blocks: dict[int, Any]) -> set[str]:
+def _with_one_value(blocks: Any) -> set[str]:
     """Variables that are assigned once, in a block that is passed, and written down, before all that ask for them."""
     use_defs, dominators = compute_use_defs(blocks), compute_cfg_from_blocks(blocks).dominators()
     assigned: dict[str, list[int]] = {}
@@ -165,7 +170,8 @@ def _array(context: Any, builder: Any, kind: Any, data: Any, lengths: Sequence[A
     """An array of rows without gaps, that owns nothing, as numba has it."""
     word = context.get_value_type(types.intp)
     size = word(context.get_abi_sizeof(context.get_data_type(kind.dtype)))
-    strides, stride = [], size
+    strides: list[Any] = []
+    stride = size
     for length in reversed(lengths):
         strides.insert(0, stride)
         stride = builder.mul(stride, length)
@@ -251,7 +257,7 @@ def _places(builder: Any) -> dict[Any, Any]:
     """Addresses of the records of a function, by their values."""
     if not hasattr(builder, "_places"):
         builder._places = {}
-    return builder._places  # type: ignore[no-any-return]
+    return builder._places
 
 
 def _record_at(builder: Any, address: Any) -> Any:
@@ -292,7 +298,7 @@ def _read(context: Any, builder: Any, kind: Any, record: Any, place: int) -> Any
 
 
 class _PartConvention(CPUCallConv):
-    """How parts are called: as numba does, but for what is handed on, and nobody asks what else than an error it was."""
+    """How parts are called: as numba does, but for what is handed on."""
 
     def _get_arg_packer(self, argtypes: Any) -> Any:
         return _ByAddress(self.context, argtypes)
@@ -334,7 +340,7 @@ def calling(descriptor: Any, libraries: Sequence[Any]) -> Any:
             context.call_conv.return_status_propagate(builder, status)
         return fix_returning_optional(context, builder, signature, status, value)
 
-    call.signature, call.libs = descriptor.argtypes, tuple(libraries)  # type: ignore[attr-defined]
+    call.signature, call.libs = descriptor.argtypes, tuple(libraries)
     return call
 
 
@@ -363,8 +369,8 @@ class PartLowering(NativeLowering):
 
     def run_pass(self, state: Any) -> bool:
         """As numba does; then its calls are written down here."""
-        done = super().run_pass(state)  # type: ignore[no-untyped-call]
+        done = super().run_pass(state)
         made, call = state["cr"], calling(state["cr"].fndesc, [state.library])
-        state.targetctx._defns[made.cfunc] = defined = OverloadSelector()  # type: ignore[no-untyped-call]
-        defined.append(call, call.signature)  # type: ignore[no-untyped-call]
+        state.targetctx._defns[made.cfunc] = defined = OverloadSelector()
+        defined.append(call, call.signature)
         return bool(done)
