@@ -25,16 +25,28 @@ from numba.core import event
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
 from numba.core.compiler_machinery import PassManager
+from numba.core.typed_passes import NativeLowering
 from numba.extending import intrinsic
 
-from verify.models import compiling, quick_entries, quick_typing
+from verify.models import compiling, quick_entries, quick_lowering, quick_typing
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
 """Options of numba for every kernel: divisions are not checked, and no C function is made that nothing calls."""
 
 
-class _PartLibrary(JITCodeLibrary):
+class _KernelLibrary(JITCodeLibrary):
+    """The code of a kernel with all its parts, optimised once: it counts no references that could be pruned before."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
+
+    def _optimize_final_module(self) -> None:
+        passes, builder = self._codegen._module_pass_manager()  # type: ignore[no-untyped-call]
+        passes.run(self._final_module, builder)
+
+
+class _PartLibrary(_KernelLibrary):
     """The code of a part: linked with what it calls, and left at that."""
 
     def finalize(self) -> None:
@@ -79,6 +91,14 @@ NEEDLESS = {
 class _ScalarCompiler(Compiler):
     """Numba's, without the passes that kernels do not need."""
 
+    lowering: Any = quick_lowering.KernelLowering
+
+    def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
+        super().__init__(typingctx, targetctx, library, *given)  # type: ignore[no-untyped-call]
+        if LINKED and library is None and not self.state.flags.nrt:
+            self.state.library = _KernelLibrary(targetctx.codegen(), "kernel")  # type: ignore[no-untyped-call]
+            self.state.library.enable_object_caching()
+
     def compile_extra(self, func: Any) -> Any:
         """A function, by the pipeline."""
         with quick_entries.taken():
@@ -87,7 +107,10 @@ class _ScalarCompiler(Compiler):
     def define_pipelines(self) -> list[Any]:
         """The one pipeline."""
         whole, short = DefaultPassBuilder.define_nopython_pipeline(self.state), PassManager("kernels")  # type: ignore
-        short.passes.extend([one for one in whole.passes if one[0].__name__ not in NEEDLESS])
+        lowering = {NativeLowering: self.lowering} if quick_lowering.KNOWN else {}
+        short.passes.extend(
+            [(lowering.get(one, one), why) for one, why in whole.passes if one.__name__ not in NEEDLESS]
+        )
         short.finalize()  # type: ignore[no-untyped-call]
         return [short]
 
@@ -95,17 +118,25 @@ class _ScalarCompiler(Compiler):
 class _PartCompiler(_ScalarCompiler):
     """The same, into a part's library."""
 
+    lowering = quick_lowering.PartLowering
+
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *given: Any) -> None:
         into = library or _PartLibrary(targetctx.codegen(), "part")  # type: ignore[no-untyped-call]
-        super().__init__(typingctx, targetctx, into, *given)  # type: ignore[no-untyped-call]
+        super().__init__(typingctx, targetctx, into, *given)
 
 
 KERNELS, RECORDS = "*kernels.py", "*records.py"
 _OTHER_ROOM = compile_pattern(rb"^from verify\.(\w+)\.\w*(?:kernels|records) import", MULTILINE)
-INNER = ("_raise_if_finalized", "_ensure_finalized", "_get_module_for_linking")
-"""What a part's library is made of: numba's own names, which a later numba may not have."""
+INNER = (
+    "_raise_if_finalized",
+    "_ensure_finalized",
+    "_get_module_for_linking",
+    "_optimize_functions",
+    "_optimize_final_module",
+)
+"""What libraries are made of: numba's own names, which a later numba may not have."""
 LINKED = all(hasattr(JITCodeLibrary, name) for name in INNER)
-"""Whether parts are only linked; else they are compiled as numba does, which takes longer and gives the same."""
+"""Whether parts are only linked and kernels optimised once; else they are compiled as numba does: longer, the same."""
 PART = {**ALWAYS, "_nrt": False, "no_cpython_wrapper": True} | ({"pipeline_class": _PartCompiler} if LINKED else {})
 
 
