@@ -12,6 +12,7 @@ import numpy as np
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray, Indices
 from verify.models.banded import band_of
+from verify.models.inverse import Inverse, inverse_of
 from verify.models.pencil import (
     DENSE_UNKNOWNS,
     LARGE,
@@ -22,7 +23,7 @@ from verify.models.pencil import (
     mixed_matrix,
     too_large,
 )
-from verify.models.polishing import homed, is_heavy, polished, sharpened
+from verify.models.polishing import homed, is_heavy, polished, sharpened, told_apart
 from verify.patience import check_work
 
 _LANCZOS = 1e-10
@@ -260,41 +261,51 @@ def _n_sure(pencil: FactoredPencil, rounding: Array, softness: Array) -> int:
 
 
 def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array | None]:
-    """Vectors by Lanczos on the inverse of the mixed matrix, which never forms B^T diag(d) B; their strains if many.
+    """Vectors by Lanczos on the inverse of the mixed matrix, which never forms B^T diag(d) B; their strains if many."""
+    inverse = inverse_of(pencil, pencil.below)
+    if abs(_lowest_told(inverse)) < pencil.slow:
+        inverse = inverse_of(pencil, -pencil.slow)
+        return told_apart(inverse, _by_lanczos(inverse, n_modes))
+    found = _by_lanczos(inverse, n_modes)
+    return (found, None) if pencil.n < LARGE else polished(inverse, found)
+
+
+def _lowest_told(inverse: Inverse) -> float:
+    """About the lowest eigenvalue, of either sign where rounding makes it, by two steps of inverse iteration."""
+    first = inverse.solve(inverse.mass @ _start(inverse.pencil.n)[:, 0])
+    load = inverse.mass @ first
+    second = inverse.solve(load)
+    return float(second @ load / (second @ (inverse.mass @ second)))
+
+
+def _by_lanczos(inverse: Inverse, n_modes: int) -> Array:
+    """The lowest vectors, (n, n_modes), ascending.
 
     Rigid motions are projected out of load and answer, which makes it the pseudo-inverse. The start vector is
     fixed, so that runs repeat.
     """
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-    mixed, free = mixed_matrix(pencil)
-    factor, mass, n_strains = factorised(mixed), pencil.mass_matrix(), len(pencil.stiffness)
-    load, answer = np.zeros(n_strains + len(free)), np.zeros(pencil.n)
-    inertia = mass @ pencil.rigid
-    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
-
-    def invert(b: Array) -> Array:
-        balanced = b.ravel() - inertia @ (motions.T @ b.ravel())
-        load[n_strains:] = balanced[free]
-        answer[free] = factor.solve(load)[n_strains:]
-        return np.asarray(answer - motions @ (inertia.T @ answer))  # a new array: eigsh keeps what it is given
-
-    operator = LinearOperator((pencil.n, pencil.n), matvec=invert, dtype=float)
-    start = np.random.default_rng(20081).standard_normal(pencil.n)
-    start -= motions @ (inertia.T @ start)
-    basis = min(n_modes + 30, pencil.n)
+    n = inverse.pencil.n
+    operator = LinearOperator((n, n), matvec=lambda b: inverse.solve(b.ravel()), dtype=float)
+    start = inverse.still(np.random.default_rng(20081).standard_normal(n))
+    basis = min(n_modes + 30, n)
     try:
         values, vectors = eigsh(
-            operator, k=n_modes, M=mass, sigma=pencil.below, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis
+            operator,
+            k=n_modes,
+            M=inverse.mass,
+            sigma=inverse.below,
+            OPinv=operator,
+            v0=start,
+            tol=_LANCZOS,
+            ncv=basis,
         )
     except ArpackNoConvergence:
         raise InputError(
             "n_modes: the lowest modes lie too close together to be told apart on so many parts, lower count"
         ) from None
-    found = np.asarray(vectors[:, np.argsort(values)])
-    if pencil.n < LARGE:
-        return found, None
-    return polished(pencil, factor, found, free, motions)
+    return np.asarray(vectors[:, np.argsort(values)])
 
 
 def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:

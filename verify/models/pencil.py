@@ -40,6 +40,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
     below: float = 0.0
     """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
+    slow: float = 0.0
+    """Eigenvalues below it are of motions that hardly bend the beam (`inverse.slow_limit`); 0: nobody asks."""
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
     bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
@@ -82,23 +84,19 @@ def _in_pairs(products: Array) -> Array:
     return np.asarray(np.ascontiguousarray(products.T).sum(axis=1))
 
 
-def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
-    """([[-1/d, B], [B^T, 0]] as a sparse array, the unknowns in it): K with its strains kept as unknowns.
+def mixed_matrix(pencil: FactoredPencil, below: float = 0.0) -> tuple[Any, Indices]:
+    """([[-1/d, B], [B^T, -below M]] as a sparse array, the unknowns in it): K - below M, strains kept as unknowns.
 
-    Where all eigenvalues lie above some value, K less M times that. Where motions are rigid, as many unknowns are
-    grounded as make the matrix regular.
+    Where it is K alone and motions are rigid, as many unknowns are grounded as make the matrix regular.
     """
-    grounds = _grounds(pencil.rigid)
-    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), grounds)
-    strain = pencil.strain_matrix()
-    return bordered(-1.0 / pencil.stiffness, strain[:, free] if grounds else strain, _lowered(pencil)), free
-
-
-def _lowered(pencil: FactoredPencil) -> Any:
-    # None, not stored zeros: they would cost three times the solve
     from scipy.sparse import csc_array
 
-    return -pencil.below * csc_array(pencil.mass_matrix()) if pencil.below else None
+    grounds = [] if below else _grounds(pencil.rigid)
+    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), grounds)
+    strain = pencil.strain_matrix()
+    # None, not stored zeros: they would cost three times the solve
+    corner = -below * csc_array(pencil.mass_matrix()) if below else None
+    return bordered(-1.0 / pencil.stiffness, strain[:, free] if grounds else strain, corner), free
 
 
 def bordered(diagonal: Any, strain: Any, corner: Any = None) -> Any:

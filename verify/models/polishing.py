@@ -1,11 +1,10 @@
 """Vectors made better than what found them: of many parts, under a heavy mass, and all modes of a small pencil."""
 
-from typing import Any
-
 import numpy as np
 
 from verify.errors import InputError
-from verify.models.arrays import Array, Indices
+from verify.models.arrays import Array
+from verify.models.inverse import Inverse
 from verify.models.pencil import FactoredPencil, bordered, factored_quotient, factorised
 
 _HEAVY = 1e6
@@ -16,31 +15,29 @@ _HOMING = 3
 """Steps to a mode that is nearly known, each the cube of the one before."""
 
 
-def polished(pencil: FactoredPencil, factor: Any, vectors: Array, free: Indices, motions: Array) -> tuple[Array, Array]:
+def polished(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
     """A step of inverse iteration whose solution is refined once, (n, k), and its strains, (m, k).
 
     The residual is by differences of differences. The strains are those of the mixed solution: digits of the last
     place of v alone would be n^2 eps of them.
     """
-    n_strains, mass = len(pencil.stiffness), pencil.mass_matrix()
+    pencil, mass, free, n_strains = inverse.pencil, inverse.mass, inverse.free, inverse.n_strains
     transposed = pencil.strain_matrix()[:, free].T
-    inertia = mass @ pencil.rigid
     better, strains = np.empty_like(vectors), np.empty((n_strains, vectors.shape[1]))
     carried = np.empty_like(vectors)
     for k, vector in enumerate(vectors.T):
-        load = mass @ (vector - better[:, :k] @ (carried[:, :k].T @ vector))
-        load -= inertia @ (motions.T @ load)
+        load = inverse.balanced(mass @ (vector - better[:, :k] @ (carried[:, :k].T @ vector)))
         load /= abs(load).max()
         right = np.concatenate([np.zeros(n_strains), load[free]])
-        found, answer = factor.solve(right), np.zeros(pencil.n)
+        found, answer = inverse.factor.solve(right), np.zeros(pencil.n)
         force, answer[free] = found[:n_strains], found[n_strains:]
         right[:n_strains] = force / pencil.stiffness - pencil.strain(answer[:, None])[:, 0]
         right[n_strains:] -= transposed @ force
-        if pencil.below:
-            right[n_strains:] += pencil.below * (mass @ answer)[free]
-        found += factor.solve(right)
+        if inverse.below:
+            right[n_strains:] += inverse.below * (mass @ answer)[free]
+        found += inverse.factor.solve(right)
         answer[free] = found[n_strains:]
-        answer -= motions @ (inertia.T @ answer)
+        answer = inverse.still(answer)
         lower = carried[:, :k].T @ answer  # which each step of inverse iteration raises
         answer -= better[:, :k] @ lower
         size = np.sqrt(answer @ (mass @ answer))
@@ -48,6 +45,32 @@ def polished(pencil: FactoredPencil, factor: Any, vectors: Array, free: Indices,
         carried[:, k] = mass @ better[:, k]
         strains[:, k] = (found[:n_strains] / pencil.stiffness - strains[:, :k] @ lower) / size
     return better, strains
+
+
+def told_apart(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
+    """The same where some motions are slow, each of them by itself, and its strains read where they have most digits.
+
+    A spring so soft that the rounding of what it feels is less than that of the forces is read off the vector; what
+    bends is not, in which a slow motion has no digit.
+    """
+    pencil = inverse.pencil
+    vectors, strains = polished(inverse, vectors)
+    rounding = abs(pencil.stiffness)[:, None] * (abs(pencil.strain_matrix()) @ abs(vectors))
+    soft = rounding < abs(pencil.stiffness[:, None] * strains).max(axis=0)
+    strains = np.where(soft, pencil.strain(vectors), strains)
+    values, _ = factored_quotient(pencil, vectors, strains)
+    slow = values < pencil.slow
+    turned = _turned(pencil, vectors[:, slow], strains[:, slow])
+    vectors[:, slow], strains[:, slow] = vectors[:, slow] @ turned, strains[:, slow] @ turned
+    return vectors, strains
+
+
+def _turned(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:
+    """What makes modes of vectors that span them, (k, k), by their strains (Rayleigh and Ritz)."""
+    from scipy.linalg import eigh
+
+    stiffness, mass = strains.T @ (pencil.stiffness[:, None] * strains), vectors.T @ (pencil.mass_matrix() @ vectors)
+    return np.asarray(eigh(stiffness, mass)[1]) if len(stiffness) > 1 else np.eye(len(stiffness))
 
 
 def is_heavy(pencil: FactoredPencil) -> bool:

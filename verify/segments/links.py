@@ -17,6 +17,7 @@ from verify.checks import check_whole
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
+from verify.models.inverse import slow_limit
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
 from verify.options import ATTACHMENTS, JOINTS, WALLS, Attachment, Joints, Theory, Wall
 from verify.segments.walls import wall_factors, welded_halves
@@ -118,6 +119,12 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether the left and the right end have a joint that bends: at a wall, or with an elastic support beyond."""
         left, right = (wall or elastic for wall, elastic in zip(self.walls, self.elastic, strict=True))
         return left, right
+
+    @property
+    def slow(self) -> float:
+        """Below which omega^2 is of a motion that hardly bends it, in its units (`FactoredPencil`)."""
+        stiffnesses = 1.0 if self.stiffnesses is None else self.stiffnesses
+        return slow_limit(self.lengths, stiffnesses, self.masses / self.lengths, self.tension)
 
     @property
     def nodes(self) -> Array:
@@ -230,6 +237,7 @@ def chain_pencil(chain: Chain) -> FactoredPencil:
         stiffness=1.0 / chain.compliances[has_joint],
         strain_matrix=lambda: _strain_matrix(chain),
         mass_matrix=lambda: mass,
+        slow=chain.slow,
     )
 
 
