@@ -36,7 +36,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.compression import buckling_ratio
 from verify.models.driven_pencil import check_dense
-from verify.models.inverse import slow_limit
+from verify.models.inverse import first_bending
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Theory
 
@@ -69,7 +69,7 @@ def _pencil(elements: Elements) -> FactoredPencil:
         strain_matrix=lambda: own(lengths)[:, free],
         mass_matrix=lambda: mass,
         uneven=uneven(elements.beam, elements.theory),
-        slow=slow_limit(lengths, elements.parts.stiffnesses, elements.parts.masses_per_length, tension),
+        bending=first_bending(lengths, elements.parts.stiffnesses, elements.parts.masses_per_length, tension),
     )
     return added_strains(elements, plain)
 

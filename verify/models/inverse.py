@@ -5,17 +5,19 @@ inverse of K it is so large that its rounding drowns what bends. Of K + slow M, 
 the beam first, all modes are the same and none is large.
 """
 
-from math import pi
+from functools import lru_cache
+from math import inf, pi
 from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.models.arrays import Array, Indices
-from verify.models.pencil import FactoredPencil, factorised, mixed_matrix
+from verify.models.pencil import LARGE, FactoredPencil, factorised, mixed_matrix
 
-_HARDLY_BENT = 0.01
-"""Of (pi / phase)^4 and what an axial force adds: below the first bending mode of any ends."""
+SLOW = 0.01
+"""Of `first_bending`: an eigenvalue below it is of a motion that hardly bends the beam."""
 
 
 class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -31,6 +33,13 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """M R, (n, r)."""
     motions: Array
     """R (R^T M R)^-1, (n, r)."""
+    rough: bool = False
+    """Whether the lowest mode is so low that others lose digits to it."""
+
+    @property
+    def many(self) -> bool:
+        """Whether unknowns are so many that vectors are polished."""
+        return self.pencil.n * (4 if self.rough or self.below < 0.0 else 1) >= LARGE
 
     @property
     def n_strains(self) -> int:
@@ -53,6 +62,13 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return self.still(answer)
 
 
+def fitting_inverse(pencil: FactoredPencil) -> Inverse:
+    """The inverse that modes are found from: of K - below M, where motions are slow of K + slow M."""
+    inverse, slow = inverse_of(pencil, pencil.below), SLOW * pencil.bending
+    lowest = abs(lowest_told(inverse)) if slow else inf
+    return inverse_of(pencil, -slow) if lowest < slow else replace(inverse, rough=lowest < pencil.bending)
+
+
 def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
     """The inverse of K - below M; of K alone, 0, where motions are rigid, with as many unknowns grounded."""
     mixed, free = mixed_matrix(pencil, below)
@@ -69,11 +85,25 @@ def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
     )
 
 
-def slow_limit(lengths: Array, stiffnesses: Any, masses_per_length: Array, tension: float = 0.0) -> float:
-    """Below which omega^2 is of a motion that hardly bends a beam of parts (N,), or pulls it straight, in their units.
+def lowest_told(inverse: Inverse) -> float:
+    """About the lowest eigenvalue less `below`, by two steps of inverse iteration; rounding may turn its sign."""
+    first = inverse.solve(inverse.mass @ start_of(inverse.pencil.n)[:, 0])
+    load = inverse.mass @ first
+    second = inverse.solve(load)
+    return float(second @ load / (second @ (inverse.mass @ second)))
 
-    Between any ends a bending mode passes a phase of about pi or more, of (m omega^2 / EI)^(1/4) a length.
+
+@lru_cache(maxsize=8)
+def start_of(n: int) -> Array:
+    """What inverse iteration starts from, (n, 1), the same every time."""
+    return np.random.default_rng(4276).standard_normal((n, 1))
+
+
+def first_bending(lengths: Array, stiffnesses: Any, masses_per_length: Array, tension: float = 0.0) -> float:
+    """About the lowest omega^2 of a beam of parts (N,), in their units, that bends between pins: of others a tenth.
+
+    It passes a phase of pi, of (m omega^2 / EI)^(1/4) a length; an axial force adds what it does to a string.
     """
     phase = (lengths * (masses_per_length / stiffnesses) ** 0.25).sum()
-    pulled = max(tension, 0.0) * (pi / lengths.sum()) ** 2 * lengths.sum() / (lengths * masses_per_length).sum()
-    return float(_HARDLY_BENT * ((pi / phase) ** 4 + pulled))
+    pulled = max(tension, 0.0) * pi**2 / (lengths.sum() * (lengths * masses_per_length).sum())
+    return float((pi / phase) ** 4 + pulled)

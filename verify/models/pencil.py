@@ -16,9 +16,9 @@ from verify.models.arrays import Array, Indices
 
 DENSE_UNKNOWNS = 250
 """Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
-LARGE = 50_000
+LARGE = 20_000
 """Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
-square would be 1e-9 of the eigenvalues of a million parts."""
+square would be 1e-9 of the eigenvalues of a million parts, and was 1e-12 of those of 20 000 free elements."""
 
 
 class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -40,8 +40,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
     below: float = 0.0
     """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
-    slow: float = 0.0
-    """Eigenvalues below it are of motions that hardly bend the beam (`inverse.slow_limit`); 0: nobody asks."""
+    bending: float = 0.0
+    """About the lowest eigenvalue of what bends (`inverse.first_bending`), which tells what is slow; 0: not known."""
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
     bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)

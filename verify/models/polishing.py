@@ -4,13 +4,17 @@ import numpy as np
 
 from verify.errors import InputError
 from verify.models.arrays import Array
-from verify.models.inverse import Inverse
+from verify.models.inverse import SLOW, Inverse, start_of
 from verify.models.pencil import FactoredPencil, bordered, factored_quotient, factorised
 
 _HEAVY = 1e6
 """Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
 _SAME = 0.9
 """Cosine of two vectors that are one mode."""
+_STEADY = 2
+"""Steps to a slow motion, each of which leaves at most a fiftieth of what else is in it."""
+_SOUGHT = 6
+"""Steps to one that was missed."""
 _HOMING = 3
 """Steps to a mode that is nearly known, each the cube of the one before."""
 
@@ -48,21 +52,49 @@ def polished(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
 
 
 def told_apart(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
-    """The same where some motions are slow, each of them by itself, and its strains read where they have most digits.
+    """Modes of an inverse in which slow motions are all alike, each by itself, and their strains, ascending.
+
+    Those of the slow are read where they have most digits, those of others off the vectors but where unknowns are many.
+    """
+    pencil = inverse.pencil
+    values, vectors = factored_quotient(pencil, _with_missed(inverse, vectors))
+    some = (values < SLOW * pencil.bending) | inverse.many
+    motions, others = vectors[:, some], vectors[:, ~some]
+    for _ in range(_STEADY):
+        motions, strains = polished(inverse, motions)
+    strains = _best_read(pencil, motions, strains)
+    slow = factored_quotient(pencil, motions, strains)[0] < SLOW * pencil.bending
+    turned = _turned(pencil, motions[:, slow], strains[:, slow])
+    motions[:, slow], strains[:, slow] = motions[:, slow] @ turned, strains[:, slow] @ turned
+    vectors, strains = np.hstack([motions, others]), np.hstack([strains, pencil.strain(others)])
+    order = np.argsort(factored_quotient(pencil, vectors, strains)[0], kind="stable")
+    return vectors[:, order], strains[:, order]
+
+
+def _with_missed(inverse: Inverse, vectors: Array) -> Array:
+    """Vectors, (n, k), and slow motions that are not among them: to Lanczos two that are alike may be one."""
+    while len(vectors) > vectors.shape[1] + inverse.pencil.rigid_modes:
+        carried = inverse.mass @ vectors
+        other = start_of(len(vectors))[:, 0]
+        for _ in range(_SOUGHT):
+            other = inverse.solve(inverse.mass @ other)
+            other -= vectors @ np.linalg.solve(carried.T @ vectors, carried.T @ other)
+            last, other = other, other / np.sqrt(other @ (inverse.mass @ other))
+        if np.sqrt(last @ (inverse.mass @ last)) < 0.5 / -inverse.below:
+            break
+        vectors = np.hstack([vectors, other[:, None]])
+    return vectors
+
+
+def _best_read(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:
+    """Strains (m, k) of a solution, or off its vectors where these tell more.
 
     A spring so soft that the rounding of what it feels is less than that of the forces is read off the vector; what
     bends is not, in which a slow motion has no digit.
     """
-    pencil = inverse.pencil
-    vectors, strains = polished(inverse, vectors)
     rounding = abs(pencil.stiffness)[:, None] * (abs(pencil.strain_matrix()) @ abs(vectors))
     soft = rounding < abs(pencil.stiffness[:, None] * strains).max(axis=0)
-    strains = np.where(soft, pencil.strain(vectors), strains)
-    values, _ = factored_quotient(pencil, vectors, strains)
-    slow = values < pencil.slow
-    turned = _turned(pencil, vectors[:, slow], strains[:, slow])
-    vectors[:, slow], strains[:, slow] = vectors[:, slow] @ turned, strains[:, slow] @ turned
-    return vectors, strains
+    return np.where(soft, pencil.strain(vectors), strains)
 
 
 def _turned(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:

@@ -17,7 +17,7 @@ from verify.checks import check_whole
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
-from verify.models.inverse import slow_limit
+from verify.models.inverse import first_bending
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
 from verify.options import ATTACHMENTS, JOINTS, WALLS, Attachment, Joints, Theory, Wall
 from verify.segments.walls import wall_factors, welded_halves
@@ -121,10 +121,10 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         return left, right
 
     @property
-    def slow(self) -> float:
-        """Below which omega^2 is of a motion that hardly bends it, in its units (`FactoredPencil`)."""
+    def first_bending(self) -> float:
+        """About the lowest omega^2 of what bends it, in its units (`FactoredPencil`)."""
         stiffnesses = 1.0 if self.stiffnesses is None else self.stiffnesses
-        return slow_limit(self.lengths, stiffnesses, self.masses / self.lengths, self.tension)
+        return first_bending(self.lengths, stiffnesses, self.masses / self.lengths, self.tension)
 
     @property
     def nodes(self) -> Array:
@@ -237,7 +237,7 @@ def chain_pencil(chain: Chain) -> FactoredPencil:
         stiffness=1.0 / chain.compliances[has_joint],
         strain_matrix=lambda: _strain_matrix(chain),
         mass_matrix=lambda: mass,
-        slow=chain.slow,
+        bending=chain.first_bending,
     )
 
 
