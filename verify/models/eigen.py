@@ -129,8 +129,7 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
         vectors, strains = _sparse_vectors(pencil, n_modes)
     if strains is None:
         vectors = _elastic(pencil, vectors)
-    if is_heavy(pencil):
-        vectors, strains = homed(pencil, vectors), None
+        vectors = homed(pencil, vectors) if is_heavy(pencil) else vectors
     return _in_order(pencil, vectors, method_name(pencil.n, n_modes, inverted), strains)
 
 
@@ -230,7 +229,7 @@ def _of_inverse(inverse: Inverse, vectors: Array) -> tuple[Array, Array | None]:
     if inverse.below < 0.0:
         better, strains = told_apart(inverse, vectors)
         return better[:, : vectors.shape[1]], strains[:, : vectors.shape[1]]
-    return polished(inverse, vectors) if inverse.many else (vectors, None)
+    return polished(inverse, vectors) if inverse.many and not is_heavy(inverse.pencil) else (vectors, None)
 
 
 def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array | None]:
