@@ -13,8 +13,9 @@ import msgspec
 import numpy as np
 from msgspec.structs import replace
 
+from verify.errors import InputError
 from verify.models.arrays import Array, Indices
-from verify.models.pencil import LARGE, FactoredPencil, factorised, mixed_matrix
+from verify.models.pencil import LARGE, FactoredPencil, factorised, mixed_matrix, soft_scales
 
 SLOW = 0.01
 """Of `first_bending`: an eigenvalue below it is of a motion that hardly bends the beam."""
@@ -28,6 +29,8 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     factor: Any
     free: Indices
     """Unknowns that are not grounded."""
+    scales: Array
+    """Of forces (m,) in the mixed matrix."""
     mass: Any
     inertia: Array
     """M R, (n, r)."""
@@ -54,6 +57,14 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """An answer (n,) less its rigid motions."""
         return np.asarray(answer - self.motions @ (self.inertia.T @ answer))
 
+    def answered(self, right: Array) -> Array:
+        """(forces (m,), unknowns) of the mixed matrix to what stands on its right."""
+        scales = self.scales
+        right[: len(scales)] *= scales
+        found = self.factor.solve(right)
+        found[: len(scales)] *= scales
+        return np.asarray(found)
+
     def solve(self, load: Array) -> Array:
         """The answer to a load, (n,) both."""
         right, answer = np.zeros(self.n_strains + len(self.free)), np.zeros(self.pencil.n)
@@ -64,8 +75,14 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def fitting_inverse(pencil: FactoredPencil) -> Inverse:
     """The inverse that modes are found from: of K - below M, where motions are slow of K + slow M."""
-    inverse, slow = inverse_of(pencil, pencil.below), SLOW * pencil.bending
-    lowest = abs(lowest_told(inverse)) if slow else inf
+    slow = SLOW * pencil.bending
+    try:
+        inverse = inverse_of(pencil, pencil.below)
+        lowest = abs(lowest_told(inverse)) if slow else inf
+    except InputError:  # to rounding a motion is not slow but free
+        if not slow:
+            raise
+        lowest = 0.0
     return inverse_of(pencil, -slow) if lowest < slow else replace(inverse, rough=lowest < pencil.bending)
 
 
@@ -79,6 +96,7 @@ def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
         below=below,
         factor=factorised(mixed),
         free=free,
+        scales=soft_scales(pencil.stiffness),
         mass=mass,
         inertia=inertia,
         motions=np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T,

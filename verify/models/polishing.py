@@ -33,13 +33,13 @@ def polished(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
         load = inverse.balanced(mass @ (vector - better[:, :k] @ (carried[:, :k].T @ vector)))
         load /= abs(load).max()
         right = np.concatenate([np.zeros(n_strains), load[free]])
-        found, answer = inverse.factor.solve(right), np.zeros(pencil.n)
+        found, answer = inverse.answered(right), np.zeros(pencil.n)
         force, answer[free] = found[:n_strains], found[n_strains:]
         right[:n_strains] = force / pencil.stiffness - pencil.strain(answer[:, None])[:, 0]
         right[n_strains:] -= transposed @ force
         if inverse.below:
             right[n_strains:] += inverse.below * (mass @ answer)[free]
-        found += inverse.factor.solve(right)
+        found += inverse.answered(right)
         answer[free] = found[n_strains:]
         answer = inverse.still(answer)
         lower = carried[:, :k].T @ answer  # which each step of inverse iteration raises
