@@ -11,8 +11,10 @@ _HEAVY = 1e6
 """Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
 _SAME = 0.9
 """Cosine of two vectors that are one mode."""
-_STEADY = 2
-"""Steps to a slow motion, each of which leaves at most a fiftieth of what else is in it."""
+_STEPS = 12
+"""To a slow motion at most; each leaves a tenth or less of what else is in it."""
+_STEADY = 1e-14
+"""Of a value: a change after which there is no other."""
 _SOUGHT = 6
 """Steps to one that was missed."""
 _HOMING = 3
@@ -20,34 +22,22 @@ _HOMING = 3
 
 
 def polished(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
-    """A step of inverse iteration whose solution is refined once, (n, k), and its strains, (m, k).
+    """A step of inverse iteration whose solution is refined, (n, k), and its strains, (m, k).
 
-    The residual is by differences of differences. The strains are those of the mixed solution: digits of the last
-    place of v alone would be n^2 eps of them.
+    The strains are those of the mixed solution: digits of the last place of v alone would be n^2 eps of them.
     """
-    pencil, mass, free, n_strains = inverse.pencil, inverse.mass, inverse.free, inverse.n_strains
-    transposed = pencil.strain_matrix()[:, free].T
-    better, strains = np.empty_like(vectors), np.empty((n_strains, vectors.shape[1]))
+    pencil, mass = inverse.pencil, inverse.mass
+    better, strains = np.empty_like(vectors), np.empty((inverse.n_strains, vectors.shape[1]))
     carried = np.empty_like(vectors)
     for k, vector in enumerate(vectors.T):
-        load = inverse.balanced(mass @ (vector - better[:, :k] @ (carried[:, :k].T @ vector)))
-        load /= abs(load).max()
-        right = np.concatenate([np.zeros(n_strains), load[free]])
-        found, answer = inverse.answered(right), np.zeros(pencil.n)
-        force, answer[free] = found[:n_strains], found[n_strains:]
-        right[:n_strains] = force / pencil.stiffness - pencil.strain(answer[:, None])[:, 0]
-        right[n_strains:] -= transposed @ force
-        if inverse.below:
-            right[n_strains:] += inverse.below * (mass @ answer)[free]
-        found += inverse.answered(right)
-        answer[free] = found[n_strains:]
-        answer = inverse.still(answer)
+        load = mass @ (vector - better[:, :k] @ (carried[:, :k].T @ vector))
+        force, answer = inverse.refined(load / abs(load).max())
         lower = carried[:, :k].T @ answer  # which each step of inverse iteration raises
         answer -= better[:, :k] @ lower
         size = np.sqrt(answer @ (mass @ answer))
         better[:, k] = answer / size
         carried[:, k] = mass @ better[:, k]
-        strains[:, k] = (found[:n_strains] / pencil.stiffness - strains[:, :k] @ lower) / size
+        strains[:, k] = (force / pencil.stiffness - strains[:, :k] @ lower) / size
     return better, strains
 
 
@@ -59,16 +49,27 @@ def told_apart(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
     pencil = inverse.pencil
     values, vectors = factored_quotient(pencil, _with_missed(inverse, vectors))
     some = (values < SLOW * pencil.bending) | inverse.many
-    motions, others = vectors[:, some], vectors[:, ~some]
-    for _ in range(_STEADY):
-        motions, strains = polished(inverse, motions)
-    strains = _best_read(pencil, motions, strains)
-    slow = factored_quotient(pencil, motions, strains)[0] < SLOW * pencil.bending
-    turned = _turned(pencil, motions[:, slow], strains[:, slow])
-    motions[:, slow], strains[:, slow] = motions[:, slow] @ turned, strains[:, slow] @ turned
+    others = vectors[:, ~some]
+    motions, strains = _settled(inverse, vectors[:, some])
     vectors, strains = np.hstack([motions, others]), np.hstack([strains, pencil.strain(others)])
     order = np.argsort(factored_quotient(pencil, vectors, strains)[0], kind="stable")
     return vectors[:, order], strains[:, order]
+
+
+def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
+    """Slow motions and what stands after them, and their strains, stepped until values of the slow no longer change."""
+    pencil, last = inverse.pencil, np.zeros(0)
+    for _ in range(_STEPS):
+        vectors, strains = polished(inverse, vectors)
+        strains = _best_read(pencil, vectors, strains)
+        slow = factored_quotient(pencil, vectors, strains)[0] < SLOW * pencil.bending
+        turned = _turned(pencil, vectors[:, slow], strains[:, slow])
+        vectors[:, slow], strains[:, slow] = vectors[:, slow] @ turned, strains[:, slow] @ turned
+        values = factored_quotient(pencil, vectors[:, slow], strains[:, slow])[0]
+        if len(last) == len(values) and (abs(values - last) < _STEADY * values).all():
+            break
+        last = values
+    return vectors, strains
 
 
 def _with_missed(inverse: Inverse, vectors: Array) -> Array:
