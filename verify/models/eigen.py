@@ -20,7 +20,7 @@ from verify.models.pencil import (
     factorised,
     too_large,
 )
-from verify.models.polishing import homed, is_heavy, polished, sharpened, told_apart
+from verify.models.polishing import polished, sharpened, told_apart
 from verify.patience import check_work
 
 _LANCZOS = 1e-10
@@ -129,7 +129,6 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
         vectors, strains = _sparse_vectors(pencil, n_modes)
     if strains is None:
         vectors = _elastic(pencil, vectors)
-        vectors = homed(pencil, vectors) if is_heavy(pencil) else vectors
     return _in_order(pencil, vectors, method_name(pencil.n, n_modes, inverted), strains)
 
 
@@ -229,7 +228,7 @@ def _of_inverse(inverse: Inverse, vectors: Array) -> tuple[Array, Array | None]:
     if inverse.below < 0.0:
         better, strains = told_apart(inverse, vectors)
         return better[:, : vectors.shape[1]], strains[:, : vectors.shape[1]]
-    return polished(inverse, vectors) if inverse.many and not is_heavy(inverse.pencil) else (vectors, None)
+    return polished(inverse, vectors) if inverse.many else (vectors, None)
 
 
 def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array | None]:

@@ -77,7 +77,6 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         answer[self.free] = self.factor.solve(right)[self.n_strains :]
         return self.still(answer)
 
-
     def refined(self, load: Array) -> tuple[Array, Array]:
         """(forces in the strains (m,), answer (n,)) to a load (n,), by residuals of differences of differences.
 

@@ -1,24 +1,17 @@
-"""Vectors made better than what found them: of many parts, under a heavy mass, and all modes of a small pencil."""
+"""Vectors made better than what found them: of many parts, slow motions, and all modes of a small pencil."""
 
 import numpy as np
 
-from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.inverse import SLOW, Inverse, start_of
-from verify.models.pencil import FactoredPencil, bordered, factored_quotient, factorised
+from verify.models.pencil import FactoredPencil, factored_quotient
 
-_HEAVY = 1e6
-"""Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
-_SAME = 0.9
-"""Cosine of two vectors that are one mode."""
 _STEPS = 12
 """To a slow motion at most; each leaves a tenth or less of what else is in it."""
 _STEADY = 1e-14
 """Of a value: a change after which there is no other."""
 _SOUGHT = 6
 """Steps to one that was missed."""
-_HOMING = 3
-"""Steps to a mode that is nearly known, each the cube of the one before."""
 
 
 def polished(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
@@ -104,41 +97,6 @@ def _turned(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:
 
     stiffness, mass = strains.T @ (pencil.stiffness[:, None] * strains), vectors.T @ (pencil.mass_matrix() @ vectors)
     return np.asarray(eigh(stiffness, mass)[1]) if len(stiffness) > 1 else np.eye(len(stiffness))
-
-
-def is_heavy(pencil: FactoredPencil) -> bool:
-    """Whether something on the beam weighs far more than the parts of it."""
-    masses = pencil.mass_matrix().diagonal()
-    most = masses.max() / _HEAVY
-    if not most > masses.min():  # a middle costs more than the rest, and no mass heavy beside it is light by the least
-        return False
-    masses, half = np.sort(masses), len(masses) // 2  # np.median would wake numpy.ma
-    return bool(most > 0.5 * (masses[half] + masses[-1 - half]))
-
-
-def homed(pencil: FactoredPencil, vectors: Array) -> Array:
-    """Vectors by Rayleigh quotient iteration on the mixed matrix, (n, k); one that would leave its mode stays.
-
-    B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
-    """
-    from scipy.sparse import csc_array
-
-    mass, strain, n_strains = csc_array(pencil.mass_matrix()), pencil.strain_matrix(), len(pencil.stiffness)
-    homed = vectors.copy()
-    for k in range(vectors.shape[1]):
-        vector = vectors[:, [k]]
-        for _ in range(_HOMING):
-            value, vector = factored_quotient(pencil, vector)
-            right = np.concatenate([np.zeros(n_strains), (mass @ vector)[:, 0]])
-            try:
-                mixed = bordered(-1.0 / pencil.stiffness, strain, -value[0] * mass)
-                vector = factorised(mixed).solve(right)[n_strains:, None]
-            except InputError:  # singular to the last digit: it is the mode
-                break
-        _, vector = factored_quotient(pencil, vector)
-        if abs(vector[:, 0] @ (mass @ homed[:, k])) > _SAME * np.sqrt(homed[:, k] @ (mass @ homed[:, k])):
-            homed[:, k] = vector[:, 0]
-    return homed
 
 
 def sharpened(pencil: FactoredPencil, values: Array, vectors: Array) -> tuple[Array, Array]:
