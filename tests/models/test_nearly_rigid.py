@@ -56,7 +56,7 @@ def test_of_many_parts_what_bends_keeps_its_digits_beside_what_hardly_does(face,
 @FACES
 @pytest.mark.parametrize("parts", [60, 3000])
 def test_a_bar_on_one_soft_spring_beside_a_pin_turns_as_its_spring_and_inertia_have_it(face, parts):
-    """k b^2 over the inertia about the pin, less what k b^2 over EI / L bends it; asked for alone, and with a body."""
+    """At k b^2 over the inertia about the pin, with a body: what k b^2 over EI / L bends it is next to nothing."""
     place, mass, k = 0.6 * LENGTH, 0.07, 1e-11 * STIFFNESS / LENGTH**3
     body, spring = PointMass(position=0.45, mass=mass), PointSpring(position=place, stiffness=k)
     found = face.solve_modes(bar(supports=("pinned", "free"), spring=(spring,), mass=(body,)), 1, parts)

@@ -85,7 +85,7 @@ def _in_pairs(products: Array) -> Array:
 
 
 def mixed_matrix(pencil: FactoredPencil, below: float = 0.0) -> tuple[Any, Indices]:
-    """([[-s^2/d, s B], [B^T s, -below M]] as a sparse array, the unknowns in it): K - below M, strains kept as unknowns.
+    """([[-s^2/d, s B], [B^T s, -below M]] as a sparse array, the unknowns in it): K - below M with its strains.
 
     Where it is K alone and motions are rigid, as many unknowns are grounded as make the matrix regular. s are the
     `soft_scales` of d.
