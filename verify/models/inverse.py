@@ -15,14 +15,14 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
-from verify.models.pencil import LARGE, FactoredPencil, factorised, mixed_matrix, soft_scales
+from verify.models.pencil import DENSE_UNKNOWNS, LARGE, FactoredPencil, factorised, mixed_matrix, soft_scales
 
 SLOW = 0.01
 """Of `first_bending`: an eigenvalue below it is of a motion that hardly bends the beam."""
 
-_REFINED = 12
+REFINED = 12
 """Solutions of one load at most."""
-_STILL = 1e-7
+STILL = 1e-7
 """Of the largest force: a step after which there is none."""
 
 
@@ -85,7 +85,7 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         m, pencil, free = self.n_strains, self.pencil, self.free
         transposed = pencil.strain_matrix()[:, free].T
         load, found, answer = self.balanced(load)[free], np.zeros(self.n_strains + len(free)), np.zeros(pencil.n)
-        for step in range(_REFINED):
+        for step in range(REFINED):
             right = np.concatenate([found[:m] / pencil.stiffness, load - transposed @ found[:m]])
             right[:m] -= pencil.strain(answer[:, None])[:, 0]
             if self.below:
@@ -93,7 +93,7 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
             more = self.answered(right)
             found += more
             answer[free] = found[m:]
-            if step and abs(more[:m]).max() < _STILL * abs(found[:m]).max():
+            if step and abs(more[:m]).max() < STILL * abs(found[:m]).max():
                 break
         return found[:m], self.still(answer)
 
@@ -108,7 +108,10 @@ def fitting_inverse(pencil: FactoredPencil) -> Inverse:
         if not slow:
             raise
         lowest = 0.0
-    return inverse_of(pencil, -slow) if lowest < slow else replace(inverse, rough=lowest < pencil.bending)
+    felt = (
+        slow * min(pencil.n / DENSE_UNKNOWNS, 1.0) ** 4
+    )  # of few parts much slower ones leave the others their digits
+    return inverse_of(pencil, -slow) if lowest < felt else replace(inverse, rough=lowest < pencil.bending)
 
 
 def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
