@@ -49,15 +49,20 @@ def added_strains(elements: Elements, plain: FactoredPencil) -> FactoredPencil:
         return vstack([plain.strain_matrix(), *(matrix()[:, free] for matrix in matrices)], format="csc")
 
     stiffness = np.concatenate([plain.stiffness, *stiffnesses])
-    return replace(plain, strain=strain, strain_matrix=strain_matrix, stiffness=stiffness, below=_lifted(elements))
+    below = _lifted(elements, plain.bending)
+    return replace(plain, strain=strain, strain_matrix=strain_matrix, stiffness=stiffness, below=below)
 
 
-def _lifted(elements: Elements) -> float:
-    """What a foundation lifts all eigenvalues above, 0 where masses or an axial force may take them down again."""
+def _lifted(elements: Elements, bending: float) -> float:
+    """What a foundation lifts all eigenvalues above, 0 where masses or an axial force may take them down again.
+
+    What is left is as large as what bends: a motion that it bears may be rigid.
+    """
     beam, parts = elements.beam, elements.parts
     if beam.mass or beam.tension < 0.0 or elements.theory != "euler-bernoulli":
         return 0.0
-    return (1.0 - 1e-6) * ground_stiffness(beam, parts.unit) / float(parts.masses_per_length.max())
+    lifted = ground_stiffness(beam, parts.unit) / float(parts.masses_per_length.max())
+    return max(lifted - max(1e-6 * lifted, bending), 0.0)
 
 
 Strained = tuple[Callable[[Array], Array], Callable[[], Any], Array]

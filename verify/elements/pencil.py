@@ -36,6 +36,7 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.compression import buckling_ratio
 from verify.models.driven_pencil import check_dense
+from verify.models.inverse import first_bending
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.options import Theory
 
@@ -57,6 +58,7 @@ def _pencil(elements: Elements) -> FactoredPencil:
     mass = inertia_matrix(elements)[free][:, free].tocsc()
     if len(free) <= DENSE_UNKNOWNS:
         mass = mass.toarray()
+    tension = elements.beam.tension * elements.parts.unit**2 / elements.beam.bending_stiffness
     own = curvature_matrix if elements.theory != "timoshenko" else shear_strain_matrix
     read = element_curvatures if elements.theory != "timoshenko" else element_shear_strains
     plain = FactoredPencil(
@@ -67,6 +69,7 @@ def _pencil(elements: Elements) -> FactoredPencil:
         strain_matrix=lambda: own(lengths)[:, free],
         mass_matrix=lambda: mass,
         uneven=uneven(elements.beam, elements.theory),
+        bending=first_bending(lengths, elements.parts.stiffnesses, elements.parts.masses_per_length, tension),
     )
     return added_strains(elements, plain)
 

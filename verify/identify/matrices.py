@@ -9,12 +9,14 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
 from verify.models.eigen import lowest
+from verify.models.inverse import first_bending
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 
 WALL_JOINTS = {"half": 0.5, "full": 1.0, "rigid": 0.0, "stiff": 0.25}
@@ -95,13 +97,14 @@ def _thickness(beam: Beam, parts: Parts, *, shear: bool) -> tuple[Array, Array]:
     return np.array(inertias)[which] * parts.lengths, np.array(stiffnesses)[which]
 
 
-def frequencies_hz(pencil: FactoredPencil, beam: Beam, unit: float, n_modes: int) -> Array:
+def frequencies_hz(pencil: FactoredPencil, beam: Beam, line: Line, n_modes: int) -> Array:
     """The first elastic frequencies, (n_modes or fewer,), Hz."""
     available = min(n_modes, pencil.n - pencil.rigid_modes)
     if available < 1:
         return np.empty(0)
-    values = lowest(pencil, available).values
-    return np.asarray(np.sqrt(values) * (beam.wave_constant / (2.0 * pi)) / unit**2)
+    bending = first_bending(line.lengths, line.stiffnesses, line.masses / line.lengths)
+    values = lowest(replace(pencil, bending=bending), available).values
+    return np.asarray(np.sqrt(values) * (beam.wave_constant / (2.0 * pi)) / line.unit**2)
 
 
 def _differences(line: Line) -> tuple[Any, Any]:
@@ -189,7 +192,7 @@ def chain(beam: Beam, count: int, n_modes: int, *, wall: str, mass: str, theory:
         _link_mass(line, mass)[free][:, free],
         _rigid(line, free),
     )
-    return frequencies_hz(pencil, beam, line.unit, n_modes)
+    return frequencies_hz(pencil, beam, line, n_modes)
 
 
 def rod(beam: Beam, count: int, n_modes: int, *, wall: str) -> Array:
@@ -209,7 +212,7 @@ def rod(beam: Beam, count: int, n_modes: int, *, wall: str) -> Array:
     strain = block_array([[None, jumps[jointed][:, turns]], [slopes[:, free], -eye_array(line.n).tocsr()[:, turns]]])
     mass = diags_array(np.append(0.5 * _beside(line.masses)[free], line.rotary[turns]))
     stiffness = np.append(1.0 / compliances[jointed], line.shear * line.lengths)
-    return frequencies_hz(_pencil(strain.tocsr(), stiffness, mass, _rigid(line, free, turns)), beam, line.unit, n_modes)
+    return frequencies_hz(_pencil(strain.tocsr(), stiffness, mass, _rigid(line, free, turns)), beam, line, n_modes)
 
 
 NODE_INERTIAS = {"lumped": 0.0, "lumped-rotary": 1.0 / 24.0, "hrz": 1.0 / 78.0}
@@ -239,7 +242,7 @@ def elements(beam: Beam, count: int, n_modes: int, *, mass: str, theory: str) ->
     cubic = np.zeros(n) if linear else line.lengths / (12.0 * line.stiffnesses)
     stiffness = np.append(bending, 1.0 / (cubic + 1.0 / (line.shear * line.lengths)))
     pencil = _pencil(strain, stiffness, _node_mass(line, mass, free, turns), _rigid(line, free, turns))
-    return frequencies_hz(pencil, beam, line.unit, n_modes)
+    return frequencies_hz(pencil, beam, line, n_modes)
 
 
 def _node_mass(line: Line, mass: str, free: Array, turns: Array) -> Any:
@@ -284,4 +287,4 @@ def _condensed(line: Line, beam: Beam, n_modes: int) -> Array:
         strain_matrix=lambda: csc_array(solve_triangular(lower, jump.toarray(), lower=True)),
         mass_matrix=lambda: held,
     )
-    return frequencies_hz(pencil, beam, line.unit, n_modes)
+    return frequencies_hz(pencil, beam, line, n_modes)

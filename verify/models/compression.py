@@ -20,9 +20,7 @@ def buckling_ratio(pencil: FactoredPencil) -> float:
     if not soft.any():
         return 0.0
     kept = strain[~soft]
-    mixed, free = mixed_matrix(
-        replace(pencil, strain_matrix=lambda: kept, stiffness=pencil.stiffness[~soft], below=0.0)
-    )
+    mixed, free = mixed_matrix(replace(pencil, strain_matrix=lambda: kept, stiffness=pencil.stiffness[~soft]))
     factor, taken = factorised(mixed), diags_array(np.sqrt(-pencil.stiffness[soft])) @ strain[soft][:, free]
     load = np.zeros(mixed.shape[0])
 

@@ -3,26 +3,24 @@
 How vectors are found depends on size and contrast; every value is read from the pencil's own quotient (`pencil`).
 """
 
-from functools import lru_cache
 from typing import Any
 
 import msgspec
 import numpy as np
 
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray, Indices
+from verify.models.arrays import Array, ComplexArray
 from verify.models.banded import band_of
+from verify.models.inverse import Inverse, fitting_inverse, start_of
 from verify.models.pencil import (
     DENSE_UNKNOWNS,
-    LARGE,
     FactoredPencil,
     bordered,
     factored_quotient,
     factorised,
-    mixed_matrix,
     too_large,
 )
-from verify.models.polishing import homed, is_heavy, polished, sharpened
+from verify.models.polishing import polished, sharpened, told_apart
 from verify.patience import check_work
 
 _LANCZOS = 1e-10
@@ -30,8 +28,6 @@ _LANCZOS = 1e-10
 _UNLIKE = 1e4
 """Of K_ii / M_ii, or of K_ii: between parts so unlike, graded or stepped, assembling drowns what is soft. Below, values
 of random steps were off by 2e-12 at most, at ten times as much by 4e-10."""
-_DROWNED = 1e-15
-"""Of a mode's strain energy: what rounding may have of it in an inverse."""
 _WHOLE = 32
 """Rows up to which a triangle is inverted at once."""
 _BYTES_PER_UNKNOWN = 2000
@@ -119,19 +115,20 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
     """The lowest `n_modes` elastic eigenpairs. The caller has checked the size with `check_size`."""
     strains, inverted = None, pencil.uneven
     if inverted and uses_dense(pencil.n, n_modes):
-        vectors = _inverse_vectors(pencil, n_modes)
+        vectors, strains = _inverse_vectors(pencil, n_modes)
     elif pencil.n <= DENSE_UNKNOWNS:
         root, mass = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(np.eye(pencil.n)), pencil.mass_matrix()
         inverted = _is_unlike((root * root).sum(axis=0), mass)
-        vectors = _inverse_vectors(pencil, n_modes) if inverted else _dense_vectors(pencil, n_modes, root, mass)
+        if inverted:
+            vectors, strains = _inverse_vectors(pencil, n_modes)
+        else:
+            vectors = _dense_vectors(pencil, n_modes, root, mass)
     elif uses_dense(pencil.n, n_modes):
         vectors = _svd_vectors(pencil, n_modes)
     else:
         vectors, strains = _sparse_vectors(pencil, n_modes)
     if strains is None:
         vectors = _elastic(pencil, vectors)
-    if is_heavy(pencil):
-        vectors, strains = homed(pencil, vectors), None
     return _in_order(pencil, vectors, method_name(pencil.n, n_modes, inverted), strains)
 
 
@@ -198,103 +195,76 @@ def _svd_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
     return np.asarray(inverse.T @ right[last - n_modes : last][::-1].T)
 
 
-def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> Array:
+def _inverse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array | None]:
     """Vectors by LAPACK from L^T K^-1 L with M = L L^T and K^-1 through the mixed matrix, which takes any d.
 
     What is very stiff has next to nothing in it, where K would drown all else in its rounding. Rigid motions are
-    projected out, as for Lanczos; so are, step by step, motions so slow that their answers' rounding drowns others.
+    projected out, as for Lanczos. Strains of all where some are slow.
     """
-    from scipy.linalg import cholesky, solve_triangular
+    from scipy.linalg import cholesky, eigh, solve_triangular
 
-    mass = pencil.mass_matrix()
-    mass = np.asarray(mass.toarray() if hasattr(mass, "toarray") else mass)
+    inverse = fitting_inverse(pencil)
+    mass = np.asarray(inverse.mass.toarray() if hasattr(inverse.mass, "toarray") else inverse.mass)
     lower = cholesky(mass, lower=True)
-    mixed, free = mixed_matrix(pencil)
-    factor, known, by_size = factorised(mixed), pencil.rigid, False
-    while (wanted := pencil.rigid_modes + n_modes - known.shape[1]) > 0:
-        flexibility = _flexibility(pencil, factor, free, lower, known)
-        softness, found = _softest(flexibility, wanted, by_size)
-        rounding = 0.5 * (flexibility - flexibility.T) @ found
-        vectors, unlike = np.split(solve_triangular(lower, np.hstack([found, rounding]), lower=True, trans="T"), 2, 1)
-        n_sure = max(_n_sure(pencil, unlike, softness), int(by_size))
-        by_size = not n_sure
-        known = np.hstack([known, vectors[:, :n_sure]])
-    return np.asarray(known[:, pencil.rigid_modes :])
+    first = pencil.n - n_modes
+    _, found = eigh(_flexibility(inverse, lower), subset_by_index=(first, pencil.n - 1), driver="evr")
+    vectors = np.asarray(solve_triangular(lower, found[:, ::-1], lower=True, trans="T"))
+    return _of_inverse(inverse, vectors)
 
 
-def _softest(flexibility: Array, wanted: int, by_size: bool) -> tuple[Array, Array]:
-    """(1/lambda, (wanted,), falling; vectors (n, wanted)) of an inverse (n, n) that rounding leaves unsymmetric.
-
-    `by_size` whatever its sign, which rounding may turn of the softest of all.
-    """
-    from scipy.linalg import eigh
-
-    n, symmetric = len(flexibility), 0.5 * (flexibility + flexibility.T)
-    if not by_size:
-        softness, found = eigh(symmetric, subset_by_index=(n - wanted, n - 1), driver="evr")
-        return softness[::-1], found[:, ::-1]
-    softness, found = eigh(symmetric)
-    first = np.argsort(-abs(softness))[:wanted]
-    return abs(softness[first]), found[:, first]
+def _flexibility(inverse: Inverse, lower: Array) -> Array:
+    """L^T K^-1 L, (n, n), without rigid motions."""
+    free, inertia, motions = inverse.free, inverse.inertia, inverse.motions
+    loads = np.zeros((inverse.n_strains + len(free), len(lower)))
+    loads[inverse.n_strains :] = (lower - inertia @ (motions.T @ lower))[free]
+    answer = np.zeros_like(lower)
+    answer[free] = inverse.factor.solve(loads)[inverse.n_strains :]
+    found = lower.T @ (answer - motions @ (inertia.T @ answer))
+    return np.asarray(0.5 * (found + found.T))
 
 
-def _flexibility(pencil: FactoredPencil, factor: Any, free: Indices, lower: Array, known: Array) -> Array:
-    """L^T K^-1 L, (n, n), without the part of motions (n, k) that are known."""
-    inertia = lower @ (lower.T @ known)
-    motions = np.linalg.solve(known.T @ inertia, known.T).T
-    loads = np.zeros((len(pencil.stiffness) + len(free), pencil.n))
-    loads[-len(free) :] = (lower - inertia @ (motions.T @ lower))[free]
-    answer = np.zeros((pencil.n, pencil.n))
-    answer[free] = factor.solve(loads)[-len(free) :]
-    return np.asarray(lower.T @ (answer - motions @ (inertia.T @ answer)))
-
-
-def _n_sure(pencil: FactoredPencil, rounding: Array, softness: Array) -> int:
-    """How many of the first modes of K^-1, (k,) of `softness` 1/lambda, falling, its rounding leaves.
-
-    What breaks the symmetry of K^-1 is rounding, (n, k) in these modes; its strain energy over that of a mode is what
-    it adds to the mode's value.
-    """
-    drowned = abs(pencil.stiffness) @ pencil.strain(rounding) ** 2 > _DROWNED * softness
-    return int(drowned.argmax()) if drowned.any() else len(drowned)
+def _of_inverse(inverse: Inverse, vectors: Array) -> tuple[Array, Array | None]:
+    """Vectors (n, k) that an inverse gave, made better, and their strains where the vectors do not tell them."""
+    if inverse.below < 0.0:
+        better, strains = told_apart(inverse, vectors)
+        return better[:, : vectors.shape[1]], strains[:, : vectors.shape[1]]
+    return polished(inverse, vectors) if inverse.many else (vectors, None)
 
 
 def _sparse_vectors(pencil: FactoredPencil, n_modes: int) -> tuple[Array, Array | None]:
-    """Vectors by Lanczos on the inverse of the mixed matrix, which never forms B^T diag(d) B; their strains if many.
+    """Vectors by Lanczos on the inverse of the mixed matrix, which never forms B^T diag(d) B; their strains if many."""
+    inverse = fitting_inverse(pencil)
+    return _of_inverse(inverse, _by_lanczos(inverse, n_modes))
+
+
+def _by_lanczos(inverse: Inverse, n_modes: int) -> Array:
+    """The lowest vectors, (n, n_modes), ascending.
 
     Rigid motions are projected out of load and answer, which makes it the pseudo-inverse. The start vector is
     fixed, so that runs repeat.
     """
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-    mixed, free = mixed_matrix(pencil)
-    factor, mass, n_strains = factorised(mixed), pencil.mass_matrix(), len(pencil.stiffness)
-    load, answer = np.zeros(n_strains + len(free)), np.zeros(pencil.n)
-    inertia = mass @ pencil.rigid
-    motions = np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T
-
-    def invert(b: Array) -> Array:
-        balanced = b.ravel() - inertia @ (motions.T @ b.ravel())
-        load[n_strains:] = balanced[free]
-        answer[free] = factor.solve(load)[n_strains:]
-        return np.asarray(answer - motions @ (inertia.T @ answer))  # a new array: eigsh keeps what it is given
-
-    operator = LinearOperator((pencil.n, pencil.n), matvec=invert, dtype=float)
-    start = np.random.default_rng(20081).standard_normal(pencil.n)
-    start -= motions @ (inertia.T @ start)
-    basis = min(n_modes + 30, pencil.n)
+    n = inverse.pencil.n
+    operator = LinearOperator((n, n), matvec=lambda b: inverse.solve(b.ravel()), dtype=float)
+    start = inverse.still(np.random.default_rng(20081).standard_normal(n))
+    basis = min(n_modes + 30, n)
     try:
         values, vectors = eigsh(
-            operator, k=n_modes, M=mass, sigma=pencil.below, OPinv=operator, v0=start, tol=_LANCZOS, ncv=basis
+            operator,
+            k=n_modes,
+            M=inverse.mass,
+            sigma=inverse.below,
+            OPinv=operator,
+            v0=start,
+            tol=_LANCZOS,
+            ncv=basis,
         )
     except ArpackNoConvergence:
         raise InputError(
             "n_modes: the lowest modes lie too close together to be told apart on so many parts, lower count"
         ) from None
-    found = np.asarray(vectors[:, np.argsort(values)])
-    if pencil.n < LARGE:
-        return found, None
-    return polished(pencil, factor, found, free, motions)
+    return np.asarray(vectors[:, np.argsort(values)])
 
 
 def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
@@ -335,18 +305,12 @@ def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:
 
 def probe(pencil: FactoredPencil) -> Array:
     """The load (n, 1) of that step."""
-    return np.asarray(pencil.mass_matrix() @ _start(pencil.n))
+    return np.asarray(pencil.mass_matrix() @ start_of(pencil.n))
 
 
 def distance_answered(pencil: FactoredPencil, answer: Array, omega2: float) -> float:
     """The same of the answer (n,) to `probe`."""
     return float(answer @ probe(pencil)[:, 0] / (answer @ (pencil.mass_matrix() @ answer)) / omega2)
-
-
-@lru_cache(maxsize=8)
-def _start(n: int) -> Array:
-    """What inverse iteration starts from, (n, 1), the same every time."""
-    return np.random.default_rng(4276).standard_normal((n, 1))
 
 
 def modal_basis(pencil: FactoredPencil, sharp: bool = False) -> tuple[Array, Array]:

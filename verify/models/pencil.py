@@ -16,9 +16,9 @@ from verify.models.arrays import Array, Indices
 
 DENSE_UNKNOWNS = 250
 """Up to here a dense solver is faster than a sparse one and its vectors are good enough for the quotient."""
-LARGE = 50_000
+LARGE = 20_000
 """Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
-square would be 1e-9 of the eigenvalues of a million parts."""
+square would be 1e-9 of the eigenvalues of a million parts, and was 1e-12 of those of 20 000 free elements."""
 
 
 class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -40,6 +40,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """V (n, k) -> v^T M v, (k,), where M as one matrix would lose digits in it."""
     below: float = 0.0
     """What all eigenvalues lie above, rigid motions none: a stiff foundation lifts them to where they lie close."""
+    bending: float = 0.0
+    """About the lowest eigenvalue of what bends (`inverse.first_bending`), which tells what is slow; 0: not known."""
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
     bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
@@ -82,35 +84,40 @@ def _in_pairs(products: Array) -> Array:
     return np.asarray(np.ascontiguousarray(products.T).sum(axis=1))
 
 
-def mixed_matrix(pencil: FactoredPencil) -> tuple[Any, Indices]:
-    """([[-1/d, B], [B^T, 0]] as a sparse array, the unknowns in it): K with its strains kept as unknowns.
+def mixed_matrix(pencil: FactoredPencil, below: float = 0.0) -> tuple[Any, Indices]:
+    """([[-s^2/d, s B], [B^T s, -below M]] as a sparse array, the unknowns in it): K - below M with its strains.
 
-    Where all eigenvalues lie above some value, K less M times that. Where motions are rigid, as many unknowns are
-    grounded as make the matrix regular.
+    Where it is K alone and motions are rigid, as many unknowns are grounded as make the matrix regular. s are the
+    `soft_scales` of d.
     """
-    grounds = _grounds(pencil.rigid)
-    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), grounds)
-    strain = pencil.strain_matrix()
-    return bordered(-1.0 / pencil.stiffness, strain[:, free] if grounds else strain, _lowered(pencil)), free
-
-
-def _lowered(pencil: FactoredPencil) -> Any:
-    # None, not stored zeros: they would cost three times the solve
     from scipy.sparse import csc_array
 
-    return -pencil.below * csc_array(pencil.mass_matrix()) if pencil.below else None
+    grounds = [] if below else _grounds(pencil.rigid)
+    free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), grounds)
+    strain = pencil.strain_matrix()
+    # None, not stored zeros: they would cost three times the solve
+    corner = -below * csc_array(pencil.mass_matrix()) if below else None
+    return bordered(-1.0 / pencil.stiffness, strain[:, free] if grounds else strain, corner), free
+
+
+def soft_scales(stiffness: Array) -> Array:
+    """Powers of two, (m,), by which rows of strains that d (m,) holds softly come to the size of their diagonal, 1.
+
+    An endless 1/d beside others would be lost to what is eliminated by that row, and take the others along.
+    """
+    return np.asarray(np.exp2(np.minimum(np.round(0.5 * np.log2(abs(stiffness))), 0.0)))
 
 
 def bordered(diagonal: Any, strain: Any, corner: Any = None) -> Any:
-    """[[diag(diagonal), B], [B^T, corner]] as one sparse array by columns; B (m, n) and the corner (n, n) are sparse.
+    """[[s^2 diag(diagonal), s B], [B^T s, corner]] as one sparse array by columns; B (m, n), the corner (n, n) sparse.
 
-    As scipy's `block_array` makes it, in a third of the time of a small one.
+    s are `soft_scales` of 1 / diagonal (m,). As scipy's `block_array` makes it, in a third of the time of a small one.
     """
     from scipy.sparse import csc_array
 
-    m, beside = len(diagonal), strain.tocoo()
-    main, row, column = np.arange(m), beside.row, beside.col + m
-    rows, columns, values = [main, row, column], [main, column, row], [diagonal, beside.data, beside.data]
+    m, beside, scales = len(diagonal), strain.tocoo(), soft_scales(1.0 / diagonal)
+    main, row, column, shares = np.arange(m), beside.row, beside.col + m, beside.data * scales[beside.row]
+    rows, columns, values = [main, row, column], [main, column, row], [diagonal * scales**2, shares, shares]
     if corner is not None:
         below = corner.tocoo()
         rows, columns, values = [*rows, below.row + m], [*columns, below.col + m], [*values, below.data]

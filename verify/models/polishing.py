@@ -1,88 +1,102 @@
-"""Vectors made better than what found them: of many parts, under a heavy mass, and all modes of a small pencil."""
-
-from typing import Any
+"""Vectors made better than what found them: of many parts, slow motions, and all modes of a small pencil."""
 
 import numpy as np
 
-from verify.errors import InputError
-from verify.models.arrays import Array, Indices
-from verify.models.pencil import FactoredPencil, bordered, factored_quotient, factorised
+from verify.models.arrays import Array
+from verify.models.inverse import SLOW, Inverse, start_of
+from verify.models.pencil import FactoredPencil, factored_quotient
 
-_HEAVY = 1e6
-"""Of two masses: from there on modes are found one by one, since the slow motion of the heavy one drowns the others."""
-_SAME = 0.9
-"""Cosine of two vectors that are one mode."""
-_HOMING = 3
-"""Steps to a mode that is nearly known, each the cube of the one before."""
+_STEPS = 12
+"""To a slow motion at most; each leaves a tenth or less of what else is in it."""
+_STEADY = 1e-14
+"""Of a value: a change after which there is no other."""
+_SOUGHT = 6
+"""Steps to one that was missed."""
 
 
-def polished(pencil: FactoredPencil, factor: Any, vectors: Array, free: Indices, motions: Array) -> tuple[Array, Array]:
-    """A step of inverse iteration whose solution is refined once, (n, k), and its strains, (m, k).
+def polished(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
+    """A step of inverse iteration whose solution is refined, (n, k), and its strains, (m, k).
 
-    The residual is by differences of differences. The strains are those of the mixed solution: digits of the last
-    place of v alone would be n^2 eps of them.
+    The strains are those of the mixed solution: digits of the last place of v alone would be n^2 eps of them.
     """
-    n_strains, mass = len(pencil.stiffness), pencil.mass_matrix()
-    transposed = pencil.strain_matrix()[:, free].T
-    inertia = mass @ pencil.rigid
-    better, strains = np.empty_like(vectors), np.empty((n_strains, vectors.shape[1]))
+    pencil, mass = inverse.pencil, inverse.mass
+    better, strains = np.empty_like(vectors), np.empty((inverse.n_strains, vectors.shape[1]))
     carried = np.empty_like(vectors)
     for k, vector in enumerate(vectors.T):
         load = mass @ (vector - better[:, :k] @ (carried[:, :k].T @ vector))
-        load -= inertia @ (motions.T @ load)
-        load /= abs(load).max()
-        right = np.concatenate([np.zeros(n_strains), load[free]])
-        found, answer = factor.solve(right), np.zeros(pencil.n)
-        force, answer[free] = found[:n_strains], found[n_strains:]
-        right[:n_strains] = force / pencil.stiffness - pencil.strain(answer[:, None])[:, 0]
-        right[n_strains:] -= transposed @ force
-        if pencil.below:
-            right[n_strains:] += pencil.below * (mass @ answer)[free]
-        found += factor.solve(right)
-        answer[free] = found[n_strains:]
-        answer -= motions @ (inertia.T @ answer)
+        force, answer = inverse.refined(load / abs(load).max())
         lower = carried[:, :k].T @ answer  # which each step of inverse iteration raises
         answer -= better[:, :k] @ lower
         size = np.sqrt(answer @ (mass @ answer))
         better[:, k] = answer / size
         carried[:, k] = mass @ better[:, k]
-        strains[:, k] = (found[:n_strains] / pencil.stiffness - strains[:, :k] @ lower) / size
+        strains[:, k] = (force / pencil.stiffness - strains[:, :k] @ lower) / size
     return better, strains
 
 
-def is_heavy(pencil: FactoredPencil) -> bool:
-    """Whether something on the beam weighs far more than the parts of it."""
-    masses = pencil.mass_matrix().diagonal()
-    most = masses.max() / _HEAVY
-    if not most > masses.min():  # a middle costs more than the rest, and no mass heavy beside it is light by the least
-        return False
-    masses, half = np.sort(masses), len(masses) // 2  # np.median would wake numpy.ma
-    return bool(most > 0.5 * (masses[half] + masses[-1 - half]))
+def told_apart(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
+    """Modes of an inverse in which slow motions are all alike, each by itself, and their strains, ascending.
 
-
-def homed(pencil: FactoredPencil, vectors: Array) -> Array:
-    """Vectors by Rayleigh quotient iteration on the mixed matrix, (n, k); one that would leave its mode stays.
-
-    B. N. Parlett, The Symmetric Eigenvalue Problem (1980), ch. 4.
+    Those of the slow are read where they have most digits, those of others off the vectors but where unknowns are many.
     """
-    from scipy.sparse import csc_array
+    pencil = inverse.pencil
+    values, vectors = factored_quotient(pencil, _with_missed(inverse, vectors))
+    some = (values < SLOW * pencil.bending) | inverse.many
+    others = vectors[:, ~some]
+    motions, strains = _settled(inverse, vectors[:, some])
+    vectors, strains = np.hstack([motions, others]), np.hstack([strains, pencil.strain(others)])
+    order = np.argsort(factored_quotient(pencil, vectors, strains)[0], kind="stable")
+    return vectors[:, order], strains[:, order]
 
-    mass, strain, n_strains = csc_array(pencil.mass_matrix()), pencil.strain_matrix(), len(pencil.stiffness)
-    homed = vectors.copy()
-    for k in range(vectors.shape[1]):
-        vector = vectors[:, [k]]
-        for _ in range(_HOMING):
-            value, vector = factored_quotient(pencil, vector)
-            right = np.concatenate([np.zeros(n_strains), (mass @ vector)[:, 0]])
-            try:
-                mixed = bordered(-1.0 / pencil.stiffness, strain, -value[0] * mass)
-                vector = factorised(mixed).solve(right)[n_strains:, None]
-            except InputError:  # singular to the last digit: it is the mode
-                break
-        _, vector = factored_quotient(pencil, vector)
-        if abs(vector[:, 0] @ (mass @ homed[:, k])) > _SAME * np.sqrt(homed[:, k] @ (mass @ homed[:, k])):
-            homed[:, k] = vector[:, 0]
-    return homed
+
+def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
+    """Slow motions and what stands after them, and their strains, stepped until values of the slow no longer change."""
+    pencil, last = inverse.pencil, np.zeros(0)
+    for _ in range(_STEPS):
+        vectors, strains = polished(inverse, vectors)
+        strains = _best_read(pencil, vectors, strains)
+        slow = factored_quotient(pencil, vectors, strains)[0] < SLOW * pencil.bending
+        turned = _turned(pencil, vectors[:, slow], strains[:, slow])
+        vectors[:, slow], strains[:, slow] = vectors[:, slow] @ turned, strains[:, slow] @ turned
+        values = factored_quotient(pencil, vectors[:, slow], strains[:, slow])[0]
+        if len(last) == len(values) and (abs(values - last) < _STEADY * values).all():
+            break
+        last = values
+    return vectors, strains
+
+
+def _with_missed(inverse: Inverse, vectors: Array) -> Array:
+    """Vectors, (n, k), and slow motions that are not among them: to Lanczos two that are alike may be one."""
+    while len(vectors) > vectors.shape[1] + inverse.pencil.rigid_modes:
+        carried = inverse.mass @ vectors
+        other = start_of(len(vectors))[:, 0]
+        for _ in range(_SOUGHT):
+            other = inverse.solve(inverse.mass @ other)
+            other -= vectors @ np.linalg.solve(carried.T @ vectors, carried.T @ other)
+            last, other = other, other / np.sqrt(other @ (inverse.mass @ other))
+        if np.sqrt(last @ (inverse.mass @ last)) < 0.5 / -inverse.below:
+            break
+        vectors = np.hstack([vectors, other[:, None]])
+    return vectors
+
+
+def _best_read(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:
+    """Strains (m, k) of a solution, or off its vectors where these tell more.
+
+    A spring so soft that the rounding of what it feels is less than that of the forces is read off the vector; what
+    bends is not, in which a slow motion has no digit.
+    """
+    rounding = abs(pencil.stiffness)[:, None] * (abs(pencil.strain_matrix()) @ abs(vectors))
+    soft = rounding < abs(pencil.stiffness[:, None] * strains).max(axis=0)
+    return np.where(soft, pencil.strain(vectors), strains)
+
+
+def _turned(pencil: FactoredPencil, vectors: Array, strains: Array) -> Array:
+    """What makes modes of vectors that span them, (k, k), by their strains (Rayleigh and Ritz)."""
+    from scipy.linalg import eigh
+
+    stiffness, mass = strains.T @ (pencil.stiffness[:, None] * strains), vectors.T @ (pencil.mass_matrix() @ vectors)
+    return np.asarray(eigh(stiffness, mass)[1]) if len(stiffness) > 1 else np.eye(len(stiffness))
 
 
 def sharpened(pencil: FactoredPencil, values: Array, vectors: Array) -> tuple[Array, Array]:

@@ -16,6 +16,7 @@ from verify.beam import Beam
 from verify.checks import MOST_PARTS, check_whole, check_word
 from verify.models.arrays import Array
 from verify.models.division import Parts, divide
+from verify.models.inverse import first_bending
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, on_diagonals
 from verify.options import ATTACHMENTS, JOINTS, WALLS, Attachment, Joints, Theory, Wall
 from verify.segments.walls import wall_factors, welded_halves
@@ -117,6 +118,12 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether the left and the right end have a joint that bends: at a wall, or with an elastic support beyond."""
         left, right = (wall or elastic for wall, elastic in zip(self.walls, self.elastic, strict=True))
         return left, right
+
+    @property
+    def first_bending(self) -> float:
+        """About the lowest omega^2 of what bends it, in its units (`FactoredPencil`)."""
+        stiffnesses = 1.0 if self.stiffnesses is None else self.stiffnesses
+        return first_bending(self.lengths, stiffnesses, self.masses / self.lengths, self.tension)
 
     @property
     def nodes(self) -> Array:
@@ -228,6 +235,7 @@ def chain_pencil(chain: Chain) -> FactoredPencil:
         stiffness=1.0 / chain.compliances[has_joint],
         strain_matrix=lambda: _strain_matrix(chain),
         mass_matrix=lambda: mass,
+        bending=chain.first_bending,
     )
 
 
