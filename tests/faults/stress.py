@@ -15,20 +15,26 @@ from verify.contact import bouncing, foot
 from verify.elements import cuts
 from verify.elements import linear as fem_beam
 from verify.elements import stacks as element_stacks
+from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
+from verify.identify import matrices
 from verify.judge import compare, crossing
 from verify.models import division, driven_pencil, eigen, kind, spline, underfoot
 from verify.models.catalogue import MODELS
 from verify.motion import free_vibration, friction_kernels, request, rigid_surface, validity
 from verify.motion.stepping import Sliding
+from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
+from verify.motor import figures as motor_figures
+from verify.motor import on_chain, resting
 from verify.motor import stepping as motor_stepping
-from verify.segments import crowded
+from verify.segments import crowded, links
 from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
+from verify.segments import sweeps as segment_sweeps
 from verify.stress import turns
 from verify.waves import series, unit_waves, window
 
@@ -465,8 +471,51 @@ def blows_that_throw_a_little_higher(patch):
     patch.setattr(motor_stepping, "hard_of", higher)
 
 
+def links_that_draw_in_a_little_faster(patch):
+    true = ride._of_rigid
+
+    def faster(*given):
+        heights, rises, along = true(*given)
+        return heights, rises, (1.0 + 1e-9) * along
+
+    patch.setattr(ride, "_of_rigid", faster)
+
+
+def lines_under_feet_a_little_high(patch):
+    true = on_chain._line_rows
+    patch.setattr(on_chain, "_line_rows", lambda system: (1.0 + 1e-6) * true(system))
+
+
+def pulled_beams_laid_to_others(room):
+    def laid(patch):
+        true = room.layout
+        patch.setattr(
+            room, "layout", lambda beam, **given: true(replace(beam, tension=min(beam.tension, 0.0)), **given)
+        )
+
+    laid.__name__ = f"pulled_beams_laid_to_others_{room.__name__.split('.')[1]}"
+    return laid
+
+
+def joints_at_walls_a_little_soft(patch):
+    patch.setitem(matrices.WALL_JOINTS, "full", 1.0 + 1e-6)
+
+
+def stiffness_left_of_a_step(patch):
+    patch.setattr(links, "right_of", lambda values: np.append(values[:1], values))
+
+
 FAULTS = {
     "stress": {
+        limitless(motor_figures, "REACHED", 0.6321): {"braked-by-friction"},
+        limitless(resting, "PASSES", 1): {"least-energy-under-feet"},
+        limitless(motor_coupling, "FELT", 0.0011): {"felt-by-size"},
+        links_that_draw_in_a_little_faster: {"ridden-links-in-large-motion"},
+        lines_under_feet_a_little_high: {"under-all-feet-on-a-chain", "motor-on-a-small-chain"},
+        pulled_beams_laid_to_others(element_sweeps): {"unlike-beams-at-once-elements"},
+        pulled_beams_laid_to_others(segment_sweeps): {"unlike-beams-at-once-segments"},
+        joints_at_walls_a_little_soft: {"members-written-out"},
+        stiffness_left_of_a_step: {"moments-of-links"},
         links_bent_by_a_millionth_more: {"bent-beyond-buckling"},
         loads_that_buckle_a_little_larger: {"pushed-along-alone"},
         limitless(departure, "TENTHS", 9): {"departure-along-the-chain"},

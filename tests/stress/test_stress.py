@@ -62,6 +62,8 @@ def light():
         "every",
         "best",
         "listed",
+        "carried",
+        "mixed",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
