@@ -297,13 +297,15 @@ def sizes_error(part: float) -> float:
     lift, turn = (abs(complex(own.row(x, d) @ drive)) for d in (0, 1))
     unit, couple = (abs(complex(own.row(x, d) @ own.under(own.row(x, d) + 0j, HERTZ, RATIO))) for d in (0, 1))
     exact = np.array([unit / lift, MU * BAR.surface_distance * couple / turn])
-    worst, given = 0.0, {"model": "fem", "count": 2, "modal_damping": RATIO, "start": "rest", "samples": 2}
+    given: dict[str, Any] = {"model": "fem", "count": 2, "modal_damping": RATIO, "start": "rest", "samples": 2}
+    worst = 0.0
     for factor in (1.0 - part, 1.0 + part):
         load = factor * 1e-3 / float(exact.max())
         slider = Slider(
             mass=MASS, mu=MU, slope=9.0, gravity=0.0, preload=load, position=x, contact=Contact(stiffness=2.7e5)
         )
         found = run_motor(BAR, FORCES, HERTZ, 1e-5, slider=slider, step=1e-5, **given).coupling
+        assert found is not None
         sizes = np.array([found.normal_size, found.friction_size])
         worst = max(worst, float(abs(sizes / (load * exact) - 1.0).max()), float(found.two_way is (factor < 1.0)))
     for choice, across, along, felt in CHOICES:
