@@ -115,7 +115,7 @@ def rest_error(number: float) -> float:
     from verify.motor.resting import weighed
 
     modulus, spring = RESTS[int(number)]
-    basis = basis_of(replace(SOFT, youngs_modulus=modulus), "fem", 6, None, "spline")
+    basis = basis_of(replace(SOFT, youngs_modulus=modulus), "fem", 6, 11, "spline")
     slider = replace(STANDS, preload_stiffness=spring)
     placed = (Placed(slider, 0.0579),)
     q, feet = weighed(basis, placed), feet_of(placed)
@@ -295,7 +295,9 @@ def sizes_error(part: float) -> float:
     own, x = Elements(BAR, np.linspace(0.0, BAR.length, 3)), 0.0579
     drive = own.under(own.load(FORCES), HERTZ, RATIO)
     lift, turn = (abs(complex(own.row(x, d) @ drive)) for d in (0, 1))
-    unit, couple = (abs(complex(own.row(x, d) @ own.under(own.row(x, d) + 0j, HERTZ, RATIO))) for d in (0, 1))
+    unit, couple = (
+        abs(complex(own.row(x, d) @ own.under(own.row(x, d).astype(np.complex128), HERTZ, RATIO))) for d in (0, 1)
+    )
     exact = np.array([unit / lift, MU * BAR.surface_distance * couple / turn])
     given: dict[str, Any] = {"model": "fem", "count": 2, "modal_damping": RATIO, "start": "rest", "samples": 2}
     worst = 0.0
