@@ -19,7 +19,7 @@ from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
-from verify.identify import matrices
+from verify.identify import matrices, outside, pairing, searching
 from verify.judge import compare, crossing
 from verify.models import division, driven_pencil, eigen, kind, spline, underfoot
 from verify.models.catalogue import MODELS
@@ -505,8 +505,32 @@ def stiffness_left_of_a_step(patch):
     patch.setattr(links, "right_of", lambda values: np.append(values[:1], values))
 
 
+def best_sizes_taken_for_passed(patch):
+    patch.setattr(searching, "_rising", lambda scores: len(scores) > 3)
+
+
+def shapes_in_the_order_of_the_list(patch):
+    true = pairing.pair_modes
+    patch.setattr(pairing, "pair_modes", lambda like: (np.sort(true(like)[0]), true(like)[1]))
+
+
+def a_foot_a_little_heavy(patch):
+    true = motor_feet._given
+    patch.setattr(motor_feet, "_given", lambda *given: (0.99 * true(*given)[0], *true(*given)[1:]))
+
+
+def second_sliders_where_the_first_is(patch):
+    true = motor_feet._points
+    patch.setattr(motor_feet, "_points", lambda slider, foot, beyond: true(slider, foot, 0.99 * beyond))
+
+
 FAULTS = {
     "stress": {
+        best_sizes_taken_for_passed: {"sizes-sought"},
+        limitless(outside, "POINTS", 200): {"models-of-others-asked"},
+        shapes_in_the_order_of_the_list: {"shuffled-lists"},
+        a_foot_a_little_heavy: {"foot-that-repeats"},
+        second_sliders_where_the_first_is: {"two-sliders-each-alone"},
         limitless(motor_figures, "REACHED", 0.6321): {"braked-by-friction"},
         limitless(resting, "PASSES", 1): {"least-energy-under-feet"},
         limitless(motor_coupling, "FELT", 0.0011): {"felt-by-size"},

@@ -64,6 +64,7 @@ def light():
         "listed",
         "carried",
         "mixed",
+        "sought",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
