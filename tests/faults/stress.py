@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from verify import beam, slider
 from verify.chain import bending, departure, load_path, problems, ride, splitting, stepping, stretching
+from verify.chain import modes as chain_modes
 from verify.chain import system as chain_system
 from verify.chain.result import ChainMotion
 from verify.contact import bouncing, foot
@@ -21,9 +22,9 @@ from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
 from verify.identify import matrices, outside, pairing, searching
 from verify.judge import compare, crossing
-from verify.models import division, driven_pencil, eigen, kind, spline, underfoot
+from verify.models import division, driven_pencil, eigen, kind, places, spline, underfoot
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, friction_kernels, request, rigid_surface, validity
+from verify.motion import free_vibration, friction_kernels, request, rigid_surface, step_size, validity
 from verify.motion.stepping import Sliding
 from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
@@ -524,8 +525,28 @@ def second_sliders_where_the_first_is(patch):
     patch.setattr(motor_feet, "_points", lambda slider, foot, beyond: true(slider, foot, 0.99 * beyond))
 
 
+def any_window_on_one_section(patch):
+    patch.setattr(window, "_own_section", lambda *given: True)
+
+
+def lines_of_costs_to_their_finest_size(patch):
+    patch.setattr(crossing, "_finest_run", lambda errors, fit: (0, len(errors) - 1))
+
+
+def steps_that_miss_a_little_more(patch):
+    true = step_size.missed
+    patch.setattr(step_size, "missed", lambda *given: (1.0 + 1e-9) * true(*given))
+
+
 FAULTS = {
     "stress": {
+        limitless(harmonic, "RESONANCE", 1e-11): {"beside-resonances-in-a-sweep"},
+        unchecked(places, "check_kind"): {"verbs-on-what-is-no-beam"},
+        any_window_on_one_section: {"windows-beside-a-step"},
+        lines_of_costs_to_their_finest_size: {"costs-without-an-error-in-common"},
+        steps_that_miss_a_little_more: {"speed-that-steps-miss"},
+        limitless(motor_figures, "CARRIED", 0.2): {"ends-of-free-runs"},
+        unchecked(chain_modes, "_check"): {"lowest-modes-of-a-chain"},
         best_sizes_taken_for_passed: {"sizes-sought"},
         limitless(outside, "POINTS", 200): {"models-of-others-asked"},
         shapes_in_the_order_of_the_list: {"shuffled-lists"},

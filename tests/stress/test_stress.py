@@ -65,6 +65,7 @@ def light():
         "carried",
         "mixed",
         "sought",
+        "edges",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
