@@ -533,7 +533,7 @@ def lines_of_costs_to_their_finest_size(patch):
     patch.setattr(crossing, "_finest_run", lambda errors, fit: (0, len(errors) - 1))
 
 
-def steps_that_miss_a_little_more(patch):
+def fast_modes_missed_a_little_more(patch):
     true = step_size.missed
     patch.setattr(step_size, "missed", lambda *given: (1.0 + 1e-9) * true(*given))
 
@@ -544,7 +544,7 @@ FAULTS = {
         unchecked(places, "check_kind"): {"verbs-on-what-is-no-beam"},
         any_window_on_one_section: {"windows-beside-a-step"},
         lines_of_costs_to_their_finest_size: {"costs-without-an-error-in-common"},
-        steps_that_miss_a_little_more: {"speed-that-steps-miss"},
+        fast_modes_missed_a_little_more: {"modes-faster-than-steps"},
         limitless(motor_figures, "CARRIED", 0.2): {"ends-of-free-runs"},
         unchecked(chain_modes, "_check"): {"lowest-modes-of-a-chain"},
         best_sizes_taken_for_passed: {"sizes-sought"},

@@ -29,12 +29,12 @@ def refused(ask: Callable[[], object], *words: str) -> bool:
 
 def resonances_error(mode: float) -> float:
     """How often sweeps of an undamped beam a hair off a resonance are taken or refused as they should not be."""
-    from verify.exact.harmonic import mode_frequency_hz
+    from verify.exact.closed_forms import frequency_hz
     from verify.exact.sweeps import sweep_harmonic
 
     wrong, n = 0, int(mode)
     for beam in (STRIP, held("clamped", "free")):
-        hertz = mode_frequency_hz(beam, n)
+        hertz = frequency_hz(beam, n)
         for part, is_refused in ((-3e-9, False), (-3e-10, True), (3e-10, True), (3e-9, False)):
             asked = np.array([0.83 * hertz, hertz * (1.0 + part), 1.21 * hertz])
             wrong += refused(partial(sweep_harmonic, beam, PUSH, asked), "frequencies_hz[1]") is not is_refused
@@ -198,7 +198,7 @@ ROWS: tuple[Row, ...] = (
         at=(2.0, 4.0),
     ),
     _row(
-        "speed-that-steps-miss",
+        "modes-faster-than-steps",
         followed_error,
         "What steps miss of the speed of a surface of three modes, of one that turns faster than they see",
         "motion/step_size.py: the parabola's error, written out.",
