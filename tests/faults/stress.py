@@ -20,16 +20,17 @@ from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
-from verify.identify import matrices, outside, pairing, searching
+from verify.identify import matrices, outside, pairing, searching, shapes_told
+from verify.identify import told as compared
 from verify.judge import compare, crossing
 from verify.models import division, driven_pencil, eigen, kind, places, spline, underfoot
 from verify.models.catalogue import MODELS
 from verify.motion import free_vibration, friction_kernels, request, rigid_surface, step_size, validity
 from verify.motion.stepping import Sliding
+from verify.motor import combine, on_chain, resting
 from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
 from verify.motor import figures as motor_figures
-from verify.motor import on_chain, resting
 from verify.motor import stepping as motor_stepping
 from verify.segments import crowded, links
 from verify.segments import in_time as segments_in_time
@@ -538,8 +539,25 @@ def fast_modes_missed_a_little_more(patch):
     patch.setattr(step_size, "missed", lambda *given: (1.0 + 1e-9) * true(*given))
 
 
+def best_candidates_without_their_entries(patch):
+    true = compared.Compared._errors_of
+    patch.setattr(compared.Compared, "_errors_of", lambda self, one: (true(self, one)[0], true(self, one)[1][::-1]))
+
+
+def shapes_in_the_order_they_were_given(patch):
+    patch.setattr(shapes_told.ShapesJudged, "_order", lambda self: "1 (a), 2 (b), 5 (c)")
+
+
+def hard_points_on_any_beam(patch):
+    true = combine._run_by
+    patch.setattr(combine, "_run_by", lambda *cell: "run_motor" if cell[2] == "hard" else true(*cell))
+
+
 FAULTS = {
     "stress": {
+        best_candidates_without_their_entries: {"what-compare-shows"},
+        shapes_in_the_order_they_were_given: {"sentences-about-shapes"},
+        hard_points_on_any_beam: {"what-is-run-with-what"},
         limitless(harmonic, "RESONANCE", 1e-11): {"beside-resonances-in-a-sweep"},
         unchecked(places, "check_kind"): {"verbs-on-what-is-no-beam"},
         any_window_on_one_section: {"windows-beside-a-step"},

@@ -66,6 +66,7 @@ def light():
         "mixed",
         "sought",
         "edges",
+        "shown",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
