@@ -57,7 +57,7 @@ def mixed_error(model: str) -> Callable[[float], float]:
 
         settings, worst = SETTINGS[int(number)], 0.0
         plain = "theory" not in settings
-        beams = UNLIKE if plain else UNLIKE[::2]
+        beams = UNLIKE if plain else UNLIKE[::3]
         groups = laid_together(model, beams, settings)
         alone = sum(
             one.tension < 0.0 or (one.tension and not plain) or (one.mass == (BODY,) and model != "fem")
