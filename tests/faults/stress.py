@@ -9,26 +9,34 @@ from msgspec.structs import replace
 
 from verify import beam, slider
 from verify.chain import bending, departure, load_path, problems, ride, splitting, stepping, stretching
+from verify.chain import modes as chain_modes
 from verify.chain import system as chain_system
 from verify.chain.result import ChainMotion
 from verify.contact import bouncing, foot
 from verify.elements import cuts
 from verify.elements import linear as fem_beam
 from verify.elements import stacks as element_stacks
+from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
+from verify.identify import matrices, outside, pairing, searching, shapes_told
+from verify.identify import told as compared
 from verify.judge import compare, crossing
-from verify.models import division, driven_pencil, eigen, inverse, kind, spline, underfoot
+from verify.models import division, driven_pencil, eigen, inverse, kind, places, spline, underfoot
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, friction_kernels, request, rigid_surface, validity
+from verify.motion import free_vibration, friction_kernels, request, rigid_surface, step_size, validity
 from verify.motion.stepping import Sliding
+from verify.motor import combine, on_chain, resting
+from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
+from verify.motor import figures as motor_figures
 from verify.motor import stepping as motor_stepping
-from verify.segments import crowded
+from verify.segments import crowded, links
 from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
+from verify.segments import sweeps as segment_sweeps
 from verify.stress import turns
 from verify.waves import series, unit_waves, window
 
@@ -465,8 +473,112 @@ def blows_that_throw_a_little_higher(patch):
     patch.setattr(motor_stepping, "hard_of", higher)
 
 
+def links_that_draw_in_a_little_faster(patch):
+    true = ride._of_rigid
+
+    def faster(*given):
+        heights, rises, along = true(*given)
+        return heights, rises, (1.0 + 1e-9) * along
+
+    patch.setattr(ride, "_of_rigid", faster)
+
+
+def lines_under_feet_a_little_high(patch):
+    true = on_chain._line_rows
+    patch.setattr(on_chain, "_line_rows", lambda system: (1.0 + 1e-6) * true(system))
+
+
+def pulled_beams_laid_to_others(room):
+    def laid(patch):
+        true = room.layout
+        patch.setattr(
+            room, "layout", lambda beam, **given: true(replace(beam, tension=min(beam.tension, 0.0)), **given)
+        )
+
+    laid.__name__ = f"pulled_beams_laid_to_others_{room.__name__.split('.')[1]}"
+    return laid
+
+
+def joints_at_walls_a_little_soft(patch):
+    patch.setitem(matrices.WALL_JOINTS, "full", 1.0 + 1e-6)
+
+
+def stiffness_left_of_a_step(patch):
+    patch.setattr(links, "right_of", lambda values: np.append(values[:1], values))
+
+
+def best_sizes_taken_for_passed(patch):
+    patch.setattr(searching, "_rising", lambda scores: len(scores) > 3)
+
+
+def shapes_in_the_order_of_the_list(patch):
+    true = pairing.pair_modes
+    patch.setattr(pairing, "pair_modes", lambda like: (np.sort(true(like)[0]), true(like)[1]))
+
+
+def a_foot_a_little_heavy(patch):
+    true = motor_feet._given
+    patch.setattr(motor_feet, "_given", lambda *given: (0.99 * true(*given)[0], *true(*given)[1:]))
+
+
+def second_sliders_where_the_first_is(patch):
+    true = motor_feet._points
+    patch.setattr(motor_feet, "_points", lambda slider, foot, beyond: true(slider, foot, 0.99 * beyond))
+
+
+def any_window_on_one_section(patch):
+    patch.setattr(window, "_own_section", lambda *given: True)
+
+
+def lines_of_costs_to_their_finest_size(patch):
+    patch.setattr(crossing, "_finest_run", lambda errors, fit: (0, len(errors) - 1))
+
+
+def fast_modes_missed_a_little_more(patch):
+    true = step_size.missed
+    patch.setattr(step_size, "missed", lambda *given: (1.0 + 1e-9) * true(*given))
+
+
+def best_candidates_without_their_entries(patch):
+    true = compared.Compared._errors_of
+    patch.setattr(compared.Compared, "_errors_of", lambda self, one: (true(self, one)[0], true(self, one)[1][::-1]))
+
+
+def shapes_in_the_order_they_were_given(patch):
+    patch.setattr(shapes_told.ShapesJudged, "_order", lambda self: "1 (a), 2 (b), 5 (c)")
+
+
+def hard_points_on_any_beam(patch):
+    true = combine._run_by
+    patch.setattr(combine, "_run_by", lambda *cell: "run_motor" if cell[2] == "hard" else true(*cell))
+
+
 FAULTS = {
     "stress": {
+        best_candidates_without_their_entries: {"what-compare-shows"},
+        shapes_in_the_order_they_were_given: {"sentences-about-shapes"},
+        hard_points_on_any_beam: {"what-is-run-with-what"},
+        limitless(harmonic, "RESONANCE", 1e-11): {"beside-resonances-in-a-sweep"},
+        unchecked(places, "check_kind"): {"verbs-on-what-is-no-beam"},
+        any_window_on_one_section: {"windows-beside-a-step"},
+        lines_of_costs_to_their_finest_size: {"costs-without-an-error-in-common"},
+        fast_modes_missed_a_little_more: {"modes-faster-than-steps"},
+        limitless(motor_figures, "CARRIED", 0.2): {"ends-of-free-runs"},
+        unchecked(chain_modes, "_check"): {"lowest-modes-of-a-chain"},
+        best_sizes_taken_for_passed: {"sizes-sought"},
+        limitless(outside, "POINTS", 200): {"models-of-others-asked"},
+        shapes_in_the_order_of_the_list: {"shuffled-lists"},
+        a_foot_a_little_heavy: {"foot-that-repeats"},
+        second_sliders_where_the_first_is: {"two-sliders-each-alone"},
+        limitless(motor_figures, "REACHED", 0.6321): {"braked-by-friction"},
+        limitless(resting, "PASSES", 1): {"least-energy-under-feet"},
+        limitless(motor_coupling, "FELT", 0.0011): {"felt-by-size"},
+        links_that_draw_in_a_little_faster: {"ridden-links-in-large-motion"},
+        lines_under_feet_a_little_high: {"under-all-feet-on-a-chain", "motor-on-a-small-chain"},
+        pulled_beams_laid_to_others(element_sweeps): {"unlike-beams-at-once-elements"},
+        pulled_beams_laid_to_others(segment_sweeps): {"unlike-beams-at-once-segments"},
+        joints_at_walls_a_little_soft: {"members-written-out"},
+        stiffness_left_of_a_step: {"moments-of-links"},
         links_bent_by_a_millionth_more: {"bent-beyond-buckling"},
         loads_that_buckle_a_little_larger: {"pushed-along-alone"},
         limitless(departure, "TENTHS", 9): {"departure-along-the-chain"},

@@ -63,6 +63,11 @@ def light():
         "every",
         "best",
         "listed",
+        "carried",
+        "mixed",
+        "sought",
+        "edges",
+        "shown",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

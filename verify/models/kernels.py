@@ -39,9 +39,13 @@ class _KernelLibrary(JITCodeLibrary):
     """The code of a kernel with all its parts, optimised once: it counts no references that could be pruned before."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
+        if not quick_lowering.KNOWN:
+            return super()._optimize_functions(ll_module)  # type: ignore[no-untyped-call,no-any-return]
         ll_module.data_layout = self._codegen._data_layout
 
     def _optimize_final_module(self) -> None:
+        if not quick_lowering.KNOWN:
+            return super()._optimize_final_module()  # type: ignore[no-untyped-call,no-any-return]
         passes, builder = self._codegen._module_pass_manager()  # type: ignore[no-untyped-call]
         passes.run(self._final_module, builder)
 

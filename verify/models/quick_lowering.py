@@ -3,8 +3,8 @@
 Numba keeps what it needs in more than one block in memory, hands on arrays and records number by number, and counts
 loops with what any range may ask for; it leaves it to LLVM to find out that little of this was wanted. Here a variable
 that has one value stays that value, arrays and records are handed from kernel to part by their addresses, and loops
-over whole numbers count. What is asked of them is the same, in the same order; where a numba lacks one of the names
-that this stands on, everything is left to it.
+over whole numbers count. What is asked of them is the same, in the same order; with a numba that this was not tried
+with, or that lacks one of the names that this stands on, everything is left to it.
 """
 
 # mypy: disable-error-code="no-untyped-call,attr-defined,no-any-return"
@@ -12,6 +12,7 @@ that this stands on, everything is left to it.
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+import numba
 from llvmlite.ir import IRBuilder
 from llvmlite.ir.instructions import LoadInstr
 from numba.core import cgutils, ir
@@ -29,7 +30,9 @@ from numba.core.typed_passes import NativeLowering
 types: Any = numbas_types
 """Not all of its names are typed."""
 NAMES = ("_find_singly_assigned_variable", "extract_function_arguments", "setup_function", "lower_expr", "loadvar")
-KNOWN = all(hasattr(Lower, name) for name in NAMES) and hasattr(CPUCallConv, "_get_arg_packer")
+TRIED = ((0, 68),)
+"""Numbas that this was tried with: its names are not all, and one that means something else by them would break."""
+KNOWN = numba.version_info.short in TRIED and all(hasattr(Lower, name) for name in NAMES)
 """Whether this numba lowers by the names that this stands on."""
 STEP_FREE = 2
 """Arguments of a range that has no step."""
