@@ -38,11 +38,16 @@ def polished(pencil: FactoredPencil, factor: Any, vectors: Array, free: Indices,
         right[n_strains:] -= transposed @ force
         if pencil.below:
             right[n_strains:] += pencil.below * (mass @ answer)[free]
+        if not pencil.rigid_modes:  # rounding, which a motion that is nearly rigid answers by far more than others
+            right[n_strains:] -= carried[:, :k] @ (better[:, :k].T @ right[n_strains:])
         found += factor.solve(right)
         answer[free] = found[n_strains:]
         answer -= motions @ (inertia.T @ answer)
-        lower = carried[:, :k].T @ answer  # which each step of inverse iteration raises
-        answer -= better[:, :k] @ lower
+        lower = np.zeros(k)
+        for _ in range(2):  # each step of inverse iteration raises them: once leaves what is nearly rigid
+            part = carried[:, :k].T @ answer
+            answer -= better[:, :k] @ part
+            lower += part
         size = np.sqrt(answer @ (mass @ answer))
         better[:, k] = answer / size
         carried[:, k] = mass @ better[:, k]
