@@ -464,7 +464,7 @@ def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_i
     assert set(races) == {("kicks, 2", "Ghost"), ("RK4", "Ghost"), (ride_set.OURS, "Ghost")}
     for methods, one in races.items():
         assert one.earned
-        assert "at 0.1 % Ghost takes " in one.text
+        assert f": {methods[0]} against Ghost: at 0.1 % Ghost takes " in one.text
         if methods[0] == "RK4":
             assert one.at_error == 1e-3
             assert "at 0.001 % nothing is said, RK4 comes to 0.00" in one.text
