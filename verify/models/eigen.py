@@ -151,8 +151,23 @@ def _elastic(pencil: FactoredPencil, vectors: Array) -> Array:
 def _in_order(pencil: FactoredPencil, vectors: Array, method: str, strains: Array | None = None) -> Eigenpairs:
     """The pairs of vectors (n, k), their values read from the factored quotient; `strains` as there."""
     values, vectors = factored_quotient(pencil, vectors, strains)
+    slow = np.flatnonzero(values * float(pencil.n) ** 4 < _SLOW)
+    if len(slow) > 1:
+        own = pencil.strain(vectors[:, slow]) if strains is None else strains[:, slow]
+        values[slow], vectors[:, slow] = _told_apart(pencil, vectors[:, slow], own)
     order = np.argsort(values, kind="stable")
     return Eigenpairs(values=values[order], vectors=vectors[:, order], method=method)
+
+
+def _told_apart(pencil: FactoredPencil, vectors: Array, strains: Array) -> tuple[Array, Array]:
+    """(values (k,), vectors (n, k)), by Ritz, of motions nearly rigid: so close to each other that rounding mixes them.
+
+    Values are those of the turned strains: of two far apart the lower one would drown in the matrix of both.
+    """
+    inverse = np.linalg.inv(np.linalg.cholesky(vectors.T @ (pencil.mass_matrix() @ vectors)))
+    resisting = inverse @ (strains.T @ (pencil.stiffness[:, None] * strains)) @ inverse.T
+    turns = inverse.T @ np.linalg.eigh(resisting)[1]
+    return np.einsum("i,ij,ij->j", pencil.stiffness, strains @ turns, strains @ turns), np.asarray(vectors @ turns)
 
 
 def has_unlike_parts(pencil: FactoredPencil) -> bool:
