@@ -470,7 +470,7 @@ def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_i
     assert set(races) == {("kicks, 2", "Ghost"), ("RK4", "Ghost"), (ride_set.OURS, "Ghost")}
     for methods, one in races.items():
         assert one.earned
-        assert "at 0.1 % Ghost takes " in one.text
+        assert f": {methods[0]} against Ghost: at 0.1 % Ghost takes " in one.text
         if methods[0] == "RK4":
             assert one.at_error == 1e-3
             assert "at 0.001 % nothing is said, RK4 comes to 0.00" in one.text
@@ -550,7 +550,7 @@ def test_an_engine_that_is_pushed_says_what_it_did_or_that_nobody_knows(ghost, m
     assert found.pushed == (done,)
     (table,) = [one for one in found.tables() if one.title == "Other engines pushed until they break"]
     assert table.rows == (("Ghost", 30, "hard", "it went home", 3, 0.1),)
-    assert "it went home" in page(found)
+    assert "it went home" in page(found, "verify bench paper")
 
 
 @pytest.mark.parametrize("name", ["transient", "slider"])
@@ -597,7 +597,8 @@ def test_a_scene_with_a_bench_has_it_in_its_plan_its_run_and_its_report():
 
 
 def test_a_page_that_is_kept_names_machine_and_versions_and_no_path(paper, tmp_path):
-    text = page(paper)
+    text = page(paper, "verify bench paper --seconds 40")
+    assert "\nMade by `verify bench paper --seconds 40`.\n" in text
     assert text.startswith("# Run time against error: paper\n")
     assert paper.date in text
     assert f"numpy {np.__version__}" in text
@@ -640,7 +641,10 @@ def test_the_command_prints_json_that_it_reads_again(tmp_path, capsys):
     assert status_of([*line, "--against", str(path), "--keep", str(tmp_path / "kept")]) == 0
     out = " ".join(capsys.readouterr().out.split())
     assert f"against {old['date']}: stock scikit-fem in modes, mode 1, N = 20 takes 0.0" in out
-    assert (tmp_path / "kept" / "paper.md").read_text().startswith("# Run time against error: paper")
+    kept = (tmp_path / "kept" / "paper.md").read_text()
+    assert kept.startswith("# Run time against error: paper")
+    made = "verify bench paper --set bench.imports=false --set bench.rounds=3 --sets modes --counts 20,30 --modes 1"
+    assert f"Made by `{made} --keep kept`." in " ".join(kept.split())
     for layout in ("--csv", "--markdown"):
         assert status_of([*line, layout]) == 0
         assert "stock scikit-fem" in capsys.readouterr().out

@@ -212,3 +212,19 @@ def test_a_plan_says_that_the_forces_on_a_slider_s_beam_grow_for_longer_than_the
     with pytest.raises(InputError, match="the forces grow over") as refused:
         run_scene(scene)
     assert problem.why == str(refused.value)
+
+
+def test_a_rule_that_nobody_asked_for_is_left_out_where_it_cannot_be_built():
+    """A joint EI/l - T l/12 has no stiffness left of ten links of a taut strip; asked for by name it is refused."""
+    given = {
+        "name": "taut",
+        "title": "Taut",
+        "beam": {"length": 1.4, "bending_stiffness": 0.017, "mass_per_length": 0.05, "tension": 90.0},
+        "convergence": {"modes": [2], "counts": [10, 49]},
+    }
+    plan = plan_scene(checked(given, scene_type()))
+    assert [one.count for one in plan.solves if ("joints", "tensioned") in one.settings] == [49]
+    assert plan.problems == ()
+    given["convergence"]["joints"] = ["series", "tensioned"]
+    (problem,) = plan_scene(checked(given, scene_type())).problems
+    assert "leaves no stiffness in a joint of 10 segments" in problem.why

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from verify.attached import PointMass
 from verify.pictures.drawn import picture_of
 from verify.pictures.rows import Asked
-from verify.report.beam_drawing import beam_drawing
+from verify.report.beam_drawing import NARROW, beam_drawing
 from verify.run.runner import workbench_for
 from verify.scenes.checked import checked
 from verify.scenes.scene import scene_type
@@ -190,3 +191,16 @@ def test_columns_of_one_unit_share_the_one_that_suits_the_largest_of_them():
     assert [one.head for one in table.columns] == ["way, mm", "error, mm", "push, N", "n"]
     assert [one.factor for one in table.columns] == [1e3, 1e3, 1.0, 1.0]
     assert replace(table, title="as it stands").columns == table.columns
+
+
+def test_the_words_of_a_body_stand_over_it_and_not_over_a_force_that_is_near():
+    """On a narrow screen, at the tip: in one row they stood between the words of the force and its arrow."""
+    plain = scene_of(1.0)
+    body = PointMass(position=0.37, mass=0.025, rotary_inertia=6e-6)
+    beam = replace(plain.beam, supports=("clamped", "free"), mass=(body,))
+    drive = replace(plain.drive, force=(replace(plain.drive.force[0], position=0.315),))
+    picture = beam_drawing(replace(plain, beam=beam, drive=drive), NARROW)
+    words = {told: float(x) for x, told in re.findall(r'<text x="([\d.]+)"[^>]*>([^<]*)</text>', picture)}
+    (disc,) = map(float, re.findall(r'<circle cx="([\d.]+)"', picture))
+    assert words["0.025 kg"] == words["6e-06 kg m²"] == disc
+    assert words["x = 315 mm"] < disc

@@ -22,8 +22,9 @@ from verify.studies.sensitivity_figures import sensitivity
 from verify.studies.slider_figures import places_of, slider_study
 from verify.studies.slider_movie import slider_movie
 from verify.studies.wave_charts import wave_charts
-from verify.studies.wave_figures import wave_study
+from verify.studies.wave_figures import MotorRow, OffSearch, motor_rows_table, wave_study
 from verify.studies.work_precision import run_once
+from verify.waves.driven import Operation
 from verify.words import work_in_words
 
 STRIP = {
@@ -46,6 +47,15 @@ def scene_of(**more):
 
 def rms(values):
     return float(np.sqrt(np.mean(np.square(values))))
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_a_table_of_motors_speaks_of_best_frequencies_where_there_are_columns_of_them(known):
+    at = Operation(frequency_hz=90.0, standing_wave_ratio=1.4, axis_ratio=-0.1, crest_speed=0.02)
+    row = MotorRow(model="segment", count=9, drive=at, best=at if known else OffSearch(88.0))
+    told = motor_rows_table((row,)).notes[0]
+    assert ("right at the model's own best" in told) == known
+    assert told.endswith("at 90 Hz, the drive's frequency" + ", right at the model's own best" * known)
 
 
 def test_chains_are_told_to_lie_off_the_linear_one_by_what_was_found():

@@ -7,8 +7,8 @@ from verify.studies.told import Table
 from verify.words import cell
 
 
-def page(found: BenchFound) -> str:
-    """The whole page, without a path or a name of the machine."""
+def page(found: BenchFound, command: str) -> str:
+    """The whole page, of what a command found, without a name of the machine."""
     made = (*found.machine.values(), *(f"{name} {version}" for name, version in found.versions.items()))
     parts = [
         f"# Run time against error: {found.scene}\n",
@@ -16,7 +16,7 @@ def page(found: BenchFound) -> str:
             f"{found.date}, on {', '.join(made)}. Seconds are of the processor, in one thread; medians of interleaved "
             "rounds. Ratios hold for this machine and these versions."
         ),
-        f"Made by `verify bench {found.scene} --keep docs/bench`.\n",
+        _wrapped(f"Made by `{command}`."),
         "## What it says\n",
         "".join(_wrapped(f"- {fact}") for fact in found.facts()),
         *(_as_markdown(table) for table in found.tables()),

@@ -42,16 +42,17 @@ def _raced(case: Case, found: Sequence[Outcome], scene: str, first: str, second:
     parts = [
         answer
         if isinstance(answer, str)
-        else f"at {percent(wanted)} {second} takes {answer.whole:.3g} times as long as {first}, "
+        else f"at {percent(wanted)} {second} takes {answer.whole:.3g} times as long, "
         f"without their set-up {answer.run:.3g} times"
         for wanted, answer in told.items()
     ]
     finest = min(ratios, default=None)
+    own = f"{case.name}: {first} against {second}: {'; '.join(parts)}"
     return Sentence(
         set=case.set,
         about=case.about,
         methods=(first, second),
-        text=f"{case.name}: {'; '.join(parts)} (each at its own longest step; {_condition(case, found, scene)})",
+        text=f"{own} (each at its own longest step; {_condition(case, found, scene)})",
         earned=bool(ratios),
         ratio=ratios[finest] if finest is not None else None,
         at_error=finest,

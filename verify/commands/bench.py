@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared import json_alone, load, overridden, progress, scene_name
+from verify.commands.shared import command_line, json_alone, load, overridden, progress, scene_name
 
 if TYPE_CHECKING:
     from verify.bench.found import BenchFound
@@ -59,8 +59,9 @@ def bench(
     from verify.bench.asking import asked_of, job_of
 
     asked = load(scene, overrides)
-    given = {"sets": sets, "counts": counts, "modes": modes, "seconds": seconds}
-    request = asked_of(asked, {name: text for name, text in given.items() if text is not None}, cold=cold, push=push)
+    typed = {"sets": sets, "counts": counts, "modes": modes, "seconds": seconds}
+    given = {name: text for name, text in typed.items() if text is not None}
+    request = asked_of(asked, given, cold=cold, push=push)
     earlier = _earlier(against)
     if keep is not None:
         from verify.files import writable_folder
@@ -74,11 +75,19 @@ def bench(
 
         found = beside(found, earlier)
     if keep is not None:
-        from verify.bench.keeping import page
-        from verify.files import write_whole
-
-        write_whole(keep / f"{asked.name}.md", page(found), "--keep")
+        options = [word for name, text in given.items() for word in (f"--{name}", text)]
+        _keep(found, keep, Path(scene).name, overrides, (*options, *["--cold"] * cold, *["--push"] * push))
     _tell(found, "json" if as_json else layout)
+
+
+def _keep(found: "BenchFound", folder: Path, scene: str, overrides: tuple[str, ...], options: tuple[str, ...]) -> None:
+    """Write the page with the line that it was made by; of a path that this machine alone has, the last name."""
+    from verify.bench.keeping import page
+    from verify.files import write_whole
+
+    place = folder.name if folder.is_absolute() else folder.as_posix()
+    line = command_line("bench", (scene,), overrides, (*options, "--keep", place))
+    write_whole(folder / f"{found.scene}.md", page(found, line), "--keep")
 
 
 def _earlier(against: Path | None) -> Any:

@@ -68,11 +68,13 @@ def whole_number(field: str, text: str | None) -> int | None:
     return value
 
 
-def command_line(command: str, scenes: tuple[str, ...], overrides: tuple[str, ...]) -> str:
+def command_line(
+    command: str, scenes: tuple[str, ...], overrides: tuple[str, ...], options: tuple[str, ...] = ()
+) -> str:
     """The line that does the same again."""
     from shlex import join
 
-    return join(["verify", command, *scenes, *(word for text in overrides for word in ("--set", text))])
+    return join(["verify", command, *scenes, *(word for text in overrides for word in ("--set", text)), *options])
 
 
 def in_percent(step: Callable[[str], None]) -> Callable[[float], None]:

@@ -228,7 +228,7 @@ def _masses(view: View) -> Iterator[Drawn]:
         yield Box(at - 9, y - 18, at + 9, y)
         words = [f"{mass.mass:.4g} kg"] * bool(mass.mass)
         words += [f"{mass.rotary_inertia:.4g} kg m²"] * bool(mass.rotary_inertia)
-        yield Label(at, y - 20, (", ".join(words),))
+        yield Label(at, y - 20, tuple(words))
 
 
 def _tension(view: View) -> Iterator[Drawn]:

@@ -4,13 +4,15 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 from msgspec import Meta
 
-from verify.judge.variants import Rules
-from verify.models.catalogue import discrete
+from verify.errors import InputError
+from verify.judge.variants import Rules, Variant
+from verify.models.catalogue import MODELS, discrete
 from verify.studies.kind import Progress, Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from verify.beam import Beam
     from verify.judge.workbench import Need, Workbench
     from verify.scenes.scene import Scene
     from verify.studies.convergence_figures import ConvergenceFound
@@ -28,6 +30,15 @@ class Convergence(Rules, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Segments and elements."""
 
 
+def _is_built(beam: "Beam", rule: Variant, count: int) -> bool:
+    """Whether a rule that nobody asked for can be built of so many parts: joints may have no stiffness left."""
+    try:
+        MODELS.named(rule.model).check(beam, 1, count, **dict(rule.settings))
+    except InputError:
+        return False
+    return True
+
+
 class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
     """Every model at every size, each solved and then timed."""
 
@@ -36,13 +47,19 @@ class ConvergenceStudy(Study[Convergence, "ConvergenceFound"]):
     nothing = ()
 
     def needs(self, asked: Convergence, scene: "Scene") -> "tuple[Need, ...]":
-        """Each model at each size; for the last mode every rule of the chain that makes a difference."""
+        """Each model at each size; for the last mode every rule of the chain that makes a difference there."""
         from verify.judge.workbench import Need
 
-        last = max(asked.modes)
-        variants = asked.variants(model.name for model in discrete("solve_modes", scene.beam))
-        every = (*variants, *asked.every_rule(scene.beam))
-        return tuple(Need(one.model, count, last, one.settings) for count in asked.counts for one in every)
+        def of(one: Variant, count: int) -> Need:
+            return Need(one.model, count, max(asked.modes), one.settings)
+
+        own = asked.variants(model.name for model in discrete("solve_modes", scene.beam))
+        beside = [one for one in asked.every_rule(scene.beam) if one not in own]
+        return tuple(
+            of(one, count)
+            for count in asked.counts
+            for one in (*own, *(rule for rule in beside if _is_built(scene.beam, rule, count)))
+        )
 
     def n_steps(self, asked: Convergence, scene: "Scene") -> int:
         """One for each size."""

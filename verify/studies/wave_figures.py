@@ -87,7 +87,9 @@ _OPERATION = (Column("SWR", "ratio"), Column("axis ratio", "+.5f"), Column("mm/s
 
 def motor_rows_table(rows: "Sequence[MotorRow]") -> Table:
     """The motor's figures over sizes, at the drive's frequency and at each model's own best."""
-    drive = f"{rows[0].drive.frequency_hz:g} Hz"
+    at = f"at {rows[0].drive.frequency_hz:g} Hz, the drive's frequency"
+    if any(row.known_best for row in rows):
+        at = f"left {at}, right at the model's own best"
     return Table(
         title="The motor over sizes",
         columns=(Column("model", left=True), Column("N"), *_OPERATION, Column("best Hz", ".2f"), *_OPERATION),
@@ -96,7 +98,7 @@ def motor_rows_table(rows: "Sequence[MotorRow]") -> Table:
         ),
         notes=(
             "window [L/4, 3L/4], axis ratios as the mean over its whole half wavelengths, for the forces of the scene; "
-            f"left at {drive}, the drive's frequency, right at the model's own best",
+            + at,
             *(f"{row.model}{f', N = {row.count}' if row.count else ''}: {row.note}" for row in rows if row.note),
         ),
     )
