@@ -74,6 +74,7 @@ def test_slow_motions_are_found_whatever_is_asked_for(face):
     assert several[1] < 1e-3 * several[2]
 
 
+@FACES
 @pytest.mark.parametrize("held", ["ground", "springs"])
 def test_two_motions_that_are_nearly_rigid_are_told_apart_on_many_parts(face, held):
     """A rigid bar with a body, which bounces and rocks; mixed by rounding they were up to 0.14 per cent off."""

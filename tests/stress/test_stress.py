@@ -64,6 +64,7 @@ def light():
         "best",
         "listed",
         "carried",
+        "ridden",
         "mixed",
         "sought",
         "edges",
