@@ -75,7 +75,7 @@ def test_ellipses_are_of_as_many_motions_along_as_across():
 
 @pytest.mark.parametrize("hertz", [np.float32(HERTZ), np.float16(700.0)])
 def test_a_short_number_is_the_number_that_it_is(hertz):
-    """Its own arithmetic rounds to 7 or 3 digits: the matched dashpot was 8e-8 and 1e-3 off."""
+    """Its own arithmetic rounds to 7 or 3 digits: the matched dashpot was 8e-8 and 6e-4 off."""
     assert travelling_wave.matched_device(BEAM, hertz, 0.01) == travelling_wave.matched_device(BEAM, float(hertz), 0.01)
     device = travelling_wave.matched_device(BEAM, 900.0, 0.02)
     given, same = (
