@@ -644,7 +644,7 @@ def test_the_command_prints_json_that_it_reads_again(tmp_path, capsys):
     kept = (tmp_path / "kept" / "paper.md").read_text()
     assert kept.startswith("# Run time against error: paper")
     made = "verify bench paper --set bench.imports=false --set bench.rounds=3 --sets modes --counts 20,30 --modes 1"
-    assert f"Made by `{made} --keep kept`." in " ".join(kept.split())
+    assert f"Made by `{made} --against old.json --keep kept`." in " ".join(kept.split())
     for layout in ("--csv", "--markdown"):
         assert status_of([*line, layout]) == 0
         assert "stock scikit-fem" in capsys.readouterr().out

@@ -7,7 +7,7 @@ import pytest
 from numba import njit, typeof
 from numba.core.codegen import CPUCodeLibrary
 
-from verify.models import quick_lowering
+from verify.models import kernels
 from verify.models.kernels import _ScalarCompiler, part
 
 
@@ -94,7 +94,7 @@ def hung(rod, at, free):
         free[at, i] += rod.loads[i] * rod.spring.stiffness
 
 
-@pytest.mark.skipif(not quick_lowering.KNOWN, reason="a numba that was not tried lowers by itself")
+@pytest.mark.skipif(not kernels.LOWERED, reason="a numba that was not tried lowers by itself")
 def test_llvm_is_given_half_of_numbas_instructions(monkeypatch):
     told, true = [], CPUCodeLibrary.add_ir_module
 
@@ -105,7 +105,7 @@ def test_llvm_is_given_half_of_numbas_instructions(monkeypatch):
     monkeypatch.setattr(CPUCodeLibrary, "add_ir_module", add)
     rod, _, at = given(False, True, None)
     for known in (True, False):
-        monkeypatch.setattr(quick_lowering, "KNOWN", known)
+        monkeypatch.setattr(kernels, "LOWERED", known)
         part()(hung).compile((typeof(rod), typeof(at), typeof(rod.table)))
     ours, numbas = told
     assert ours < 0.5 * numbas

@@ -64,6 +64,16 @@ def test_bounces_that_lose_little_die_away_and_the_point_leaves_again_at_the_sam
     assert abs(run.ledger.residual) < 1e-8 * run.ledger.impacts
 
 
+@pytest.mark.parametrize("restitution", [1.0, 1.0 - 1e-12])
+def test_bounces_that_lose_nothing_go_on(restitution):
+    """They land as parabolas do as long as these can be followed, and none is a rest."""
+    run, lands, leaves = flown(1.9, Contact(restitution=restitution), periods=200)
+    assert lands[:5] == pytest.approx([one.phase for one in bounces(1.9, restitution, 12)][:5], abs=2e-7)
+    assert len(lands) > 20
+    assert len(leaves) == 1
+    assert run.ledger.impacts == pytest.approx(0.0, abs=1e-20)
+
+
 @pytest.mark.parametrize(("ratio", "restitution"), [(1.9, 0.4), (2.3, 0.5), (1.7, 0.0)])
 def test_blows_lose_what_restitution_leaves_out_and_the_books_close(ratio, restitution):
     """M (1 - e^2)/2 times the square of every relative speed of landing."""

@@ -76,18 +76,23 @@ def bench(
         found = beside(found, earlier)
     if keep is not None:
         options = [word for name, text in given.items() for word in (f"--{name}", text)]
-        _keep(found, keep, Path(scene).name, overrides, (*options, *["--cold"] * cold, *["--push"] * push))
+        options += ["--against", _place(against)] if against is not None else []
+        _keep(found, keep, _place(Path(scene)), overrides, (*options, *["--cold"] * cold, *["--push"] * push))
     _tell(found, "json" if as_json else layout)
 
 
 def _keep(found: "BenchFound", folder: Path, scene: str, overrides: tuple[str, ...], options: tuple[str, ...]) -> None:
-    """Write the page with the line that it was made by; of a path that this machine alone has, the last name."""
+    """Write the page with the line that it was made by."""
     from verify.bench.keeping import page
     from verify.files import write_whole
 
-    place = folder.name if folder.is_absolute() else folder.as_posix()
-    line = command_line("bench", (scene,), overrides, (*options, "--keep", place))
+    line = command_line("bench", (scene,), overrides, (*options, "--keep", _place(folder)))
     write_whole(folder / f"{found.scene}.md", page(found, line), "--keep")
+
+
+def _place(path: Path) -> str:
+    """A path as a page names it: of one that this machine alone has, the last name."""
+    return path.name if path.is_absolute() else path.as_posix()
 
 
 def _earlier(against: Path | None) -> Any:

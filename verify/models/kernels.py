@@ -20,7 +20,7 @@ from re import compile as compile_pattern
 from time import perf_counter
 from typing import Any, NoReturn, TypeVar
 
-from numba import cfunc, njit, types
+from numba import cfunc, njit, types, version_info
 from numba.core import event
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, DefaultPassBuilder
@@ -35,16 +35,20 @@ ALWAYS = {"error_model": "numpy", "no_cfunc_wrapper": True}
 """Options of numba for every kernel: divisions are not checked, and no C function is made that nothing calls."""
 
 
+LOWERED = quick_lowering.KNOWN and version_info.short in quick_lowering.TRIED
+"""Whether kernels are written down and optimised our way, by a numba that was tried; else as numba does."""
+
+
 class _KernelLibrary(JITCodeLibrary):
     """The code of a kernel with all its parts, optimised once: it counts no references that could be pruned before."""
 
     def _optimize_functions(self, ll_module: Any) -> None:
-        if not quick_lowering.KNOWN:
+        if not LOWERED:
             return super()._optimize_functions(ll_module)  # type: ignore[no-untyped-call,no-any-return]
         ll_module.data_layout = self._codegen._data_layout
 
     def _optimize_final_module(self) -> None:
-        if not quick_lowering.KNOWN:
+        if not LOWERED:
             return super()._optimize_final_module()  # type: ignore[no-untyped-call,no-any-return]
         passes, builder = self._codegen._module_pass_manager()  # type: ignore[no-untyped-call]
         passes.run(self._final_module, builder)
@@ -111,7 +115,7 @@ class _ScalarCompiler(Compiler):
     def define_pipelines(self) -> list[Any]:
         """The one pipeline."""
         whole, short = DefaultPassBuilder.define_nopython_pipeline(self.state), PassManager("kernels")  # type: ignore
-        lowering = {NativeLowering: self.lowering} if quick_lowering.KNOWN else {}
+        lowering = {NativeLowering: self.lowering} if LOWERED else {}
         short.passes.extend(
             [(lowering.get(one, one), why) for one, why in whole.passes if one.__name__ not in NEEDLESS]
         )
@@ -129,7 +133,8 @@ class _PartCompiler(_ScalarCompiler):
         super().__init__(typingctx, targetctx, into, *given)
 
 
-KERNELS, RECORDS = "*kernels.py", "*records.py"
+KERNELS, RECORDS, WAYS = "*kernels.py", "*records.py", "quick_*.py"
+"""Of a room: what its stamp covers, its kernels, what they read, and how they are compiled."""
 _OTHER_ROOM = compile_pattern(rb"^from verify\.(\w+)\.\w*(?:kernels|records) import", MULTILINE)
 INNER = (
     "_raise_if_finalized",
@@ -253,7 +258,8 @@ event.register("numba:compile", _Watch())  # type: ignore[no-untyped-call]
 def room_stamp(room: Path) -> str:
     """What kernels and records of the room say, and those of rooms that they import from, as one number."""
     sources = [
-        one.name.encode() + b"\n" + one.read_bytes() for one in sorted([*room.glob(KERNELS), *room.glob(RECORDS)])
+        one.name.encode() + b"\n" + one.read_bytes()
+        for one in sorted([*room.glob(KERNELS), *room.glob(RECORDS), *room.glob(WAYS)])
     ]
     others = sorted(set(_OTHER_ROOM.findall(b"\n".join(sources))) - {room.name.encode()})
     return sha256(

@@ -53,24 +53,23 @@ def in_a_row(field: str, value: object, unit: str = "SI") -> Array:
 
 def real_array(field: str, value: object, unit: str) -> Array:
     """Numbers in any arrangement as an array of the same shape. Raises InputError for what is no real number."""
-    try:
-        given = np.asarray(value)
-    except ValueError:  # rows of different lengths
-        given = np.empty(0, dtype=object)
-    if given.dtype.kind not in "iuf":
-        raise InputError(f"{field} = {shown(value)}: give a number, a list or an array of numbers ({unit})")
-    return given.astype(float, copy=False)
+    return _numbers(field, value, unit, "iuf").astype(float, copy=False)
 
 
 def complex_array(field: str, value: object, unit: str) -> ComplexArray:
     """Numbers in any arrangement, real or complex, likewise."""
+    return _numbers(field, value, unit, "iufc").astype(complex, copy=False)
+
+
+def _numbers(field: str, value: object, unit: str, kinds: str) -> Array:
+    """What is an array of numbers of some of numpy's kinds."""
     try:
         given = np.asarray(value)
     except ValueError:  # rows of different lengths
         given = np.empty(0, dtype=object)
-    if given.dtype.kind not in "iufc":
+    if given.dtype.kind not in kinds:
         raise InputError(f"{field} = {shown(value)}: give a number, a list or an array of numbers ({unit})")
-    return given.astype(complex, copy=False)
+    return given
 
 
 def places(field: str, value: object, length: float) -> Array:

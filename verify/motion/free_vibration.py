@@ -147,12 +147,12 @@ def free_vibration(
 
 
 def _check_phase(basis: TimeBasis, duration: float) -> None:
-    """Raise InputError where the highest mode has swung so often that rounding is all there is of its phase."""
+    """Raise InputError where the highest mode has swung so often that its phase is not known any more."""
     hertz = float(basis.omegas[-1]) / (2.0 * np.pi)
     if duration > MOST_PERIODS / hertz:
         raise InputError(
             f"duration = {duration!r} s is more than {MOST_PERIODS:.0e} periods of the highest mode, at {hertz:.4g} "
-            "Hz, of whose phase rounding leaves nothing: shorten it"
+            "Hz, whose phase is not known to 1e-3 rad by then: shorten it"
         )
 
 

@@ -58,11 +58,13 @@ from verify.motor.surface_kernels import draw, material
 
 HALVINGS = 100
 BLOWS = 100_000
-"""In a step, at most; a bounce that dies away has far fewer, one that loses next to nothing is told."""
+"""In a step, at most, with leavings and turns; a bounce that dies away has far fewer, what goes on and on is told."""
 SETTLED = 1e-6
 """Of a step: a bounce that lasts no longer is a rest."""
-TOLD = 2e-15
+TOLD = 4e-15
 """Rounding of the surface, of its height and of what it rises in all time so far, by which its phase is rounded."""
+LOW = 1e4
+"""Of that: what is higher is a bounce whatever it loses."""
 ALIKE = 1e-9
 """Of the speeds at hand: a slip that is no more than that is none."""
 
@@ -289,13 +291,13 @@ def _move_riding(
 
 @part()
 def _rests(t: float, dt: float, away: float, presses: float, level: float, hard: Hard, touch: Array) -> bool:
-    """Whether a bounce that begins at t is none: too short for the step, or fed by the rounding of the surface.
+    """Whether a bounce that begins at t is none: too short for the step, or low and fed by the rounding of the surface.
 
     Of its height away^2/(2 presses) a blow takes the share 1 - e^2, and the rounding of the level may add as much.
     """
-    known = TOLD * (abs(level) + abs(touch[0, LIFT]) * (t + dt))
-    lost = (1.0 - hard.restitution) * away**2
-    return 2.0 * away <= SETTLED * dt * presses or lost <= 2.0 * presses * known
+    known, height = TOLD * (abs(level) + abs(touch[0, LIFT]) * (t + dt)), away**2 / (2.0 * presses)
+    fed = (1.0 - hard.restitution**2) * height <= known and height <= LOW * known
+    return 2.0 * away <= SETTLED * dt * presses or fed
 
 
 @part()
@@ -333,7 +335,7 @@ def _step(
                 if presses > 0.0 and _rests(t, dt, away, presses, level, hard, feet.touch):
                     before[0, 0] = 1.0
         done += s
-    return CHATTERS
+    return DONE if dt - done <= 1e-15 * dt else CHATTERS
 
 
 @lean()

@@ -306,6 +306,6 @@ RIDES_FROM_HERE = 2.0
 WHY = {
     records.OFF_BEAM: LEFT_BEAM,
     records.NOT_FINITE: "diverged",
-    records.CHATTERS: "bounced 100 000 times within one step and more",
+    records.CHATTERS: "bounced, left or turned 100 000 times within one step",
 }
 """Why a run stopped early."""

@@ -102,6 +102,7 @@ def drawn(chart: Chart) -> Drawing:
             _mark(axes, mark, i)
         _axis(axes, "x", chart.x, chart)
         _axis(axes, "y", chart.y, chart)
+        _settle(figure, axes)
         _beside(axes, chart.lines)
         box = _settle(figure, axes)
         if chart.equal:

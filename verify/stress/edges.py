@@ -43,18 +43,20 @@ def resonances_error(mode: float) -> float:
 
 def verbs_error(parts: float) -> float:
     """How many verbs take what is no beam, or do not say so."""
-    from verify import analytic_modes, fem_beam, segment_model
+    from verify.elements import linear as elements
+    from verify.exact import modes as exact
+    from verify.segments import linear as segments
 
     count, beam = int(parts), {"length": 0.7}
     counted: Any = np.int64(count)
     asks = (
-        lambda: analytic_modes.solve_modes(beam, 2),  # type: ignore[arg-type]
-        lambda: fem_beam.solve_modes(beam, 2, count),  # type: ignore[arg-type]
-        lambda: segment_model.solve_modes(beam=beam, n_modes=2, n_segments=count),  # type: ignore[arg-type]
-        lambda: segment_model.solve_harmonic(beam, PUSH, 31.0, count),  # type: ignore[arg-type]
+        lambda: exact.solve_modes(beam, 2),  # type: ignore[arg-type]
+        lambda: elements.solve_modes(beam, 2, count),  # type: ignore[arg-type]
+        lambda: segments.solve_modes(beam=beam, n_modes=2, n_segments=count),  # type: ignore[arg-type]
+        lambda: segments.solve_harmonic(beam, PUSH, 31.0, count),  # type: ignore[arg-type]
     )
     taken = sum(not refused(one, "beam = ", "Beam") for one in asks)
-    return float(taken + (len(fem_beam.solve_modes(STRIP, 2, counted).frequencies_hz) != 2))
+    return float(taken + (len(elements.solve_modes(STRIP, 2, counted).frequencies_hz) != 2))
 
 
 def windows_error(hertz: float) -> float:

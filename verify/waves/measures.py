@@ -318,7 +318,8 @@ def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | N
 
     x (n,), metres; deflection (n,), complex; weights (n,): what each point counts, all the same where they are left
     out. Amplitudes are meant in the middle. Raises InputError for rows of other lengths or fewer than two numbers, what
-    is not finite, weights that are not above 0, a wavenumber that is none and a deflection that is 0 everywhere.
+    is not finite, weights that are not above 0, a deflection that is 0 everywhere, and a wavenumber that is none or of
+    which x spans less than half a wave or more than 10 000 of them. Places may stand in any order.
     """
     at, seen = in_a_row("x", x, "metres"), complex_array("deflection", deflection, "metres")
     counted = np.ones(len(at)) if weights is None else in_a_row("weights", weights, "what each point counts")
@@ -337,8 +338,8 @@ def fit_waves(x: Array, deflection: ComplexArray, k: complex, weights: Array | N
 
 def _fitted(x: Array, deflection: ComplexArray, k: complex, weights: Array) -> TwoWaves:
     """The same of what is known to fit."""
-    root = np.sqrt(weights)
-    basis, values = wave_basis(x, k, 0.5 * (x[0] + x[-1])) * root[:, None], deflection * root
+    root, middle = np.sqrt(weights), 0.5 * float(x.min() + x.max())
+    basis, values = wave_basis(x, k, middle) * root[:, None], deflection * root
     amplitudes = np.linalg.lstsq(basis, values, rcond=None)[0]
     rest = np.linalg.norm(values - basis @ amplitudes) / np.linalg.norm(values)
     return TwoWaves(
