@@ -307,7 +307,9 @@ def test_a_long_figure_tells_how_far_it_is():
 
 
 def test_a_stretching_chain_that_breaks_off_gives_no_departure(monkeypatch):
-    broken = SimpleNamespace(finished=False, statistics=SimpleNamespace(stopped="diverged at 0.3 ms"))
+    broken = SimpleNamespace(
+        finished=False, statistics=SimpleNamespace(stopped="diverged at 0.3 ms", interrupted=False)
+    )
     monkeypatch.setattr(departure, "simulate_elastic", lambda *given, **more: broken)
     with pytest.raises(InputError, match=r"chain under 7.3 N diverged at 0.3 ms: give a smaller force"):
         figure("axial_departure", segments=5, force=7.3, inertia="elastic")

@@ -133,6 +133,8 @@ def elastic_chain(driven: Driven, force: float) -> Array:
     """Deflection of the chain whose links stretch as the beam does, (n,), metres. Raises InputError."""
     system = build_system(driven.beam, driven.count, driven.under(force), driven.frequency_hz)
     motion = simulate_elastic(system, axial_stiffness(driven.beam, driven.count), driven.times, most=MOST)
+    if not motion.finished and not motion.statistics.interrupted:
+        raise InputError(f"the stretching chain under {force!r} N {motion.statistics.stopped}: give a smaller force")
     confirm_stretching(motion, MOST)
     return np.asarray(motion.deflection([driven.x])[:, 0])
 

@@ -108,9 +108,7 @@ def fitting_inverse(pencil: FactoredPencil) -> Inverse:
         if not slow:
             raise
         lowest = 0.0
-    felt = (
-        slow * min(pencil.n / DENSE_UNKNOWNS, 1.0) ** 4
-    )  # of few parts much slower ones leave the others their digits
+    felt = slow * min(pencil.n / DENSE_UNKNOWNS, 1.0) ** 4  # of few parts others keep their digits beside slower ones
     return inverse_of(pencil, -slow) if lowest < felt else replace(inverse, rough=lowest < pencil.bending)
 
 
