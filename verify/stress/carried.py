@@ -26,6 +26,24 @@ from verify.stress.sliders import BAR, FORCES, HERTZ, RATIO
 
 MASS, MU, LOAD, SPEED = 0.021, 0.07, 260.0, 0.61
 SAMPLES = 12
+STILL = tuple(replace(one, amplitude=0.0) for one in FORCES)
+"""Forces that move nothing."""
+
+
+def let_go(speed: float, pull: float = 0.0) -> Slider:
+    """A slider that friction of one size brakes, m/s and newton."""
+    return Slider(
+        mass=MASS,
+        mu=MU,
+        law="coulomb",
+        gravity=0.0,
+        preload=LOAD,
+        position=0.0579,
+        speed=speed,
+        coupling="one-way",
+        pull=pull,
+        contact=Contact(stiffness=2.7e5),
+    )
 
 
 @cache
@@ -33,20 +51,9 @@ def _braked(way: float) -> MotorRun:
     """Of a slider let go on a beam that nothing moves, until it has lost two thirds of its speed."""
     from verify.motor.run import run_motor
 
-    slider = Slider(
-        mass=MASS,
-        mu=MU,
-        law="coulomb",
-        gravity=0.0,
-        preload=LOAD,
-        position=0.0579,
-        speed=way * SPEED,
-        coupling="one-way",
-        contact=Contact(stiffness=2.7e5),
-    )
-    still = tuple(replace(one, amplitude=0.0) for one in FORCES)
+    slider = let_go(way * SPEED)
     time = 2.0 / 3.0 * SPEED * MASS / (MU * LOAD)
-    return run_motor(BAR, still, HERTZ, time, slider=slider, model="fem", count=2, samples=SAMPLES, step=1e-5)
+    return run_motor(BAR, STILL, HERTZ, time, slider=slider, model="fem", count=2, samples=SAMPLES, step=1e-5)
 
 
 def braked_error(way: float) -> float:

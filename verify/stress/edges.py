@@ -10,10 +10,10 @@ from msgspec.structs import replace
 from verify.beam import PointForce
 from verify.errors import InputError
 from verify.models.compiling import Call
-from verify.slider import Contact, Slider
 from verify.stress.beams import STEPPED, STRIP, held
+from verify.stress.carried import LOAD, MU, SPEED, STILL, let_go
 from verify.stress.kind import Floor, Row
-from verify.stress.sliders import BAR, FORCES, HERTZ
+from verify.stress.sliders import BAR, HERTZ
 
 PUSH = (PointForce(position=0.21),)
 
@@ -107,28 +107,14 @@ def followed_error(turn: float) -> float:
     return float(max(worst, abs(alone - 1.0), missed(omegas, 0.0 * free, 0.0, dt)))
 
 
-LOAD, MU, MASS, SPEED = 260.0, 0.07, 0.021, 0.61
-
-
 def ends_error(pull: float) -> float:
     """How often a slider's run at one speed is not taken for its end, or for one although it floats or speeds up."""
     from verify.motor.figures import comes_to_speed
     from verify.motor.run import run_motor
 
-    slider = Slider(
-        mass=MASS,
-        mu=MU,
-        law="coulomb",
-        gravity=0.0,
-        preload=LOAD,
-        position=0.0579,
-        speed=SPEED,
-        coupling="one-way",
-        pull=MU * LOAD * (1.0 + pull),
-        contact=Contact(stiffness=2.7e5),
-    )
-    still, given = tuple(replace(one, amplitude=0.0) for one in FORCES), {"model": "fem", "count": 2, "step": 1e-5}
-    run = run_motor(BAR, still, HERTZ, 1e-3, slider=slider, samples=9, **given)  # type: ignore[arg-type]
+    slider = let_go(SPEED, MU * LOAD * (1.0 + pull))
+    given = {"model": "fem", "count": 2, "step": 1e-5}
+    run = run_motor(BAR, STILL, HERTZ, 1e-3, slider=slider, samples=9, **given)  # type: ignore[arg-type]
     lifted = [(0.89, False), (0.91, True), (1.09, True), (1.11, False)]
     wrong = sum(
         comes_to_speed(replace(run, normal_force=share * run.normal_force), 4, 1.0) is not (ends and not pull)
