@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.models.arrays import Array, BoolArray, Indices
 from verify.models.band_stack import Pencils, tally
@@ -26,6 +27,8 @@ _FAR = 0.8
 """Of the modes: with fewer below where they were thought to end, they are sought twice as far."""
 _GRID = 2.5
 """Points for each eigenvalue."""
+_WIDENED = 3
+"""Times that a grid is laid anew where it ends before the last mode."""
 _MIRRORED = 2
 """Points on the other side of zero, where the determinant is what it is on this."""
 _NODES = (-2, -1, 0, 1, 2, 3)
@@ -54,6 +57,12 @@ class _Scale(msgspec.Struct, frozen=True, eq=False):
         """Eigenvalues at places (..., n_beams), or of some beams."""
         part, bent = at / self.places[which], self.bent[which]
         return np.asarray((self.ends[which] * part) ** 4 * ((1.0 + bent) / (1.0 + bent * part**2)) ** 2)
+
+    def straight(self, at: Array, modes: Array, which: Indices) -> "_Scale":
+        """That of some beams laid anew, not bent, by how many modes lie below places (n_beams,)."""
+        ends, places, bent = self.ends.copy(), self.places.copy(), self.bent.copy()
+        ends[which], places[which], bent[which] = self.values(at)[which] ** 0.25, _GRID * modes[which], 0.0
+        return _Scale(ends, places, bent)
 
 
 class _Brackets(msgspec.Struct, frozen=True, eq=False):
@@ -116,12 +125,24 @@ def _gridded(pencils: Pencils, rigid_modes: int, n_modes: int) -> tuple[_Measure
     n_beams = pencils.mass.shape[2]
     plain = _Measured(pencils, rigid_modes, _scale(pencils, rigid_modes, n_modes), np.zeros((3, n_beams)))
     places = np.arange(0.5, _GRID * (n_modes + _BEYOND))[:, None] + np.zeros(n_beams)
-    below, logs = plain.at(places)
+    plain, below, logs = _reaching(plain, places, n_modes)
     growth = np.linalg.pinv(places[:, :1] ** np.arange(3)) @ np.where(np.isfinite(logs), logs, 0.0)
     measured = _Measured(pencils, rigid_modes, plain.scale, np.asarray(growth, dtype=float))
     mirrored = slice(_MIRRORED - 1, None, -1)
     places, logs = np.concatenate([-places[mirrored], places]), np.concatenate([logs[mirrored], logs])
     return measured, places, np.concatenate([below[mirrored], below]), measured.grown_less(logs, places)
+
+
+def _reaching(plain: _Measured, places: Array, n_modes: int) -> tuple[_Measured, Indices, Array]:
+    """(what is measured, counts, logs) at places (g, n_beams), on a wider scale where they end before the last mode."""
+    below, logs = plain.at(places)
+    for _ in range(_WIDENED):
+        short = np.flatnonzero(below[-1] < n_modes)
+        if not len(short):
+            break
+        plain = replace(plain, scale=plain.scale.straight(places[-1], np.maximum(below[-1], 0) + 0.5, short))
+        below[:, short], logs[:, short] = plain.at(places[:, short], short)
+    return plain, below, logs
 
 
 def _followed(measured: _Measured, brackets: _Brackets, told: BoolArray, last: Array, found: Array) -> Array:
@@ -155,7 +176,7 @@ def _scale(pencils: Pencils, rigid_modes: int, n_modes: int) -> _Scale:
     below = np.maximum(below - rigid_modes + 0.5, 1.0)
     far = below[1] < _FAR * n_modes
     half, whole = np.where(far, below[1:], below[:-1])
-    part = half / whole
+    part = (half + 0.5) / whole
     bent = np.clip((0.25 - part**2) / (0.75 * part**2), 0.0, _BENT)
     return _Scale(np.where(far, 2.0 * ends, ends), _GRID * whole, bent)
 
