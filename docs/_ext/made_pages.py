@@ -20,7 +20,7 @@ of tables are written `[[beam.mass]]` or as a list of inline tables.
 """
 QUANTITIES_HEAD = """# Figures that can be asked for
 
-Every figure has a name, a unit and typed arguments: `verify measure NAME KEY=VALUE ... --scene SCENE` evaluates one,
+Every figure has a name, a unit and typed arguments: `verify measure SCENE NAME KEY=VALUE ...` evaluates one,
 and a gate holds one. `verify quantities WORD ...` prints those that a word stands in.
 
 """

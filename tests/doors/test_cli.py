@@ -4,10 +4,14 @@ import csv
 import io
 import json
 import os
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+OWN = Path(__file__).parents[1] / "identify" / "data" / "exudyn-cantilever.csv"
 
 
 def test_run_paper_passes_and_writes_its_report(verify, tmp_path):
@@ -200,6 +204,43 @@ def test_choose_answers_for_both_models_and_one_part_less_is_not_enough(verify):
     assert [c["smaller"] for c in data["choices"]] == [None, None]
     words = " ".join(verify("choose", "--mode", "22", "--error", "0.01")[1].split())
     assert "segments: N = 41 does not; every larger N does, proven by the discrete dispersion" in words
+
+
+@pytest.mark.parametrize(
+    ("first", "after"),
+    [
+        (("choose", "free-free-bar", "--mode", "5", "--error", "0.2%", "--json"), 1),
+        (("measure", "free-free-bar", "mode.frequency", "model=analytic", "mode=3"), 1),
+        (("compare", "steel-cantilever", str(OWN), "--count", "30", "--json"), 1),
+        (("compare-shapes", "steel-cantilever", "no-such.vtu"), 1),
+    ],
+)
+def test_the_scene_stands_first_as_in_other_commands_or_after_its_option(verify, first, after):
+    said = first[:after] + first[after + 1 :] + ("--scene", first[after])
+    timeless = re.compile(r'"(run_time_s|seconds)": [^,]*')
+    here, there = (
+        [timeless.sub("", part) if isinstance(part, str) else part for part in verify(*w)] for w in (first, said)
+    )
+    assert here == there
+    status, _, err = verify(*first, "--scene", "paper")
+    assert (status, "the scene is given twice" in err) == (2, True)
+    assert verify(*first[:after], "paper", *first[after:], "x")[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "missing"),
+    [
+        (("measure", "paper"), "QUANTITY"),
+        (("measure", "mine.toml", "mode=3"), "QUANTITY"),
+        (("measure", "mode=3"), "QUANTITY"),
+        (("compare",), "SCENE"),
+        (("compare", "mine.csv"), "SCENE and FREQUENCIES"),
+        (("compare-shapes",), "FILE"),
+    ],
+)
+def test_a_word_that_is_missing_is_named(verify, words, missing):
+    status, _, err = verify(*words)
+    assert (status, missing in err) == (2, True)
 
 
 def test_choose_says_where_one_part_less_cannot_be_built(verify):

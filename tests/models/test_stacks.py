@@ -212,6 +212,27 @@ def test_stiff_ground_hides_no_mode_from_the_counts(model, n_modes):
 
 
 @pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("supports", [("free", "free"), ("guided", "pinned")])
+def test_ground_lifts_every_mode_of_a_plain_beam_and_is_no_reason_to_solve_it_again(alone, model, supports):
+    """omega^2 grows by k_f/(rho A), of rigid motions too, which are modes on ground: as many as are asked for or more."""
+    rng = np.random.default_rng(31)
+    drawn = rng.uniform((0.4, 0.0), (1.9, 7.0), (9, 2))
+    beams = [
+        Beam(
+            length=a * L, bending_stiffness=EI, mass_per_length=LINE, supports=supports, foundation=EI / L**4 * 10.0**g
+        )
+        for a, g in drawn.tolist()
+    ]
+    beams[4:4] = [replace(beams[2], foundation=0.0), replace(beams[3], length=1.3 * L)]
+    for n_modes in (1, 2, 6):
+        alone.clear()
+        found = MODELS[model].sweep_modes(beams, n_modes, 23)
+        assert len(alone) == 2 - (n_modes <= beams[4].rigid_motions)
+        each = [MODELS[model].solve_modes(beam, n_modes, 23).frequencies_hz for beam in beams]
+        assert found == pytest.approx(np.array(each), rel=2e-13)
+
+
+@pytest.mark.parametrize("model", MODELS)
 def test_no_high_mode_of_thick_beams_is_lost(model):
     """They lie closer the higher they are, so that a count tells too short a grid."""
     beams = thick(many(29, 48, ("clamped", "free"), n_sections=3))

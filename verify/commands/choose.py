@@ -8,26 +8,36 @@ from verify.commands.shared import (
     overridden,
     print_json,
     ruled,
+    scene_first,
 )
 
 
 @click.command()
+@click.argument("words", nargs=-1, metavar="[SCENE]")
 @click.option("--mode", required=True, metavar="N", help="Mode number from 1, or all of several: 1-12.")
 @click.option("--error", required=True, metavar="E", help="Largest frequency error: 1% or 0.01.")
-@click.option("--scene", default="paper", show_default=True, help="Whose beam.")
+@click.option("--scene", help="Whose beam, where it is not named first. Default: paper.")
 @overridden
 @ruled
 @json_alone
-def choose(mode: str, error: str, scene: str, overrides: tuple[str, ...], as_json: bool, rules: dict[str, str]) -> None:
+def choose(
+    words: tuple[str, ...],
+    mode: str,
+    error: str,
+    scene: str | None,
+    overrides: tuple[str, ...],
+    as_json: bool,
+    rules: dict[str, str],
+) -> None:
     """From how many segments or elements on an accuracy is kept, as far as it was solved, and what they cost.
 
-    Example: `verify choose --mode 5 --error 0.1% --scene steel-cantilever`
+    Example: `verify choose steel-cantilever --mode 5 --error 0.1%`
     """
     from verify.judge.workbench import Workbench
     from verify.report.plain import accuracy, choice_as_plain, mode_numbers
 
     wanted, number = accuracy(error), mode_numbers(mode)
-    beam = load(scene, overrides).beam
+    beam = load(scene_first(words, scene, 0)[0], overrides).beam
     from verify.judge.sizing import choose_of_all
     from verify.run.tables import rules_of
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, load, overridden, print_json, whole_number
+from verify.commands.shared import json_alone, load, overridden, print_json, scene_first, whole_number
 
 if TYPE_CHECKING:
     from verify.identify.told import Compared
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("frequencies", required=False)
-@click.option("--scene", required=True, help="Whose beam the model is of.")
+@click.argument("words", nargs=-1, metavar="SCENE [FREQUENCIES]")
+@click.option("--scene", help="Whose beam the model is of, where it is not named first.")
 @overridden
 @click.option("--count", metavar="N", help="Segments or elements of the model. Default: whichever fits.")
 @click.option("--modes", metavar="FILE", help="Mode shapes: x in the first column, then one column for each mode.")
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 @click.option("--reports", "folder", metavar="PATH", help="Folder for an HTML report. Default: none is written.")
 @json_alone
 def compare(
-    frequencies: str | None,
-    scene: str,
+    words: tuple[str, ...],
+    scene: str | None,
     overrides: tuple[str, ...],
     count: str | None,
     modes: str | None,
@@ -59,9 +59,12 @@ def compare(
     from verify.identify.compare import compare as compared
     from verify.report.plain import accuracy, mode_number
 
-    loaded = load(scene, overrides)
+    if len(words) == 1 and scene is None and modes is None and model is None:
+        raise click.UsageError(f"SCENE and FREQUENCIES are asked for, {words[0]!r} is one of them.")
+    named, rest = scene_first(words, scene, 1, default=None)
+    loaded = load(named, overrides)
     asked = Asked(
-        frequencies=None if frequencies is None else Path(frequencies),
+        frequencies=Path(rest[0]) if rest else None,
         shapes=None if modes is None else Path(modes),
         model=model,
         count=whole_number("count", count),

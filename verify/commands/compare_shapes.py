@@ -6,21 +6,26 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, load, overridden, print_json, whole_number
+from verify.commands.shared import json_alone, load, overridden, print_json, scene_first, whole_number
 
 if TYPE_CHECKING:
     from verify.identify.shapes_told import ShapesJudged
 
 
 @click.command("compare-shapes")
-@click.argument("file")
-@click.option("--scene", default="paper", show_default=True, help="Whose beam the mesh is of.")
+@click.argument("words", nargs=-1, required=True, metavar="[SCENE] FILE")
+@click.option("--scene", help="Whose beam the mesh is of, where it is not named first. Default: paper.")
 @overridden
 @click.option("--count", metavar="N", help="Segments or elements of the model. Default: what fits, else by the points.")
 @click.option("--within", metavar="E", help="Gate every frequency against the exact beam: 1%.")
 @json_alone
 def compare_shapes(
-    file: str, scene: str, overrides: tuple[str, ...], count: str | None, within: str | None, as_json: bool
+    words: tuple[str, ...],
+    scene: str | None,
+    overrides: tuple[str, ...],
+    count: str | None,
+    within: str | None,
+    as_json: bool,
 ) -> None:
     """Say which modes of SCENE's beam the shapes in a mesh FILE are, how far off, and whose model's they are nearest.
 
@@ -32,7 +37,8 @@ def compare_shapes(
     from verify.report.plain import accuracy
 
     parts, limit = whole_number("count", count), None if within is None else accuracy(within, "within")
-    loaded = load(scene, overrides)
+    named, (file,) = scene_first(words, scene, 1)
+    loaded = load(named, overrides)
     result = judge_shapes(loaded, read_shapes_of_mesh(Path(file), loaded.beam.length), parts, limit)
     _show(result, as_json=as_json)
     if not result.passed:

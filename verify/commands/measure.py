@@ -1,5 +1,6 @@
 """One named figure."""
 
+from itertools import takewhile
 from math import isnan
 
 import click
@@ -12,26 +13,32 @@ from verify.commands.shared import (
     overridden,
     print_json,
     progress,
+    scene_first,
 )
 from verify.errors import InputError
 
 
 @click.command()
-@click.argument("quantity")
-@click.argument("arguments", nargs=-1, metavar="[KEY=VALUE]...")
-@click.option("--scene", default="paper", show_default=True, help="Whose beam and drive.")
+@click.argument("words", nargs=-1, required=True, metavar="[SCENE] QUANTITY [KEY=VALUE]...")
+@click.option("--scene", help="Whose beam and drive, where it is not named first. Default: paper.")
 @overridden
 @json_alone
-def measure(quantity: str, arguments: tuple[str, ...], scene: str, overrides: tuple[str, ...], as_json: bool) -> None:
-    """Any named QUANTITY: `verify measure mode.frequency_error model=segment mode=22 count=49`."""
+def measure(words: tuple[str, ...], scene: str | None, overrides: tuple[str, ...], as_json: bool) -> None:
+    """Any named QUANTITY: `verify measure paper mode.frequency_error model=segment mode=22 count=49`."""
     from verify.judge.workbench import Workbench
     from verify.quantities import catalogue as quantities
+    from verify.scenes.scene import packaged_scenes
     from verify.scenes.toml import given_arguments
 
+    leading = list(takewhile(lambda word: "=" not in word, words))
+    named, rest = scene_first(leading, scene, 1)
+    if not rest or (len(leading) == 1 and (leading[0] in packaged_scenes() or leading[0].endswith(".toml"))):
+        raise click.UsageError("Missing argument 'QUANTITY': `verify quantities` lists them.")
+    (quantity,) = rest
     found = quantities.quantity(quantity)
-    given = given_arguments(arguments)
+    given = given_arguments(words[len(leading) :])
     checked = quantities.arguments_of(found, given)
-    asked = load(scene, overrides)
+    asked = load(named, overrides)
     bench = Workbench(asked.beam)
     with progress(PERCENT, quiet=as_json) as step:
         bench.tell = in_percent(step)

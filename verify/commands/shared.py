@@ -1,7 +1,7 @@
 """What commands share: options of the same name, a scene loaded, JSON printed, a bar of progress."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from typing import TYPE_CHECKING, Any
@@ -45,6 +45,26 @@ def load(scene: str, overrides: tuple[str, ...]) -> "Scene":
 
         check_per_cents(loaded, overrides)
     return loaded
+
+
+def scene_first(
+    words: Sequence[str], option: str | None, after: int, default: str | None = "paper"
+) -> tuple[str, Sequence[str]]:
+    """(the scene, the words after it) of a command line's words, `after` of which at most follow a scene.
+
+    The scene is the first where there is one more, or where nothing else says it; else what `option`, or the default,
+    says. Raises InputError where both do, click's UsageError where there are more words or none says it.
+    """
+    if len(words) > after + 1:
+        raise click.UsageError(f"Got unexpected extra argument ({words[after + 1]})")
+    leads = len(words) > after or (option is None and default is None)
+    if not leads:
+        return option or default or "", words
+    if not words:
+        raise click.UsageError("Missing argument 'SCENE'.")
+    if option is not None:
+        raise InputError(f"the scene is given twice, as {words[0]!r} and as --scene {option!r}: give one of them")
+    return words[0], words[1:]
 
 
 def print_json(data: Any) -> None:

@@ -87,10 +87,9 @@ def sweep_modes(
 ) -> Array:
     """Frequencies of the first modes of many beams, (n_beams, n_modes) in Hz, as `solve_modes` has them.
 
-    Beams that differ by their scale alone share one solve; those that have as many sections, masses and springs as
-    others are solved together, on ground, under tension, graded or thick (Rayleigh) as well; sheared
-    and compressed ones one by one. Raises InputError as `solve_modes` does, naming the beam by its
-    index.
+    Plain beams that differ by their scale and by the ground under them share one solve; those that have as many
+    sections, masses and springs as others are solved together, on ground, under tension, graded or thick (Rayleigh) as
+    well; sheared and compressed ones one by one. Raises InputError as `solve_modes` does, naming the beam by its index.
     """
     beams = several("beams", beams, Beam)
     check_whole("n_modes", n_modes, 1)

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.checks import check_word, plain
@@ -210,31 +211,43 @@ class Stacking(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stacking) -> Array:
     """Frequencies of many beams, (n_beams, n_modes) in Hz.
 
-    Plain uniform beams on the same supports differ by their scale alone and share one solve; others of one layout are
-    solved as one stack (`stacks`), and those of it that do not settle, with all that are left, each by itself. Raises
-    InputError, naming the beam by its index.
+    Plain uniform beams on the same supports differ by their scale alone and share one solve, on ground too, which lifts
+    every omega^2 by k_f/(rho A) and bends no mode; others of one layout are solved as one stack (`stacks`), and those
+    of it that do not settle, with all that are left, each by itself. Raises InputError, naming the beam by its index.
     """
     if not beams:
         raise InputError("beams is empty: give at least one Beam")
     check_word("theory", theory, THEORIES)
     check_held(len(beams), n_modes, "beams")
     leaders = _leaders(beams, theory)
-    groups = _groups(sorted(set(leaders)), beams, model.layout)
-    made = _made([group[0] for group in groups], beams, model)
+    lifted = [i for i in set(leaders) if beams[i].foundation and _is_plain(beams[i], theory)]
+    groups = _groups(sorted(set(leaders) - set(lifted)), beams, model.layout)
+    made = _made([*lifted, *(group[0] for group in groups)], beams, model)
     rows = _stacks(groups, beams, n_modes, model, made)
-    alone = sorted(set(leaders) - set(rows))
+    alone = sorted(set(leaders) - set(rows) - set(lifted))
 
     def solved(i: int) -> Array:
         pencil, _ = made[i] if i in made else model.make(beams[i])
         return lowest(pencil, n_modes).values
 
-    worth = len(alone) * made[groups[0][0]][0].n >= UNKNOWNS_WORTH
+    worth = bool(alone) and len(alone) * made[groups[0][0]][0].n >= UNKNOWNS_WORTH
     rows |= zip(alone, _shared(solved, alone, worth), strict=True)
+    rows |= {i: _without_ground(beams[i], n_modes, model) for i in lifted}
     units = {i: made[group[0]][1] / beams[group[0]].length for group in groups for i in group}
-    lengths = [units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)]
-    scales = [beam.wave_constant / (2.0 * pi) / unit**2 for beam, unit in zip(beams, lengths, strict=True)]
+    units |= {i: made[i][1] / beams[i].length for i in lifted}
+    lengths = np.array([units[i] * beam.length for i, beam in zip(leaders, beams, strict=True)])
+    scales = np.array([beam.wave_constant for beam in beams]) / (2.0 * pi) / lengths**2
     values = np.concatenate([rows[i] for i in leaders]).reshape(len(beams), n_modes)
-    return np.asarray(np.sqrt(values) * np.array(scales)[:, None])
+    grounds = [beam.foundation / beam.bending_stiffness * (i in lifted) for i, beam in zip(leaders, beams, strict=True)]
+    return np.asarray(np.sqrt(values + (np.array(grounds) * lengths**4)[:, None]) * scales[:, None])
+
+
+def _without_ground(beam: Beam, n_modes: int, model: Stacking) -> Array:
+    """The values of a plain beam off its ground, those of motions without strain with them, (n_modes,)."""
+    pencil, _ = model.make(replace(beam, foundation=0.0))
+    still = np.zeros(pencil.rigid_modes)
+    left = n_modes - len(still)
+    return np.concatenate([still, lowest(pencil, left).values])[:n_modes] if left > 0 else still[:n_modes]
 
 
 def _made(which: Sequence[int], beams: Sequence[Beam], model: Stacking) -> dict[int, tuple[FactoredPencil, float]]:
@@ -305,8 +318,15 @@ def _parts(group: list[int], n_modes: int) -> list[list[int]]:
 
 
 def _leaders(beams: Sequence[Beam], theory: str) -> list[int]:
-    """For every beam the first that has its pencil: itself, unless it is plain and differs from one by its scale."""
+    """For every beam the first that has its pencil: itself, unless it is plain and differs from one by its scale.
+
+    Or by its scale and its ground.
+    """
     first: dict[object, int] = {}
-    plain = [theory == "euler-bernoulli" and not beam.section and beam.uniform for beam in beams]
-    keys = (beam.supports if alike else i for i, (beam, alike) in enumerate(zip(beams, plain, strict=True)))
+    keys = ((beam.supports, beam.foundation > 0.0) if _is_plain(beam, theory) else i for i, beam in enumerate(beams))
     return [first.setdefault(key, i) for i, key in enumerate(keys)]
+
+
+def _is_plain(beam: Beam, theory: str) -> bool:
+    """Whether it is a thin one of one section, with nothing on it and at most ground under it."""
+    return theory == "euler-bernoulli" and not beam.section and set(beam.added) <= {"foundation"}
