@@ -232,6 +232,23 @@ def test_ground_lifts_every_mode_of_a_plain_beam_and_is_no_reason_to_solve_it_ag
         assert found == pytest.approx(np.array(each), rel=2e-13)
 
 
+@pytest.mark.parametrize(("model", "most"), [("segment", 10), ("fem", 20)])
+def test_ground_gives_a_plain_beam_its_rigid_motions_as_modes_and_no_more(model, most):
+    """Nine parts between free ends: all that they have can be asked for, and one more is refused as of one beam."""
+    beams = [
+        Beam(length=a * L, bending_stiffness=EI, mass_per_length=LINE, supports=("free", "free"), foundation=900.0)
+        for a in (1.0, 1.7)
+    ]
+    module = MODELS[model]
+    each = [module.solve_modes(beam, most, 9).frequencies_hz for beam in beams]
+    assert module.sweep_modes(beams, most, 9) == pytest.approx(np.array(each), rel=2e-13)
+    with pytest.raises(InputError) as alone:
+        module.solve_modes(beams[0], most + 1, 9)
+    with pytest.raises(InputError) as swept:
+        module.sweep_modes(beams, most + 1, 9)
+    assert str(swept.value) == f"beams[0]: {alone.value}"
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_no_high_mode_of_thick_beams_is_lost(model):
     """They lie closer the higher they are, so that a count tells too short a grid."""

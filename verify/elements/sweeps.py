@@ -94,8 +94,8 @@ def sweep_modes(
     beams = several("beams", beams, Beam)
     check_whole("n_modes", n_modes, 1)
 
-    def make(beam: Beam) -> tuple[FactoredPencil, float]:
-        check_asked(beam, n_modes, n_elements, grading, theory)
+    def make(beam: Beam, wanted: int) -> tuple[FactoredPencil, float]:
+        check_asked(beam, wanted, n_elements, grading, theory)
         elements = build_elements(beam, n_elements, grading, theory)
         return element_pencil(elements), elements.parts.unit
 

@@ -200,8 +200,8 @@ def _refuse_nearest(distances: Array, refuse: Callable[[int], None]) -> None:
 class Stacking(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """How a model takes many beams."""
 
-    make: Callable[[Beam], tuple[FactoredPencil, float]]
-    """Checks a beam and gives its pencil and unit, metres. Raises InputError."""
+    make: Callable[[Beam, int], tuple[FactoredPencil, float]]
+    """Checks a beam and a number of modes, and gives its pencil and unit, metres. Raises InputError."""
     layout: Callable[[Beam], Hashable]
     """What beams have in common that are stacked and refused alike; None for a beam that is taken alone."""
     stack: Callable[[Sequence[Beam]], PencilStack]
@@ -222,12 +222,12 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     leaders = _leaders(beams, theory)
     lifted = [i for i in set(leaders) if beams[i].foundation and _is_plain(beams[i], theory)]
     groups = _groups(sorted(set(leaders) - set(lifted)), beams, model.layout)
-    made = _made([*lifted, *(group[0] for group in groups)], beams, model)
+    made = _made([*lifted, *(group[0] for group in groups)], beams, n_modes, model)
     rows = _stacks(groups, beams, n_modes, model, made)
     alone = sorted(set(leaders) - set(rows) - set(lifted))
 
     def solved(i: int) -> Array:
-        pencil, _ = made[i] if i in made else model.make(beams[i])
+        pencil, _ = made[i] if i in made else model.make(beams[i], n_modes)
         return lowest(pencil, n_modes).values
 
     worth = bool(alone) and len(alone) * made[groups[0][0]][0].n >= UNKNOWNS_WORTH
@@ -244,15 +244,17 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
 
 def _without_ground(beam: Beam, n_modes: int, model: Stacking) -> Array:
     """The values of a plain beam off its ground, those of motions without strain with them, (n_modes,)."""
-    pencil, _ = model.make(replace(beam, foundation=0.0))
-    still = np.zeros(pencil.rigid_modes)
-    left = n_modes - len(still)
-    return np.concatenate([still, lowest(pencil, left).values])[:n_modes] if left > 0 else still[:n_modes]
+    bare = replace(beam, foundation=0.0)
+    left = n_modes - bare.rigid_motions
+    bent = lowest(model.make(bare, left)[0], left).values if left > 0 else np.zeros(0)
+    return np.concatenate([np.zeros(n_modes - len(bent)), bent])
 
 
-def _made(which: Sequence[int], beams: Sequence[Beam], model: Stacking) -> dict[int, tuple[FactoredPencil, float]]:
+def _made(
+    which: Sequence[int], beams: Sequence[Beam], n_modes: int, model: Stacking
+) -> dict[int, tuple[FactoredPencil, float]]:
     """Pencils and units of some beams, by index. Raises InputError."""
-    return dict(zip(which, of_each(which, beams, model.make), strict=True))
+    return dict(zip(which, of_each(which, beams, lambda beam: model.make(beam, n_modes)), strict=True))
 
 
 def _groups(which: Sequence[int], beams: Sequence[Beam], layout: Callable[[Beam], Hashable]) -> list[list[int]]:

@@ -119,8 +119,8 @@ def sweep_modes(
     check_set_up(n_segments, wall, joints, attachment)
     settings = settings_of(wall, joints, grading, theory, attachment)
 
-    def make(beam: Beam) -> tuple[FactoredPencil, float]:
-        check(beam, n_modes, n_segments, **settings)
+    def make(beam: Beam, wanted: int) -> tuple[FactoredPencil, float]:
+        check(beam, wanted, n_segments, **settings)
         chain = build_chain(beam, n_segments, **settings)
         return chain_pencil(chain), chain.unit
 
