@@ -452,6 +452,19 @@ def test_an_engine_that_refuses_one_size_stands_at_the_others(ghost):
     assert any(note.startswith("Ghost is left out of some sizes: count = 4: ") for note in found.notes)
 
 
+@pytest.mark.parametrize(("dense", "growth"), [(False, 2.0), (True, 3.7)])
+def test_steps_of_full_matrices_alone_are_thought_to_take_time_by_links_squared(monkeypatch, dense, growth):
+    """Of 400 links beside 200: an engine in O(N) was left out of a bench for hours that it takes minutes for."""
+    monkeypatch.setitem(sys.modules, "ghost_engine", ModuleType("ghost_engine"))
+    with PEERS.registered(msgspec.structs.replace(GHOST, dense=dense)):
+        scene = strip()
+        drawn = [peer_case.case_of(scene.beam, n, scene.forces, scene.drive.frequency_hz) for n in (200, 400)]
+        first, other = (next(peer_set.ladder("Ghost", Ghost(), links, None, 5e-3)) for links in drawn)
+    made = [peer_set.START_S + peer_set.START_LINKS_S * links.n**2 for links in drawn]
+    assert other.size == first.size
+    assert (other.estimate_s - made[1]) / (first.estimate_s - made[0]) == pytest.approx(growth, rel=0.05)
+
+
 def test_an_engine_that_is_there_stands_in_modes_chain_and_slider_and_one_that_is_not_is_named(ghost):
     found = found_of(
         gently(), sets=("modes", "chain", "slider"), counts=(30,), modes=(2,), duration=6e-4, seconds=90.0, peers=True

@@ -28,7 +28,7 @@ FIRST_STEP, FIRST_IMPLICIT, BELOW_LIMIT = 1.0 / 12.0, 1.0 / 100.0, 0.99
 RUNGS, MORE = 7, 1
 """Steps of an engine, each half of the one before; and so many more at order 2."""
 STEP_LINK_S, STEP_LINKS_S, START_S = 6e-6, 1e-7, 0.1
-"""From above: of a step by links, and by links squared where matrices are dense; of a model made."""
+"""From above: of a step by links, and by links squared where matrices are full; of a model made."""
 START_LINKS_S, MODES_S = 6e-6, 6e-8
 """From above: of a model by links squared, of all modes by links cubed."""
 LEAST_SAMPLES = 40
@@ -88,11 +88,11 @@ def first_steps(period: float, end: float, limit: float, *, implicit: bool = Fal
 
 def ladder(name: str, engine: PeerAdapter, links: Links, sled: Sled | None, end: float) -> Iterator[Entry]:
     """One engine over its steps; what it gives as (times, deflection), with a slider as (times, distance, speed)."""
-    implicit = PEERS[name].implicit
+    implicit, dense = PEERS[name].implicit, PEERS[name].dense
     line = Line(name=name, orders=(1.0, 4.0), refined="step", settings={"engine": name})
     least = first_steps(1.0 / links.frequency, end, explicit_limit(links), implicit=implicit)
     set_up = START_S + START_LINKS_S * links.n**2
-    each = STEP_LINK_S * links.n + (0.0 if implicit else STEP_LINKS_S * links.n**2)
+    each = STEP_LINK_S * links.n + dense * STEP_LINKS_S * links.n**2
     for steps in (least * 2**k for k in range(RUNGS + MORE * implicit)):
         run = partial(_run, name, engine, links, sled, end, steps)
         part = max(round(PART_S / each), 1)

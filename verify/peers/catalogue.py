@@ -38,6 +38,8 @@ class Peer(Value, frozen=True, kw_only=True):
     """'module:class' of its adapter, which is made without arguments."""
     implicit: bool = False
     """Whether its steps have no limit of stability."""
+    dense: bool = True
+    """Whether a step takes time by links squared, its matrices being full."""
 
 
 def _wrong(peer: object) -> str:
@@ -49,9 +51,16 @@ PEERS: Registry[Peer] = Registry(
     "peer",
     "verify.peers",
     own=(
-        Peer(name="Exudyn", package="exudyn", module="exudyn", home="verify.peers.exudyn:Exudyn", implicit=True),
+        Peer(
+            name="Exudyn",
+            package="exudyn",
+            module="exudyn",
+            home="verify.peers.exudyn:Exudyn",
+            implicit=True,
+            dense=False,
+        ),
         Peer(name="MuJoCo", package="mujoco", module="mujoco", home="verify.peers.mujoco:Mujoco"),
-        Peer(name="Pinocchio", package="pin", module="pinocchio", home="verify.peers.pinocchio:Pinocchio"),
+        Peer(name="Pinocchio", package="pin", module="pinocchio", home="verify.peers.pinocchio:Pinocchio", dense=False),
     ),
     refuses=_wrong,
 )
