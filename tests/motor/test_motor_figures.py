@@ -1,5 +1,6 @@
 """Figures of a motor on a foot of one wavelength: beside the driving layer's closed forms, and its motion in time."""
 
+import re
 from math import acos, cos, exp, pi, sin, sqrt
 
 import numpy as np
@@ -10,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 from verify.beam import Beam, PointForce
 from verify.contact import layer
+from verify.errors import InputError
 from verify.motor.case import MotorCase
 from verify.motor.figures import crest_speed, force_speed, mean_speed, no_load, stall, started, stopped
 from verify.motor.on_wave import over_a_wave
@@ -66,6 +68,16 @@ def test_no_load_speed_and_stall_force_at_a_half_angle_of_one(epsilon, speed, fo
     case, load = motor(1.0, epsilon)
     assert -no_load(case).speed / CRESTS == pytest.approx(speed, abs=2e-3)
     assert -stall(case).force / (MU * load) == pytest.approx(force, abs=2e-3)
+
+
+def test_a_search_that_takes_long_in_all_ends_with_what_it_knows(monkeypatch):
+    """Each of its readings is waited for, all of them are not: a minute went by without a word."""
+    case, _ = motor(1.0, 0.1, steps=61)
+    monkeypatch.setenv("VERIFY_PATIENCE", "0.05")
+    with pytest.raises(InputError, match=r"lies between (.*) and (.*) m/s, .*: set VERIFY_PATIENCE to more") as told:
+        no_load(case)
+    low, high = (float(word) for word in re.search("between (.*) and (.*) m/s", str(told.value)).groups())
+    assert low < -0.8875898055 * CRESTS < high <= 0.0
 
 
 @pytest.mark.parametrize(("phi", "ratio"), [(0.8, 0.83), (2.3, 0.61), (3.0, -0.3)])

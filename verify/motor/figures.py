@@ -243,7 +243,7 @@ def no_load(
 
     Unless given, `reach` is twice the largest speed of the surface at the slider; `before` and `periods` as for
     `held`. Where the force is within its spread the search ends. Raises InputError where the force has the same sign
-    at both ends, or has not settled where the search ends.
+    at both ends, or has not settled where the search ends, and where it takes longer in all than is waited for.
     """
     wide = 2.0 * crest_speed(case) if reach is None else reach
     low, high = -wide, wide
@@ -256,12 +256,19 @@ def no_load(
                 f"reach = {wide!r} m/s: friction does not change its way up to there, so that no speed without load "
                 "is between: press the slider on more, or give a larger reach"
             )
-    found = at_speed(case, 0.0, before, periods)
+    found, run = held(case, 0.0, before, periods)
+    spent = next_seconds(run, found.periods)
     for _ in range(HALVINGS):
         low, high = (found.speed, high) if found.way > 0.0 else (low, found.speed)
         if not found.way or high - low <= 1e-6 * wide:
             break
-        found = at_speed(case, 0.5 * (low + high), before, periods)
+        if not waited_for(spent):
+            raise InputError(
+                f"reach = {wide!r} m/s: the speed without load lies between {low:.6g} and {high:.6g} m/s, where means "
+                f"settle so slowly that no more is waited for: set {VARIABLE} to more seconds"
+            )
+        found, run = held(case, 0.5 * (low + high), before, periods)
+        spent += next_seconds(run, found.periods)
     if "force" in found.unsettled:
         raise InputError(not_settled(case, found, ("force",), periods))
     return found
