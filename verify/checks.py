@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 LARGEST = float_info.max
 MOST_PARTS = 10**100
 """Its cube, by which work is estimated, is a number too."""
+MOST_DASHPOT = 1e100
+"""N m s: what it is multiplied by makes a number of it too."""
 RELATIVE = "relative"
 Relative: TypeAlias = Annotated[float, Meta(extra={RELATIVE: True})]
 """A number without a unit, which a command line takes in per cent as well: 0.001 or 0.1%."""
@@ -27,8 +29,16 @@ _SETTLED = (float, int, str, tuple, type(None))
 
 
 def plain(value: Any) -> Any:
-    """A scalar of numpy's as Python's own number, whose arithmetic neither rounds to 32 bits nor overflows."""
-    return value.item() if hasattr(value, "dtype") and getattr(value, "shape", None) == () else value
+    """A scalar of numpy's as Python's own number, whose arithmetic neither rounds to 32 bits nor overflows.
+
+    What Python takes for a whole number, by `__index__` alone, likewise.
+    """
+    if hasattr(value, "dtype"):
+        return value.item() if getattr(value, "shape", None) == () else value
+    if isinstance(value, int | float) or not hasattr(type(value), "__index__"):
+        return value
+    whole = whole_number(value)
+    return value if whole is None else whole
 
 
 def check_sizes(field: str, sizes: "Sequence[float]") -> None:

@@ -16,6 +16,7 @@ from verify.motion.free_vibration import free_vibration
 from verify.motion.simulate import simulate
 from verify.motion.surface import basis_of, cut
 from verify.motor.run import run_motor
+from verify.segment_model import solve_harmonic
 from verify.segments.links import build_chain
 from verify.segments.loads import joint_weights
 from verify.slider import Contact, Slider
@@ -331,9 +332,32 @@ def test_a_resonance_without_damping_is_refused_and_with_damping_is_not():
         simulate(STRIP, FORCES, own, 1e-3, model="fem", count=12, start=start, modal_damping=0.01)
 
 
-def test_motion_without_a_slider_does_not_depend_on_the_step():
-    runs = [simulate(STRIP, FORCES, FREQUENCY, 2e-3, count=9, at=[0.2], step=step).deflection for step in (1e-3, 3e-6)]
-    assert np.array_equal(*runs)
+@pytest.mark.parametrize("given", [{"step": 1e-6}, {"steps_per_period": 63}])
+def test_steps_of_a_beam_without_a_slider_are_refused(given):
+    (name,) = given
+    with pytest.raises(InputError, match=f"{name} = .* is a slider's: a beam alone takes no steps"):
+        simulate(STRIP, FORCES, FREQUENCY, 2e-3, count=9, **given)
+
+
+def test_a_beam_without_a_slider_is_known_after_years():
+    """Nothing is stepped: a damped beam is in its steady state after 3e10 periods of the drive, off by their phase."""
+    years = 3e10 / FREQUENCY
+    late = simulate(STRIP, FORCES, FREQUENCY, years, count=9, modal_damping=0.013, at=[0.2], samples=2).deflection[-1]
+    field = solve_harmonic(STRIP, FORCES, FREQUENCY, 9, modal_damping=0.013).deflection([0.2])
+    assert late == pytest.approx((field * np.exp(2j * np.pi * FREQUENCY * years)).real, abs=1e-4 * abs(field[0]))
+
+
+@pytest.mark.parametrize(
+    ("hertz", "zeta", "known", "whose"),
+    [(1e-9, 0.0, 0.9, "highest mode"), (1e-9, 1e-14, 0.9, "highest mode"), (1e6, 0.01, 1.0, "the drive")],
+)
+def test_a_phase_that_rounding_has_taken_is_refused(hertz, zeta, known, whose):
+    """Of free modes as of the drive: 1e12 periods are known to 1e-3 rad, of a mode that is damped out any number."""
+    highest = float(basis_of(STRIP, "fem", 9, 0).omegas[-1] / (2 * np.pi)) if zeta < 1e-3 else hertz
+    given = {"model": "fem", "count": 9, "modal_damping": zeta, "samples": 2}
+    simulate(STRIP, FORCES, hertz, known * 1e12 / highest, **given)
+    with pytest.raises(InputError, match=f"more than 1e\\+12 periods of .*{whose}"):
+        simulate(STRIP, FORCES, hertz, 1.1e12 / highest, **given)
 
 
 @pytest.mark.parametrize(("zeta", "soft"), [(0.0, 0.0), (0.02, 1.5)])

@@ -105,3 +105,30 @@ def test_a_contact_that_is_none(contact):
 @pytest.mark.parametrize("given", [None, 3, "strip", {"length": 1.0}])
 def test_a_beam_that_is_none(verb, given):
     assert refusal(lambda: verb(given)).startswith("beam = ")
+
+
+def test_numbers_under_a_mask_are_no_numbers():
+    """They were read as if nothing hid them; an array that masks none is an array."""
+    hidden = np.ma.array([0.1, 0.2], mask=[False, True])
+    assert refusal(lambda: simulate(**ASKED, at=hidden)).startswith("at = masked_array(")
+    assert "numbers under a mask" in refusal(lambda: segment_model.solve_modes(STRIP, 3, 9).deflection(hidden))
+    assert len(simulate(**ASKED, at=np.ma.array([0.1, 0.2])).points) == 2
+
+
+class Nine:
+    """A whole number to Python, with no arithmetic of its own."""
+
+    def __index__(self):
+        return 9
+
+
+def test_what_python_takes_for_a_whole_number_is_one():
+    found = fem_beam.solve_modes(STRIP, Nine(), Nine()).frequencies_hz
+    assert np.array_equal(found, fem_beam.solve_modes(STRIP, 9, 9).frequencies_hz)
+    assert len(simulate(**{**ASKED, "count": Nine()}, samples=Nine()).times) == 9
+
+
+def test_a_dashpot_of_which_no_number_is_made_is_refused_by_its_name():
+    """Of 1e308 N m s another frequency was advised."""
+    said = refusal(lambda: segment_model.solve_harmonic(STRIP, PointForce(position=0.1), 90.0, 9, joint_dashpot=1e305))
+    assert said.startswith("joint_dashpot = 1e+305: give a finite number of at least 0 and of at most 1e+100")

@@ -387,6 +387,26 @@ def test_a_table_of_one_way_runs_says_where_the_scene_s_slider_is_felt_and_compa
         assert "feels" not in answer_in_words(answer)
 
 
+def test_a_slider_that_leaves_is_said_to_have_left_and_its_times_are_not_compared(monkeypatch):
+    """Errors were said to jump between 0 and 0, or the slider not to move, where it was gone before a sample."""
+    from verify.studies import slider_figures, work_precision
+    from verify.studies.conditions import condition_of
+
+    scene = load_scene("paper-slider")
+    slider = replace(scene.slider, position=scene.beam.length - 4e-4, speed=0.9)
+    scene = replace(scene, readings=None, slider=slider)
+    seen, gone = (work_precision.run_once(scene, "segment", 10, samples=n) for n in (50, 2))
+    conditions = {name: condition_of(scene, name, 10) for name in ("segment", "analytic")}
+    findings = slider_figures._findings(scene, {"segment": seen, "analytic": seen}, conditions, ["none"])
+    (ended,) = (one.found for one in findings if one.what == "end of that run, until which these are")
+    assert re.match(r"on 10 segments the slider left the beam after 44\d\.\d+ µs of 1 ms; on", ended)
+    work = replace(rows(GOOD, (0.64, 0.04, 0.0025)), left=ended)
+    assert at_equal_error(work).why == ended
+    monkeypatch.setattr(work_precision, "run_once", lambda *asked, **how: gone)
+    with pytest.raises(InputError, match=r"on 10 segments the slider left the beam after .* of 1 ms: no error can be"):
+        work_of(scene, (10,))
+
+
 WAIT_S = 0.05
 
 

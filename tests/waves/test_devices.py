@@ -363,3 +363,15 @@ expect = 1.6876
 within = 0.1
 why = "A device inside the window."
 """
+
+
+def test_a_drive_slower_than_any_square_of_it_leaves_the_static_field():
+    """It ended in a division by nought, as one did of which no impedance is made."""
+    device = Device(position=0.21, stiffness=37.0)
+
+    def at(hertz):
+        return field_with_devices(analytic_modes.solve_harmonic, STRIP, FORCES, hertz, [device]).deflection([0.13])
+
+    assert at(1e-170) == pytest.approx(at(1e-5), rel=1e-9)
+    with pytest.raises(InputError, match="frequency_hz = 1e-320: give a finite number of at least 1e-200"):
+        at(1e-320)

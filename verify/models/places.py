@@ -62,7 +62,9 @@ def complex_array(field: str, value: object, unit: str) -> ComplexArray:
 
 
 def _numbers(field: str, value: object, unit: str, kinds: str) -> Array:
-    """What is an array of numbers of some of numpy's kinds."""
+    """What is an array of numbers of some of numpy's kinds, none of which is masked."""
+    if np.any(getattr(value, "mask", False)):
+        raise InputError(f"{field} = {shown(value)} has numbers under a mask: leave them out or unmask them ({unit})")
     try:
         given = np.asarray(value)
     except ValueError:  # rows of different lengths

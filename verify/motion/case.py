@@ -30,14 +30,14 @@ class MotionCase(msgspec.Struct, frozen=True, kw_only=True):
     modal_damping: float | None
 
     def check(self, *, slider: Slider | None, step: float | None, steps_per_period: int) -> None:
-        """Raise InputError for what `run` refuses before anything is solved."""
+        """Raise InputError for what `run` refuses before anything is solved; steps are a slider's, where one is."""
         if slider is not None:
             slider.check_stays()
         requested(
             Driven(self.beam, self.forces, self.frequency_hz, self.duration),
             Modelled(self.model, self.count, self.modes, self.modal_damping),
             Started(self.start, self.soft_start_periods, (), None),
-            Watched((), 2, step, steps_per_period, ledger=False),
+            Watched((), 2, step, steps_per_period if slider else STEPS_PER_PERIOD, ledger=False),
             slider,
         )
 

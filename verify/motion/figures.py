@@ -11,7 +11,8 @@ from verify.words import newtons
 
 if TYPE_CHECKING:
     from verify.models.arrays import Array
-    from verify.motion.result import Ride
+    from verify.motion.contact import Coupling
+    from verify.motion.result import Motion, Ride
 
 CHAIN = "chain"
 """What a condition calls the nonlinear chain, which is no model of small vibration."""
@@ -27,6 +28,23 @@ class RunFigure(msgspec.Struct, frozen=True, kw_only=True):
     sampled: bool = True
     """Whether it takes the run at every step, not at its end alone."""
     turned: bool = False
+
+
+def felt_in_words(chosen: str, coupling: "Coupling") -> str:
+    """Why a slider is coupled two-way that says `chosen`; empty where it is not."""
+    if chosen == "one-way":
+        return ""
+    said = "slider.coupling = 'two-way'; " if chosen == "two-way" else ""
+    return said + coupling.told if said or coupling.felt else ""
+
+
+def left_in_words(found: "Motion", duration: float) -> str:
+    """That a slider's run ended before its time, seconds, and why; empty where it did not."""
+    if found.statistics.finished or found.statistics.interrupted:
+        return ""
+    where = f"{found.count} {MODELS[found.model].parts}" if found.count else "the exact beam"
+    when = f"after {time_in_words(found.end.time)} of {time_in_words(duration)}"
+    return f"on {where} the slider {found.statistics.stopped} {when}"
 
 
 def mean(times: "Array", values: "Array") -> float:

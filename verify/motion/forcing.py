@@ -7,6 +7,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import PointForce
+from verify.errors import InputError
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.fields import RESONANCE, phasor, refuse_resonance
 from verify.models.time_basis import TimeBasis
@@ -16,6 +17,12 @@ SMOOTH_STEP = np.array([0.0, 0.0, 3.0, -2.0])
 """3 p^2 - 2 p^3: from 0 to 1 with a flat start and end."""
 SLOW = 0.5
 """Radians of beat or nepers of decay, within the growth, below which a mode's forced part is summed as a series."""
+MOST_PERIODS = 1e12
+"""Of what swings: its phase is known to 1e-3 rad by then."""
+GONE = 40.0
+"""Nepers of decay after which a free mode is nothing beside its start."""
+COUNTED = 1e100
+"""Radians, beyond which no decay is looked at."""
 SERIES = 12
 """Powers beyond the growth's own: SLOW^12 / 12! is rounding."""
 
@@ -162,3 +169,21 @@ def check_no_resonance(basis: TimeBasis, frequency_hz: float, damping: float) ->
     nearest = int(ratio.argmin())
     if ratio[nearest] < RESONANCE:
         refuse_resonance(basis.model, frequency_hz, nearest + 1, float(basis.omegas[nearest] / (2.0 * np.pi)))
+
+
+def check_phase(whose: str, hertz: float, duration: float, since: float = 0.0) -> None:
+    """Raise InputError where what has swung at a frequency for `since` seconds goes on until its phase is not known."""
+    if hertz * (since + duration) > MOST_PERIODS:
+        before = f" after {since!r} s" if since else ""
+        raise InputError(
+            f"duration = {duration!r} s{before} is more than {MOST_PERIODS:.0e} periods of {whose}, at {hertz:.4g} Hz, "
+            "whose phase is not known to 1e-3 rad by then: shorten it"
+        )
+
+
+def check_free_phases(basis: TimeBasis, damping: float, duration: float) -> None:
+    """Likewise for every free mode that is not damped out after `duration` seconds."""
+    decayed = (damping * basis.omegas >= GONE / duration) & (basis.omegas < COUNTED / duration)
+    if not decayed.all():
+        hertz = float(basis.omegas[~decayed].max()) / (2.0 * np.pi)
+        check_phase("the highest mode that is not damped out", hertz, duration)

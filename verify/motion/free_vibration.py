@@ -17,7 +17,7 @@ from verify.models.fields import LARGEST_SLOPE
 from verify.models.intervals import extremes
 from verify.models.places import Numbers, as_typed, in_a_row, real_array
 from verify.models.time_basis import TimeBasis
-from verify.motion.forcing import free_part, modal, state_of
+from verify.motion.forcing import check_free_phases, free_part, modal, state_of
 from verify.motion.result import EndState
 from verify.motion.surface import basis_of
 
@@ -30,8 +30,6 @@ FINE = 3
 POINTS = 30_000_000
 """Shapes at places, or modes at times, held at once."""
 MOST_SAMPLES = 1_000_000
-MOST_PERIODS = 1e12
-"""Of the highest mode that is kept: its phase is known to 1e-3 rad by then."""
 STEP = 5e-4
 """Of the beam's length: between the five values that a function's slope is read from, at most."""
 FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
@@ -140,20 +138,10 @@ def free_vibration(
         raise InputError(f"at = {points.tolist()!r} leaves the beam: give positions between 0 and {beam.length!r} m")
     MODELS.named(model)
     basis = basis_of(beam, model, count, kept_modes(model, modes, EXACT_MODES))
-    _check_phase(basis, duration)
+    check_free_phases(basis, zeta, duration)
     q, rates, unread = _start(basis, shape, amplitude, velocity)
     found = _told(basis, zeta, points, np.linspace(0.0, duration, samples), q, rates, unread)
     return msgspec.structs.replace(found, notes=(*found.notes, *_missed(basis, shape, q)))
-
-
-def _check_phase(basis: TimeBasis, duration: float) -> None:
-    """Raise InputError where the highest mode has swung so often that its phase is not known any more."""
-    hertz = float(basis.omegas[-1]) / (2.0 * np.pi)
-    if duration > MOST_PERIODS / hertz:
-        raise InputError(
-            f"duration = {duration!r} s is more than {MOST_PERIODS:.0e} periods of the highest mode, at {hertz:.4g} "
-            "Hz, whose phase is not known to 1e-3 rad by then: shorten it"
-        )
 
 
 def _start(

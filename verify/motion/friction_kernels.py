@@ -1,4 +1,4 @@
-"""Compiled friction: Eq. (3) solved exactly within a step, Coulomb's law from event to event, a step of a slider.
+"""Compiled friction: Eq. (3) solved exactly within a step, Coulomb's law from event to event.
 
 A slider on a belt, at the end of the file, is friction alone.
 """
@@ -9,24 +9,21 @@ from verify.models.arrays import Array
 from verify.models.kernels import lean, part
 from verify.motion.records import (
     CHANGE,
-    DRIFT,
     FIRST_EVENT,
     GIVEN_END,
     GIVEN_MIDDLE,
     N_EVENTS,
     NOUGHT,
     PULL,
+    RELATIVE,
     SLIPS,
     SPANS,
     STICKING,
     STICKS,
-    STUCK,
     SURFACE,
     TURNS,
     Law,
     Space,
-    V,
-    X,
 )
 
 
@@ -239,12 +236,15 @@ def slip(
         took[CHANGE] = _tanh_slip(v - mean + 0.5 * rise, rise / dt, law.kinetic, law.slope, dt)
         return float(took[CHANGE])
     a0, a1 = (4.0 * sm - 3.0 * s0 - s1) / dt, (3.0 * s1 - 4.0 * sm + s0) / dt
-    r, used = 0.0 if stuck else v - s0, 0.0
+    r, used, took[RELATIVE] = 0.0 if stuck else v - s0, 0.0, 0.0
     if abs(r) <= 1e-9 * law.kinetic * dt and abs(a0) <= static:
         r, stuck = 0.0, True  # put on a surface at rest, to rounding
     for _ in range(SPANS):
+        slips, before = not stuck, r
         span, r, stuck, event = coulomb_span(r, a0 + (a1 - a0) * used / dt, a1, law.kinetic, static, dt - used, stuck)
         used += span
+        if slips:  # r is a parabola
+            took[RELATIVE] += 0.5 * span * (before + r) + (a1 - a0) / dt * span * span * span / 12.0
         if event in (STICKS, SLIPS):
             here = FIRST_EVENT + 2 * int(took[N_EVENTS])
             took[here], took[here + 1] = used, event
@@ -280,21 +280,6 @@ def give(dt: float, seen: Array, took: Array) -> None:
     """What everything but friction adds to the speed by the middle and the end of a step."""
     took[GIVEN_MIDDLE] = dt * (5.0 * seen[0, PULL] + 8.0 * seen[1, PULL] - seen[2, PULL]) / 24.0
     took[GIVEN_END] = dt * (seen[0, PULL] + 4.0 * seen[1, PULL] + seen[2, PULL]) / 6.0
-
-
-@part()
-def advance(dt: float, rate: float, motion: Array, law: Law, seen: Array, took: Array) -> float:
-    """Move the slider to the end of a step; the distance that its own speed made. `rate` was its acceleration."""
-    v = motion[V]
-    v1 = v + took[GIVEN_END] + took[CHANGE]
-    if took[STICKING] > 0.0:
-        v1, rate1 = seen[2, SURFACE], rate
-    else:
-        rate1 = seen[2, PULL] + friction(v1 - seen[2, SURFACE], law.static, law)
-    moved = 0.5 * dt * (v + v1) + dt * dt * (rate - rate1) / 12.0
-    motion[X] += moved + dt * (seen[0, DRIFT] + 4.0 * seen[1, DRIFT] + seen[2, DRIFT]) / 6.0
-    motion[V], motion[STUCK] = v1, took[STICKING]
-    return float(moved)
 
 
 @part()

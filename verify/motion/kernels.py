@@ -6,7 +6,7 @@ from verify.models.arrays import Array, Indices
 from verify.models.kernels import lean, part
 from verify.motion.books_kernels import account, by_parts, correct_powers, loss, power, pulled
 from verify.motion.contact_kernels import feel, push_back, set_levers, set_reads
-from verify.motion.friction_kernels import advance, friction, give, slip
+from verify.motion.friction_kernels import friction, give, slip
 from verify.motion.records import (
     AT_END,
     AT_START,
@@ -52,6 +52,7 @@ from verify.motion.records import (
     X,
 )
 from verify.motion.surface_kernels import between, climb, find_piece, rotate_half, set_factors, set_local, touch
+from verify.motion.way_kernels import advance, smooth_way, until_caught, way
 
 
 @part(forceinline=True)
@@ -129,6 +130,16 @@ def _put_on(piece: int, edges: Array, motion: Array, law: Law, space: Space) -> 
 
 
 @part(forceinline=True)
+def _starts(v: float, stuck: bool, dt: float, two_way: bool | None, law: Law, seen: Array) -> float:
+    """The slider's acceleration at the start of a step, by which its place in the step is foreseen."""
+    r = v - seen[0, SURFACE]
+    grip = 0.0 if stuck else friction(r, law.static, law)
+    if two_way is None:
+        grip = until_caught(grip, r, dt)
+    return float(seen[0, PULL] + grip)
+
+
+@part(forceinline=True)
 def _step(
     number: int,
     dt: float,
@@ -155,8 +166,7 @@ def _step(
             x1, v1 = x + t * along + 0.5 * t * t * rate, v + t * rate
         _see(row, (number + 0.5 * row) * dt, x1, v1, piece, fresh or row > 0, surface, law, books, space)
         if row == 0:
-            rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
-            along = v + seen[0, DRIFT]
+            rate, along = _starts(v, stuck, dt, two_way, law, seen), v + seen[0, DRIFT]
         if two_way is not None and row == 0:
             _remember(space.local)
         if two_way is not None and row == 1:
@@ -167,10 +177,12 @@ def _step(
     give(dt, seen, space.slip)
     if two_way is not None:
         pressed, lifted = _answer((number + 1) * dt, dt, x1, v1, here, surface, rider, books, space)
+        moved = smooth_way(v, rate, dt, law, seen, space.slip)
     else:
         feel(dt, motion, law, seen)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
-    moved = advance(dt, rate, motion, law, seen, space.slip)
+        moved = way(v, rate, dt, law.slope, law, seen, space.slip)
+    advance(moved, dt, motion, seen, space.slip)
     if books.open:
         turned, spared = 0.0, 0.0
         if law.following:
@@ -248,12 +260,13 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
             return number - 1 if number > 0 else 0
         touch(given.local[2 * number], edges, NOUGHT, x, v, law, seen, AT_START)
         seen[0, SURFACE] += between(given.along[2 * number], edges, NOUGHT, x)
-        rate = seen[0, PULL] + (0.0 if stuck else friction(v - seen[0, SURFACE], law.static, law))
+        r = v - seen[0, SURFACE]
+        grip = 0.0 if stuck else friction(r, law.static, law)
         kept[number, KEPT_X], kept[number, KEPT_V], kept[number, KEPT_SURFACE] = x, v, seen[0, SURFACE]
-        kept[number, KEPT_FRICTION] = space.slip[CHANGE] / dt if stuck else rate - seen[0, PULL]
+        kept[number, KEPT_FRICTION] = space.slip[CHANGE] / dt if stuck else grip
         if number == n_steps:
             break
-        ahead = v + seen[0, DRIFT]
+        rate, ahead = seen[0, PULL] + until_caught(grip, r, dt), v + seen[0, DRIFT]
         for row in range(1, 3):
             t, half = 0.5 * row * dt, 2 * number + row
             there = x + t * ahead + 0.5 * t * t * rate
@@ -261,5 +274,5 @@ def slide_given(n_steps: int, dt: float, given: Given, rider: Rider, kept: Array
             seen[row, SURFACE] += between(given.along[half], edges, NOUGHT, there)
         give(dt, seen, space.slip)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)
-        advance(dt, rate, motion, law, seen, space.slip)
+        advance(way(v, rate, dt, law.slope, law, seen, space.slip), dt, motion, seen, space.slip)
     return n_steps

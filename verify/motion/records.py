@@ -33,9 +33,10 @@ Z_RE, Z_IM, SIGMA, OMEGA, HALF_RE, HALF_IM, FULL_RE, FULL_IM, LEVER, LIFT, READ 
 a tangential force and of a normal one in mid-step, deflection under the slider at the end."""
 STILL, MOVING, BEFORE = range(3)
 """Rows of `Space.factors` (two) and of `Space.local`: deflection, velocity, deflection a step before."""
-CHANGE, STICKING, GIVEN_MIDDLE, GIVEN_END, N_EVENTS, FIRST_EVENT = range(6)
+CHANGE, STICKING, GIVEN_MIDDLE, GIVEN_END, RELATIVE, N_EVENTS, FIRST_EVENT = range(7)
 """Entries of `Space.slip`: what friction adds to the speed, sticking at the end, what else adds by the middle and the
-end, how many events, and from FIRST_EVENT on their times within the step and their kinds in turns."""
+end, the way relative to the surface under Coulomb's law, how many events, and from FIRST_EVENT on their times within
+the step and their kinds in turns."""
 NOUGHT: int = np.int64(0)  # type: ignore[assignment]
 AT_START: int = np.int64(0)  # type: ignore[assignment]
 AT_END: int = np.int64(2)  # type: ignore[assignment]
@@ -142,7 +143,7 @@ class Space(NamedTuple):
     seen: Array
     """(3, 6): the surface at the start, the middle and the end of a step."""
     slip: Array
-    """(45,), `CHANGE` and so on."""
+    """(47,), `CHANGE` and so on."""
 
 
 class Here(NamedTuple):

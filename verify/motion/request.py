@@ -1,6 +1,7 @@
 """A simulation as it was asked for: checked, its envelope cut into pieces."""
 
 from collections.abc import Sequence
+from math import inf
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -14,7 +15,7 @@ from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
 from verify.models.division import part_counts
 from verify.models.fields import check_drive
 from verify.models.places import Numbers, in_a_row
-from verify.motion.forcing import CONSTANT, SMOOTH_STEP
+from verify.motion.forcing import CONSTANT, SMOOTH_STEP, check_phase
 from verify.motion.result import EndState, Motion
 from verify.motion.surface import Growth, check_line, cut
 from verify.slider import Slider
@@ -48,7 +49,8 @@ class Request(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     slider: Slider | None
     points: Array
     pieces: tuple[Growth, ...]
-    """Cut into steps of the longest length allowed; a slider's run may take shorter ones."""
+    """Cut into steps of the longest length allowed, of a beam alone from sample to sample; a slider's run may take
+    shorter ones."""
     step: float | None
     """Seconds, as given; None where the step follows what the start excites."""
     accounts: bool
@@ -131,6 +133,8 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
     points = _points(beam, watched.at)
     longest = _longest(hertz, driven.duration, watched.step, watched.steps_per_period, slider)
     check_line(modelled.model, started.start, slider.line if slider else "spline")
+    before = started.before.end if started.before else None
+    check_phase("the drive", hertz, driven.duration, before.time if before else 0.0)
     return Request(
         beam=beam,
         forces=driven.forces,
@@ -144,7 +148,7 @@ def requested(driven: Driven, modelled: Modelled, started: Started, watched: Wat
         points=points,
         accounts=watched.ledger,
         step=watched.step,
-        before=started.before.end if started.before else None,
+        before=before,
         pieces=laid_out(driven.duration, _grown(started, hertz), longest, watched.samples - 1),
     )
 
@@ -198,17 +202,26 @@ def _check_start(model: str, started: Started) -> None:
 def _longest(
     frequency_hz: float, duration: float, step: float | None, steps_per_period: int, slider: Slider | None
 ) -> float:
-    """The longest step of a slider, seconds. Raises InputError."""
+    """The longest step of a slider, seconds; endless without one. Raises InputError."""
     check_whole("steps_per_period", steps_per_period, 1)
+    if slider is None:
+        _check_alone(step, steps_per_period)
+        return inf
     longest = 1.0 / (steps_per_period * frequency_hz) if step is None else step
     check_number("step", longest, "seconds", above=0)
-    if slider is not None:
-        check_seen(longest, frequency_hz)
+    check_seen(longest, frequency_hz)
     if duration / longest > MOST_STEPS:
         raise InputError(
             f"step = {longest!r} takes more than {MOST_STEPS:g} steps: lengthen the step or shorten the duration"
         )
     return longest
+
+
+def _check_alone(step: float | None, steps_per_period: int) -> None:
+    """Raise InputError for the steps of a beam without a slider."""
+    for name, given, own in (("step", step, None), ("steps_per_period", steps_per_period, STEPS_PER_PERIOD)):
+        if given != own:
+            raise InputError(f"{name} = {shown(given)} is a slider's: a beam alone takes no steps, leave it out")
 
 
 def check_seen(step: float, frequency_hz: float) -> None:

@@ -15,7 +15,7 @@ from verify.models.time_basis import TimeBasis
 from verify.models.underfoot import ground_at
 from verify.motion.carried import Laid, begin, coupling_on, put_on, slide, steady_field, times_of
 from verify.motion.contact import Coupling
-from verify.motion.forcing import check_no_resonance
+from verify.motion.forcing import check_free_phases, check_no_resonance
 from verify.motion.margins import margins_of
 from verify.motion.request import STEPS_PER_PERIOD, Driven, Envelope, Modelled, Request, Started, Watched, requested
 from verify.motion.result import EndState, Ledger, Motion, Statistics
@@ -60,10 +60,10 @@ def simulate(
     Forces are amplitude cos(omega t + phase): from rest cos(0) = 1 is a step load, which `soft_start_periods`
     spreads as 3 p^2 - 2 p^3. Any other growth is an `envelope` of pieces (seconds, coefficients), one after another:
     in each the forces have the part c0 + c1 p + c2 p^2 + ... of what is given, p = t/seconds from 0 to 1 within that
-    piece, and all of it afterwards; [(0.02, [0, 1])] grows straight over 20 ms. Modes advance exactly by any step;
-    `step` is the slider's alone: unless given it is at most a `steps_per_period`-th of the drive's period, follows what
-    the start excites (`step_size`) and, of a slider that the beam feels, is halved until its way stands
-    (`judged_step`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
+    piece, and all of it afterwards; [(0.02, [0, 1])] grows straight over 20 ms. Modes advance exactly by any time.
+    `step` and `steps_per_period` are a slider's, refused without one: unless given, its step is at most that part of
+    the drive's period, follows what the start excites (`step_size`) and, of a slider that the beam feels, is halved
+    until its way stands (`judged_step`). `modes` is of the exact beam alone, which keeps so many from rest, 400 unless
     given, and none in its steady state; the others keep all they have. Damping is a ratio of every mode, half the
     beam's loss factor unless given. A slider that pushes back lies on the beam from the start: its weight bends it, and
     in the steady state its mass is part of it. `at` are p places in metres, or one, where the deflection is kept,
@@ -113,6 +113,7 @@ def _prepare(request: Request) -> tuple[list[Stage], TimeBasis | None, Coupling 
     if request.start == "rest":
         basis = basis_of(request.beam, request.model, request.count, request.modes, request.line)
         check_no_resonance(basis, request.frequency_hz, request.damping)
+        check_free_phases(basis, request.damping, sum(piece.steps.n * piece.steps.dt for piece in request.pieces))
         stages = stages_from_rest(basis, request.forces, request.omega, request.damping, request.pieces, request.origin)
         return stages, basis, coupling_on(request, slider, stages[-1], basis) if slider else None
     stage = _steady(request, None)

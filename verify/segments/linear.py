@@ -9,7 +9,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_number, check_whole, check_word
+from verify.checks import MOST_DASHPOT, check_number, check_whole, check_word
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
@@ -276,7 +276,7 @@ def check_settings(load: str, reading: str, zeta: float, dashpot: float) -> None
     check_word("load", load, LOADS)
     check_word("reading", reading, READINGS)
     check_number("modal_damping", zeta, "0 means none", at_least=0, below=1)
-    check_number("joint_dashpot", dashpot, "N m s, 0 means none", at_least=0)
+    check_number("joint_dashpot", dashpot, "N m s, 0 means none", at_least=0, at_most=MOST_DASHPOT)
 
 
 def force_loads(chain: Chain, forces: Sequence[PointForce], rule: str, n: int) -> ComplexArray:

@@ -22,8 +22,8 @@ def slider_charts(study: "SliderFound") -> tuple[Chart, ...]:
     """Way and force on three models, the surface under the slider, the ride, the books, work against error."""
     from verify.studies.slider_movie import slider_movie
 
-    charts = (_trajectory(study), _force(study), _speeds(study), *slider_movie(study), *_books(study), _work(study))
-    return (*charts, *_split(study))
+    charts = (_trajectory(study), _force(study), _speeds(study), *slider_movie(study), *_books(study))
+    return (*charts, *([] if study.work.left else [_work(study)]), *_split(study))
 
 
 SATURATES = {

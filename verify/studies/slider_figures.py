@@ -6,7 +6,7 @@ import msgspec
 from msgspec.structs import replace
 
 from verify.models.catalogue import bounding, discrete
-from verify.motion.figures import RUN_FIGURES, Condition
+from verify.motion.figures import RUN_FIGURES, Condition, left_in_words
 from verify.motion.result import Motion, Ride
 from verify.scenes.claims import asks_for_turned
 from verify.studies.chart import Chart
@@ -208,6 +208,7 @@ def _findings(
     limit = coefficient * slider.normal_force
     named = "mu N" if slider.mu_static is None else "mu_static N"
     way = unit_over((chain.displacement, exact.displacement))
+    left = [words for run in (chain, exact) if (words := left_in_words(run, how.duration))]
     off = f", {100 * (chain.displacement / exact.displacement - 1):+.3g} % off it" if exact.displacement else ""
     return (
         Finding(
@@ -220,6 +221,7 @@ def _findings(
             found=f"{way.factor * chain.displacement:+.4g} {way.name} on {chain.count} segments, "
             f"{way.factor * exact.displacement:+.4g} {way.name} on the exact beam{off}",
         ),
+        *([Finding(what="end of that run, until which these are", found="; ".join(left))] if left else []),
         Finding(
             what="largest friction in that run",
             found=f"{in_words(float(abs(chain.friction).max()), 'N', '.4g')} of {named} = "
@@ -230,7 +232,7 @@ def _findings(
             "inertia left out, exact beam); phases reversed",
             found="; ".join(drifts),
         ),
-        _bound(slider.kinematics, named, limit / slider.mass, how.duration, chain),
+        _bound(slider.kinematics, named, limit / slider.mass, min(how.duration, chain.end.time), chain),
     )
 
 

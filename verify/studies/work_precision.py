@@ -12,6 +12,7 @@ from verify.errors import InputError
 from verify.judge.compare import check_reference, relative_error
 from verify.judge.crossing import ABOVE_FLOOR, ASTRAY, at_error, too_few
 from verify.models.catalogue import bounding, discrete
+from verify.motion.figures import felt_in_words, left_in_words
 from verify.motion.stepping import slider_seconds
 from verify.patience import check_work
 from verify.quantities.motion_arguments import SliderInTime
@@ -70,6 +71,8 @@ class Work(msgspec.Struct, frozen=True, kw_only=True):
     """Simulations that were done."""
     felt: str = ""
     """Why the beam feels the scene's own slider, in words; empty where it does not, as in these runs."""
+    left: str = ""
+    """That the exact beam's run ended before its time, in words; empty where it did not."""
 
 
 class WorkFound(Found, frozen=True, eq=False, kw_only=True):
@@ -181,25 +184,17 @@ def work_of(scene: "Scene", counts: tuple[int, ...], progress: Progress = lambda
         before = rows[-1] if rows and rows[-1].model == model else None
         rows.append(_row(model, n, found, exact, before))
     n_runs = EXACT + ROUNDS * len(cases)
-    felt = _felt(scene, found_exact)
+    assert scene.slider is not None
+    assert found_exact.coupling is not None
     return Work(
         rows=tuple(rows),
         step_floor=floor,
         duration=scene.motion.duration,
         orders={model.name: due for model in bounding() if (due := model.order(scene.beam))},
         n_runs=n_runs,
-        felt=felt,
+        felt=felt_in_words(scene.slider.coupling, found_exact.coupling),
+        left=left_in_words(found_exact, scene.motion.duration),
     )
-
-
-def _felt(scene: "Scene", found: "Motion") -> str:
-    """Why the scene's own slider is coupled two-way; empty where it is not."""
-    assert scene.slider is not None
-    assert found.coupling is not None
-    if scene.slider.coupling == "one-way":
-        return ""
-    chosen = "slider.coupling = 'two-way'; " if scene.slider.coupling == "two-way" else ""
-    return chosen + found.coupling.told if chosen or found.coupling.felt else ""
 
 
 def _check_rounds(scene: "Scene", counts: tuple[int, ...]) -> None:
@@ -243,6 +238,8 @@ def _exact_run(scene: "Scene") -> "tuple[Motion, float]":
         run_once(one, "analytic", None, coupling="one-way") for one in (scene, replace(scene.bare, motion=finer))
     )
     if found.displacement == 0.0:
+        if left := left_in_words(found, scene.motion.duration):
+            raise InputError(f"{left}: no error can be relative to that, shorten motion.duration or start it elsewhere")
         raise InputError("the slider does not move on the exact beam: no error can be relative to that, drive it")
     return found, abs(closer.displacement / found.displacement - 1.0)
 
@@ -301,6 +298,8 @@ def at_equal_error(work: Work) -> Comparison | NotCompared:
             why=f"the beam feels the scene's own slider ({work.felt}), and these runs are of one that it does not",
             remedy="give slider.coupling = 'one-way' to ask for that",
         )
+    if work.left:
+        return NotCompared(why=work.left, remedy="give a shorter motion.duration, or start it elsewhere")
     both = bounding()
     lines = {model.name: [row for row in work.rows if row.model == model.name] for model in both}
     unfit = (_unfit(model.parts, lines[model.name], work, work.orders.get(model.name)) for model in both)

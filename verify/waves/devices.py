@@ -22,7 +22,7 @@ from msgspec.structs import replace
 
 from verify.attached import PointSpring
 from verify.beam import Beam, PointForce, check_frequency
-from verify.checks import check_kind, several
+from verify.checks import check_kind, check_number, several
 from verify.device import Device
 from verify.errors import InputError, ResonanceError, shown
 from verify.models.arrays import ComplexArray
@@ -43,6 +43,8 @@ _TRIED = ((1.0, 3.0, 0.3), (0.7, 2.2, 0.2))
 """Springs against turning, in EI k: others where one makes a resonance."""
 _ASIDE = 0.8
 """Of 1/k: from a held place so far inwards a force turns it."""
+_SLOWEST = 1e-200
+"""Hz: what a spring pulls at, over its velocity, is a number."""
 _LOOKED_AT = 97
 """Places at which two fields are held against each other."""
 
@@ -60,6 +62,7 @@ def field_with_devices(
         raise InputError(f"solve = {shown(solve)}: give a model's solve, such as analytic_modes.solve_harmonic")
     check_kind("beam", beam, Beam)
     check_frequency("frequency_hz", frequency_hz, beam)
+    check_number("frequency_hz", frequency_hz, "hertz, on a beam with devices", at_least=_SLOWEST)
     forces, devices = as_forces(forces), several("devices", devices, Device)
     for device in devices:
         device.check_on(beam)

@@ -29,6 +29,8 @@ STEP = 1e-5
 """Relative distance of the frequencies that an interpolation or a derivative takes."""
 AROUND = ((-2.0, -1.0 / 6.0), (-1.0, 4.0 / 6.0), (1.0, 4.0 / 6.0), (2.0, -1.0 / 6.0))
 """(steps, weight): exact for cubics."""
+_STILL = 1e-290
+"""Kg/s^2: what moves a beam whole so slowly that it takes no force."""
 _NEAR = 1e5
 """Unit responses beyond which a bare beam's answers are read apart: a resonance lies within about STEP / 10."""
 _THIRD = (-1.0, 2.0, -2.0, 1.0)
@@ -89,7 +91,7 @@ def is_near(
 def large_responses(beam: Beam, units: Any, frequencies_hz: Any) -> Any:
     """What no answer to a unit force exceeds away from resonances, m/N: many of those that bend it or move it whole."""
     whole = beam.mass_per_length * beam.length * (2.0 * np.pi * frequencies_hz) ** 2
-    return _NEAR * (units + 1.0 / whole)
+    return _NEAR * (units + 1.0 / np.maximum(whole, _STILL))
 
 
 def is_resonant(beam: Beam, distance: complex) -> bool:
