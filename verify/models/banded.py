@@ -1,7 +1,7 @@
 """A driven pencil solved as a narrow band: strains and unknowns in the order in which they lie along the beam.
 
 The mixed matrix [[-1/d, B], [B^T, -omega^2 M]] couples neighbours alone. Sorted by place it is a band a few wide, which
-LAPACK solves with row exchanges in a time that grows with the length of the beam alone.
+LAPACK factorises with row exchanges in a time that grows with the length of the beam alone.
 """
 
 from typing import Any
@@ -30,19 +30,38 @@ class Band(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     masses: Array
     """Those entries."""
 
-    def solve(self, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray | None:
-        """V with (B^T diag(stiffness) B - omega^2 M) v = loads, (n, k); None where the band is singular."""
-        from scipy.linalg.lapack import dgbsv, zgbsv
+    def factors(self, omega2: float, stiffness: ComplexArray, unit: float, real: bool) -> "BandFactors | None":
+        """The factors with unknowns in a `unit` (`driven.swing`), of real numbers where `real`; None if singular."""
+        from scipy.linalg.lapack import dgbtrf, zgbtrf
 
-        real = not np.iscomplexobj(loads) and not stiffness.imag.any()
-        kind, solver = (float, dgbsv) if real else (complex, zgbsv)
-        storage = np.array(self.coupling, dtype=kind, order="F")
-        storage[2 * self.width, self.place[: self.n_strains]] = -1.0 / (stiffness.real if real else stiffness)
-        storage[self.mass_at] -= omega2 * self.masses
-        right = np.zeros((len(self.place), loads.shape[1]), dtype=kind, order="F")
-        right[self.place[self.n_strains :]] = loads
-        _, _, found, info = solver(self.width, self.width, storage, right, overwrite_ab=True, overwrite_b=True)
-        return None if info else np.asarray(found[self.place[self.n_strains :]])
+        storage = np.array(self.coupling, dtype=float if real else complex, order="F")
+        storage[2 * self.width, self.place[: self.n_strains]] = -1.0 / (unit * (stiffness.real if real else stiffness))
+        storage[self.mass_at] -= omega2 * unit * self.masses
+        factors, pivots, info = (dgbtrf if real else zgbtrf)(storage, self.width, self.width, overwrite_ab=True)
+        return None if info else BandFactors(band=self, factors=factors, pivots=pivots, unit=unit)
+
+
+class BandFactors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Of a mixed matrix in a narrow band."""
+
+    band: Band
+    factors: Any
+    pivots: Any
+    unit: float
+    """Of the unknowns."""
+
+    def answered(self, lacking: Any, loads: Any) -> tuple[Any, Any]:
+        """(forces (m, k), unknowns (n, k)) to strains (m, k) that are lacking, None for none, and loads (n, k)."""
+        from scipy.linalg.lapack import dgbtrs, zgbtrs
+
+        place, m, width = self.band.place, self.band.n_strains, self.band.width
+        right = np.zeros((len(place), loads.shape[1]), dtype=self.factors.dtype, order="F")
+        if lacking is not None:
+            right[place[:m]] = lacking / self.unit
+        right[place[m:]] = loads
+        solver = zgbtrs if np.iscomplexobj(right) else dgbtrs
+        found, _ = solver(self.factors, width, width, right, self.pivots, overwrite_b=True)
+        return found[place[:m]], self.unit * found[place[m:]]
 
 
 def band_of(strain: Any, mass: Any) -> Band | None:

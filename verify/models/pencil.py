@@ -44,6 +44,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """About the lowest eigenvalue of what bends (`inverse.first_bending`), which tells what is slow; 0: not known."""
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
+    transposed: list[Any] = msgspec.field(default_factory=list)
+    """B^T as a sparse array by rows, once a driven answer was refined."""
     bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
     """All modes of it, sharp ones, once they were asked for (`driven_pencil.receptance_basis`)."""
     rough_bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)

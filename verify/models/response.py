@@ -1,0 +1,156 @@
+"""What a drive makes of a pencil, to rounding, however softly it is held and however slow the drive is.
+
+The mixed matrix [[-1/d, B], [B^T, -omega^2 M]] has the forces in the strains beside the unknowns. Of unknowns in a
+unit s it is [[-1/(s d), B], [B^T, -omega^2 s M]]. With s = 1 rows are exchanged for what bends as well, and what holds
+a motion that does not bend, a soft spring or its own inertia, is added to bending stiffness and lost in its rounding: a
+beam about a pin on a spring of 1e-8 EI/L^3 was 2e-6 off on 49 parts. With s = 1/omega both corners are small beside B
+where motion is slow. Rows are exchanged for those of B then, which carries motions along the beam in numbers of order
+one.
+
+What little is lost beside springs, ground or axial force, which lie anywhere between, a solution for what is left of
+load and strains gives back (iterative refinement; Higham, Accuracy and Stability of Numerical Algorithms, chapter 12):
+strains are differences of differences, and unknowns are summed in two parts, as what is left over would be rounding of
+their sum.
+"""
+
+from math import log2, log10
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from verify.errors import InputError
+from verify.models.arrays import Array, ComplexArray
+from verify.models.banded import BandFactors, band_of
+from verify.models.inverse import start_of
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, bordered, factorised, soft_scales, too_large
+
+_SLOWEST = 2.0**-200
+"""Omega^2 below which no unit grows."""
+_STEPS = 4
+_SETTLED = 1e-11
+"""Of the answer: a step after which there is no other, as it leaves about its square."""
+_LOST = 1e-6
+"""Of the answer: a last step with which it is refused."""
+
+
+class _SparseFactors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """Of a mixed matrix that is no narrow band."""
+
+    factor: Any
+    scales: Any
+    """Of forces, (m,)."""
+    unit: float
+    """Of the unknowns."""
+
+    def answered(self, lacking: Any, loads: Any) -> tuple[Any, Any]:
+        """As `BandFactors.answered`."""
+        m = len(self.scales)
+        right = np.zeros((m + len(loads), loads.shape[1]), dtype=complex)
+        if lacking is not None:
+            right[:m] = self.scales[:, None] * lacking / self.unit
+        right[m:] = loads
+        found = self.factor.solve(right)
+        return self.scales[:, None] * found[:m], self.unit * found[m:]
+
+
+def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
+    """V with (B^T diag(stiffness) B - omega^2 M) v = load, through the mixed matrix, (n, k) complex.
+
+    `loads` is (n, k); `stiffness` (m,) is complex where there is damping. Raises InputError where the matrix is
+    singular, and where digits cannot be vouched for.
+    """
+    factors = _factors(pencil, omega2, stiffness, np.iscomplexobj(loads) or bool(stiffness.imag.any()))
+    forces, found = factors.answered(None, loads)
+    if pencil.uneven and omega2 < pencil.bending:
+        return _refined(pencil, factors, loads, omega2, stiffness, forces, found)
+    return np.asarray(found)
+
+
+def swing(omega2: float) -> float:
+    """About 1/omega, a power of two: the unit of driven unknowns."""
+    return float(2.0 ** round(-0.5 * log2(max(omega2, _SLOWEST))))
+
+
+def _factors(
+    pencil: FactoredPencil, omega2: float, stiffness: ComplexArray, lossy: bool
+) -> BandFactors | _SparseFactors:
+    """Those of the mixed matrix."""
+    unit = swing(omega2)
+    try:
+        if not pencil.bands:
+            small = pencil.n <= DENSE_UNKNOWNS
+            strain = pencil.strain(np.eye(pencil.n)) if small else pencil.strain_matrix()
+            pencil.bands.append(band_of(strain, pencil.mass_matrix()))
+        band = pencil.bands[0]
+        found = None if band is None else band.factors(omega2, stiffness, unit, not lossy)
+    except MemoryError:
+        raise too_large(pencil.n) from None
+    return found or _sparse_factors(pencil, omega2, stiffness, unit)
+
+
+def _sparse_factors(pencil: FactoredPencil, omega2: float, stiffness: ComplexArray, unit: float) -> _SparseFactors:
+    """Those where the mixed matrix is no narrow band. Raises InputError where it is singular."""
+    from scipy.sparse import csc_array
+
+    diagonal = -1.0 / (unit * stiffness)
+    mixed = bordered(diagonal, pencil.strain_matrix(), -omega2 * unit * csc_array(pencil.mass_matrix()))
+    return _SparseFactors(factor=factorised(mixed.astype(complex)), scales=soft_scales(1.0 / diagonal), unit=unit)
+
+
+def _refined(
+    pencil: FactoredPencil,
+    factors: BandFactors | _SparseFactors,
+    loads: Any,
+    omega2: float,
+    stiffness: ComplexArray,
+    forces: Any,
+    found: Any,
+) -> ComplexArray:
+    """What was found, (n, k), with its forces (m, k), and what answers what it leaves, until a step is small.
+
+    Raises InputError where steps stay large.
+    """
+    if not pencil.transposed:
+        pencil.transposed.append(pencil.strain_matrix().T.tocsr())
+    transposed, mass, step = pencil.transposed[0], pencil.mass_matrix(), np.inf
+    flexible, rest = 1.0 / stiffness[:, None], np.zeros_like(found)
+    for _ in range(_STEPS):
+        lacking = flexible * forces - pencil.strain(found) - pencil.strain(rest)
+        left = loads - transposed @ forces + omega2 * (mass @ found + mass @ rest)
+        more, change = factors.answered(lacking if np.iscomplexobj(found) else lacking.real, left)
+        last, step = step, float((abs(change).max(axis=0) / abs(found).max(axis=0)).max())
+        forces, found, rest = forces + more, *_summed(found, rest + change)
+        if not _SETTLED < step < last:
+            break
+    if not step < _LOST:
+        raise InputError(
+            f"frequency_hz: so slow a drive of {pencil.n} unknowns is answered with less than {-log10(_LOST):.0f} sure "
+            "digits, as next to nothing holds the beam: lower count, raise the frequency, or hold the beam better"
+        )
+    return np.asarray(found)
+
+
+def _summed(first: Any, second: Any) -> tuple[Any, Any]:
+    """A sum and what rounding takes from it, where the second is the smaller (Dekker)."""
+    total = first + second
+    return total, second - (total - first)
+
+
+def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:
+    """How far the nearest eigenvalue lies from omega^2, signed and relative: one step of inverse iteration.
+
+    Exact where it is small, which is where it matters; far from a resonance an estimate.
+    """
+    answer = forced_response(pencil, probe(pencil), omega2, pencil.stiffness.astype(complex))
+    return distance_answered(pencil, answer[:, 0].real, omega2)
+
+
+def probe(pencil: FactoredPencil) -> Array:
+    """The load (n, 1) of that step."""
+    return np.asarray(pencil.mass_matrix() @ start_of(pencil.n))
+
+
+def distance_answered(pencil: FactoredPencil, answer: Array, omega2: float) -> float:
+    """The same of the answer (n,) to `probe`."""
+    return float(answer @ probe(pencil)[:, 0] / (answer @ (pencil.mass_matrix() @ answer)) / omega2)
