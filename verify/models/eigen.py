@@ -212,7 +212,7 @@ def _flexibility(inverse: Inverse, lower: Array) -> Array:
     loads = np.zeros((inverse.n_strains + len(free), len(lower)))
     loads[inverse.n_strains :] = (lower - inertia @ (motions.T @ lower))[free]
     answer = np.zeros_like(lower)
-    answer[free] = inverse.factor.solve(loads)[inverse.n_strains :]
+    answer[free] = inverse.unit * inverse.factor.solve(loads)[inverse.n_strains :]
     found = lower.T @ (answer - motions @ (inertia.T @ answer))
     return np.asarray(0.5 * (found + found.T))
 

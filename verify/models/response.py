@@ -13,7 +13,7 @@ strains are differences of differences, and unknowns are summed in two parts, as
 their sum.
 """
 
-from math import log2, log10
+from math import log10
 from typing import Any
 
 import msgspec
@@ -22,11 +22,10 @@ import numpy as np
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.banded import BandFactors, band_of
+from verify.models.fields import RESONANCE
 from verify.models.inverse import start_of
-from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, bordered, factorised, soft_scales, too_large
+from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, bordered, factorised, soft_scales, swing, too_large
 
-_SLOWEST = 2.0**-200
-"""Omega^2 below which no unit grows."""
 _STEPS = 4
 _SETTLED = 1e-11
 """Of the answer: a step after which there is no other, as it leaves about its square."""
@@ -67,11 +66,6 @@ def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness
     return np.asarray(found)
 
 
-def swing(omega2: float) -> float:
-    """About 1/omega, a power of two: the unit of driven unknowns."""
-    return float(2.0 ** round(-0.5 * log2(max(omega2, _SLOWEST))))
-
-
 def _factors(
     pencil: FactoredPencil, omega2: float, stiffness: ComplexArray, lossy: bool
 ) -> BandFactors | _SparseFactors:
@@ -95,7 +89,9 @@ def _sparse_factors(pencil: FactoredPencil, omega2: float, stiffness: ComplexArr
 
     diagonal = -1.0 / (unit * stiffness)
     mixed = bordered(diagonal, pencil.strain_matrix(), -omega2 * unit * csc_array(pencil.mass_matrix()))
-    return _SparseFactors(factor=factorised(mixed.astype(complex)), scales=soft_scales(1.0 / diagonal), unit=unit)
+    return _SparseFactors(
+        factor=factorised(mixed.astype(complex)), scales=soft_scales(unit * abs(stiffness)), unit=unit
+    )
 
 
 def _refined(
@@ -109,11 +105,9 @@ def _refined(
 ) -> ComplexArray:
     """What was found, (n, k), with its forces (m, k), and what answers what it leaves, until a step is small.
 
-    Raises InputError where steps stay large.
+    Raises InputError where steps stay large, but for an undamped resonance, which whoever drives refuses.
     """
-    if not pencil.transposed:
-        pencil.transposed.append(pencil.strain_matrix().T.tocsr())
-    transposed, mass, step = pencil.transposed[0], pencil.mass_matrix(), np.inf
+    transposed, mass, step = pencil.transposed(), pencil.mass_matrix(), np.inf
     flexible, rest = 1.0 / stiffness[:, None], np.zeros_like(found)
     for _ in range(_STEPS):
         lacking = flexible * forces - pencil.strain(found) - pencil.strain(rest)
@@ -123,12 +117,19 @@ def _refined(
         forces, found, rest = forces + more, *_summed(found, rest + change)
         if not _SETTLED < step < last:
             break
-    if not step < _LOST:
+    if not step < _LOST and not _resonates(pencil, found, loads, omega2, stiffness):
         raise InputError(
             f"frequency_hz: so slow a drive of {pencil.n} unknowns is answered with less than {-log10(_LOST):.0f} sure "
             "digits, as next to nothing holds the beam: lower count, raise the frequency, or hold the beam better"
         )
     return np.asarray(found)
+
+
+def _resonates(pencil: FactoredPencil, found: Any, loads: Any, omega2: float, stiffness: ComplexArray) -> bool:
+    """Whether an answer (n, k) to loads (n, k) without loss is a mode, of which digits tell nothing more."""
+    carried = (found.conj() * (pencil.mass_matrix() @ found)).sum(axis=0).real
+    distances = abs((found.conj() * loads).sum(axis=0)) / (omega2 * carried)
+    return not stiffness.imag.any() and bool((distances <= 2.0 * RESONANCE).any())
 
 
 def _summed(first: Any, second: Any) -> tuple[Any, Any]:
