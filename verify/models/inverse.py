@@ -126,7 +126,7 @@ def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
         below=below,
         factor=factorised(mixed),
         free=free,
-        scales=soft_scales(unit * pencil.stiffness),
+        scales=soft_scales(1.0 / (1.0 / (unit * pencil.stiffness))),  # as `bordered` has them, to the last bit
         unit=unit,
         mass=mass,
         inertia=inertia,

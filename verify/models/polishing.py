@@ -74,8 +74,8 @@ def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
         last = values
     if not change < _UNSETTLED:
         raise InputError(
-            f"count: slow motions of {pencil.n} unknowns, which next to nothing holds, do not settle (omega^2 still moves "
-            f"by {change:.0e} of it): lower count, or hold the beam better"
+            f"count: slow motions of {pencil.n} unknowns, which next to nothing holds, do not settle (omega^2 "
+            f"still moves by {change:.0e} of it): lower count, or hold the beam better"
         )
     return vectors, strains
 

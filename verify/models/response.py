@@ -88,10 +88,9 @@ def _sparse_factors(pencil: FactoredPencil, omega2: float, stiffness: ComplexArr
     from scipy.sparse import csc_array
 
     diagonal = -1.0 / (unit * stiffness)
+    scales = soft_scales(np.asarray(abs(1.0 / diagonal), dtype=float))
     mixed = bordered(diagonal, pencil.strain_matrix(), -omega2 * unit * csc_array(pencil.mass_matrix()))
-    return _SparseFactors(
-        factor=factorised(mixed.astype(complex)), scales=soft_scales(unit * abs(stiffness)), unit=unit
-    )
+    return _SparseFactors(factor=factorised(mixed.astype(complex)), scales=scales, unit=unit)
 
 
 def _refined(
