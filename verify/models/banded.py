@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.models.arrays import Array, ComplexArray, Indices
 
@@ -30,38 +31,54 @@ class Band(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     masses: Array
     """Those entries."""
 
-    def factors(self, omega2: float, stiffness: ComplexArray, unit: float, real: bool) -> "BandFactors | None":
-        """The factors with unknowns in a `unit` (`driven.swing`), of real numbers where `real`; None if singular."""
-        from scipy.linalg.lapack import dgbtrf, zgbtrf
+    def answer(self, loads: Any, omega2: float, stiffness: ComplexArray, unit: float) -> "BandAnswer | None":
+        """What answers loads (n, k), of unknowns in a `unit` (`swing`); None where the band is singular."""
+        from scipy.linalg.lapack import dgbsv, zgbsv
 
-        storage = np.array(self.coupling, dtype=float if real else complex, order="F")
+        real = not np.iscomplexobj(loads) and not stiffness.imag.any()
+        kind, solver = (float, dgbsv) if real else (complex, zgbsv)
+        storage = np.array(self.coupling, dtype=kind, order="F")
         storage[2 * self.width, self.place[: self.n_strains]] = -1.0 / (unit * (stiffness.real if real else stiffness))
         storage[self.mass_at] -= omega2 * unit * self.masses
-        factors, pivots, info = (dgbtrf if real else zgbtrf)(storage, self.width, self.width, overwrite_ab=True)
-        return None if info else BandFactors(band=self, factors=factors, pivots=pivots, unit=unit)
+        right = np.zeros((len(self.place), loads.shape[1]), dtype=kind, order="F")
+        right[self.place[self.n_strains :]] = loads
+        factors, pivots, found, info = solver(
+            self.width, self.width, storage, right, overwrite_ab=True, overwrite_b=True
+        )
+        return None if info else BandAnswer(band=self, factors=factors, pivots=pivots, found=found, unit=unit)
 
 
-class BandFactors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Of a mixed matrix in a narrow band."""
+class BandAnswer(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What a narrow band answered, and its factors for what else is asked."""
 
     band: Band
     factors: Any
     pivots: Any
+    found: Any
+    """(n_strains + n, k), in the order of the band."""
     unit: float
     """Of the unknowns."""
 
-    def answered(self, lacking: Any, loads: Any) -> tuple[Any, Any]:
-        """(forces (m, k), unknowns (n, k)) to strains (m, k) that are lacking, None for none, and loads (n, k)."""
+    @property
+    def forces(self) -> Any:
+        """In the strains, (m, k)."""
+        return self.found[self.band.place[: self.band.n_strains]]
+
+    @property
+    def unknowns(self) -> Any:
+        """(n, k)."""
+        return self.unit * self.found[self.band.place[self.band.n_strains :]]
+
+    def to(self, lacking: Any, loads: Any) -> "BandAnswer":
+        """The answer to strains (m, k) that are lacking and to loads (n, k)."""
         from scipy.linalg.lapack import dgbtrs, zgbtrs
 
-        place, m, width = self.band.place, self.band.n_strains, self.band.width
-        right = np.zeros((len(place), loads.shape[1]), dtype=self.factors.dtype, order="F")
-        if lacking is not None:
-            right[place[:m]] = lacking / self.unit
-        right[place[m:]] = loads
+        band, right = self.band, np.empty_like(self.found, order="F")
+        right[band.place[: band.n_strains]] = lacking / self.unit
+        right[band.place[band.n_strains :]] = loads
         solver = zgbtrs if np.iscomplexobj(right) else dgbtrs
-        found, _ = solver(self.factors, width, width, right, self.pivots, overwrite_b=True)
-        return found[place[:m]], self.unit * found[place[m:]]
+        found, _ = solver(self.factors, band.width, band.width, right, self.pivots, overwrite_b=True)
+        return replace(self, found=found)
 
 
 def band_of(strain: Any, mass: Any) -> Band | None:

@@ -13,19 +13,22 @@ strains are differences of differences, and unknowns are summed in two parts, as
 their sum.
 """
 
-from math import log10
+from math import inf, log10
 from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.banded import BandFactors, band_of
+from verify.models.banded import BandAnswer, band_of
 from verify.models.fields import RESONANCE
 from verify.models.inverse import start_of
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil, bordered, factorised, soft_scales, swing, too_large
 
+_SLOW = 1e-3
+"""Of the stiffest strain over n^4: omega^2 below which more than 1e-11 may be lost, of 900 drawn beams up to 6e-6."""
 _STEPS = 4
 _SETTLED = 1e-11
 """Of the answer: a step after which there is no other, as it leaves about its square."""
@@ -33,24 +36,33 @@ _LOST = 1e-6
 """Of the answer: a last step with which it is refused."""
 
 
-class _SparseFactors(msgspec.Struct, frozen=True, eq=False, kw_only=True):
-    """Of a mixed matrix that is no narrow band."""
+class _SparseAnswer(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """As `BandAnswer`, of a mixed matrix that is no narrow band."""
 
     factor: Any
-    scales: Any
+    scales: Array
     """Of forces, (m,)."""
+    found: Any
+    """(m + n, k)."""
     unit: float
-    """Of the unknowns."""
 
-    def answered(self, lacking: Any, loads: Any) -> tuple[Any, Any]:
-        """As `BandFactors.answered`."""
-        m = len(self.scales)
-        right = np.zeros((m + len(loads), loads.shape[1]), dtype=complex)
-        if lacking is not None:
-            right[:m] = self.scales[:, None] * lacking / self.unit
-        right[m:] = loads
-        found = self.factor.solve(right)
-        return self.scales[:, None] * found[:m], self.unit * found[m:]
+    @property
+    def forces(self) -> Any:
+        """In the strains, (m, k)."""
+        return self.scales[:, None] * self.found[: len(self.scales)]
+
+    @property
+    def unknowns(self) -> Any:
+        """(n, k)."""
+        return self.unit * self.found[len(self.scales) :]
+
+    def to(self, lacking: Any, loads: Any) -> "_SparseAnswer":
+        """The answer to strains (m, k) that are lacking and to loads (n, k)."""
+        right = np.concatenate([self.scales[:, None] * lacking / self.unit, loads]).astype(complex)
+        return replace(self, found=self.factor.solve(right))
+
+
+_Answer = BandAnswer | _SparseAnswer
 
 
 def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
@@ -59,17 +71,14 @@ def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness
     `loads` is (n, k); `stiffness` (m,) is complex where there is damping. Raises InputError where the matrix is
     singular, and where digits cannot be vouched for.
     """
-    factors = _factors(pencil, omega2, stiffness, np.iscomplexobj(loads) or bool(stiffness.imag.any()))
-    forces, found = factors.answered(None, loads)
-    if pencil.uneven and omega2 < pencil.bending:
-        return _refined(pencil, factors, loads, omega2, stiffness, forces, found)
-    return np.asarray(found)
+    answer = _answer(pencil, loads, omega2, stiffness)
+    if pencil.uneven and omega2 * pencil.n**4 < _SLOW * abs(pencil.stiffness).max():
+        return _refined(pencil, answer, loads, omega2, stiffness)
+    return np.asarray(answer.unknowns)
 
 
-def _factors(
-    pencil: FactoredPencil, omega2: float, stiffness: ComplexArray, lossy: bool
-) -> BandFactors | _SparseFactors:
-    """Those of the mixed matrix."""
+def _answer(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> _Answer:
+    """That of the mixed matrix as it is factorised."""
     unit = swing(omega2)
     try:
         if not pencil.bands:
@@ -77,43 +86,46 @@ def _factors(
             strain = pencil.strain(np.eye(pencil.n)) if small else pencil.strain_matrix()
             pencil.bands.append(band_of(strain, pencil.mass_matrix()))
         band = pencil.bands[0]
-        found = None if band is None else band.factors(omega2, stiffness, unit, not lossy)
+        found = None if band is None else band.answer(loads, omega2, stiffness, unit)
     except MemoryError:
         raise too_large(pencil.n) from None
-    return found or _sparse_factors(pencil, omega2, stiffness, unit)
+    return found or _by_sparse_factors(pencil, loads, omega2, stiffness, unit)
 
 
-def _sparse_factors(pencil: FactoredPencil, omega2: float, stiffness: ComplexArray, unit: float) -> _SparseFactors:
-    """Those where the mixed matrix is no narrow band. Raises InputError where it is singular."""
+def _by_sparse_factors(
+    pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray, unit: float
+) -> _SparseAnswer:
+    """The same where the mixed matrix is no narrow band. Raises InputError where it is singular."""
     from scipy.sparse import csc_array
 
     diagonal = -1.0 / (unit * stiffness)
     scales = soft_scales(np.asarray(abs(1.0 / diagonal), dtype=float))
     mixed = bordered(diagonal, pencil.strain_matrix(), -omega2 * unit * csc_array(pencil.mass_matrix()))
-    return _SparseFactors(factor=factorised(mixed.astype(complex)), scales=scales, unit=unit)
+    right = np.zeros((len(scales) + pencil.n, loads.shape[1]), dtype=complex)
+    right[len(scales) :] = loads
+    factor = factorised(mixed.astype(complex))
+    return _SparseAnswer(factor=factor, scales=scales, found=factor.solve(right), unit=unit)
 
 
 def _refined(
-    pencil: FactoredPencil,
-    factors: BandFactors | _SparseFactors,
-    loads: Any,
-    omega2: float,
-    stiffness: ComplexArray,
-    forces: Any,
-    found: Any,
+    pencil: FactoredPencil, answer: _Answer, loads: Any, omega2: float, stiffness: ComplexArray
 ) -> ComplexArray:
-    """What was found, (n, k), with its forces (m, k), and what answers what it leaves, until a step is small.
+    """The unknowns (n, k) of an answer to loads (n, k), and what answers what they leave, until a step is small.
 
     Raises InputError where steps stay large, but for an undamped resonance, which whoever drives refuses.
     """
-    transposed, mass, step = pencil.transposed(), pencil.mass_matrix(), np.inf
-    flexible, rest = 1.0 / stiffness[:, None], np.zeros_like(found)
+    transposed, mass, step = pencil.transposed(), pencil.mass_matrix(), inf
+    forces, found, rest = answer.forces, answer.unknowns, None
+    elastic: Any = (stiffness if np.iscomplexobj(found) else stiffness.real)[:, None]
     for _ in range(_STEPS):
-        lacking = flexible * forces - pencil.strain(found) - pencil.strain(rest)
-        left = loads - transposed @ forces + omega2 * (mass @ found + mass @ rest)
-        more, change = factors.answered(lacking if np.iscomplexobj(found) else lacking.real, left)
-        last, step = step, float((abs(change).max(axis=0) / abs(found).max(axis=0)).max())
-        forces, found, rest = forces + more, *_summed(found, rest + change)
+        lacking = forces / elastic - pencil.strain(found)
+        left = loads - transposed @ forces + omega2 * (mass @ found)
+        if rest is not None:
+            lacking, left = lacking - pencil.strain(rest), left + omega2 * (mass @ rest)
+        more = answer.to(lacking, left)
+        change, last = more.unknowns, step
+        step = float((abs(change).max(axis=0) / abs(found).max(axis=0)).max())
+        forces, (found, rest) = forces + more.forces, _summed(found, change if rest is None else rest + change)
         if not _SETTLED < step < last:
             break
     if not step < _LOST and not _resonates(pencil, found, loads, omega2, stiffness):
