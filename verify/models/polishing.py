@@ -14,7 +14,7 @@ _STEPS = 12
 _STEADY = 1e-14
 """Of a value: a change after which there is no other."""
 _UNSETTLED = 1e-9
-"""Of a value: a change after the last step with which it is refused."""
+"""Of what a value is a sum of: a change after the last step with which it is refused."""
 _SOUGHT = 6
 """Steps to one that was missed."""
 
@@ -68,9 +68,9 @@ def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
         vectors[:, slow], strains[:, slow] = vectors[:, slow] @ turned, strains[:, slow] @ turned
         values = factored_quotient(pencil, vectors[:, slow], strains[:, slow])[0]
         if len(last) == len(values):
-            change = float((abs(values - last) / values).max(initial=0.0))
-        if change < _STEADY:
-            break
+            change = float((abs(values - last) / _energies(pencil, strains[:, slow])).max(initial=0.0))
+            if (abs(values - last) < _STEADY * values).all():
+                break
         last = values
     if not change < _UNSETTLED:
         raise InputError(
@@ -78,6 +78,11 @@ def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
             f"still moves by {change:.0e} of it): lower count, or hold the beam better"
         )
     return vectors, strains
+
+
+def _energies(pencil: FactoredPencil, strains: Array) -> Array:
+    """What values are sums of, (k,): of strains (m, k) that an axial force takes energy from as well."""
+    return np.asarray(abs(pencil.stiffness) @ strains**2)
 
 
 def _with_missed(inverse: Inverse, vectors: Array) -> Array:
