@@ -265,7 +265,7 @@ def test_a_band_without_memory_is_one_sentence(titanium_strip, monkeypatch):
     def fails(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr(banded.Band, "solve", fails)
+    monkeypatch.setattr(banded.Band, "answer", fails)
     with pytest.raises(InputError, match="199 unknowns do not fit into memory, lower it"):
         segment_model.solve_harmonic(titanium_strip, [PointForce(position=0.1)], 99.0, 200)
 
@@ -274,8 +274,8 @@ def test_a_band_without_memory_is_one_sentence(titanium_strip, monkeypatch):
 def test_a_band_answers_as_sparse_factors_do(titanium_strip, n):
     """Clamped, a body, a spring, tension: real and complex, few unknowns and many."""
     from verify.attached import PointMass, PointSpring
-    from verify.models.driven_pencil import forced_response
-    from verify.models.eigen import _by_sparse_factors
+    from verify.models.pencil import swing
+    from verify.models.response import _by_sparse_factors, forced_response
     from verify.segments.links import build_chain, chain_pencil
 
     bodies = {"mass": (PointMass(position=0.21, mass=0.02),), "spring": (PointSpring(position=0.5, stiffness=400.0),)}
@@ -284,7 +284,7 @@ def test_a_band_answers_as_sparse_factors_do(titanium_strip, n):
         pencil = chain_pencil(build_chain(beam, n))
         loads = np.random.default_rng(n).standard_normal((pencil.n, 2))
         for stiffness in (pencil.stiffness.astype(complex), pencil.stiffness * (1 + 0.03j)):
-            wanted = _by_sparse_factors(pencil, loads, 0.017, stiffness)
+            wanted = _by_sparse_factors(pencil, loads, 0.017, stiffness, swing(0.017)).unknowns
             found = forced_response(pencil, loads, 0.017, stiffness)
             assert abs(found - wanted).max() <= 1e-9 * abs(wanted).max()
             assert pencil.bands[0] is not None

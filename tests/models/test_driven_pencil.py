@@ -15,8 +15,8 @@ from verify.elements.pencil import damped_stiffness, element_pencil
 from verify.errors import InputError
 from verify.exact.modes import solve_modes as exact_modes
 from verify.models.driven_pencil import check_dense, damped_response, modal_receptance, probed, refuse_near_resonance
-from verify.models.eigen import distance_answered, forced_response, resonance_distance
 from verify.models.pencil import on_diagonals
+from verify.models.response import distance_answered, forced_response, resonance_distance
 from verify.section import Section
 from verify.segments import linear as segment_model
 from verify.segments import sweeps as segment_sweeps

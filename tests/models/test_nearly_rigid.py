@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from verify import Beam, PointForce, PointMass, PointSpring, Section, fem_beam, segment_model
+from verify import Beam, PointForce, PointMass, PointSpring, Section, analytic_modes, fem_beam, segment_model
+from verify.errors import InputError
+from verify.models import polishing, response
 from verify.models.eigen import lowest
 from verify.segments.links import build_chain, chain_pencil
 
@@ -123,3 +125,67 @@ def test_responses_summed_over_modes_are_those_of_each_frequency_on_soft_ground_
     found = face.unit_responses(beam, [0.4], hertz, x, 60)[:, 0]
     known = np.array([face.solve_harmonic(beam, PointForce(position=0.4), one, 60).deflection(x) for one in hertz])
     assert (abs(found - known).max(axis=1) < 1e-8 * abs(known).max(axis=1)).all()
+
+
+@FACES
+@pytest.mark.parametrize("parts", [49, 2000])
+@pytest.mark.parametrize("loss_factor", [0.0, 0.02])
+def test_a_bar_about_a_pin_answers_a_slow_drive_as_a_rigid_one_on_its_spring(face, parts, loss_factor):
+    """Bent by 1e-12 of that; with both parts of unknowns and strains of one size nothing of it was left."""
+    place, at, k = 0.73 * LENGTH, 0.31 * LENGTH, 1e-12 * STIFFNESS / LENGTH**3
+    springs = (PointSpring(position=place, stiffness=k),)
+    beam = bar(supports=("pinned", "free"), spring=springs, loss_factor=loss_factor)
+    omega2 = 0.31 * k * place**2 / (RHO_A * LENGTH**3 / 3.0)
+    field = face.solve_harmonic(beam, PointForce(position=at, amplitude=0.7), np.sqrt(omega2) / (2.0 * pi), parts)
+    x = np.array([0.2, 0.77, 1.0]) * LENGTH
+    expected = 0.7 * at / (k * place**2 - omega2 * RHO_A * LENGTH**3 / 3.0) * x
+    assert abs(field.deflection(x) / expected - 1.0).max() < 2e-11
+    assert abs(field.slope(x) / expected * x - 1.0).max() < 2e-11
+
+
+@FACES
+@pytest.mark.parametrize("supports", [("pinned", "free"), ("free", "pinned")], ids="-".join)
+def test_a_bar_that_a_soft_coil_holds_about_its_pin_loses_nothing_of_its_own_damping(face, supports):
+    """At 1e-14 EI/L: the joint beside the coil was what is left of two compliances, that is nothing."""
+    pin, k = LENGTH * (supports[1] == "pinned"), 1e-14 * STIFFNESS / LENGTH
+    beam = bar(supports=supports, spring=(PointSpring(position=pin, rotational=k),), loss_factor=0.1)
+    omega2 = 0.4 * k / (RHO_A * LENGTH**3 / 3.0)
+    field = face.solve_harmonic(beam, PointForce(position=0.9), np.sqrt(omega2) / (2.0 * pi), 400)
+    expected = (0.9 - pin) * (0.5 - pin) / (0.6 * k)
+    assert abs(field.deflection(0.5) / expected - 1.0) < 1e-11
+
+
+@FACES
+@pytest.mark.parametrize("parts", [40, 500])
+def test_a_bar_with_a_body_on_soft_ground_answers_a_slow_drive_as_a_rigid_one(face, parts):
+    ground, body = 1e-12 * STIFFNESS / LENGTH**4, PointMass(position=0.4, mass=0.5, rotary_inertia=0.02)
+    beam = bar(supports=("free", "free"), foundation=ground, mass=(body,))
+    along = np.array([[LENGTH, LENGTH**2 / 2.0], [LENGTH**2 / 2.0, LENGTH**3 / 3.0]])
+    moved = RHO_A * along + 0.5 * np.outer([1.0, 0.4], [1.0, 0.4]) + np.diag([0.0, 0.02])
+    omega2 = 0.3 * ground / RHO_A
+    lift, turn = np.linalg.solve(ground * along - omega2 * moved, [1.0, 0.95])
+    found = face.solve_harmonic(beam, PointForce(position=0.95), np.sqrt(omega2) / (2.0 * pi), parts)
+    x = np.array([0.1, 0.7, 1.3])
+    assert abs(found.deflection(x) / (lift + turn * x) - 1.0).max() < 2e-11
+
+
+@FACES
+def test_a_bar_behind_a_soft_stretch_keeps_its_digits_beside_stiff_ones(face):
+    """A flexure of 1e-12 EI; elements had its first mode 60 per cent off, its second altogether."""
+    pieces = (Section(length=0.5), Section(length=0.15, bending_stiffness=1e-12 * STIFFNESS), Section(length=0.65))
+    beam = bar(supports=("clamped", "free"), section=pieces)
+    exact = analytic_modes.solve_modes(beam, 2).frequencies_hz
+    found = [face.solve_modes(beam, 2, parts).frequencies_hz for parts in (52, 104)]
+    order = 4 if face is fem_beam else 2
+    assert abs((found[1] * 2**order - found[0]) / (2**order - 1) / exact - 1.0).max() < 1e-3
+
+
+def test_what_steps_do_not_settle_is_refused_and_told(monkeypatch):
+    k = 1e-12 * STIFFNESS / LENGTH**3
+    beam = bar(supports=("pinned", "free"), spring=(PointSpring(position=0.8, stiffness=k),))
+    monkeypatch.setattr(response, "swing", lambda omega2: 1.0)
+    with pytest.raises(InputError, match="999 unknowns is answered with less than 6 sure digits"):
+        segment_model.solve_harmonic(beam, PointForce(position=0.4), 1e-9, 999)
+    monkeypatch.setattr(polishing, "_STEPS", 1)
+    with pytest.raises(InputError, match=r"slow motions of 999 unknowns.* do not settle"):
+        segment_model.solve_modes(beam, 1, 999)

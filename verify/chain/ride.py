@@ -28,7 +28,7 @@ from verify.chain.work import MOST, STATIC_LINKS, check_kept, check_links
 from verify.checks import check_number
 from verify.errors import InputError, written
 from verify.models.arrays import Array, ComplexArray
-from verify.models.eigen import forced_response
+from verify.models.response import forced_response
 from verify.models.underfoot import standing_at
 from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.records import Given, Rider

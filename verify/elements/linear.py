@@ -21,11 +21,12 @@ from verify.elements.pencil import (
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import Parts
 from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
-from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name, resonance_distance
+from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
 from verify.models.fields import RESONANCE, HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.models.response import forced_response, resonance_distance
 from verify.models.theory import check_theory
 from verify.options import THEORIES, Theory
 

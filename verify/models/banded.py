@@ -1,13 +1,14 @@
 """A driven pencil solved as a narrow band: strains and unknowns in the order in which they lie along the beam.
 
 The mixed matrix [[-1/d, B], [B^T, -omega^2 M]] couples neighbours alone. Sorted by place it is a band a few wide, which
-LAPACK solves with row exchanges in a time that grows with the length of the beam alone.
+LAPACK factorises with row exchanges in a time that grows with the length of the beam alone.
 """
 
 from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from verify.models.arrays import Array, ComplexArray, Indices
 
@@ -30,19 +31,54 @@ class Band(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     masses: Array
     """Those entries."""
 
-    def solve(self, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray | None:
-        """V with (B^T diag(stiffness) B - omega^2 M) v = loads, (n, k); None where the band is singular."""
+    def answer(self, loads: Any, omega2: float, stiffness: ComplexArray, unit: float) -> "BandAnswer | None":
+        """What answers loads (n, k), of unknowns in a `unit` (`swing`); None where the band is singular."""
         from scipy.linalg.lapack import dgbsv, zgbsv
 
         real = not np.iscomplexobj(loads) and not stiffness.imag.any()
         kind, solver = (float, dgbsv) if real else (complex, zgbsv)
         storage = np.array(self.coupling, dtype=kind, order="F")
-        storage[2 * self.width, self.place[: self.n_strains]] = -1.0 / (stiffness.real if real else stiffness)
-        storage[self.mass_at] -= omega2 * self.masses
+        storage[2 * self.width, self.place[: self.n_strains]] = -1.0 / (unit * (stiffness.real if real else stiffness))
+        storage[self.mass_at] -= omega2 * unit * self.masses
         right = np.zeros((len(self.place), loads.shape[1]), dtype=kind, order="F")
         right[self.place[self.n_strains :]] = loads
-        _, _, found, info = solver(self.width, self.width, storage, right, overwrite_ab=True, overwrite_b=True)
-        return None if info else np.asarray(found[self.place[self.n_strains :]])
+        factors, pivots, found, info = solver(
+            self.width, self.width, storage, right, overwrite_ab=True, overwrite_b=True
+        )
+        return None if info else BandAnswer(band=self, factors=factors, pivots=pivots, found=found, unit=unit)
+
+
+class BandAnswer(msgspec.Struct, frozen=True, eq=False, kw_only=True):
+    """What a narrow band answered, and its factors for what else is asked."""
+
+    band: Band
+    factors: Any
+    pivots: Any
+    found: Any
+    """(n_strains + n, k), in the order of the band."""
+    unit: float
+    """Of the unknowns."""
+
+    @property
+    def forces(self) -> Any:
+        """In the strains, (m, k)."""
+        return self.found[self.band.place[: self.band.n_strains]]
+
+    @property
+    def unknowns(self) -> Any:
+        """(n, k)."""
+        return self.unit * self.found[self.band.place[self.band.n_strains :]]
+
+    def to(self, lacking: Any, loads: Any) -> "BandAnswer":
+        """The answer to strains (m, k) that are lacking and to loads (n, k)."""
+        from scipy.linalg.lapack import dgbtrs, zgbtrs
+
+        band, right = self.band, np.empty_like(self.found, order="F")
+        right[band.place[: band.n_strains]] = lacking / self.unit
+        right[band.place[band.n_strains :]] = loads
+        solver = zgbtrs if np.iscomplexobj(right) else dgbtrs
+        found, _ = solver(self.factors, band.width, band.width, right, self.pivots, overwrite_b=True)
+        return replace(self, found=found)
 
 
 def band_of(strain: Any, mass: Any) -> Band | None:

@@ -8,17 +8,11 @@ import numpy as np
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
-from verify.models.eigen import (
-    distance_answered,
-    forced_response,
-    has_unlike_parts,
-    modal_basis,
-    probe,
-    resonance_distance,
-)
+from verify.models.eigen import has_unlike_parts, modal_basis
 from verify.models.fields import RESONANCE, refuse_resonance
 from verify.models.modes import Modes
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
+from verify.models.response import distance_answered, forced_response, probe, resonance_distance
 
 
 def damped_response(

@@ -3,22 +3,16 @@
 How vectors are found depends on size and contrast; every value is read from the pencil's own quotient (`pencil`).
 """
 
-from typing import Any
-
 import msgspec
 import numpy as np
 
 from verify.errors import InputError
-from verify.models.arrays import Array, ComplexArray
-from verify.models.banded import band_of
-from verify.models.inverse import Inverse, fitting_inverse, start_of
+from verify.models.arrays import Array
+from verify.models.inverse import Inverse, fitting_inverse
 from verify.models.pencil import (
     DENSE_UNKNOWNS,
     FactoredPencil,
-    bordered,
     factored_quotient,
-    factorised,
-    too_large,
 )
 from verify.models.polishing import polished, sharpened, told_apart
 from verify.patience import check_work
@@ -218,7 +212,7 @@ def _flexibility(inverse: Inverse, lower: Array) -> Array:
     loads = np.zeros((inverse.n_strains + len(free), len(lower)))
     loads[inverse.n_strains :] = (lower - inertia @ (motions.T @ lower))[free]
     answer = np.zeros_like(lower)
-    answer[free] = inverse.factor.solve(loads)[inverse.n_strains :]
+    answer[free] = inverse.unit * inverse.factor.solve(loads)[inverse.n_strains :]
     found = lower.T @ (answer - motions @ (inertia.T @ answer))
     return np.asarray(0.5 * (found + found.T))
 
@@ -265,52 +259,6 @@ def _by_lanczos(inverse: Inverse, n_modes: int) -> Array:
             "n_modes: the lowest modes lie too close together to be told apart on so many parts, lower count"
         ) from None
     return np.asarray(vectors[:, np.argsort(values)])
-
-
-def forced_response(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
-    """V with (B^T diag(stiffness) B - omega^2 M) v = load, through the mixed matrix, (n, k) complex.
-
-    `loads` is (n, k); `stiffness` (m,) is complex where there is damping.
-    """
-    try:
-        if not pencil.bands:
-            small = pencil.n <= DENSE_UNKNOWNS
-            strain = pencil.strain(np.eye(pencil.n)) if small else pencil.strain_matrix()
-            pencil.bands.append(band_of(strain, pencil.mass_matrix()))
-        band = pencil.bands[0]
-        found = None if band is None else band.solve(loads, omega2, stiffness)
-    except MemoryError:
-        raise too_large(pencil.n) from None
-    return _by_sparse_factors(pencil, loads, omega2, stiffness) if found is None else found
-
-
-def _by_sparse_factors(pencil: FactoredPencil, loads: Any, omega2: float, stiffness: ComplexArray) -> ComplexArray:
-    """The same where the mixed matrix is no narrow band. Raises InputError where it is singular."""
-    from scipy.sparse import csc_array
-
-    mixed = bordered(-1.0 / stiffness, pencil.strain_matrix(), -omega2 * csc_array(pencil.mass_matrix()))
-    right = np.zeros((len(stiffness) + pencil.n, loads.shape[1]), dtype=complex)
-    right[len(stiffness) :] = loads
-    return np.asarray(factorised(mixed.astype(complex)).solve(right)[len(stiffness) :])
-
-
-def resonance_distance(pencil: FactoredPencil, omega2: float) -> float:
-    """How far the nearest eigenvalue lies from omega^2, signed and relative: one step of inverse iteration.
-
-    Exact where it is small, which is where it matters; far from a resonance an estimate.
-    """
-    answer = forced_response(pencil, probe(pencil), omega2, pencil.stiffness.astype(complex))
-    return distance_answered(pencil, answer[:, 0].real, omega2)
-
-
-def probe(pencil: FactoredPencil) -> Array:
-    """The load (n, 1) of that step."""
-    return np.asarray(pencil.mass_matrix() @ start_of(pencil.n))
-
-
-def distance_answered(pencil: FactoredPencil, answer: Array, omega2: float) -> float:
-    """The same of the answer (n,) to `probe`."""
-    return float(answer @ probe(pencil)[:, 0] / (answer @ (pencil.mass_matrix() @ answer)) / omega2)
 
 
 def modal_basis(pencil: FactoredPencil, sharp: bool = False) -> tuple[Array, Array]:

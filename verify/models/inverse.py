@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
-from verify.models.pencil import DENSE_UNKNOWNS, LARGE, FactoredPencil, factorised, mixed_matrix, soft_scales
+from verify.models.pencil import DENSE_UNKNOWNS, LARGE, FactoredPencil, factorised, mixed_matrix, soft_scales, swing
 
 SLOW = 0.01
 """Of `first_bending`: an eigenvalue below it is of a motion that hardly bends the beam."""
@@ -36,6 +36,8 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Unknowns that are not grounded."""
     scales: Array
     """Of forces (m,) in the mixed matrix."""
+    unit: float
+    """Of the unknowns in it."""
     mass: Any
     inertia: Array
     """M R, (n, r)."""
@@ -65,16 +67,17 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def answered(self, right: Array) -> Array:
         """(forces (m,), unknowns) of the mixed matrix to what stands on its right."""
         scales = self.scales
-        right[: len(scales)] *= scales
+        right[: len(scales)] *= scales / self.unit
         found = self.factor.solve(right)
         found[: len(scales)] *= scales
+        found[len(scales) :] *= self.unit
         return np.asarray(found)
 
     def solve(self, load: Array) -> Array:
         """The answer to a load, (n,) both."""
         right, answer = np.zeros(self.n_strains + len(self.free)), np.zeros(self.pencil.n)
         right[self.n_strains :] = self.balanced(load)[self.free]
-        answer[self.free] = self.factor.solve(right)[self.n_strains :]
+        answer[self.free] = self.unit * self.factor.solve(right)[self.n_strains :]
         return self.still(answer)
 
     def refined(self, load: Array) -> tuple[Array, Array]:
@@ -83,7 +86,7 @@ class Inverse(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         Once at the least, and until a step is small: where factors lose digits, each gives some back.
         """
         m, pencil, free = self.n_strains, self.pencil, self.free
-        transposed = pencil.strain_matrix()[:, free].T
+        transposed = pencil.transposed()[free]
         load, found, answer = self.balanced(load)[free], np.zeros(self.n_strains + len(free)), np.zeros(pencil.n)
         for step in range(REFINED):
             right = np.concatenate([found[:m] / pencil.stiffness, load - transposed @ found[:m]])
@@ -114,7 +117,8 @@ def fitting_inverse(pencil: FactoredPencil) -> Inverse:
 
 def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
     """The inverse of K - below M; of K alone, 0, where motions are rigid, with as many unknowns grounded."""
-    mixed, free = mixed_matrix(pencil, below)
+    unit = swing(max(abs(below), pencil.bending) or 1.0)
+    mixed, free = mixed_matrix(pencil, below, unit)
     mass = pencil.mass_matrix()
     inertia = mass @ pencil.rigid
     return Inverse(
@@ -122,7 +126,8 @@ def inverse_of(pencil: FactoredPencil, below: float) -> Inverse:
         below=below,
         factor=factorised(mixed),
         free=free,
-        scales=soft_scales(pencil.stiffness),
+        scales=soft_scales(1.0 / (1.0 / (unit * pencil.stiffness))),  # as `bordered` has them, to the last bit
+        unit=unit,
         mass=mass,
         inertia=inertia,
         motions=np.linalg.solve(pencil.rigid.T @ inertia, pencil.rigid.T).T,

@@ -6,6 +6,7 @@ sum d (B v)^2 / (v^T M v) with B applied as differences of differences, each nea
 """
 
 from collections.abc import Callable, Mapping
+from math import log2
 from typing import Any
 
 import msgspec
@@ -19,6 +20,9 @@ DENSE_UNKNOWNS = 250
 LARGE = 20_000
 """Unknowns from which on vectors are solved for once more: the factors leave a noise of n^2 eps in their strains, whose
 square would be 1e-9 of the eigenvalues of a million parts, and was 1e-12 of those of 20 000 free elements."""
+
+_SLOWEST = 2.0**-200
+"""Omega^2 below which no unit grows."""
 
 
 class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
@@ -44,6 +48,8 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """About the lowest eigenvalue of what bends (`inverse.first_bending`), which tells what is slow; 0: not known."""
     bands: list[Any] = msgspec.field(default_factory=list)
     """The band of the driven pencil, None where it is not narrow, once it was asked for."""
+    turned: list[Any] = msgspec.field(default_factory=list)
+    """What `transposed` gives, once it was asked for."""
     bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
     """All modes of it, sharp ones, once they were asked for (`driven_pencil.receptance_basis`)."""
     rough_bases: list[tuple[Array, Array]] = msgspec.field(default_factory=list)
@@ -55,6 +61,12 @@ class FactoredPencil(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     def rigid_modes(self) -> int:
         """R, how many motions have no strain."""
         return int(self.rigid.shape[1])
+
+    def transposed(self) -> Any:
+        """B^T as a sparse array (n, m) by rows."""
+        if not self.turned:
+            self.turned.append(self.strain_matrix().T.tocsr())
+        return self.turned[0]
 
 
 def factored_quotient(pencil: FactoredPencil, vectors: Array, strains: Array | None = None) -> tuple[Array, Array]:
@@ -84,11 +96,11 @@ def _in_pairs(products: Array) -> Array:
     return np.asarray(np.ascontiguousarray(products.T).sum(axis=1))
 
 
-def mixed_matrix(pencil: FactoredPencil, below: float = 0.0) -> tuple[Any, Indices]:
-    """([[-s^2/d, s B], [B^T s, -below M]] as a sparse array, the unknowns in it): K - below M with its strains.
+def mixed_matrix(pencil: FactoredPencil, below: float = 0.0, unit: float = 1.0) -> tuple[Any, Indices]:
+    """([[-s^2/(u d), s B], [B^T s, -below u M]] as a sparse array, the unknowns in it): K - below M with its strains.
 
     Where it is K alone and motions are rigid, as many unknowns are grounded as make the matrix regular. s are the
-    `soft_scales` of d.
+    `soft_scales` of u d, and u is the `unit` of the unknowns (`swing`).
     """
     from scipy.sparse import csc_array
 
@@ -96,8 +108,13 @@ def mixed_matrix(pencil: FactoredPencil, below: float = 0.0) -> tuple[Any, Indic
     free: Indices = np.delete(np.arange(pencil.n, dtype=np.intp), grounds)
     strain = pencil.strain_matrix()
     # None, not stored zeros: they would cost three times the solve
-    corner = -below * csc_array(pencil.mass_matrix()) if below else None
-    return bordered(-1.0 / pencil.stiffness, strain[:, free] if grounds else strain, corner), free
+    corner = -below * unit * csc_array(pencil.mass_matrix()) if below else None
+    return bordered(-1.0 / (unit * pencil.stiffness), strain[:, free] if grounds else strain, corner), free
+
+
+def swing(omega2: float) -> float:
+    """About 1/omega, a power of two: the unit of unknowns in which a mixed matrix keeps what is slow (`response`)."""
+    return float(2.0 ** round(-0.5 * log2(max(omega2, _SLOWEST))))
 
 
 def soft_scales(stiffness: Array) -> Array:

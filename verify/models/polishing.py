@@ -1,7 +1,10 @@
 """Vectors made better than what found them: of many parts, slow motions, and all modes of a small pencil."""
 
+from math import inf
+
 import numpy as np
 
+from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.inverse import SLOW, Inverse, start_of
 from verify.models.pencil import FactoredPencil, factored_quotient
@@ -10,6 +13,8 @@ _STEPS = 12
 """To a slow motion at most; each leaves a tenth or less of what else is in it."""
 _STEADY = 1e-14
 """Of a value: a change after which there is no other."""
+_UNSETTLED = 1e-9
+"""Of what a value is a sum of: a change after the last step with which it is refused."""
 _SOUGHT = 6
 """Steps to one that was missed."""
 
@@ -50,8 +55,11 @@ def told_apart(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
 
 
 def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
-    """Slow motions and what stands after them, and their strains, stepped until values of the slow no longer change."""
-    pencil, last = inverse.pencil, np.zeros(0)
+    """Slow motions and what stands after them, and their strains, stepped until values of the slow no longer change.
+
+    Raises InputError where they still do.
+    """
+    pencil, last, change = inverse.pencil, np.zeros(0), inf
     for _ in range(_STEPS):
         vectors, strains = polished(inverse, vectors)
         strains = _best_read(pencil, vectors, strains)
@@ -59,10 +67,22 @@ def _settled(inverse: Inverse, vectors: Array) -> tuple[Array, Array]:
         turned = _turned(pencil, vectors[:, slow], strains[:, slow])
         vectors[:, slow], strains[:, slow] = vectors[:, slow] @ turned, strains[:, slow] @ turned
         values = factored_quotient(pencil, vectors[:, slow], strains[:, slow])[0]
-        if len(last) == len(values) and (abs(values - last) < _STEADY * values).all():
-            break
+        if len(last) == len(values):
+            change = float((abs(values - last) / _energies(pencil, strains[:, slow])).max(initial=0.0))
+            if (abs(values - last) < _STEADY * values).all():
+                break
         last = values
+    if not change < _UNSETTLED:
+        raise InputError(
+            f"count: slow motions of {pencil.n} unknowns, which next to nothing holds, do not settle (omega^2 "
+            f"still moves by {change:.0e} of it): lower count, or hold the beam better"
+        )
     return vectors, strains
+
+
+def _energies(pencil: FactoredPencil, strains: Array) -> Array:
+    """What values are sums of, (k,): of strains (m, k) that an axial force takes energy from as well."""
+    return np.asarray(abs(pencil.stiffness) @ strains**2)
 
 
 def _with_missed(inverse: Inverse, vectors: Array) -> Array:

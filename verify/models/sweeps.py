@@ -18,10 +18,11 @@ from verify.errors import InputError, shown
 from verify.field_docs import Value
 from verify.models.arrays import Array, BoolArray, ComplexArray
 from verify.models.driven_pencil import check_couples, check_dense, receptance_basis, takes_all_modes
-from verify.models.eigen import distance_answered, forced_response, lowest, probe
+from verify.models.eigen import lowest
 from verify.models.fields import RESONANCE, HarmonicField, check_forces, check_frequencies
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
 from verify.models.places import Forces, Numbers, as_asked, keep_lines, places, real_array
+from verify.models.response import distance_answered, forced_response, probe
 from verify.models.stacks import PencilStack, lowest_of_each
 from verify.options import THEORIES
 

@@ -201,5 +201,6 @@ def _added(beam: Beam, chain: Chain, tension: float, attachment: str, elastic: t
         end_inertias=(inertias[0], inertias[1]),
         end_springs=(springs[0] * bool(inertias[0]), springs[1] * bool(inertias[1])),
         end_compliances=(beyond[0], beyond[1]),
+        end_joints=(float(chain.compliances[0]), float(chain.compliances[-1])),
         lines=beam.rigid_lines,
     )

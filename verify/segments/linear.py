@@ -14,11 +14,12 @@ from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.division import check_division
 from verify.models.driven_pencil import check_dampings, damped_response, modal_receptance, probed, refuse_near_resonance
-from verify.models.eigen import Eigenpairs, check_size, forced_response, lowest, method_name
+from verify.models.eigen import Eigenpairs, check_size, lowest, method_name
 from verify.models.fields import HarmonicField, check_drive, phasor, unit_drives
 from verify.models.modes import Modes
 from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
+from verify.models.response import forced_response
 from verify.models.theory import check_theory
 from verify.options import (
     ATTACHMENTS,

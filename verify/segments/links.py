@@ -71,6 +71,8 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
     """Rotational springs beyond those joints that hold such a body."""
     end_compliances: tuple[float, float] = (0.0, 0.0)
     """Of rotational springs beyond those joints that hold none: part of the joint's compliance."""
+    end_joints: tuple[float, float] | None = None
+    """Compliances of the end joints without those springs, of which soft ones leave no digit; None: `compliances`."""
     edges: Array | None = None
     """(N + 1,), on the corrections of the joints' reading where ends are elastic (`walls`); None: one everywhere."""
     slips: Array | None = None
@@ -118,6 +120,14 @@ class Chain(msgspec.Struct, frozen=True, eq=False, kw_only=True):
         """Whether the left and the right end have a joint that bends: at a wall, or with an elastic support beyond."""
         left, right = (wall or elastic for wall, elastic in zip(self.walls, self.elastic, strict=True))
         return left, right
+
+    @property
+    def own_compliances(self) -> Array:
+        """1/k of each joint without a spring beyond it, (N + 1,)."""
+        found = self.compliances.copy()
+        if self.end_joints is not None:
+            found[[0, -1]] = self.end_joints
+        return found
 
     @property
     def first_bending(self) -> float:

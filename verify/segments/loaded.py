@@ -89,7 +89,7 @@ def lossy_stiffness(chain: Chain, stiffness: Array, loss_factor: float, dashpots
     there = _jointed(chain)
     series = np.zeros(chain.n_segments + 1)
     series[[0, -1]] = chain.end_compliances
-    own = 1.0 / (chain.compliances - series)[there]
+    own = 1.0 / chain.own_compliances[there]
     beam = own if chain.eased is None else own / chain.eased[there]
     lossy = own + 1j * (loss_factor * beam + dashpots)
     n, slipping = len(own), _n_slips(chain)

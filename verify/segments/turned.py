@@ -50,9 +50,8 @@ def _change(chain: Chain, curvature: ComplexArray) -> ComplexArray:
 
 def _own(chain: Chain) -> Array:
     """How much of a joint's angle bends the beam, (N + 1,): the rest a spring beyond it, all of it where none bends."""
-    series = np.zeros(chain.n_segments + 1)
-    series[[0, -1]] = chain.end_compliances
-    return np.asarray(1.0 - series / chain.compliances)
+    own, whole = chain.own_compliances, chain.compliances
+    return np.divide(own, whole, out=np.ones(len(own)), where=np.isfinite(whole))
 
 
 def _beyond(chain: Chain, free: ComplexArray) -> ComplexArray:

@@ -7,7 +7,20 @@ from verify.errors import InputError, near_name
 from verify.stress.kind import Row
 
 FAMILIES = (
-    *("sizes", "scales", "standing", "drive", "friction", "turns", "runs", "growth", "many", "laws", "books"),
+    *(
+        "sizes",
+        "scales",
+        "standing",
+        "floating",
+        "drive",
+        "friction",
+        "turns",
+        "runs",
+        "growth",
+        "many",
+        "laws",
+        "books",
+    ),
     *("anything", "written", "moving", "moved", "tableaux", "waves", "sheared", "resonances"),
     *("choices", "rules", "felt", "stacked", "coiled", "bent", "walls", "let_go", "feet", "thrown"),
     *("said", "verdicts", "readings", "sliders", "slips", "stretched", "every", "best", "listed"),

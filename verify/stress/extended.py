@@ -138,3 +138,21 @@ def _add(bands: Bands, at: list[int], block: list[list[Decimal]]) -> None:
         for j, b in enumerate(at):
             if 0 <= a <= b < len(bands):
                 bands[a][b - a] += block[i][j]
+
+
+def answered(stiffness: Bands, mass: Bands, omega2: Decimal, at: int) -> list[Decimal]:
+    """V with (K - omega^2 M) v = 1 at one unknown, by elimination without exchanges."""
+    with localcontext() as context:
+        context.prec = DIGITS
+        rows = [[k - omega2 * m for k, m in zip(*pair, strict=True)] for pair in zip(stiffness, mass, strict=True)]
+        n, right = len(rows), [Decimal(int(j == at)) for j in range(len(rows))]
+        for j, row in enumerate(rows):
+            for i in range(1, min(len(row), n - j)):
+                factor, below = row[i] / row[0], rows[j + i]
+                right[j + i] -= factor * right[j]
+                for k in range(i, len(row)):
+                    below[k - i] -= factor * row[k]
+        for j in range(n - 1, -1, -1):
+            known = sum((row * right[j + i] for i, row in enumerate(rows[j][: n - j]) if i), Decimal(0))
+            right[j] = (right[j] - known) / rows[j][0]
+    return right
