@@ -90,7 +90,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         return all(gate.passed for gate in self.gates if gate.id == "identified")
 
     def _claimed(self) -> bool:
-        """Whether it is said to be one candidate and no other."""
+        """Whether one candidate is named as the answer, surely or probably."""
         return self.found.explained and self._within() and not (self._unseen() or self.found.rivals)
 
     def _unseen(self) -> bool:
