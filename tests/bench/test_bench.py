@@ -187,7 +187,6 @@ def test_every_set_compares_at_the_orders_that_are_due_on_the_beam(added, sets, 
 @pytest.mark.parametrize(
     ("beam", "order"),
     [
-        ({"supports": ["pinned", "guided"]}, 3.5),
         ({"supports": ["clamped", "free"]}, 2.5),
         ({"mass": [{"position": 0.233, "mass": 0.004, "rotary_inertia": 2e-6}]}, 2.5),
         ({"spring": [{"position": 0.233, "rotational": 1.7}]}, 2.5),
@@ -195,7 +194,7 @@ def test_every_set_compares_at_the_orders_that_are_due_on_the_beam(added, sets, 
     ],
 )
 def test_a_field_is_judged_in_the_parts_that_carry_its_forces_too(beam, order):
-    """There alone it is off by h^3 and h^2, on a length h; read at 201 places, 512 links seemed right to 1e-9."""
+    """There alone it is off by h^3 and h^2, on a length h; read at 201 places, many links seemed right."""
     scene = strip(
         beam=STRIP["beam"] | beam,
         drive={"frequency_hz": 157.0, "force": [{"position": 0.1363, "amplitude": 0.9}, {"position": 0.2897}]},

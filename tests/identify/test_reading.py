@@ -106,7 +106,10 @@ def test_mode_numbers_and_rounding_are_kept(read):
         ("mode,frequency\n", "a head and no numbers"),
         ("1.5 27.5 3\n2.5 172.5 4\n", "which holds the frequencies cannot be told"),
         ("mode,f\n1,27.5\n1,172.5\n", "line 3: mode number 1 is no whole number above the one before"),
-        ("mode,freq exact,freq mine\n1,27.5,27.4\n", "has 2 columns of frequencies, 'freq exact' and 'freq mine': leave the one"),
+        (
+            "mode,freq exact,freq mine\n1,27.5,27.4\n",
+            "has 2 columns of frequencies, 'freq exact' and 'freq mine': leave the one",
+        ),
         ("0\n0\n", "holds zeros alone"),
         ("1e-200\n2e-200\n", "1e-200 Hz, and the beam's modes lie from 9.23541 Hz on: check the scene, or the unit"),
     ],

@@ -71,7 +71,7 @@ class Line(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def orders_due(model: "Model", beam: "Beam", **settings: Setting) -> tuple[float, float] | None:
-    """Between which a model's errors fall on a beam, of frequencies and of motions at a place; None where nobody says."""
+    """Between which a model's errors of frequencies and of motions at a place fall; None where nobody says."""
     order = model.order(beam, **settings)
     return (float(order), float(order)) if order else None
 

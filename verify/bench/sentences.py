@@ -82,7 +82,8 @@ def _race(
         own = [o for o in ran if o.point]
         floor = floors(case, (o.row for o in own))
         if own and wanted < ABOVE_FLOOR * floor:
-            return f"at {percent(wanted)} nothing is said, what {name} is held against is known to {percent(floor)} alone"
+            known = f"what {name} is held against is known to {percent(floor)} alone"
+            return f"at {percent(wanted)} nothing is said, {known}"
         points = [p for o in own if (p := o.point)]
         alone = [replace(p, seconds=o.row.warm_s or 0.0) for p, o in zip(points, own, strict=True)]
         if any(_untimed(o.row) or (o.point and not o.row.warm_s) for o in ran):

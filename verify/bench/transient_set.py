@@ -84,7 +84,7 @@ def _entry(scene: "Scene", its: Settled, model: Model, count: int | None) -> Ent
 
 
 def _judge(scene: "Scene", its: Settled) -> Callable[[Entry, Any], Judged]:
-    """The exact beam, and what twice as many modes and the rounding of its frequencies make of it. Raises InputError."""
+    """The exact beam, and what twice as many modes and its frequencies' rounding make of it. Raises InputError."""
     motion = _run(scene, its, "analytic", None, 2 * MODES)
     exact: Array = motion.deflection[:, 0]
     if not exact.any():

@@ -242,7 +242,8 @@ def _columns(rows: _Rows) -> tuple[int | None, int]:
         numbered = next((k for k, name in enumerate(rows.head) if _NUMBERED.match(name)), None)
         others = [k for k, name in enumerate(rows.head) if k != numbered and not _SCATTER.search(name)]
         named = [k for k in others if any(pattern.search(rows.head[k]) for pattern in _UNITS.values())]
-        found = next(filter(None, ([k for k in named if _unit_of(rows.head[k]) == unit] for unit in _PER_HERTZ)), others)
+        by_unit = ([k for k in named if _unit_of(rows.head[k]) == unit] for unit in _PER_HERTZ)
+        found = next(filter(None, by_unit), others)
         if named and len(found) > 1:
             names = " and ".join(repr(rows.head[k]) for k in found)
             raise InputError(f"{rows.where} has {len(found)} columns of frequencies, {names}: leave the one to compare")
