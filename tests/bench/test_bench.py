@@ -672,10 +672,11 @@ def test_the_command_prints_json_that_it_reads_again(tmp_path, capsys):
     for one in old["rows"]:
         if one["method"] == "stock scikit-fem":
             one["warm_s"] = 40.0 * one["warm_s"]
+    old["machine"]["processor"], old["versions"]["numpy"] = "an abacus", "0.9"
     path.write_text(json.dumps(old))
     assert status_of([*line, "--against", str(path), "--keep", str(tmp_path / "kept")]) == 0
     out = " ".join(capsys.readouterr().out.split())
-    assert f"against {old['date']}: stock scikit-fem in modes, mode 1, N = 20 takes 0.0" in out
+    assert f"against {old['date']} (an abacus, numpy 0.9): stock scikit-fem in modes, mode 1, N = 20 takes 0.0" in out
     kept = (tmp_path / "kept" / "paper.md").read_text()
     assert kept.startswith("# Run time against error: paper")
     made = "verify bench paper --set bench.imports=false --set bench.rounds=3 --sets modes --counts 20,30 --modes 1"
