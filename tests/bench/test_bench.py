@@ -338,7 +338,9 @@ def test_defaults_are_the_scenes_own():
 
 
 def test_sets_that_a_scene_has_not_are_named_with_the_reason():
-    found = found_of(load_scene("steel-cantilever"), sets=("modes", "slider", "harmonic"), counts=(8,), modes=(1,))
+    found = found_of(
+        load_scene("steel-cantilever"), sets=("modes", "slider", "harmonic"), counts=(8,), modes=(1,), cold=True
+    )
     assert {one.set for one in found.rows} == {"modes"}
     told = " / ".join(found.facts())
     assert "slider is left out: slider: the scene has no [slider], add it" in told
@@ -346,6 +348,7 @@ def test_sets_that_a_scene_has_not_are_named_with_the_reason():
     notes = " / ".join(found.notes)
     assert "chain is left out: nothing in the scene asks for the nonlinear chain" in notes
     assert "the mean of both takes no part: mode.bracket: with wall = 'gregory'" in notes
+    assert "cold: nothing of modes is compiled" in notes
 
 
 TURNS = {
