@@ -1,5 +1,7 @@
 """Run time over error, on lines whose crossing is known beforehand."""
 
+from math import log
+
 import pytest
 
 from verify.judge.crossing import Point, Stretch, Unearned, at_error, converging, crossing, within
@@ -31,6 +33,17 @@ def test_the_cheaper_one_changes_where_two_power_laws_meet():
     assert found.crossings == (pytest.approx(0.2**4, rel=1e-9),)
     assert found.ratios[0][1] == pytest.approx(0.2 * 1e-4**-0.25, rel=1e-9)
     assert (found.low, found.high) == (1e-4, 1e-1)
+
+
+def test_the_cheaper_one_changes_where_its_own_rows_say_within_the_spread_too():
+    """Costs as a bench of a chain had them: straight lines between (ln e, ln r) = (-8.94, -0.41) and (-11.5, 0.02)."""
+    errors = (1.3e-4, 1.04e-5, 9.26e-7)
+    one = Stretch(tuple(Point(e, e, s, 0.05) for e, s in zip(errors, (2.67, 3.07, 3.97), strict=True)), (1.0,) * 2)
+    other = Stretch(tuple(Point(e, e, s, 0.07) for e, s in zip(errors, (1.77, 3.13, 5.2), strict=True)), (4.0,) * 2)
+    at = 1.04e-5 * (1.3e-4 / 1.04e-5) ** (log(3.13 / 3.07) / log(3.13 / 3.07 * 2.67 / 1.77))
+    found = crossing(one, other)
+    assert found.crossings == (pytest.approx(at, rel=1e-12),)
+    assert one.seconds(at) == pytest.approx(other.seconds(at), rel=1e-12)
 
 
 def test_nothing_changes_where_the_difference_lies_within_the_spread():

@@ -208,3 +208,21 @@ def test_errors_that_the_reference_does_not_know_earn_nothing():
     told = compared((0.05, 1.0, None), (0.02, 2.0, None), uncertainty=2e-5)
     assert not told.earned
     assert "rounding" in told.text
+
+
+def test_a_race_that_is_not_run_says_what_is_known_and_what_was_reached_in_digits_that_tell_why():
+    """Answers of N = 80 are 1.709e-7 off, which is more than 1.7e-7, and what they are against is known to 4.1e-8."""
+    clock = Clock()
+    entries = [entry(clock, name, n) for name in "ab" for n in (20, 80)]
+    one = case(*entries, races=(("a", "b"),), wanted=(1.7e-7, 1e-7), uncertainty=4.1e-8)
+    (told,) = sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")
+    assert "at 1.7e-05 % nothing is said, a comes to 1.71e-05 %" in told.text
+    assert "at 1e-05 % nothing is said, what a is held against is known to 4.1e-06 % alone" in told.text
+
+
+def test_the_time_of_the_exact_solution_has_a_unit_that_suits_it():
+    clock = Clock()
+    exact = entry(clock, "exact", None, seconds=(1.93,), answer=EXACT, orders=None)
+    one = case(entry(clock, "a", 20, seconds=(5.8e-6,)), exact)
+    (told,) = sentences_of(one, measured(one, {}, 3, 1e9, clock), "own-scene")
+    assert "the exact solution takes 1.93 s, the cheapest of parts within 1 %, a, N = 20, 5.8 µs: " in told.text

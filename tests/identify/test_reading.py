@@ -79,6 +79,12 @@ def test_the_unit_is_that_of_the_head_unless_one_is_given(read, head, unit, fact
     assert listed.unit != "Hz"
 
 
+@pytest.mark.parametrize("scatter", ["freq std", "σ [Hz]", "frequency error (Hz)", "f_sd"])
+def test_the_scatter_of_frequencies_is_not_taken_for_them(read, scatter):
+    listed = read("\n".join([f"mode,{scatter},freq mean", *(f"{i},0.05,{f!r}" for i, f in enumerate(HERTZ, 1))]))
+    assert listed.frequencies_hz == pytest.approx(HERTZ, rel=1e-12)
+
+
 def test_mode_numbers_and_rounding_are_kept(read):
     listed = read("mode,f\n2,10.5\n5,1.25e3\n")
     assert listed.numbers == (2, 5)
@@ -100,6 +106,10 @@ def test_mode_numbers_and_rounding_are_kept(read):
         ("mode,frequency\n", "a head and no numbers"),
         ("1.5 27.5 3\n2.5 172.5 4\n", "which holds the frequencies cannot be told"),
         ("mode,f\n1,27.5\n1,172.5\n", "line 3: mode number 1 is no whole number above the one before"),
+        (
+            "mode,freq exact,freq mine\n1,27.5,27.4\n",
+            "has 2 columns of frequencies, 'freq exact' and 'freq mine': leave the one",
+        ),
         ("0\n0\n", "holds zeros alone"),
         ("1e-200\n2e-200\n", "1e-200 Hz, and the beam's modes lie from 9.23541 Hz on: check the scene, or the unit"),
     ],

@@ -26,6 +26,8 @@ class Earlier(msgspec.Struct, frozen=True, kw_only=True):
     scene: str
     rows: tuple[Row, ...]
     date: str = ""
+    machine: dict[str, str] = {}
+    versions: dict[str, str] = {}
 
 
 def read_earlier(path: Path) -> Earlier:
@@ -42,7 +44,20 @@ def beside(found: BenchFound, earlier: Earlier) -> BenchFound:
     """The same with a sentence for everything that moved. Raises InputError for another scene or nothing in common."""
     if earlier.scene != found.scene:
         raise InputError(f"--against: the file is about the scene {earlier.scene!r}, not {found.scene!r}: name another")
-    return replace(found, moved=moved(earlier.rows, found.rows, earlier.date or "before"))
+    return replace(found, moved=moved(earlier.rows, found.rows, _when(found, earlier)))
+
+
+def _when(found: BenchFound, earlier: Earlier) -> str:
+    """The date of an earlier run, with what of its machine and versions is another now."""
+    own, then = found.machine | found.versions, earlier.machine | earlier.versions
+    other = [_named(name, was) for name, was in then.items() if own.get(name) != was]
+    other += [f"without {name}" for name in found.versions if then and name not in then]
+    return (earlier.date or "before") + (f" ({', '.join(other)})" if other else "")
+
+
+def _named(name: str, was: str) -> str:
+    """A machine is told by what it is, a program by its name and version."""
+    return was if name in ("processor", "cores", "system") else f"{name} {was}"
 
 
 def moved(old: Iterable[Row], new: Iterable[Row], when: str) -> tuple[Sentence, ...]:

@@ -32,7 +32,7 @@ def _chart(name: str, rows: "list[Row]", found: "BenchFound") -> Chart:
     lines: list[Line] = []
     for about in abouts:
         for method in methods:
-            own = [row for row in rows if (row.about, row.method) == (about, method) and row.error and row.whole_s]
+            own = [row for row in rows if (row.about, row.method) == (about, method) and _drawable(row)]
             if own:
                 lines.append(_drawn(own, methods.index(method), abouts.index(about), named=not _named(lines, method)))
     several = len(abouts) > 1
@@ -47,6 +47,11 @@ def _chart(name: str, rows: "list[Row]", found: "BenchFound") -> Chart:
         y=Axis("run time, ms", log=True),
         lines=(*lines, *keys),
     )
+
+
+def _drawable(row: "Row") -> bool:
+    """Whether it has an error that is its own, and no more of what its reference leaves open, and a time."""
+    return abs(row.error or 0.0) > (row.reference_uncertainty or 0.0) and bool(row.whole_s)
 
 
 def _named(lines: list[Line], method: str) -> bool:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_due
+from verify.bench.kind import ASKED_OF_PARTS, Case, Entry, Judged, Line, Reference, Told, orders_of_fields
 from verify.bench.study import Settled
 from verify.errors import InputError
 from verify.models.arrays import Array, ComplexArray
@@ -16,10 +16,13 @@ from verify.timing import forget
 
 if TYPE_CHECKING:
     from verify.beam import PointForce
+    from verify.models.fields import HarmonicField
     from verify.scenes.scene import Scene
 
 PLACES = 201
-"""Evenly over the beam, where a field is read."""
+"""Evenly over the beam, where a field is read while it is timed."""
+EACH = 8
+"""Places to a part at which it is judged, at least as many as those: what one part alone leaves shows at many parts."""
 TURN = 1e-7
 """Relative, of the frequency: how a field's sensitivity to its rounding is found."""
 ROUNDINGS = 8.0 * np.finfo(float).eps
@@ -49,13 +52,15 @@ def field_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
         forget()
 
         def run() -> Told:
-            return Told(model.solve_harmonic(beam, forces, frequency, count).deflection(x))
+            field = model.solve_harmonic(beam, forces, frequency, count)
+            field.deflection(x)
+            return Told(field)
 
         run()
         return run
 
     def entry(model: Model, count: int | None) -> Entry:
-        orders = orders_due(model, beam) if count else None
+        orders = orders_of_fields(model, beam) if count else None
         return Entry(
             line=Line(name=model.title, model=model.name, orders=orders),
             size=1.0 / count if count else 0.0,
@@ -66,8 +71,8 @@ def field_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
             runs_first=True,
         )
 
-    def exact(turn: float) -> ComplexArray:
-        return MODELS["analytic"].solve_harmonic(beam, forces, frequency * (1.0 + turn), None).deflection(x)
+    def exact(turn: float) -> "HarmonicField":
+        return MODELS["analytic"].solve_harmonic(beam, forces, frequency * (1.0 + turn), None)
 
     yield Case(
         set="harmonic",
@@ -81,14 +86,20 @@ def field_cases(scene: "Scene", its: Settled) -> Iterator[Case]:
     )
 
 
-def _against(exact: Callable[[float], ComplexArray]) -> Callable[[Entry, Any], Judged]:
+def _against(exact: Callable[[float], "HarmonicField"]) -> Callable[[Entry, Any], Judged]:
     """The closed form, and what rounding its frequency makes of it. Raises InputError."""
-    still = exact(0.0)
-    if not abs(still).any():
+    still, turned = exact(0.0), exact(TURN)
+    x = np.linspace(0.0, still.beam.length, PLACES)
+    if not abs(still.deflection(x)).any():
         raise InputError("harmonic: the exact beam stands still, change the drive")
-    sensitivity = relative_rms(exact(TURN), still) / TURN
+    sensitivity = relative_rms(turned.deflection(x), still.deflection(x)) / TURN
     reference = Reference("exact field in closed form, rounding of its frequency", float(ROUNDINGS * sensitivity))
-    return lambda entry, answer: Judged(relative_rms(answer, still), reference)
+
+    def judge(entry: Entry, answer: "HarmonicField") -> Judged:
+        x = np.linspace(0.0, still.beam.length, max(EACH * (entry.count or 0) + 1, PLACES))
+        return Judged(relative_rms(answer.deflection(x), still.deflection(x)), reference)
+
+    return judge
 
 
 def relative_rms(found: Array | ComplexArray, exact: Array | ComplexArray) -> float:

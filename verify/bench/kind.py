@@ -71,9 +71,15 @@ class Line(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def orders_due(model: "Model", beam: "Beam", **settings: Setting) -> tuple[float, float] | None:
-    """Between which a model's errors fall on a beam, frequencies and motions alike; None where nobody says."""
+    """Between which a model's errors of frequencies and of motions at a place fall; None where nobody says."""
     order = model.order(beam, **settings)
     return (float(order), float(order)) if order else None
+
+
+def orders_of_fields(model: "Model", beam: "Beam") -> tuple[float, float] | None:
+    """Likewise of fields, rms over the beam: at first as frequencies, of many parts by what single parts leave."""
+    order, last = model.order(beam), model.field_order(beam)
+    return (float(min(order, last)), float(order)) if order and last else None
 
 
 def orders_at_once(model: "Model", beam: "Beam") -> tuple[float, float] | None:

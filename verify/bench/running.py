@@ -104,6 +104,8 @@ def benched(
     if asked.cold:
         step("bench, compiling")
     compiling = compile_costs(scene, sets) if asked.cold else {}
+    if asked.cold and not compiling:
+        notes.append(f"cold: nothing of {', '.join(sets)} is compiled")
     return BenchFound(
         scene=scene.name,
         date=today(),

@@ -22,6 +22,7 @@ from verify.judge.crossing import (
     crossing,
     within,
 )
+from verify.units import in_words
 
 UNTIMED = "its time is below the resolution of the clock"
 NEAR = 0.01
@@ -79,9 +80,10 @@ def _race(
     for name in methods:
         ran = sorted((o for o in found if o.entry.line.name == name), key=lambda o: -o.entry.size)
         own = [o for o in ran if o.point]
-        floor = ABOVE_FLOOR * floors(case, (o.row for o in own))
-        if own and wanted < floor:
-            return f"at {percent(wanted)} nothing is said, what {name} is held against is known to {floor:.1e} alone"
+        floor = floors(case, (o.row for o in own))
+        if own and wanted < ABOVE_FLOOR * floor:
+            known = f"what {name} is held against is known to {percent(floor)} alone"
+            return f"at {percent(wanted)} nothing is said, {known}"
         points = [p for o in own if (p := o.point)]
         alone = [replace(p, seconds=o.row.warm_s or 0.0) for p, o in zip(points, own, strict=True)]
         if any(_untimed(o.row) or (o.point and not o.row.warm_s) for o in ran):
@@ -89,7 +91,7 @@ def _race(
         whole, run = (within(ran_in, wanted, between=between) for ran_in in (points, alone))
         if whole is None or run is None:
             least = min((abs(p.error) for p in points), default=None)
-            why = "has no figure" if least is None else f"comes to {percent(least)}"
+            why = "has no figure" if least is None else f"comes to {100 * least:.3g} %"
             left = sum(bool(o.row.left_out) for o in found if o.entry.line.name == name)
             return f"at {percent(wanted)} nothing is said, {name} {why}" + (f", {left} steps left out" if left else "")
         seconds.append((whole, run))
@@ -235,8 +237,8 @@ def _exact(case: Case, found: Sequence[Outcome], scene: str) -> list[Sentence]:
     least = min(near, key=lambda one: one.row.whole_s or 0.0)
     own, other, name = exact.row.whole_s, least.row.whole_s or 0.0, exact.entry.line.name
     text = (
-        f"{case.name}: the exact solution takes {1e3 * own:.3g} ms, the cheapest of parts within {percent(NEAR)}, "
-        f"{least.entry.told}, {1e3 * other:.3g} ms: {_slower(name, least.entry.line.name, other / own)} "
+        f"{case.name}: the exact solution takes {in_words(own, 's')}, the cheapest of parts within {percent(NEAR)}, "
+        f"{least.entry.told}, {in_words(other, 's')}: {_slower(name, least.entry.line.name, other / own)} "
         f"({_condition(case, found, scene)})"
     )
     methods = (name, least.entry.line.name)

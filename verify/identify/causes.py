@@ -64,14 +64,16 @@ def identify(data: Data, count: int | None) -> Identified | None:
 def _of_few(found: Identified, data: Data, count: int | None) -> Identified:
     """What one or two frequencies are: beside what was fitted to them, one common factor that leaves as little.
 
-    Not where the exact beam, or a model of known size, is they without anything that was fitted.
+    Not where the exact beam, or a model of known size, is they without anything that was fitted, nor a factor that
+    explains nothing.
     """
     plain = found if _credible(found) else best_of(data, count, (PLAIN,)) or found
     if _unfitted(plain, data, count):
         return plain
     members = tuple(one for one in data.family if count is not None or not one.sized)
     scaled = best_of(msgspec.structs.replace(data, family=members), count, (SCALED,))
-    both = [msgspec.structs.replace(one, short=True) for one in (plain, scaled) if one is not None]
+    explaining = [scaled] if scaled is not None and scaled.best.residual <= CREDIBLE else []
+    both = [msgspec.structs.replace(one, short=True) for one in (plain, *explaining)]
     best, *others = sorted(both, key=lambda one: one.best.residual)
     rivals = [one for one in others if likelier(best.best, one.best, len(one.best.pairs.entries)) < SURE]
     return msgspec.structs.replace(best, rivals=tuple(rivals))

@@ -1,6 +1,6 @@
 """What is behind a list, in words: the unit, the factor or the clamp, or those of them that it does not tell apart."""
 
-from math import log
+from math import inf, isfinite, log
 
 from verify.beam import Beam
 from verify.identify.fitting import FLOOR, PLAIN, UNITS, Fit, Identified, beyond_unit
@@ -10,6 +10,8 @@ from verify.words import percent
 _LITTLE = 1e-3
 """Of what a common factor changes: one that leaves more is not claimed, but told as the nearest."""
 
+_SHOWN = 5e-5
+"""Relative: what is fitted is told in four digits."""
 _SIZES = {"rectangle": "the thickness", "round": "the diameter", "tube": "its diameters, outer and inner,"}
 _BESIDE = {"mass": "bodies", "spring": "springs", "tension": "axial force", "foundation": "foundation"}
 """What one thing alone leaves as it is."""
@@ -47,6 +49,7 @@ def plain_cause(found: Identified, beam: Beam) -> dict[str, object]:
         "clamp": None
         if clamp is None
         else {"ends": list(clamp.ends), "k_r_L_over_EI": clamp.stiffness, "k_r": clamp.rotational},
+        "give_or_take": found.give_or_take if isfinite(found.give_or_take) else None,
         "residual": best.residual,
         "nearest": nearest(best),
     }
@@ -73,11 +76,11 @@ def _words(found: Identified, beam: Beam, *, loose: bool = True) -> str:
     unit = UNITS.get(found.reading.factor or 1.0, "")
     said = [f"the frequencies are {unit}"] if unit else []
     if best.clamp is not None:
-        near = f"nearest comes a clamp that gives: {best.clamp.words}{_and_left(best) * loose}"
-        said += [best.clamp.words if found.explained else near]
+        words = best.clamp.words + _give_or_take(found)
+        said += [words if found.explained else f"nearest comes a clamp that gives: {words}{_and_left(best) * loose}"]
     if kind == "scale":
         plainly = not (loosely(best) or (loose and found.short))
-        return _scale_words(best, beam, plainly=plainly) + _and_left(best) * (loose and not plainly)
+        return _scale_words(found, beam, plainly=plainly) + _and_left(best) * (loose and not plainly)
     return "; ".join(said) or ("nothing is off" if found.reading == PLAIN else "modes are missing or too many")
 
 
@@ -91,13 +94,20 @@ def loosely(best: Fit) -> bool:
     return best.residual > max(FLOOR, _LITTLE * change)
 
 
-def _scale_words(best: Fit, beam: Beam, *, plainly: bool) -> str:
+def _give_or_take(found: Identified) -> str:
+    """How far what was fitted may be off, where its digits show it."""
+    off = found.give_or_take
+    return f", give or take {100.0 * off:.2g} %" if _SHOWN < off < inf else ""
+
+
+def _scale_words(found: Identified, beam: Beam, *, plainly: bool) -> str:
     """One factor on all frequencies, and what alone it may be of on this beam."""
+    best = found.best
     factor, unit = beyond_unit(best.factor)
     had = "all frequencies have the common factor" if plainly else "nearest comes a common factor of all frequencies,"
     beside = f": {UNITS[unit]}; beyond that {factor:.6g}, so that" if unit != 1.0 else ""
     made = made_by(factor, beam, best.candidate.theory)
-    return f"{had} {best.factor:.6g}{beside or ':'} {made}"
+    return f"{had} {best.factor:.6g}{_give_or_take(found)}{beside or ':'} {made}"
 
 
 def made_by(factor: float, beam: Beam, theory: str) -> str:

@@ -28,6 +28,11 @@ _UNITS = {
     "hz": re.compile(r"hz|hertz|freq|^f(_?\w{0,2})?$|cps|cycles", re.IGNORECASE),
 }
 _NUMBERED = re.compile(r"^(#|n|no\.?|nr\.?|mode|modes?[ _]?(number|no\.?|nr\.?)|number|index|i|k)$", re.IGNORECASE)
+_SCATTER = re.compile(
+    r"(?:^|[^a-z])(?:std|sd|se|dev|err|unc|var)(?:[^a-z]|$)|sigma|deviation|error|uncertainty|variance|[σ±]|\+/-",
+    re.IGNORECASE,
+)
+"""Names of what is known of frequencies beside them."""
 _NUMBER = re.compile(r"^[+-]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][+-]?\d+)?$")
 
 
@@ -235,12 +240,14 @@ def _columns(rows: _Rows) -> tuple[int | None, int]:
     width = len(rows.cells[0])
     if rows.head:
         numbered = next((k for k, name in enumerate(rows.head) if _NUMBERED.match(name)), None)
-        named = [
-            k for k, name in enumerate(rows.head) if k != numbered and any(p.search(name) for p in _UNITS.values())
-        ]
-        hertz = [k for k in named if _unit_of(rows.head[k]) == "hz"]
-        others = [k for k in range(width) if k != numbered]
-        if found := hertz or named or (others if len(others) == 1 else []):
+        others = [k for k, name in enumerate(rows.head) if k != numbered and not _SCATTER.search(name)]
+        named = [k for k in others if any(pattern.search(rows.head[k]) for pattern in _UNITS.values())]
+        by_unit = ([k for k in named if _unit_of(rows.head[k]) == unit] for unit in _PER_HERTZ)
+        found = next(filter(None, by_unit), others)
+        if named and len(found) > 1:
+            names = " and ".join(repr(rows.head[k]) for k in found)
+            raise InputError(f"{rows.where} has {len(found)} columns of frequencies, {names}: leave the one to compare")
+        if len(found) == 1:
             return numbered, found[0]
     if width == 1:
         return None, 0

@@ -90,7 +90,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         return all(gate.passed for gate in self.gates if gate.id == "identified")
 
     def _claimed(self) -> bool:
-        """Whether it is said to be one candidate and no other."""
+        """Whether one candidate is named as the answer, surely or probably."""
         return self.found.explained and self._within() and not (self._unseen() or self.found.rivals)
 
     def _unseen(self) -> bool:
@@ -128,7 +128,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
         following = self.found.next
         if following is None:
             return ""
-        times = f", {self.found.odds:.2g} times as much" if self.found.best.residual > FLOOR else ""
+        times = f", {_times(self.found.odds)} as much" if self.found.best.residual > FLOOR else ""
         return f"next, with {left(following)}{times}, comes {nearest(following)}"
 
     def in_short(self) -> str:
@@ -302,6 +302,11 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             "seconds": self.seconds,
             "passed": self.passed,
         }
+
+
+def _times(ratio: float) -> str:
+    """'2.2 times', '113 times'."""
+    return f"{ratio:.0f} times" if ratio >= 100.0 else f"{ratio:.2g} times"
 
 
 def _at(error: float, row: Row) -> str:

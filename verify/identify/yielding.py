@@ -188,4 +188,6 @@ def _fit(
     pairs = _pairs(data)
     rounding = data.rounding[pairs.entries]
     clamp = clamp_of(data.solver.beam, ends, compliance)
-    return judged_fit(candidate, count, pairs, off, 1.0, rounding, READING.cost, len(data.listed), clamp)
+    loss = loss_of(data.solver.beam, ends, data.solver.n_modes)
+    weight = float(np.linalg.norm(_slope(loss, compliance, pairs)))
+    return judged_fit(candidate, count, pairs, off, 1.0, rounding, READING.cost, len(data.listed), clamp, weight)

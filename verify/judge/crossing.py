@@ -169,9 +169,17 @@ def crossing(a: Stretch, b: Stretch) -> Crossing | Unearned:
 
 
 def _changes(ratios: Sequence[tuple[float, float]], spread: float) -> tuple[float, ...]:
-    """Where ratios pass 1 from beyond the spread on one side to beyond it on the other."""
-    found, sure = [], [(e, log(r)) for e, r in ratios if abs(log(r)) > spread]
-    for (e1, r1), (e2, r2) in pairwise(sure):
-        if r1 * r2 < 0.0:
-            found.append(exp(log(e1) + r1 / (r1 - r2) * log(e2 / e1)))
-    return tuple(found)
+    """Where ratios pass 1 on their way from beyond the spread on one side to beyond it on the other.
+
+    Of several places on one way, which the spread does not tell apart, the middle one.
+    """
+    logs = [(log(error), log(ratio)) for error, ratio in ratios]
+    sure = [i for i, (_, ratio) in enumerate(logs) if abs(ratio) > spread]
+    ways = [logs[i : j + 1] for i, j in pairwise(sure) if logs[i][1] * logs[j][1] < 0.0]
+    return tuple(exp(met[len(met) // 2]) for met in map(_passed, ways))
+
+
+def _passed(way: Sequence[tuple[float, float]]) -> list[float]:
+    """Where the straight lines between points (x, y) pass y = 0."""
+    steps = [(one, other) for one, other in pairwise(way) if (one[1] < 0.0) != (other[1] < 0.0)]
+    return [x1 + y1 / (y1 - y2) * (x2 - x1) for (x1, y1), (x2, y2) in steps]

@@ -82,6 +82,10 @@ class Model:
         """The order in the number of parts at which its frequencies converge on a beam; None where nobody says."""
         return None
 
+    def field_order(self, beam: "Beam") -> float | None:
+        """The order at which driven fields fall in the end, rms over the beam; that of frequencies unless it says."""
+        return self.order(beam)
+
     def method(self, beam: "Beam", n_modes: int, count: int, **settings: Any) -> str:
         """How its eigenvectors are found, in a word or two."""
         return self.title or self.parts

@@ -46,10 +46,10 @@ def pushed(name: str, case: Case, end: float) -> Break:
     if peer.implicit:
         pulled = tuple(msgspec.structs.replace(one, amplitude=PULL * one.amplitude) for one in case.forces)
         case, step = msgspec.structs.replace(case, forces=pulled), IMPLICIT_STEP
-        by = f"forces of {max(abs(force.amplitude) for force in pulled):.3g} N in steps of {1e6 * step:.3g} us"
+        by = f"forces of {max(abs(force.amplitude) for force in pulled):.3g} N in steps of {1e6 * step:.3g} µs"
     else:
         step = OVER * explicit_limit(case)
-        by = f"steps of {1e6 * step:.3g} us, {OVER:g} times the explicit limit"
+        by = f"steps of {1e6 * step:.3g} µs, {OVER:g} times the explicit limit"
     run = adapter(peer).prepare(case, None)(step, end)
     return Break(
         engine=name,
