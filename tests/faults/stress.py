@@ -23,9 +23,9 @@ from verify.exact import modes as exact_modes
 from verify.identify import matrices, outside, pairing, searching, shapes_told
 from verify.identify import told as compared
 from verify.judge import compare, crossing
-from verify.models import division, driven_pencil, eigen, inverse, kind, places, spline, underfoot
+from verify.models import division, driven_pencil, eigen, inverse, kind, places, spline, sweeps, underfoot
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, friction_kernels, request, rigid_surface, step_size, validity
+from verify.motion import free_vibration, friction_kernels, request, rigid_surface, sound_books, step_size, validity
 from verify.motion.stepping import Sliding
 from verify.motor import combine, on_chain, resting
 from verify.motor import coupling as motor_coupling
@@ -38,7 +38,7 @@ from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
 from verify.segments import sweeps as segment_sweeps
 from verify.stress import turns
-from verify.waves import series, unit_waves, window
+from verify.waves import measures, poles, series, unit_waves, window
 
 
 def assembled_instead_of_factored(patch):
@@ -553,8 +553,20 @@ def hard_points_on_any_beam(patch):
     patch.setattr(combine, "_run_by", lambda *cell: "run_motor" if cell[2] == "hard" else true(*cell))
 
 
+def real_and_imaginary_parts_by_other_weights(patch):
+    true = measures.travelling_index
+    patch.setattr(measures, "travelling_index", lambda w, weights: true(w, weights**2))
+
+
 FAULTS = {
     "stress": {
+        limitless(poles, "_DAMPED", 1.001e-12): {"limits-of-waves"},
+        limitless(sound_books, "MOST", 10.01): {"limits-of-motions"},
+        limitless(compare, "RESTING", 1.001e-11): {"limits-of-judgements"},
+        limitless(eigen, "_BYTES_PER_UNKNOWN", 2002): {"estimates-of-work"},
+        real_and_imaginary_parts_by_other_weights: {"two-waves-measured-whole"},
+        limitless(sweeps, "RESONANCE", 1.1e-9): {"resonances-in-sweeps-of-parts"},
+        limitless(crowded, "_RIGHT", inf): {"crowds-beside-all-ends"},
         best_candidates_without_their_entries: {"what-compare-shows"},
         shapes_in_the_order_they_were_given: {"sentences-about-shapes"},
         hard_points_on_any_beam: {"what-is-run-with-what"},

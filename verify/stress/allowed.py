@@ -132,6 +132,8 @@ def work_error(number: float) -> float:
             (1e-9 * 210**3, False, _above(lambda: eigen.solve_seconds(210, 9))),
             (1e-9 * 3000**3, False, _above(lambda: eigen.solve_seconds(3000, 751))),
             (3000 * (1.5e-5 + 9e-7 * 750), False, _above(lambda: eigen.solve_seconds(3000, 750))),
+            (251 * (1.5e-5 + 9e-7), False, _above(lambda: eigen.solve_seconds(251, 1))),
+            (64.0 * 250**2, False, _above(lambda: eigen.required_bytes(250, 1))),
             (2.5e-4 + 3e-6 * 700, False, _above(lambda: eigen.field_seconds(700))),
             (64.0 * 210**2, False, _above(lambda: eigen.required_bytes(210, 9))),
             (3000 * (2000.0 + 32 * 1520), False, _above(lambda: eigen.required_bytes(3000, 750))),
@@ -140,7 +142,7 @@ def work_error(number: float) -> float:
             (1.2e-3 * 700 * 2.3, False, _begun(lambda: check_patience(23, 700, 5))),
             (1.2e-3 * 700, False, _begun(lambda: check_patience(7, 700, 5))),
             (5 * (0.1 + 0.55 * 1.7 + 0.2 * 1.7**3), False, _begun(lambda: check_patience(170, None, 5))),
-            (5e7, True, lambda n: taken(lambda: sweeps.check_held(round(n / 1e3), 1000, "x"))),
+            (5e7 + 0.5, True, lambda n: taken(lambda: sweeps.check_held(round(n), 1, "x"))),
             (1e5, True, links),
             (2e7 / 700.0, True, lambda n: taken(lambda: work.check_kept(n, 700, "samples"))),
             (3e4, True, lambda n: taken(lambda: work.refuse_work(n, 3e4, 0.1))),
@@ -149,7 +151,8 @@ def work_error(number: float) -> float:
                 False,
                 _above(lambda: 1e-3 * work.modal_work(0.6, 1e-3, 3, 40, 7)),
             ),
-        )
+        ),
+        1e-9,
     )
 
 

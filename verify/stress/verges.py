@@ -31,12 +31,12 @@ def taken(ask: Callable[[], object]) -> bool:
     return True
 
 
-def misplaced(limits: Sequence[tuple[float, bool, Callable[[float], bool]]]) -> float:
+def misplaced(limits: Sequence[tuple[float, bool, Callable[[float], bool]]], hair: float = HAIR) -> float:
     """How many limits do not part what is below from what is above: (limit, whether below is taken, value -> taken)."""
     wrong = 0
     for limit, below, ask in limits:
-        wrong += bool(ask(limit * (1.0 - HAIR))) is not below
-        wrong += bool(ask(limit * (1.0 + HAIR))) is below
+        wrong += bool(ask(limit * (1.0 - hair))) is not below
+        wrong += bool(ask(limit * (1.0 + hair))) is below
     return float(wrong)
 
 
