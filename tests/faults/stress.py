@@ -23,7 +23,18 @@ from verify.exact import modes as exact_modes
 from verify.identify import matrices, outside, pairing, searching, shapes_told
 from verify.identify import told as compared
 from verify.judge import compare, crossing
-from verify.models import division, driven_pencil, eigen, inverse, kind, places, spline, sweeps, underfoot
+from verify.models import (
+    division,
+    driven_pencil,
+    eigen,
+    inverse,
+    isolated,
+    kind,
+    places,
+    spline,
+    sweeps,
+    underfoot,
+)
 from verify.models.catalogue import MODELS
 from verify.motion import free_vibration, friction_kernels, request, rigid_surface, sound_books, step_size, validity
 from verify.motion.stepping import Sliding
@@ -32,7 +43,7 @@ from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
 from verify.motor import figures as motor_figures
 from verify.motor import stepping as motor_stepping
-from verify.segments import crowded, links
+from verify.segments import crowded, links, loaded
 from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
@@ -558,6 +569,15 @@ def real_and_imaginary_parts_by_other_weights(patch):
     patch.setattr(measures, "travelling_index", lambda w, weights: true(w, weights**2))
 
 
+def shifts_by_another_curve(patch):
+    patch.setattr(isolated, "_NODES", (-2, -1, 0, 1, 2, 4))
+
+
+def joints_that_slip_read_half_as_far_again(patch):
+    true = loaded.corrections
+    patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
+
+
 FAULTS = {
     "stress": {
         limitless(poles, "_DAMPED", 1.001e-12): {"limits-of-waves"},
@@ -567,6 +587,9 @@ FAULTS = {
         real_and_imaginary_parts_by_other_weights: {"two-waves-measured-whole"},
         limitless(sweeps, "RESONANCE", 1.1e-9): {"resonances-in-sweeps-of-parts"},
         limitless(crowded, "_RIGHT", inf): {"crowds-beside-all-ends"},
+        limitless(sweeps, "MODES_TOGETHER", 3999): {"ways-by-size"},
+        shifts_by_another_curve: {"shifts-beside-modes"},
+        joints_that_slip_read_half_as_far_again: {"graded-parts"},
         best_candidates_without_their_entries: {"what-compare-shows"},
         shapes_in_the_order_they_were_given: {"sentences-about-shapes"},
         hard_points_on_any_beam: {"what-is-run-with-what"},

@@ -245,7 +245,7 @@ def _same_end(part: float) -> bool:
             end=SimpleNamespace(time=time), travelled=np.zeros(3), statistics=SimpleNamespace(finished=True)
         )
 
-    return moved(ran(0.1 * (1.0 + part)), ran(0.1)) == 0.0 and moved(ran(0.1 * (1.0 - part)), ran(0.1)) == 0.0
+    return moved(ran(0.1 * (1.0 + part)), ran(0.1)) == 0.0
 
 
 def _once(radians: float) -> bool:
@@ -291,6 +291,7 @@ def motion_error(number: float) -> float:
             (0.004, True, _confirmed),
             (0.004, True, lambda part: _confirmed(part, at_end=False)),
             (0.01, True, _same_end),
+            (0.01, True, lambda part: _same_end(-part)),
             (0.3, True, _once),
             (0.01, True, _known),
         )
