@@ -31,12 +31,22 @@ from verify.models import (
     isolated,
     kind,
     places,
+    search,
     spline,
     sweeps,
     underfoot,
 )
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, friction_kernels, request, rigid_surface, sound_books, step_size, validity
+from verify.motion import (
+    energy,
+    free_vibration,
+    friction_kernels,
+    request,
+    rigid_surface,
+    sound_books,
+    step_size,
+    validity,
+)
 from verify.motion.stepping import Sliding
 from verify.motor import combine, on_chain, resting
 from verify.motor import coupling as motor_coupling
@@ -574,6 +584,15 @@ def shifts_a_little_above_their_modes(patch):
     patch.setattr(isolated, "isolated", lambda *given: 1.01 * true(*given))
 
 
+def a_billionth_less_lost_by_what_swings_freely(patch):
+    true = energy._own_loss
+    patch.setattr(energy, "_own_loss", lambda pushed: (1.0 - 1e-9) * true(pushed))
+
+
+def zeros_by_halves_alone(patch):
+    patch.setattr(search, "_by_line", lambda *points: None)
+
+
 def joints_that_slip_read_half_as_far_again(patch):
     true = loaded.corrections
     patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
@@ -591,6 +610,11 @@ FAULTS = {
         limitless(sweeps, "MODES_TOGETHER", 3999): {"ways-by-size"},
         shifts_a_little_above_their_modes: {"shifts-beside-modes"},
         joints_that_slip_read_half_as_far_again: {"graded-parts"},
+        a_billionth_less_lost_by_what_swings_freely: {"books-of-damped-beams"},
+        limitless(motor_figures, "SETTLED", 1.001e-4): {"means-that-settle"},
+        limitless(motor_figures, "HALVINGS", 16): {"free-speeds-of-motors"},
+        zeros_by_halves_alone: {"zeros-step-by-step"},
+        limitless(search, "GOLDEN", 0.382): {"least-values-step-by-step"},
         best_candidates_without_their_entries: {"what-compare-shows"},
         shapes_in_the_order_they_were_given: {"sentences-about-shapes"},
         hard_points_on_any_beam: {"what-is-run-with-what"},

@@ -37,10 +37,15 @@ SOLVED: tuple[tuple[Beam, int, int, str], ...] = (
     (THIN, 3, 40, "dense inverse"),
 )
 """Beam, modes, elements, how they are found."""
-LAYOUTS = ((7, 60, 5, 0, False), (8, 60, 5, 0, True), (8, 250, 5, 0, True), (8, 251, 5, 0, False))
+LAYOUTS: tuple[tuple[int, int, int, int, bool], ...] = (
+    (7, 60, 5, 0, False),
+    (8, 60, 5, 0, True),
+    (8, 250, 5, 0, True),
+    (8, 251, 5, 0, False),
+)
 LAYOUTS += ((9, 30, 18, 0, True), (9, 30, 19, 0, False), (9, 32, 18, 2, True), (9, 31, 18, 2, False))
 """Beams, unknowns, modes, rigid motions: whether they are one stack."""
-SHARED = (
+SHARED: tuple[tuple[int, int, tuple[int, ...]], ...] = (
     (600, 3, (200, 200, 200)),
     (257, 3, (129, 128)),
     (256, 3, (256,)),
@@ -59,7 +64,7 @@ def methods_error(number: float) -> float:
     from verify.models.intervals import rule_over
     from verify.waves.measures import sample_points, window_rule
 
-    wrong = sum(method_name(*given) != name for *given, name in METHODS)
+    wrong = sum(method_name(n, modes, unlike) != name for n, modes, unlike, name in METHODS)
     wrong += sum(MODELS["fem"].solve_modes(beam, modes, n).method != name for beam, modes, n, name in SOLVED)
     for size, n, modes, rigid, shares in LAYOUTS:
         pencil: Any = SimpleNamespace(n=n, rigid_modes=rigid)
