@@ -42,8 +42,11 @@ LAYOUTS: tuple[tuple[int, int, int, int, bool], ...] = (
     (8, 60, 5, 0, True),
     (8, 250, 5, 0, True),
     (8, 251, 5, 0, False),
+    (9, 30, 18, 0, True),
+    (9, 30, 19, 0, False),
+    (9, 32, 18, 2, True),
+    (9, 31, 18, 2, False),
 )
-LAYOUTS += ((9, 30, 18, 0, True), (9, 30, 19, 0, False), (9, 32, 18, 2, True), (9, 31, 18, 2, False))
 """Beams, unknowns, modes, rigid motions: whether they are one stack."""
 SHARED: tuple[tuple[int, int, tuple[int, ...]], ...] = (
     (600, 3, (200, 200, 200)),
