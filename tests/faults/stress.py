@@ -20,9 +20,9 @@ from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
-from verify.identify import matrices, outside, pairing, searching, shapes_told
+from verify.identify import matrices, outside, pairing, reading, searching, shapes_told
 from verify.identify import told as compared
-from verify.judge import compare, crossing
+from verify.judge import compare, crossing, sizing
 from verify.models import (
     division,
     driven_pencil,
@@ -39,10 +39,12 @@ from verify.models import (
 from verify.models.catalogue import MODELS
 from verify.motion import (
     energy,
+    forcing,
     free_vibration,
     friction_kernels,
     request,
     rigid_surface,
+    simulate,
     sound_books,
     step_size,
     validity,
@@ -593,6 +595,16 @@ def zeros_by_halves_alone(patch):
     patch.setattr(search, "_by_line", lambda *points: None)
 
 
+def trends_taken_for_motion(patch):
+    true = series.check_series
+
+    def bent(times, values, frequency_hz):
+        true(times, values, frequency_hz)
+        values += 1e-6 * times[:, None] ** 2
+
+    patch.setattr(series, "check_series", bent)
+
+
 def joints_that_slip_read_half_as_far_again(patch):
     true = loaded.corrections
     patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
@@ -610,6 +622,14 @@ FAULTS = {
         limitless(sweeps, "MODES_TOGETHER", 3999): {"ways-by-size"},
         shifts_a_little_above_their_modes: {"shifts-beside-modes"},
         joints_that_slip_read_half_as_far_again: {"graded-parts"},
+        limitless(reading, "MOST", 2001): {"lists-in-any-layout"},
+        limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
+        limitless(sizing, "_EVERY", 101): {"sizes-gone-through"},
+        limitless(error_laws, "MEAN_LIMIT", 2.18765366): {"constants-of-error-laws"},
+        trends_taken_for_motion: {"phasors-on-a-drift"},
+        limitless(simulate, "ROUNDED", 0.3): {"notes-of-runs"},
+        limitless(forcing, "RESONANCE", 1.001e-9): {"modes-driven-from-rest"},
+        limitless(resting, "PASSES", 2): {"surfaces-as-feet-are-put-down"},
         a_billionth_less_lost_by_what_swings_freely: {"books-of-damped-beams"},
         limitless(motor_figures, "SETTLED", 1.001e-4): {"means-that-settle"},
         limitless(motor_figures, "HALVINGS", 16): {"free-speeds-of-motors"},
