@@ -20,7 +20,7 @@ from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
-from verify.identify import matrices, outside, pairing, reading, searching, shapes_told
+from verify.identify import matrices, outside, pairing, reading, searching, shapes, shapes_told
 from verify.identify import told as compared
 from verify.judge import compare, crossing, sizing
 from verify.models import (
@@ -605,6 +605,10 @@ def trends_taken_for_motion(patch):
     patch.setattr(series, "check_series", bent)
 
 
+def numbers_of_entries_unread(patch):
+    patch.setattr(pairing, "_numbers", lambda listed, kept, rigid: None)
+
+
 def joints_that_slip_read_half_as_far_again(patch):
     true = loaded.corrections
     patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
@@ -624,6 +628,8 @@ FAULTS = {
         joints_that_slip_read_half_as_far_again: {"graded-parts"},
         limitless(reading, "MOST", 2001): {"lists-in-any-layout"},
         limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
+        limitless(shapes, "IN_ORDER", 0.0): {"shapes-at-few-places"},
+        numbers_of_entries_unread: {"entries-left-out"},
         limitless(sizing, "_EVERY", 101): {"sizes-gone-through"},
         limitless(error_laws, "MEAN_LIMIT", 2.18765366): {"constants-of-error-laws"},
         trends_taken_for_motion: {"phasors-on-a-drift"},

@@ -69,6 +69,16 @@ def light():
         "sought",
         "edges",
         "shown",
+        "verges",
+        "allowed",
+        "verbs",
+        "ways",
+        "damped",
+        "means",
+        "searches",
+        "layouts",
+        "heard",
+        "shaped",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

@@ -117,12 +117,43 @@ def _above(seconds: Callable[[], float]) -> Callable[[float], bool]:
     return lambda value: seconds() < value
 
 
+def _paced(evaluations: float) -> Callable[[float], bool]:
+    """Whether a chain's run goes on whose rest is reckoned by its pace so far, or of late where that is quicker."""
+    from verify.chain.stepping import _Pace
+
+    def asked(most: float) -> bool:
+        counts = np.array([0.0, 0.0, 100.0])
+        run: Any = SimpleNamespace(
+            m=SimpleNamespace(clock=np.array([0.1]), samples=np.array([0.2, 1.1]), counts=counts),
+            system=SimpleNamespace(n_links=7),
+        )
+        pace, told = _Pace(run, 1e9), []
+        for time, done, allowed in ((0.3, 100.0, 1e9), (0.5, evaluations, most)):
+            run.m.clock[0], counts[2], pace.most = time, done, allowed
+            if not taken(lambda: told.append(pace.part())):
+                return False
+        return bool(np.allclose(told, (0.2, 0.4), rtol=1e-12))
+
+    return asked
+
+
 def work_error(number: float) -> float:
     """How many estimates of time and memory, and the counts that bound them, are not what documents have."""
     from verify.chain import work
     from verify.identify.compare import check_patience
     from verify.models import eigen, sweeps
     from verify.motion.stepping import slider_seconds
+    from verify.motor import records
+    from verify.motor.stepping import Riding
+
+    near = 2 * 8 + 1 + 5 * 0.04 / 0.7
+    ridden = 300 * (8e-6 + 3 * (8e-7 + 4e-9 * 4 * (7 + 2.0 * near))) + 14e-10 * 16 * near**2
+
+    def riding(felt: bool) -> float:
+        points = np.zeros((3, records.OFFSET + 1))
+        points[:, records.OFFSET] = (0.01, -0.02, 0.02)
+        own: Any = SimpleNamespace(feet=SimpleNamespace(points=points), two_way=felt)
+        return Riding.seconds(own, 300, np.zeros((5, 4, 7)), 0.7)
 
     def links(samples: float) -> bool:
         return taken(lambda: work.check_kept(samples, 7, "samples"))
@@ -139,8 +170,16 @@ def work_error(number: float) -> float:
             (3000 * (2000.0 + 32 * 1520), False, _above(lambda: eigen.required_bytes(3000, 750))),
             (1e5 * (1.5e-6 + 1.5e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, False))),
             (1e5 * (8e-6 + 6e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, True))),
+            (300 * (1e-6 + 3e-7), False, _above(lambda: riding(False))),
+            (
+                300 * (8e-6 + 3 * (8e-7 + 4e-9 * 4 * (7 + 2.0 * near))) + 14e-10 * 16 * near**2,
+                False,
+                _above(lambda: riding(True)),
+            ),
             (1.2e-3 * 700 * 2.3, False, _begun(lambda: check_patience(23, 700, 5))),
             (1.2e-3 * 700, False, _begun(lambda: check_patience(7, 700, 5))),
+            (19 * (150.0 + 50.0 / 0.2 * 0.6), False, _paced(150.0)),
+            (19 * (350.0 + 350.0 / 0.4 * 0.6), False, _paced(350.0)),
             (5 * (0.1 + 0.55 * 1.7 + 0.2 * 1.7**3), False, _begun(lambda: check_patience(170, None, 5))),
             (5e7 + 0.5, True, lambda n: taken(lambda: sweeps.check_held(round(n), 1, "x"))),
             (1e5, True, links),

@@ -78,6 +78,7 @@ def methods_error(number: float) -> float:
     k, window = 37.0, (0.13, 0.61)
     halves = (window[1] - window[0]) * k / pi
     wrong += len(window_rule(window, k).x) != len(rule_over(window, ceil(2.0 * halves)).x)
+    wrong += len(window_rule((0.13, 0.14), k).x) != len(rule_over((0.13, 0.14), 1).x)
     wrong += len(sample_points(window, k)) != ceil(24.0 * halves) + 1
     return float(wrong)
 
