@@ -171,11 +171,7 @@ def work_error(number: float) -> float:
             (1e5 * (1.5e-6 + 1.5e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, False))),
             (1e5 * (8e-6 + 6e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, True))),
             (300 * (1e-6 + 3e-7), False, _above(lambda: riding(False))),
-            (
-                300 * (8e-6 + 3 * (8e-7 + 4e-9 * 4 * (7 + 2.0 * near))) + 14e-10 * 16 * near**2,
-                False,
-                _above(lambda: riding(True)),
-            ),
+            (ridden, False, _above(lambda: riding(True))),
             (1.2e-3 * 700 * 2.3, False, _begun(lambda: check_patience(23, 700, 5))),
             (1.2e-3 * 700, False, _begun(lambda: check_patience(7, 700, 5))),
             (19 * (150.0 + 50.0 / 0.2 * 0.6), False, _paced(150.0)),

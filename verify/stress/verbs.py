@@ -63,7 +63,7 @@ def _standing(k: float, window: tuple[float, float], middle: float) -> bool:
     from verify.waves.measures import _seen, measure, measured_figure
 
     even, parts = _two(1e-6, 1e-6j, k, middle, 400), 8.0 * 400 * (window[1] - window[0]) / STRIP.length
-    asks = (
+    asks: tuple[Callable[[], float], ...] = (
         lambda: measure(even, window, k).signed_area_spread,
         lambda: measured_figure(even, window, k, "signed_area_spread"),
     )
