@@ -183,7 +183,7 @@ ROWS: tuple[Row, ...] = (
         title="Modes, shapes and slopes of links and elements that grow by half along the beam, by every theory",
         why="segments/links.py, elements/mesh.py: order 2 in the turn of a part, or better.",
         along="parts",
-        at=(24.0, 36.0),
+        at=(24.0,),
         promise=1.0,
         error=graded_error,
     ),
