@@ -628,6 +628,8 @@ FAULTS = {
         joints_that_slip_read_half_as_far_again: {"graded-parts"},
         limitless(reading, "MOST", 2001): {"lists-in-any-layout"},
         limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
+        limitless(compare, "ASTRAY", 2.0): {"verdicts-in-words"},
+        limitless(crossing, "NO_ANSWER", 1.0): {"costs-that-say-nothing"},
         limitless(shapes, "IN_ORDER", 0.0): {"shapes-at-few-places"},
         numbers_of_entries_unread: {"entries-left-out"},
         limitless(sizing, "_EVERY", 101): {"sizes-gone-through"},

@@ -79,6 +79,7 @@ def light():
         "layouts",
         "heard",
         "shaped",
+        "worded",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
