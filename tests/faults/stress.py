@@ -609,6 +609,22 @@ def numbers_of_entries_unread(patch):
     patch.setattr(pairing, "_numbers", lambda listed, kept, rigid: None)
 
 
+def graded_unless_told(patch):
+    true = division.check_division
+    patch.setattr(division, "check_division", lambda beam, count, grading=2.0: true(beam, count, grading))
+
+
+def chains_that_begin_anew(patch):
+    true = splitting.simulate_linear
+    patch.setattr(
+        splitting, "simulate_linear", lambda basis, start, times: true(basis, replace_time(start, 1e-6), times)
+    )
+
+
+def replace_time(start, by):
+    return type(start)(start.angles, start.rates, max(start.time - by, 0.0))
+
+
 def joints_that_slip_read_half_as_far_again(patch):
     true = loaded.corrections
     patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
@@ -628,6 +644,8 @@ FAULTS = {
         joints_that_slip_read_half_as_far_again: {"graded-parts"},
         limitless(reading, "MOST", 2001): {"lists-in-any-layout"},
         limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
+        graded_unless_told: {"unless-they-are-told"},
+        chains_that_begin_anew: {"linear-chains-that-go-on"},
         limitless(compare, "ASTRAY", 2.0): {"verdicts-in-words"},
         limitless(crossing, "NO_ANSWER", 1.0): {"costs-that-say-nothing"},
         limitless(shapes, "IN_ORDER", 0.0): {"shapes-at-few-places"},

@@ -80,6 +80,7 @@ def light():
         "heard",
         "shaped",
         "worded",
+        "signed",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

@@ -17,6 +17,7 @@ from verify.stress.verges import misplaced, taken
 
 # --- Texts ------------------------------------------------------------------------------------------------------------
 
+SIX = (0.05 / 6.0, 0.05 / 18.0)
 TEXTS: tuple[tuple[str, str | None, tuple[float, ...], tuple[int, ...] | None, tuple[float, ...], str], ...] = (
     ("3.5\n14.02\n31.4e1\n", None, (3.5, 14.02, 314.0), None, (0.05 / 3.5, 0.005 / 14.02, 0.5 / 314.0), "Hz"),
     ("mode,frequency_hz\n1,3.5\n2,14.0\n", None, (3.5, 14.0), (1, 2), (0.05 / 3.5, 0.05 / 14.0), "Hz"),
@@ -28,6 +29,9 @@ TEXTS: tuple[tuple[str, str | None, tuple[float, ...], tuple[int, ...] | None, t
     ("1 3,5\n2 14,25\n", None, (3.5, 14.25), (1, 2), (0.05 / 3.5, 0.005 / 14.25), "Hz"),
     ("damping,freq\n0.01,3.5\n0.02,9.25\n", None, (3.5, 9.25), None, (0.05 / 3.5, 0.005 / 9.25), "Hz"),
     ("0\n3.1234567890123456789\n", None, (0.0, 3.1234567890123456789), None, (0.0, 1e-16), "Hz"),
+    ("mode number circular frequency [rad/s]\n1 6.0\n2 18.0\n", None, (3.0 / pi, 9.0 / pi), (1, 2), SIX, "rad/s"),
+    ("natural frequency in kHz\n0.25\n1.5\n", None, (250.0, 1500.0), None, (0.005 / 0.25, 0.05 / 1.5), "kHz"),
+    ("mode,measured\n1,3.5\n2,14.0\n", None, (3.5, 14.0), (1, 2), (0.05 / 3.5, 0.05 / 14.0), "Hz"),
     ("6.0\n18.0\n", "rad/s", (3.0 / pi, 9.0 / pi), None, (0.05 / 6.0, 0.05 / 18.0), "rad/s"),
     ('mode "f"\n"1" "3.5"\n"4" "9"\n', None, (3.5, 9.0), (1, 4), (0.05 / 3.5, 0.5 / 9.0), "Hz"),
 )
@@ -44,6 +48,8 @@ WRONG: tuple[tuple[str, str], ...] = (
     ("mode,hz\n2001,3.5\n", "line 2: mode number 2001"),
     ("1.5,3.5\n2.5,4.5\n", "has 2 columns, and which holds the frequencies cannot be told"),
     ("3,3.5\n4,4.5\n", "has 2 columns"),
+    ("a b c d e\n1 3.5 2\n2 4.5 2\n", "has 3 columns, and which"),
+    ("mode,x,y\n1,3.5,2\n", "has 3 columns, and which"),
     ("hz\n", "has a head and no numbers"),
     ("# nothing\n", "is empty"),
     ("3\n" * 2001, "has 2001 rows: give at most 2000"),
