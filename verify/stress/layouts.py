@@ -190,7 +190,7 @@ def constants_error(number: float) -> float:
 ROWS: tuple[Row, ...] = (
     Floor(
         id="lists-in-any-layout",
-        title="Twelve layouts of lists, eight of shapes, fourteen faults told by their line",
+        title="Fifteen layouts of lists, eight of shapes, sixteen faults told by their line",
         why="identify/reading.py: what is written, to the last digit.",
         along="1",
         at=(1.0,),
