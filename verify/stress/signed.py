@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from verify.beam import PointForce
+from verify.chain import warm
 from verify.stress.beams import held
 from verify.stress.kind import Floor, Row
 
@@ -132,5 +133,6 @@ ROWS: tuple[Row, ...] = (
         at=(3.0, 8.0),
         promise=1e-7,
         error=going_on_error,
+        kernels=warm.accelerations,
     ),
 )
