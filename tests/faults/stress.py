@@ -50,12 +50,12 @@ from verify.motion import (
     validity,
 )
 from verify.motion.stepping import Sliding
-from verify.motor import combine, on_chain, resting
+from verify.motor import combine, on_chain, on_wave, resting
 from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
 from verify.motor import figures as motor_figures
 from verify.motor import stepping as motor_stepping
-from verify.segments import crowded, links, loaded
+from verify.segments import attached, crowded, links, loaded
 from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
@@ -609,6 +609,11 @@ def numbers_of_entries_unread(patch):
     patch.setattr(pairing, "_numbers", lambda listed, kept, rigid: None)
 
 
+def unknowns_the_other_way_round(patch):
+    true = attached._solved
+    patch.setattr(attached, "_solved", lambda *given: true(*given)[::-1])
+
+
 def graded_unless_told(patch):
     true = division.check_division
     patch.setattr(division, "check_division", lambda beam, count, grading=2.0: true(beam, count, grading))
@@ -644,6 +649,8 @@ FAULTS = {
         joints_that_slip_read_half_as_far_again: {"graded-parts"},
         limitless(reading, "MOST", 2001): {"lists-in-any-layout"},
         limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
+        unknowns_the_other_way_round: {"weights-without-themselves"},
+        limitless(on_wave, "WARM", 3): {"means-over-a-wave"},
         graded_unless_told: {"unless-they-are-told"},
         chains_that_begin_anew: {"linear-chains-that-go-on"},
         limitless(compare, "ASTRAY", 2.0): {"verdicts-in-words"},

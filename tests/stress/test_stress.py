@@ -81,6 +81,7 @@ def light():
         "shaped",
         "worded",
         "signed",
+        "solved",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
