@@ -20,25 +20,49 @@ from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
-from verify.identify import matrices, outside, pairing, searching, shapes_told
+from verify.identify import matrices, outside, pairing, reading, searching, shapes, shapes_told
 from verify.identify import told as compared
-from verify.judge import compare, crossing
-from verify.models import division, driven_pencil, eigen, inverse, kind, places, response, spline, underfoot
+from verify.judge import compare, crossing, sizing
+from verify.models import (
+    division,
+    driven_pencil,
+    eigen,
+    inverse,
+    isolated,
+    kind,
+    places,
+    response,
+    search,
+    spline,
+    sweeps,
+    underfoot,
+)
 from verify.models.catalogue import MODELS
-from verify.motion import free_vibration, friction_kernels, request, rigid_surface, step_size, validity
+from verify.motion import (
+    energy,
+    forcing,
+    free_vibration,
+    friction_kernels,
+    request,
+    rigid_surface,
+    simulate,
+    sound_books,
+    step_size,
+    validity,
+)
 from verify.motion.stepping import Sliding
-from verify.motor import combine, on_chain, resting
+from verify.motor import combine, on_chain, on_wave, resting
 from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
 from verify.motor import figures as motor_figures
 from verify.motor import stepping as motor_stepping
-from verify.segments import crowded, links
+from verify.segments import attached, crowded, links, loaded
 from verify.segments import in_time as segments_in_time
 from verify.segments import linear as segment_model
 from verify.segments import stacks as segment_stacks
 from verify.segments import sweeps as segment_sweeps
 from verify.stress import turns
-from verify.waves import series, unit_waves, window
+from verify.waves import measures, poles, series, unit_waves, window
 
 
 def assembled_instead_of_factored(patch):
@@ -557,8 +581,98 @@ def hard_points_on_any_beam(patch):
     patch.setattr(combine, "_run_by", lambda *cell: "run_motor" if cell[2] == "hard" else true(*cell))
 
 
+def real_and_imaginary_parts_by_other_weights(patch):
+    true = measures.travelling_index
+    patch.setattr(measures, "travelling_index", lambda w, weights: true(w, weights**2))
+
+
+def shifts_a_little_above_their_modes(patch):
+    true = isolated.isolated
+    patch.setattr(isolated, "isolated", lambda *given: 1.01 * true(*given))
+
+
+def a_billionth_less_lost_by_what_swings_freely(patch):
+    true = energy._own_loss
+    patch.setattr(energy, "_own_loss", lambda pushed: (1.0 - 1e-9) * true(pushed))
+
+
+def zeros_by_halves_alone(patch):
+    patch.setattr(search, "_by_line", lambda *points: None)
+
+
+def trends_taken_for_motion(patch):
+    true = series.check_series
+
+    def bent(times, values, frequency_hz):
+        true(times, values, frequency_hz)
+        values += 1e-6 * times[:, None] ** 2
+
+    patch.setattr(series, "check_series", bent)
+
+
+def numbers_of_entries_unread(patch):
+    patch.setattr(pairing, "_numbers", lambda listed, kept, rigid: None)
+
+
+def unknowns_the_other_way_round(patch):
+    true = attached._solved
+    patch.setattr(attached, "_solved", lambda *given: true(*given)[::-1])
+
+
+def graded_unless_told(patch):
+    true = division.check_division
+    patch.setattr(division, "check_division", lambda beam, count, grading=2.0: true(beam, count, grading))
+
+
+def chains_that_begin_anew(patch):
+    true = splitting.simulate_linear
+    patch.setattr(
+        splitting, "simulate_linear", lambda basis, start, times: true(basis, replace_time(start, 1e-6), times)
+    )
+
+
+def replace_time(start, by):
+    return type(start)(start.angles, start.rates, max(start.time - by, 0.0))
+
+
+def joints_that_slip_read_half_as_far_again(patch):
+    true = loaded.corrections
+    patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
+
+
 FAULTS = {
     "stress": {
+        limitless(poles, "_DAMPED", 1.001e-12): {"limits-of-waves"},
+        limitless(sound_books, "MOST", 10.01): {"limits-of-motions"},
+        limitless(compare, "RESTING", 1.001e-11): {"limits-of-judgements"},
+        limitless(eigen, "_BYTES_PER_UNKNOWN", 2002): {"estimates-of-work"},
+        real_and_imaginary_parts_by_other_weights: {"two-waves-measured-whole"},
+        limitless(sweeps, "RESONANCE", 1.1e-9): {"resonances-in-sweeps-of-parts"},
+        limitless(crowded, "_RIGHT", inf): {"crowds-beside-all-ends"},
+        limitless(sweeps, "MODES_TOGETHER", 3999): {"ways-by-size"},
+        shifts_a_little_above_their_modes: {"shifts-beside-modes"},
+        joints_that_slip_read_half_as_far_again: {"graded-parts"},
+        limitless(reading, "MOST", 2001): {"lists-in-any-layout"},
+        limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
+        unknowns_the_other_way_round: {"weights-without-themselves"},
+        limitless(on_wave, "WARM", 3): {"means-over-a-wave"},
+        graded_unless_told: {"unless-they-are-told"},
+        chains_that_begin_anew: {"linear-chains-that-go-on"},
+        limitless(compare, "ASTRAY", 2.0): {"verdicts-in-words"},
+        limitless(crossing, "NO_ANSWER", 1.0): {"costs-that-say-nothing"},
+        limitless(shapes, "IN_ORDER", 0.0): {"shapes-at-few-places"},
+        numbers_of_entries_unread: {"entries-left-out"},
+        limitless(sizing, "_EVERY", 101): {"sizes-gone-through"},
+        limitless(error_laws, "MEAN_LIMIT", 2.18765366): {"constants-of-error-laws"},
+        trends_taken_for_motion: {"phasors-on-a-drift"},
+        limitless(simulate, "ROUNDED", 0.3): {"notes-of-runs"},
+        limitless(forcing, "RESONANCE", 1.001e-9): {"modes-driven-from-rest"},
+        limitless(resting, "PASSES", 2): {"surfaces-as-feet-are-put-down"},
+        a_billionth_less_lost_by_what_swings_freely: {"books-of-damped-beams"},
+        limitless(motor_figures, "SETTLED", 1.001e-4): {"means-that-settle"},
+        limitless(motor_figures, "HALVINGS", 16): {"free-speeds-of-motors"},
+        zeros_by_halves_alone: {"zeros-step-by-step"},
+        limitless(search, "GOLDEN", 0.382): {"least-values-step-by-step"},
         best_candidates_without_their_entries: {"what-compare-shows"},
         shapes_in_the_order_they_were_given: {"sentences-about-shapes"},
         hard_points_on_any_beam: {"what-is-run-with-what"},

@@ -69,6 +69,19 @@ def light():
         "sought",
         "edges",
         "shown",
+        "verges",
+        "allowed",
+        "verbs",
+        "ways",
+        "damped",
+        "means",
+        "searches",
+        "layouts",
+        "heard",
+        "shaped",
+        "worded",
+        "signed",
+        "solved",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

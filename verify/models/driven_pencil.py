@@ -12,7 +12,7 @@ from verify.models.eigen import has_unlike_parts, modal_basis
 from verify.models.fields import RESONANCE, refuse_resonance
 from verify.models.modes import Modes
 from verify.models.pencil import DENSE_UNKNOWNS, FactoredPencil
-from verify.models.response import distance_answered, forced_response, probe, resonance_distance
+from verify.models.response import distance_answered, forced_response, probe
 
 
 def damped_response(
@@ -108,16 +108,14 @@ def refuse_near_resonance(
     frequency_hz: float,
     solve_modes: Callable[[Beam, int, int], Modes],
     count: int,
-    answer: ComplexArray | None = None,
+    answer: ComplexArray,
 ) -> None:
     """Raise InputError where an undamped pencil is driven at one of its own frequencies, which kept modes tell.
 
-    `answer` (n, 2) is what `probed` loads are answered with: one factorisation for both.
+    `answer` is what `probed` loads are answered with, (n, 2) where no modes are kept: one factorisation for both.
     """
     if pencil.bases:
         distance = abs(pencil.bases[0][0] / omega2 - 1.0).min()
-    elif answer is None:
-        distance = resonance_distance(pencil, omega2)
     else:
         distance = distance_answered(pencil, answer[:, 1].real, omega2)
     if abs(distance) <= 2.0 * RESONANCE:

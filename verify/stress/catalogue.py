@@ -25,6 +25,8 @@ FAMILIES = (
     *("choices", "rules", "felt", "stacked", "coiled", "bent", "walls", "let_go", "feet", "thrown"),
     *("said", "verdicts", "readings", "sliders", "slips", "stretched", "every", "best", "listed"),
     *("carried", "ridden", "mixed", "sought", "edges", "shown"),
+    *("verges", "allowed", "verbs", "ways", "damped", "means", "searches"),
+    *("layouts", "heard", "shaped", "worded", "signed", "solved"),
     *("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs"),
 )
 """Modules of this room with `ROWS`, in the order of the table."""
