@@ -21,6 +21,6 @@ def check_kept(weights: Sequence[complex], read: Sequence[ComplexArray], frequen
     if np.finfo(float).eps * taken > _KEPT * left > 0.0:
         raise InputError(
             f"frequency_hz = {float(frequency_hz)!r}: the beam alone moves {taken / left:.0e} times as far as it does "
-            "where the drive holds it, so that its digits are lost: raise the frequency, or give beam.spring in place of "
-            "a device"
+            "where the drive holds it, so that its digits are lost: raise the frequency, or give beam.spring in place "
+            "of a device"
         )
