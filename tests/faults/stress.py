@@ -77,6 +77,7 @@ def assembled_instead_of_factored(patch):
 
 def unlike_parts_unseen(patch):
     patch.setattr(eigen, "_is_unlike", lambda stiffness, mass: False)
+    patch.setattr(eigen, "_is_soft_between", lambda pencil: False)
 
 
 def slow_motions_unseen(patch):

@@ -156,12 +156,12 @@ def test_a_bar_that_a_soft_coil_holds_about_its_pin_loses_nothing_of_its_own_dam
 
 
 @FACES
-@pytest.mark.parametrize("parts", [40, 500])
+@pytest.mark.parametrize("parts", [40, 300])
 def test_a_bar_with_a_body_on_soft_ground_answers_a_slow_drive_as_a_rigid_one(face, parts):
-    ground, body = 1e-12 * STIFFNESS / LENGTH**4, PointMass(position=0.4, mass=0.5, rotary_inertia=0.02)
+    ground, body = 1e-12 * STIFFNESS / LENGTH**4, PointMass(position=0.481, mass=0.08, rotary_inertia=0.0044)
     beam = bar(supports=("free", "free"), foundation=ground, mass=(body,))
     along = np.array([[LENGTH, LENGTH**2 / 2.0], [LENGTH**2 / 2.0, LENGTH**3 / 3.0]])
-    moved = RHO_A * along + 0.5 * np.outer([1.0, 0.4], [1.0, 0.4]) + np.diag([0.0, 0.02])
+    moved = RHO_A * along + 0.08 * np.outer([1.0, 0.481], [1.0, 0.481]) + np.diag([0.0, 0.0044])
     omega2 = 0.3 * ground / RHO_A
     lift, turn = np.linalg.solve(ground * along - omega2 * moved, [1.0, 0.95])
     found = face.solve_harmonic(beam, PointForce(position=0.95), np.sqrt(omega2) / (2.0 * pi), parts)
@@ -170,14 +170,15 @@ def test_a_bar_with_a_body_on_soft_ground_answers_a_slow_drive_as_a_rigid_one(fa
 
 
 @FACES
-def test_a_bar_behind_a_soft_stretch_keeps_its_digits_beside_stiff_ones(face):
-    """A flexure of 1e-12 EI; elements had its first mode 60 per cent off, its second altogether."""
-    pieces = (Section(length=0.5), Section(length=0.15, bending_stiffness=1e-12 * STIFFNESS), Section(length=0.65))
+@pytest.mark.parametrize("parts", [10, 49])
+def test_a_bar_behind_one_soft_part_turns_as_on_a_flexure_however_few_parts_there_are(face, parts):
+    """Of 1e-14 EI between stiff ones: assembled it left no digit, nor did factors of elements that bend both ways."""
+    soft = Section(length=0.1 * LENGTH, bending_stiffness=1e-14 * STIFFNESS)
+    pieces = (Section(length=0.4 * LENGTH), soft, Section(length=0.5 * LENGTH))
     beam = bar(supports=("clamped", "free"), section=pieces)
-    exact = analytic_modes.solve_modes(beam, 2).frequencies_hz
-    found = [face.solve_modes(beam, 2, parts).frequencies_hz for parts in (52, 104)]
-    order = 4 if face is fem_beam else 2
-    assert abs((found[1] * 2**order - found[0]) / (2**order - 1) / exact - 1.0).max() < 1e-3
+    exact = analytic_modes.solve_modes(beam, 1).frequencies_hz[0]
+    found = face.solve_modes(beam, 1, parts).frequencies_hz[0]
+    assert found == pytest.approx(exact, rel=1e-7 if face is fem_beam else 1e-2)
 
 
 def test_what_steps_do_not_settle_is_refused_and_told(monkeypatch):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 from scipy.optimize import brentq
 
 from verify import Beam, PointForce, PointMass, PointSpring, analytic_modes, fem_beam, load_scene, segment_model
@@ -16,6 +17,7 @@ from verify.waves.absorber import matched_device
 from verify.waves.case import DrivenCase
 from verify.waves.devices import DevicesResonanceError, field_with_devices, powers
 from verify.waves.driven import driven, own_wavenumber
+from verify.waves.imposed import driven_field
 from verify.waves.measures import measure
 
 SIZES = {"length": 0.83, "width": 0.027, "thickness": 0.0019, "youngs_modulus": 193e9, "density": 7900.0}
@@ -375,3 +377,23 @@ def test_a_drive_slower_than_any_square_of_it_leaves_the_static_field():
     assert at(1e-170) == pytest.approx(at(1e-5), rel=1e-9)
     with pytest.raises(InputError, match="frequency_hz = 1e-320: give a finite number of at least 1e-200"):
         at(1e-320)
+
+
+@pytest.mark.parametrize("solve", [exact, elements(30), segments(30)], ids=["exact", "elements", "segments"])
+def test_a_floating_beam_that_a_device_holds_is_refused_where_its_digits_are_lost(solve):
+    """Alone it moves EI / (rho A L^4 omega^2) as far: 2e-16 of that is a twentieth of all that it does when held."""
+    floating, held = replace(STRIP, supports=("pinned", "free")), 0.6
+    spring = 2.0 * STRIP.bending_stiffness / STRIP.length**3
+    device = Device(position=held, stiffness=spring)
+    with pytest.raises(InputError, match=r"the beam alone moves \de\+1[2-4] times as far .*raise the frequency"):
+        field_with_devices(solve, floating, FORCES, 1e-6, [device])
+    found = field_with_devices(solve, floating, FORCES, 1e-3, [device]).deflection(X)
+    sprung = replace(floating, spring=(PointSpring(position=held, stiffness=spring),))
+    assert found == pytest.approx(solve(sprung, FORCES, 1e-3).deflection(X), rel=2e-6)
+
+
+def test_a_floating_beam_bent_by_three_places_is_refused_where_its_digits_are_lost():
+    floating = replace(STRIP, supports=("free", "free"))
+    bent = [PointForce(position=x, amplitude=y) for x, y in ((0.02, 1e-3), (0.5, 3e-3), (0.8, 1e-3))]
+    with pytest.raises(InputError, match=r"the beam alone moves .* times as far as it does where the drive holds it"):
+        driven_field(lambda acts, hertz: exact(floating, acts, hertz), bent, 1e-6, "displacement")

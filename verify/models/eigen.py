@@ -112,7 +112,7 @@ def lowest(pencil: FactoredPencil, n_modes: int) -> Eigenpairs:
         vectors, strains = _inverse_vectors(pencil, n_modes)
     elif pencil.n <= DENSE_UNKNOWNS:
         root, mass = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(np.eye(pencil.n)), pencil.mass_matrix()
-        inverted = _is_unlike((root * root).sum(axis=0), mass)
+        inverted = _is_soft_between(pencil) or _is_unlike((root * root).sum(axis=0), mass)
         if inverted:
             vectors, strains = _inverse_vectors(pencil, n_modes)
         else:
@@ -147,12 +147,17 @@ def _in_order(pencil: FactoredPencil, vectors: Array, method: str, strains: Arra
 def has_unlike_parts(pencil: FactoredPencil) -> bool:
     """Whether the parts of a small pencil are so unlike that its vectors are found from the inverse of K."""
     root = np.sqrt(pencil.stiffness)[:, None] * pencil.strain(np.eye(pencil.n))
-    return _is_unlike((root * root).sum(axis=0), pencil.mass_matrix())
+    return _is_soft_between(pencil) or _is_unlike((root * root).sum(axis=0), pencil.mass_matrix())
 
 
 def _is_unlike(stiffness: Array, mass: Array) -> bool:
     """Whether the parts' own frequencies, by K_ii (n,) and M, or they lie so far apart that K has lost the soft."""
     return any(bool(size.max() > _UNLIKE * size.min()) for size in (stiffness / mass.diagonal(), stiffness))
+
+
+def _is_soft_between(pencil: FactoredPencil) -> bool:
+    """Whether some strain is so soft that stiff parts beside it move as rigid ones: of one joint no K_ii tells it."""
+    return bool(pencil.stiffness.max() > _UNLIKE * pencil.stiffness.min())
 
 
 def _dense_vectors(pencil: FactoredPencil, n_modes: int, root: Array, mass: Array) -> Array:

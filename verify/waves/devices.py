@@ -28,6 +28,7 @@ from verify.errors import InputError, ResonanceError, shown
 from verify.models.arrays import ComplexArray
 from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response, wavenumber
 from verify.models.places import Forces, as_forces, as_typed
+from verify.waves.cancelled import check_kept
 from verify.waves.imposed import Solve
 from verify.waves.poles import Conditions, UnsettledError, field_at_pole, is_near, is_resonant, looked_at
 
@@ -96,6 +97,7 @@ def field_with_devices(
             return at_pole()
     at = np.array(read)[:, : len(places)]
     pulls = _pulls(at, places.tolist(), _conditions(across, frequency_hz).take, unit, frequency_hz)
+    check_kept([1.0, *pulls], read, frequency_hz)
     found = combined(list(zip([1.0, *pulls], fields, strict=True)))
     return replace(found, forces=(*fields[0].forces, *_reactions(across, pulls)))
 

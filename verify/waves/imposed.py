@@ -15,6 +15,7 @@ from verify.beam import Beam, PointForce
 from verify.errors import InputError, ResonanceError
 from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import RESONANCE, HarmonicField, combined, phasor, unit_response
+from verify.waves.cancelled import check_kept
 from verify.waves.poles import (
     STEP,
     Check,
@@ -69,6 +70,7 @@ def driven_field(solve: Solve, drives: Sequence[PointForce], frequency_hz: float
         beside = [solve([PointForce(position=float(place))], up).deflection(places) for place in places]
         check_held(own, np.array(beside), places, beam, frequency_hz)
     held = np.asarray(np.linalg.solve(own.T, [phasor(drive) for drive in drives]), dtype=complex)
+    check_kept(held.tolist(), read, frequency_hz)
     return _acting(combined(list(zip(held, here, strict=True))), drives, held, frequency_hz)
 
 
