@@ -204,7 +204,7 @@ def test_without_a_name_all_packaged_scenes_are_asked_for(verify, monkeypatch):
     monkeypatch.setattr(apart, "each_apart", lambda work, items, hear: begun.extend(items) or [apart.Died(1) for _ in items])  # fmt: skip
     assert verify("run", "--no-report")[0] == 2
     assert sorted(one.name for one in begun) == sorted(packaged_scenes())
-    assert begun[0].name == "paper-slider"
+    assert begun[0].name == "stress"
     assert [one.steps for one in begun] == sorted((one.steps for one in begun), reverse=True)
 
 

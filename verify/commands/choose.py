@@ -3,6 +3,7 @@
 import click
 
 from verify.commands.shared import (
+    DEFAULT,
     json_alone,
     load,
     overridden,
@@ -16,7 +17,7 @@ from verify.commands.shared import (
 @click.argument("words", nargs=-1, metavar="[SCENE]")
 @click.option("--mode", required=True, metavar="N", help="Mode number from 1, or all of several: 1-12.")
 @click.option("--error", required=True, metavar="E", help="Largest frequency error: 1% or 0.01.")
-@click.option("--scene", help="Whose beam, where it is not named first. Default: paper.")
+@click.option("--scene", help=f"Whose beam, where it is not named first. Default: {DEFAULT}.")
 @overridden
 @ruled
 @json_alone

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, load, overridden, print_json, scene_first, whole_number
+from verify.commands.shared import DEFAULT, json_alone, load, overridden, print_json, scene_first, whole_number
 
 if TYPE_CHECKING:
     from verify.identify.shapes_told import ShapesJudged
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @click.command("compare-shapes")
 @click.argument("words", nargs=-1, required=True, metavar="[SCENE] FILE")
-@click.option("--scene", help="Whose beam the mesh is of, where it is not named first. Default: paper.")
+@click.option("--scene", help=f"Whose beam the mesh is of, where it is not named first. Default: {DEFAULT}.")
 @overridden
 @click.option("--count", metavar="N", help="Segments or elements of the model. Default: what fits, else by the points.")
 @click.option("--within", metavar="E", help="Gate every frequency against the exact beam: 1%.")

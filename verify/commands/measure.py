@@ -6,6 +6,7 @@ from math import isnan
 import click
 
 from verify.commands.shared import (
+    DEFAULT,
     PERCENT,
     in_percent,
     json_alone,
@@ -20,7 +21,7 @@ from verify.errors import InputError
 
 @click.command()
 @click.argument("words", nargs=-1, required=True, metavar="[SCENE] QUANTITY [KEY=VALUE]...")
-@click.option("--scene", help="Whose beam and drive, where it is not named first. Default: paper.")
+@click.option("--scene", help=f"Whose beam and drive, where it is not named first. Default: {DEFAULT}.")
 @overridden
 @json_alone
 def measure(words: tuple[str, ...], scene: str | None, overrides: tuple[str, ...], as_json: bool) -> None:

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 PERCENT = 100
+DEFAULT = "paper"
+"""The scene of a command that is told none."""
 
 overridden = click.option(
     "--set",
@@ -48,7 +50,7 @@ def load(scene: str, overrides: tuple[str, ...]) -> "Scene":
 
 
 def scene_first(
-    words: Sequence[str], option: str | None, after: int, default: str | None = "paper"
+    words: Sequence[str], option: str | None, after: int, default: str | None = DEFAULT
 ) -> tuple[str, Sequence[str]]:
     """(the scene, the words after it) of a command line's words, `after` of which at most follow a scene.
 

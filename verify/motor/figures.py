@@ -262,11 +262,7 @@ def no_load(
         low, high = (found.speed, high) if found.way > 0.0 else (low, found.speed)
         if not found.way or high - low <= 1e-6 * wide:
             break
-        if not waited_for(spent):
-            raise InputError(
-                f"reach = {wide!r} m/s: the speed without load lies between {low:.6g} and {high:.6g} m/s, where means "
-                f"settle so slowly that no more is waited for: set {VARIABLE} to more seconds"
-            )
+        check_work("reach", wide, spent, f"it is known to lie between {low:.6g} and {high:.6g} m/s")
         found, run = held(case, 0.5 * (low + high), before, periods)
         spent += next_seconds(run, found.periods)
     if "force" in found.unsettled:

@@ -194,7 +194,8 @@ def _seen(step: float) -> bool:
 def _steps(steps: float) -> bool:
     from verify.motion.request import _longest
 
-    return taken(lambda: _longest(37.0, 3.0, 3.0 / steps, 64, None))
+    slider: Any = SimpleNamespace()
+    return taken(lambda: _longest(37.0, 3.0, 3.0 / steps, 64, slider))
 
 
 def _stage(omegas: Sequence[float], dt: float) -> Any:
