@@ -607,7 +607,7 @@ def in_use(path, name):
 
 PATIENCE = {
     "check_work": None,
-    "patient": {"stress.sizes"},
+    "patient": {"stress.sizes", "stress.allowed", "stress.means"},
     "own_limit": {"commands.stress"},
     "waited_for": {"motor.figures", "motion.judged_step"},
     "PATIENCE_S": {"stress.refused_runs"},

@@ -246,9 +246,10 @@ def no_load(
     at both ends, or has not settled where the search ends, and where it takes longer in all than is waited for.
     """
     wide = 2.0 * crest_speed(case) if reach is None else reach
-    low, high = -wide, wide
+    low, high, spent = -wide, wide, 0.0
     for end, way in ((low, 1.0), (high, -1.0)):
-        found = at_speed(case, end, before, periods)
+        found, run = held(case, end, before, periods)
+        spent += next_seconds(run, found.periods)
         if not found.way:
             raise InputError(not_settled(case, found, ("force",), periods))
         if found.way != way:
@@ -257,12 +258,13 @@ def no_load(
                 "is between: press the slider on more, or give a larger reach"
             )
     found, run = held(case, 0.0, before, periods)
-    spent = next_seconds(run, found.periods)
+    spent += next_seconds(run, found.periods)
     for _ in range(HALVINGS):
         low, high = (found.speed, high) if found.way > 0.0 else (low, found.speed)
         if not found.way or high - low <= 1e-6 * wide:
             break
-        check_work("reach", wide, spent, f"it is known to lie between {low:.6g} and {high:.6g} m/s")
+        between = f"the speed without load lies between {low:.6g} and {high:.6g} m/s, where means settle slowly"
+        check_work("reach", wide, spent, between)
         found, run = held(case, 0.5 * (low + high), before, periods)
         spent += next_seconds(run, found.periods)
     if "force" in found.unsettled:
