@@ -222,3 +222,23 @@ def test_a_slow_force_is_answered_beside_one_that_moves_nothing(face):
     held = 1e-3 * 0.3**2 - (2.0 * pi * 1e-3) ** 2 * RHO_A * LENGTH**3 / 3.0
     assert found[0] == 0.0
     assert found[1] == pytest.approx(0.9 * 0.5 / held, rel=2e-3)
+
+
+BEHIND = {"a third": (0.3, 0.3, 0.4), "one part": (0.4, 0.02, 0.58)}
+
+
+@pytest.mark.parametrize(
+    ("face", "width"),
+    [(fem_beam, "a third"), (fem_beam, "one part"), (segment_model, "a third")],
+    ids=["elements", "elements behind one part", "segments"],
+)
+def test_both_slow_modes_behind_a_soft_stretch_go_as_the_root_of_its_softness(face, width):
+    """What divides it is alike at 1e-11 and 1e-13 EI; what rounding leaves is some 1e-21 over the softness."""
+
+    def over_exact(softness):
+        shares = zip(BEHIND[width], (1.0, softness, 1.0), strict=True)
+        pieces = tuple(Section(length=share * LENGTH, bending_stiffness=soft * STIFFNESS) for share, soft in shares)
+        beam = bar(supports=("clamped", "free"), section=pieces)
+        return face.solve_modes(beam, 2, 50).frequencies_hz / analytic_modes.solve_modes(beam, 2).frequencies_hz
+
+    assert abs(over_exact(1e-13) / over_exact(1e-11) - 1.0).max() < 1e-8
