@@ -395,8 +395,8 @@ def test_a_floating_beam_that_a_device_holds_is_refused_where_its_digits_are_los
 
 
 def told_frequency(refusal):
-    """Hertz from which on a refused drive is said to be answered."""
-    return float(re.search(r"to (\S+) Hz or more", str(refusal.value))[1])
+    """Hertz that a refused drive is said to need, which are enough for what inertia alone holds."""
+    return float(re.search(r"to at least (\S+) Hz", str(refusal.value))[1])
 
 
 def test_what_a_floating_beam_on_a_device_is_told_to_do_instead_answers():

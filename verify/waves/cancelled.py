@@ -30,11 +30,12 @@ def check_kept(
     terms = np.array(weights)[:, None] * np.array(read)
     bent = unit * float(abs(np.array(weights)) @ np.array(newtons))
     left, taken = max(abs(terms.sum(axis=0)).max(), _BENT * bent), abs(terms).sum(axis=0).max()
-    lost = np.finfo(float).eps * taken
+    lost = float(np.finfo(float).eps * taken)
     if lost > _KEPT * left:
+        enough = 1.05 * frequency_hz * sqrt(lost / (_KEPT * left))
         raise InputError(
             f"frequency_hz = {float(frequency_hz)!r}: the beam alone moves {taken / left:.0e} times as far as it does "
-            "where the drive holds it, so that its digits are lost: raise the frequency, to "
-            f"{1.05 * frequency_hz * sqrt(lost / (_KEPT * left)):.2g} Hz or more, or let beam.spring hold the beam, in "
-            "place of a device that is a spring or where a displacement is imposed"
+            "where the drive holds it, so that its digits are lost: raise the frequency, to at "
+            f"least {enough:.2g} Hz, or let beam.spring hold the beam, in place of a device that is a spring or where "
+            "a displacement is imposed"
         )
