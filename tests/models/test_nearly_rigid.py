@@ -190,3 +190,55 @@ def test_what_steps_do_not_settle_is_refused_and_told(monkeypatch):
     monkeypatch.setattr(polishing, "_STEPS", 1)
     with pytest.raises(InputError, match=r"slow motions of 999 unknowns.* do not settle"):
         segment_model.solve_modes(beam, 1, 999)
+
+
+PINNED = bar(supports=("pinned", "free"), spring=(PointSpring(position=0.3, stiffness=1e-3),))
+IDLE = {
+    "at the pin": (PointForce(position=0.0, amplitude=1.7),),
+    "of no size": (PointForce(position=0.9, amplitude=0.0),),
+    "two that take each other away": (PointForce(position=0.9), PointForce(position=0.9, amplitude=-1.0)),
+}
+
+
+@FACES
+@pytest.mark.parametrize("case", IDLE)
+@pytest.mark.filterwarnings("error")
+def test_a_slow_force_that_moves_nothing_is_answered(face, case):
+    """Its steps were nought by nought of its answer: refused as of a beam that next to nothing holds."""
+    assert not face.solve_harmonic(PINNED, IDLE[case], 1e-3, 30).deflection([0.2, 0.9, 1.3]).any()
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_slow_force_at_the_clamp_moves_no_element():
+    beam = bar(supports=("clamped", "free"), foundation=1.0)
+    assert not fem_beam.solve_harmonic(beam, PointForce(position=0.0), 1e-3, 30).deflection([0.2, 1.3]).any()
+
+
+@FACES
+@pytest.mark.filterwarnings("error")
+def test_a_slow_force_is_answered_beside_one_that_moves_nothing(face):
+    """As a rigid bar about its pin, which a newton bends by 2e-4 of that."""
+    found = face.unit_responses(PINNED, [0.0, 0.9], [1e-3], [0.5], 30)[0, :, 0]
+    held = 1e-3 * 0.3**2 - (2.0 * pi * 1e-3) ** 2 * RHO_A * LENGTH**3 / 3.0
+    assert found[0] == 0.0
+    assert found[1] == pytest.approx(0.9 * 0.5 / held, rel=2e-3)
+
+
+BEHIND = {"a third": (0.3, 0.3, 0.4), "one part": (0.4, 0.02, 0.58)}
+
+
+@pytest.mark.parametrize(
+    ("face", "width"),
+    [(fem_beam, "a third"), (fem_beam, "one part"), (segment_model, "a third")],
+    ids=["elements", "elements behind one part", "segments"],
+)
+def test_both_slow_modes_behind_a_soft_stretch_go_as_the_root_of_its_softness(face, width):
+    """What divides it is alike at 1e-11 and 1e-13 EI; what rounding leaves is some 1e-21 over the softness."""
+
+    def over_exact(softness):
+        shares = zip(BEHIND[width], (1.0, softness, 1.0), strict=True)
+        pieces = tuple(Section(length=share * LENGTH, bending_stiffness=soft * STIFFNESS) for share, soft in shares)
+        beam = bar(supports=("clamped", "free"), section=pieces)
+        return face.solve_modes(beam, 2, 50).frequencies_hz / analytic_modes.solve_modes(beam, 2).frequencies_hz
+
+    assert abs(over_exact(1e-13) / over_exact(1e-11) - 1.0).max() < 1e-8

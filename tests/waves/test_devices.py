@@ -1,5 +1,7 @@
 """Devices on a driven beam: every model's field beside one matched span by span here, and what is refused."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -392,8 +394,51 @@ def test_a_floating_beam_that_a_device_holds_is_refused_where_its_digits_are_los
     assert found == pytest.approx(solve(sprung, FORCES, 1e-3).deflection(X), rel=2e-6)
 
 
+def told_frequency(refusal):
+    """Hertz that a refused drive is said to need, which are enough for what inertia alone holds."""
+    return float(re.search(r"to at least (\S+) Hz", str(refusal.value))[1])
+
+
+def test_what_a_floating_beam_on_a_device_is_told_to_do_instead_answers():
+    floating, spring = replace(STRIP, supports=("pinned", "free")), 2.0 * STRIP.bending_stiffness / STRIP.length**3
+    device = Device(position=0.6, stiffness=spring)
+    with pytest.raises(InputError) as refusal:
+        field_with_devices(exact, floating, FORCES, 1e-6, [device])
+    raised = field_with_devices(exact, floating, FORCES, told_frequency(refusal), [device]).deflection(X)
+    sprung = replace(floating, spring=(PointSpring(position=0.6, stiffness=spring),))
+    assert raised == pytest.approx(exact(sprung, FORCES, 1e-6).deflection(X), rel=2e-5)
+
+
+@pytest.mark.parametrize("solve", [exact, elements(30), segments(30)], ids=["exact", "elements", "segments"])
+def test_a_stiff_device_where_the_force_acts_is_answered_on_a_beam_that_does_not_float(solve):
+    """At all places a hundredth as far as behind one a hundredth as stiff: all but nothing, which nobody loses."""
+    held, force = replace(STRIP, supports=("clamped", "pinned")), PointForce(position=0.3, amplitude=1.7)
+    soft, stiff = (
+        field_with_devices(solve, held, force, 3000.0, [Device(position=0.3, stiffness=k)]).deflection(X)
+        for k in (1e16, 1e18)
+    )
+    assert 100.0 * stiff == pytest.approx(soft, rel=1e-3)
+    assert abs(soft).max() < 1e-14
+
+
+def test_whatever_rounding_leaves_of_a_floating_beam_that_a_stiff_device_stops_is_refused():
+    """All of its force goes into the device: what is left of 2e11 m is rounding. Driven fast enough it is answered."""
+    floating, force = replace(STRIP, supports=("pinned", "free")), PointForce(position=0.6, amplitude=1.7)
+    field_with_devices(exact, floating, [force], 0.3, [Device(position=0.6, stiffness=1e15)])
+    for stiffness in (1e10, 1e15, 1e20):
+        with pytest.raises(InputError, match=r"alone moves \de\+1\d times as far"):
+            field_with_devices(exact, floating, [force], 1e-6, [Device(position=0.6, stiffness=stiffness)])
+
+
 def test_a_floating_beam_bent_by_three_places_is_refused_where_its_digits_are_lost():
     floating = replace(STRIP, supports=("free", "free"))
     bent = [PointForce(position=x, amplitude=y) for x, y in ((0.02, 1e-3), (0.5, 3e-3), (0.8, 1e-3))]
-    with pytest.raises(InputError, match=r"the beam alone moves .* times as far as it does where the drive holds it"):
-        driven_field(lambda acts, hertz: exact(floating, acts, hertz), bent, 1e-6, "displacement")
+
+    def bends(beam, hertz):
+        return driven_field(lambda acts, f: exact(beam, acts, f), bent, hertz, "displacement").deflection(X)
+
+    with pytest.raises(InputError, match=r"alone moves .* as far as it does where the drive holds it") as refusal:
+        bends(floating, 1e-6)
+    k = STRIP.bending_stiffness / STRIP.length**3
+    sprung = replace(floating, spring=tuple(PointSpring(position=one.position, stiffness=k) for one in bent))
+    assert bends(floating, told_frequency(refusal)) == pytest.approx(bends(sprung, 1e-6), rel=1e-4)

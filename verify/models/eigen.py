@@ -81,12 +81,13 @@ def solve_seconds(n_unknowns: int, n_modes: int) -> float:
     return n_unknowns * (1.5e-5 + 9e-7 * n_modes)
 
 
-def field_seconds(n_unknowns: int) -> float:
-    """An estimate from above of the time a driven field takes with its reading.
+def field_seconds(n_unknowns: int, laden: bool = False) -> float:
+    """An estimate from above of the time a driven field takes with its reading, of a beam that is `laden` or bare.
 
-    Measured of narrow bands: 2.6e-6 s for each unknown and a quarter of a millisecond.
+    Measured of narrow bands: 2.6e-6 s for each unknown and a quarter of a millisecond. What is added to a beam widens
+    them and is refined under slow drives: 2.5e-6 (a spring) to 6.9e-6 s (elements on ground) and half a millisecond.
     """
-    return 2.5e-4 + 3e-6 * n_unknowns
+    return 5e-4 + 8e-6 * n_unknowns if laden else 2.5e-4 + 3e-6 * n_unknowns
 
 
 def _memory_bytes() -> int:

@@ -112,9 +112,11 @@ def _refined(
 ) -> ComplexArray:
     """The unknowns (n, k) of an answer to loads (n, k), and what answers what they leave, until a step is small.
 
+    Where there is no load (at a pin, at a clamp, of forces that take each other away) there is no motion, and no step.
     Raises InputError where steps stay large, but for an undamped resonance, which whoever drives refuses.
     """
     transposed, mass, step = pencil.transposed(), pencil.mass_matrix(), inf
+    driven = loads.any(axis=0)
     forces, found, rest = answer.forces, answer.unknowns, None
     elastic: Any = (stiffness if np.iscomplexobj(found) else stiffness.real)[:, None]
     for _ in range(_STEPS):
@@ -124,11 +126,11 @@ def _refined(
             lacking, left = lacking - pencil.strain(rest), left + omega2 * (mass @ rest)
         more = answer.to(lacking, left)
         change, last = more.unknowns, step
-        step = float((abs(change).max(axis=0) / abs(found).max(axis=0)).max())
+        step = float((abs(change).max(axis=0)[driven] / abs(found).max(axis=0)[driven]).max(initial=0.0))
         forces, (found, rest) = forces + more.forces, _summed(found, change if rest is None else rest + change)
         if not _SETTLED < step < last:
             break
-    if not step < _LOST and not _resonates(pencil, found, loads, omega2, stiffness):
+    if not step < _LOST and not _resonates(pencil, found[:, driven], loads[:, driven], omega2, stiffness):
         raise InputError(
             f"frequency_hz: so slow a drive of {pencil.n} unknowns is answered with less than {-log10(_LOST):.0f} sure "
             "digits, as next to nothing holds the beam: lower count, raise the frequency, or hold the beam better"

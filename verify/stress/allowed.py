@@ -166,6 +166,7 @@ def work_error(number: float) -> float:
             (251 * (1.5e-5 + 9e-7), False, _above(lambda: eigen.solve_seconds(251, 1))),
             (64.0 * 250**2, False, _above(lambda: eigen.required_bytes(250, 1))),
             (2.5e-4 + 3e-6 * 700, False, _above(lambda: eigen.field_seconds(700))),
+            (5e-4 + 8e-6 * 700, False, _above(lambda: eigen.field_seconds(700, laden=True))),
             (64.0 * 210**2, False, _above(lambda: eigen.required_bytes(210, 9))),
             (3000 * (2000.0 + 32 * 1520), False, _above(lambda: eigen.required_bytes(3000, 750))),
             (1e5 * (1.5e-6 + 1.5e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, False))),

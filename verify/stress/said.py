@@ -121,6 +121,7 @@ def estimates_error(parts: float) -> float:
     wrong += not 1300.0 < required_bytes(300_000, 5) / 3e5 < 3300.0
     wrong += not required_bytes(300_000, 30) > required_bytes(300_000, 5)
     wrong += not 2.6e-6 * n + 2.5e-4 < field_seconds(n) < 2.0 * (2.6e-6 * n + 2.5e-4)
+    wrong += not 6.9e-6 * n + 4e-4 < field_seconds(n, laden=True) < 2.0 * (6.9e-6 * n + 4e-4)
     for two_way in (False, True):
         one, twice = (slider_seconds(steps, n, two_way) for steps in (1e5, 2e5))
         wrong += abs(twice / one - 2.0) > 1e-12

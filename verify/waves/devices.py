@@ -97,7 +97,7 @@ def field_with_devices(
             return at_pole()
     at = np.array(read)[:, : len(places)]
     pulls = _pulls(at, places.tolist(), _conditions(across, frequency_hz).take, unit, frequency_hz)
-    check_kept([1.0, *pulls], read, frequency_hz)
+    check_kept([1.0, *pulls], read, newtons, unit, frequency_hz)
     found = combined(list(zip([1.0, *pulls], fields, strict=True)))
     return replace(found, forces=(*fields[0].forces, *_reactions(across, pulls)))
 

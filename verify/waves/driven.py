@@ -113,8 +113,8 @@ def check_fields(beam: Beam, name: str, counts: Sequence[int | None], times: int
     sizes = [count for count in counts if count is not None]
     if not sizes:
         return
-    model = MODELS.named(name)
-    seconds = times * sum(field_seconds(model.unknowns(beam, count)) for count in sizes)
+    model, laden = MODELS.named(name), bool(set(beam.added) - {"section"})
+    seconds = times * sum(field_seconds(model.unknowns(beam, count), laden) for count in sizes)
     check_work("count", max(sizes), seconds, f"lower it, {times * len(sizes)} driven fields are asked for")
 
 

@@ -70,7 +70,7 @@ def driven_field(solve: Solve, drives: Sequence[PointForce], frequency_hz: float
         beside = [solve([PointForce(position=float(place))], up).deflection(places) for place in places]
         check_held(own, np.array(beside), places, beam, frequency_hz)
     held = np.asarray(np.linalg.solve(own.T, [phasor(drive) for drive in drives]), dtype=complex)
-    check_kept(held.tolist(), read, frequency_hz)
+    check_kept(held.tolist(), read, [1.0] * len(here), unit, frequency_hz)
     return _acting(combined(list(zip(held, here, strict=True))), drives, held, frequency_hz)
 
 
