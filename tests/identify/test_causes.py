@@ -194,7 +194,7 @@ def test_a_clamp_that_hardly_gives_is_told_beside_a_modulus_and_neither_is_claim
 
 def test_what_a_factor_does_not_explain_is_not_claimed_as_one():
     """A wall joint of 3 EI/l, half a link's mass too much at the tip: neither is of the family."""
-    for given in (links(12, wall=3.0), links(24, tip=0.5)):
+    for given in (links(12, wall=3.0), links(24, wall=3.0), links(12, tip=0.5), links(24, tip=0.5)):
         found = of_list(given, None)
         assert "have the common factor" not in found.answer
         assert not found.answer.startswith("Your ")
