@@ -103,10 +103,10 @@ def test_the_gate_within_judges_what_was_given(factor, limit):
     assert gate.passed == (abs(factor - 1.0) <= limit)
 
 
-def test_a_unit_or_a_modulus_that_is_confirmed_passes(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    np.savetxt("list.csv", 2.0 * np.pi * np.sqrt(0.97) * fine())
-    line = ["compare", "list.csv", "--scene", "steel-cantilever", "--count", "200", "--within", "0.1%", "--json"]
+def test_a_unit_or_a_modulus_that_is_confirmed_passes(tmp_path, capsys):
+    path = str(tmp_path / "list.csv")
+    np.savetxt(path, 2.0 * np.pi * np.sqrt(0.97) * fine())
+    line = ["compare", path, "--scene", "steel-cantilever", "--count", "200", "--within", "0.1%", "--json"]
     assert status_of(line) == 1
     assert not json.loads(capsys.readouterr().out)["passed"]
     modulus = 0.97 * float(BEAM.own.bending_stiffness / BEAM.second_moment)
