@@ -48,6 +48,10 @@ def raise_all(sentences: "list[str]", most: int) -> None:
         raise InputError(sentences[0])
 
 
+class NoTomlError(InputError):
+    """What was named as a scene is no TOML file, so that something else may have been meant."""
+
+
 class PairingError(InputError):
     """No computed mode has the shape of the exact mode asked for."""
 

@@ -236,11 +236,56 @@ def test_the_scene_stands_first_as_in_other_commands_or_after_its_option(verify,
         (("compare",), "SCENE"),
         (("compare", "mine.csv"), "SCENE and FREQUENCIES"),
         (("compare-shapes",), "FILE"),
+        (("compare-shapes", "paper"), "FILE"),
+        (("compare-shapes", "mine.toml"), "FILE"),
+        (("measure", "x=1/mine.toml", "mode=3"), "QUANTITY"),
     ],
 )
 def test_a_word_that_is_missing_is_named(verify, words, missing):
     status, _, err = verify(*words)
     assert (status, missing in err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("compare", "d.csv", "--modes", "d.csv"),
+        ("compare", "d.csv", "--model", "my:Chain"),
+        ("compare", "nowhere.csv", "--modes", "d.csv"),
+        ("compare", "d.csv", "strip.toml"),
+        ("compare", "d.csv", "steel-cantilever"),
+        ("compare", "nowhere.csv", "strip.toml"),
+        ("compare-shapes", "d.vtu", "steel-cantilever"),
+        ("compare-shapes", "d.vtu", "d.csv"),
+    ],
+)
+def test_a_list_where_the_scene_should_stand_is_told_that_the_scene_comes_first(verify, tmp_path, words):
+    (tmp_path / "d.csv").write_text("9.2\n57.9\n162.1\n")
+    (tmp_path / "d.vtu").write_bytes(b"<VTKFile>\xff")
+    status, _, err = verify(*words)
+    assert (status, err.count("\n")) == (2, 1)
+    assert f"{words[1]!r} stands where SCENE comes first" in err
+    assert f"verify {words[0]} SCENE F" in err
+
+
+def test_a_scene_that_is_no_toml_is_told_so_wherever_it_is_named(verify, tmp_path):
+    (tmp_path / "d.csv").write_text("9.2\n57.9\n162.1\n")
+    (tmp_path / "torn.toml").write_text("beam = {length = 0.7")
+    for words in (("torn.toml", "d.csv"), ("d.csv", "--scene", "torn.toml"), ("d.csv", "--scene", "d.csv")):
+        status, _, err = verify("compare", *words)
+        assert (status, "is not TOML" in err, "comes first" in err) == (2, True, False)
+
+
+def test_a_scene_may_have_an_equals_sign_in_its_path(verify, tmp_path):
+    scene = tmp_path / "x=1" / "my.toml"
+    scene.parent.mkdir()
+    scene.write_text(
+        "name = 'my'\nbeam = {length = 0.7, width = 0.03, thickness = 0.002, youngs_modulus = 113e9, density = 4470}\n"
+    )
+    asked = ("mode.frequency", "model=analytic", "mode=3")
+    first, said = verify("measure", "x=1/my.toml", *asked), verify("measure", *asked, "--scene", scene)
+    assert first == said
+    assert first[0] == 0
 
 
 def test_choose_says_where_one_part_less_cannot_be_built(verify):

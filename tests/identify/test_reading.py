@@ -85,6 +85,16 @@ def test_the_scatter_of_frequencies_is_not_taken_for_them(read, scatter):
     assert listed.frequencies_hz == pytest.approx(HERTZ, rel=1e-12)
 
 
+@pytest.mark.parametrize("beside", ["damping ratio", "zeta", "Q", "frequency error (Hz)"])
+@pytest.mark.parametrize(
+    "name", ["frequency (Hz) ±0.1 %", "frequency (Hz) (std 0.1)", "f +/- 0.3 Hz", "f (±0.2)", "freq (σ = 1e-3 Hz)"]
+)
+def test_frequencies_whose_head_says_how_far_they_scatter_are_frequencies(read, name, beside):
+    rows = (f"{i},{f!r},0.0{i + 1}" for i, f in enumerate(HERTZ, 1))
+    listed = read("\n".join([f"mode,{name},{beside}", *rows]))
+    assert listed.frequencies_hz == pytest.approx(HERTZ, rel=1e-12)
+
+
 def test_mode_numbers_and_rounding_are_kept(read):
     listed = read("mode,f\n2,10.5\n5,1.25e3\n")
     assert listed.numbers == (2, 5)
@@ -109,6 +119,15 @@ def test_mode_numbers_and_rounding_are_kept(read):
         (
             "mode,freq exact,freq mine\n1,27.5,27.4\n",
             "has 2 columns of frequencies, 'freq exact' and 'freq mine': leave the one",
+        ),
+        (
+            "mode,frequency (Hz) ±0.1 %,freq exact\n1,27.5,27.4\n",
+            "has 2 columns of frequencies, 'frequency (Hz) ±0.1 %' and 'freq exact': leave the one",
+        ),
+        (
+            "mode,freq std,zeta\n1,27.5,0.02\n",
+            "'freq std' is named after frequencies and after scatter, 'zeta' after neither: name the one to compare "
+            "'frequency_hz'",
         ),
         ("0\n0\n", "holds zeros alone"),
         ("1e-200\n2e-200\n", "1e-200 Hz, and the beam's modes lie from 9.23541 Hz on: check the scene, or the unit"),

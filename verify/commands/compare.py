@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.run import GATE_FAILED
-from verify.commands.shared import json_alone, load, overridden, print_json, scene_first, whole_number
+from verify.commands.shared import json_alone, load_first, overridden, print_json, scene_first, whole_number
 
 if TYPE_CHECKING:
     from verify.identify.told import Compared
@@ -62,7 +62,7 @@ def compare(
     if len(words) == 1 and scene is None and modes is None and model is None:
         raise click.UsageError(f"SCENE and FREQUENCIES are asked for, {words[0]!r} is one of them.")
     named, rest = scene_first(words, scene, 1, default=None)
-    loaded = load(named, overrides)
+    loaded = load_first(words, scene, named, overrides, "verify compare SCENE FREQUENCIES")
     asked = Asked(
         frequencies=Path(rest[0]) if rest else None,
         shapes=None if modes is None else Path(modes),

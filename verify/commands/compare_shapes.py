@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.run import GATE_FAILED
-from verify.commands.shared import DEFAULT, json_alone, load, overridden, print_json, scene_first, whole_number
+from verify.commands.shared import (
+    DEFAULT,
+    is_scene,
+    json_alone,
+    load_first,
+    overridden,
+    print_json,
+    scene_first,
+    whole_number,
+)
 
 if TYPE_CHECKING:
     from verify.identify.shapes_told import ShapesJudged
@@ -38,7 +47,9 @@ def compare_shapes(
 
     parts, limit = whole_number("count", count), None if within is None else accuracy(within, "within")
     named, (file,) = scene_first(words, scene, 1)
-    loaded = load(named, overrides)
+    if len(words) == 1 and is_scene(file):
+        raise click.UsageError(f"Missing argument 'FILE': {file!r} is a scene.")
+    loaded = load_first(words, scene, named, overrides, "verify compare-shapes SCENE FILE")
     result = judge_shapes(loaded, read_shapes_of_mesh(Path(file), loaded.beam.length), parts, limit)
     _show(result, as_json=as_json)
     if not result.passed:

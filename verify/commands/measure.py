@@ -9,6 +9,7 @@ from verify.commands.shared import (
     DEFAULT,
     PERCENT,
     in_percent,
+    is_scene,
     json_alone,
     load,
     overridden,
@@ -28,12 +29,12 @@ def measure(words: tuple[str, ...], scene: str | None, overrides: tuple[str, ...
     """Any named QUANTITY: `verify measure paper mode.frequency_error model=segment mode=22 count=49`."""
     from verify.judge.workbench import Workbench
     from verify.quantities import catalogue as quantities
-    from verify.scenes.scene import packaged_scenes
     from verify.scenes.toml import given_arguments
 
-    leading = list(takewhile(lambda word: "=" not in word, words))
+    scenes = [word for word in words[:1] if word.endswith(".toml")]  # whose path may have an "=" in it
+    leading = scenes + list(takewhile(lambda word: "=" not in word, words[len(scenes) :]))
     named, rest = scene_first(leading, scene, 1)
-    if not rest or (len(leading) == 1 and (leading[0] in packaged_scenes() or leading[0].endswith(".toml"))):
+    if not rest or (len(leading) == 1 and is_scene(leading[0])):
         raise click.UsageError("Missing argument 'QUANTITY': `verify quantities` lists them.")
     (quantity,) = rest
     found = quantities.quantity(quantity)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.errors import InputError, raise_all
+from verify.errors import InputError, NoTomlError, raise_all
 
 if TYPE_CHECKING:
     from verify.scenes.scene import Scene
@@ -47,6 +47,29 @@ def load(scene: str, overrides: tuple[str, ...]) -> "Scene":
 
         check_per_cents(loaded, overrides)
     return loaded
+
+
+def is_scene(word: str) -> bool:
+    """Whether a word can be nothing but a scene: a packaged one's name, or that of a TOML file."""
+    from verify.scenes.scene import packaged_scenes
+
+    return word.endswith(".toml") or word in packaged_scenes()
+
+
+def load_first(words: Sequence[str], option: str | None, named: str, overrides: tuple[str, ...], usage: str) -> "Scene":
+    """The scene `named`, which is the first of `words` unless that is a file that follows it in `usage`.
+
+    Raises InputError as `load`, and where the words stand the other way round or the first is no TOML file.
+    """
+    misplaced = f"{named!r} stands where SCENE comes first, as in `{usage}`"
+    if not words or option is not None or named != words[0] or is_scene(named):
+        return load(named, overrides)
+    if any(is_scene(word) for word in words[1:]):
+        raise InputError(f"{misplaced}: turn the words round")
+    try:
+        return load(named, overrides)
+    except NoTomlError as error:
+        raise InputError(f"{misplaced}: {error}") from None
 
 
 def scene_first(

@@ -28,11 +28,15 @@ _UNITS = {
     "hz": re.compile(r"hz|hertz|freq|^f(_?\w{0,2})?$|cps|cycles", re.IGNORECASE),
 }
 _NUMBERED = re.compile(r"^(#|n|no\.?|nr\.?|mode|modes?[ _]?(number|no\.?|nr\.?)|number|index|i|k)$", re.IGNORECASE)
-_SCATTER = re.compile(
-    r"(?:^|[^a-z])(?:std|sd|se|dev|err|unc|var)(?:[^a-z]|$)|sigma|deviation|error|uncertainty|variance|[σ±]|\+/-",
+_SHORT, _LONG = "(?:std|sd|se|dev|err|unc|var)", "(?:sigma|deviation|error|uncertainty|variance)"
+_SCATTER = re.compile(rf"(?:^|[^a-z]){_SHORT}(?:[^a-z]|$)|{_LONG}|[σ±]|\+/-", re.IGNORECASE)
+"""Names of what is known of frequencies beside them."""
+_SIZED = re.compile(
+    rf"(?:±|\+/-|[(\[]\s*(?:{_SHORT}\.?|(?:standard )?{_LONG}|σ))\s*[=:<≤~]?\s*"
+    r"[\d.,]+(?:e[+-]?\d+)?\s*(?:%|‰|k?hz|rad/s)?\s*(?=$|[)\],;])",
     re.IGNORECASE,
 )
-"""Names of what is known of frequencies beside them."""
+"""How far what a column holds scatters, as its head says it with a figure: ±0.1 %, (std 0.1)."""
 _NUMBER = re.compile(r"^[+-]?(\d+([.,]\d*)?|[.,]\d+)([eEdD][+-]?\d+)?$")
 
 
@@ -240,8 +244,10 @@ def _columns(rows: _Rows) -> tuple[int | None, int]:
     width = len(rows.cells[0])
     if rows.head:
         numbered = next((k for k, name in enumerate(rows.head) if _NUMBERED.match(name)), None)
-        others = [k for k, name in enumerate(rows.head) if k != numbered and not _SCATTER.search(name)]
-        named = [k for k in others if any(pattern.search(rows.head[k]) for pattern in _UNITS.values())]
+        others = [k for k, name in enumerate(rows.head) if k != numbered and not _SCATTER.search(_without_size(name))]
+        named = [k for k in others if _names_frequencies(rows.head[k])]
+        if others and not named:
+            _check_none_is_dropped(rows, others, numbered)
         by_unit = ([k for k in named if _unit_of(rows.head[k]) == unit] for unit in _PER_HERTZ)
         found = next(filter(None, by_unit), others)
         if named and len(found) > 1:
@@ -260,12 +266,33 @@ def _columns(rows: _Rows) -> tuple[int | None, int]:
     )
 
 
+def _check_none_is_dropped(rows: _Rows, others: list[int], numbered: int | None) -> None:
+    """Raise InputError where only columns of scatter are named after frequencies: they, or `others`, may be them."""
+    for k, name in enumerate(rows.head):
+        if k != numbered and k not in others and _names_frequencies(name):
+            other = shown(rows.head[others[0]])
+            raise InputError(
+                f"{rows.where}: {shown(name)} is named after frequencies and after scatter, {other} after neither: "
+                "name the one to compare 'frequency_hz'"
+            )
+
+
+def _without_size(name: str) -> str:
+    """A column's name without the figure of how far its values scatter."""
+    return _SIZED.sub("", name).strip(" ()[],;")
+
+
+def _names_frequencies(name: str) -> bool:
+    return any(pattern.search(_without_size(name)) for pattern in _UNITS.values())
+
+
 def _rises(numbers: list[int]) -> bool:
     return all(b > a for a, b in pairwise(numbers)) and numbers[0] <= 1
 
 
 def _unit_of(name: str) -> str:
-    return next((unit for unit, pattern in _UNITS.items() if pattern.search(name)), "hz")
+    bare = _without_size(name)
+    return next((unit for unit, pattern in _UNITS.items() if pattern.search(bare)), "hz")
 
 
 def _mode_numbers(rows: _Rows, column: int | None) -> tuple[int, ...] | None:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from verify.errors import InputError, near_name, shown
+from verify.errors import InputError, NoTomlError, near_name, shown
 from verify.files import exists
 
 _LARGE = "TOML's whole numbers have 64 bits, write a large number as 1e30"
@@ -14,25 +14,25 @@ _DECIMAL = re.compile(r"(?<![\w.])([+-]?)(?:(\d+)\.|\.(\d+))((?:[eE][+-]?\d+)?)(
 
 
 def read_text(path: Path) -> str:
-    """The text of a scene file. Raises InputError where it cannot be read."""
+    """The text of a scene file. Raises NoTomlError where it cannot be read."""
     exists(path, "scene")
     try:
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
-        raise InputError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
+        raise NoTomlError(f"scene file {str(path)!r} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise InputError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
+        raise NoTomlError(f"scene file {str(path)!r} is not text in UTF-8: save it as TOML in UTF-8") from None
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file. Raises InputError where it cannot be read or is not TOML."""
+    """The tables of a TOML file. Raises NoTomlError where there is none, InputError for a number that is too large."""
     import tomllib
 
     text = read_text(path)
     try:
         return {key: _whole(value, f"scene file {str(path)!r}: {key}") for key, value in tomllib.loads(text).items()}
     except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"scene file {str(path)!r} is not TOML: {error}") from None
+        raise NoTomlError(f"scene file {str(path)!r} is not TOML: {error}") from None
     except InputError:
         raise
     except ValueError:  # Python reads no whole number of more than 4300 digits
