@@ -94,11 +94,11 @@ def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: 
     side = -1.0 if a < 0.0 else 1.0
     alpha, tau = side * a / b, slope * b * dt
     rho = side * slope * r
+    if abs(alpha - 1.0) < 1e-7:
+        alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)
     end = rho + side * slope * change - alpha * tau
     if (rho > 20.0 and end > 20.0) or (rho < -20.0 and end < -20.0):
         return float(0.5 * (r + side * end / slope) * dt)
-    if abs(alpha - 1.0) < 1e-7:
-        alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)
     way = _held_way(rho, end, alpha, tau) if alpha < 1.0 else _swept_way(rho, end, alpha)
     return float(side * way / (slope * slope * b))
 
