@@ -115,6 +115,43 @@ def test_numbers_under_a_mask_are_no_numbers():
     assert len(simulate(**ASKED, at=np.ma.array([0.1, 0.2])).points) == 2
 
 
+@pytest.mark.parametrize(
+    ("call", "begins"),
+    [
+        (lambda: PointForce(position=0.2, amplitude=np.ma.array(3.0, mask=True)), "amplitude = "),
+        (lambda: replace(STRIP, foundation=np.ma.masked), "beam.foundation = masked"),
+        (lambda: simulate(**ASKED, modal_damping=np.ma.masked), "modal_damping = masked"),
+        (lambda: fem_beam.solve_modes(STRIP, np.ma.array(3, mask=True), 9), "n_modes = "),
+        (
+            lambda: fem_beam.solve_modes(STRIP, 3, 9).deflection([np.ma.array([0.1, 0.2], mask=[1, 0]), [0.2, 0.3]]),
+            "x = [masked_array(",
+        ),
+        (lambda: simulate(**ASKED, at=[0.1, np.ma.masked]), "at = [0.1, masked]"),
+    ],
+)
+def test_a_number_under_a_mask_is_none_alone_and_in_a_list(call, begins):
+    """Its value was read from below the mask: an amplitude of 3 N, a foundation of nought."""
+    said = refusal(call)
+    assert said.startswith(begins)
+    assert " has numbers under a mask: leave them out or unmask them" in said
+    assert PointForce(position=0.2, amplitude=np.ma.array(3.0)).amplitude == 3.0
+
+
+class Column:
+    """Numbers with a verb called `mask`, as a column of a table has."""
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array([0.1, 0.2])
+
+    def mask(self, where):
+        raise AssertionError
+
+
+def test_an_array_of_another_library_hides_nothing():
+    """Its `mask` is a verb, which was taken for a mask."""
+    assert simulate(**ASKED, at=Column()).points.tolist() == [0.1, 0.2]
+
+
 class Nine:
     """A whole number to Python, with no arithmetic of its own."""
 

@@ -89,7 +89,8 @@ def _swept_way(rho: float, end: float, alpha: float) -> float:
 def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: float) -> float:
     """The integral of r over dt while r' = -b tanh(slope r) - a and friction adds `change` to the slider's speed.
 
-    Exact, as `tanh_speed_change` is, to whose `change` it belongs: mirrored likewise, and parted where formulas do.
+    Exact, as `tanh_speed_change` is, to whose `change` it belongs: mirrored likewise, and parted where formulas do. To
+    1e-6 of the largest |r| dt where |a| is b to 1e-7: its logarithms cancel, and the surface is that of `change`.
     """
     side = -1.0 if a < 0.0 else 1.0
     alpha, tau = side * a / b, slope * b * dt
