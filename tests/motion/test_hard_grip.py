@@ -72,12 +72,14 @@ def way_by_small_steps(rho, alpha, tau, n=3000):
 
 @pytest.mark.parametrize(("off", "within"), [(0.0, 2e-6), (1e-9, 2e-6), (-9e-8, 2e-6), (1.1e-7, 5e-7), (-1e-3, 1e-10)])
 def test_a_surface_that_accelerates_as_friction_does_leaves_the_slider_by_as_much_as_small_steps_tell(off, within):
-    """mu N / m to 1e-7 is where the closed form parts; forward and back, in shares of the largest relative speed."""
+    """Within 1e-7 of mu N / m the closed form parts; forward and back, in shares of the largest relative speed."""
     change, way = interpreted(friction_kernels, "tanh_speed_change"), interpreted(way_kernels, "relative_way")
     draw = np.random.default_rng(29)
     rho, tau, side = draw.uniform(-22.0, 22.0, 80), 10.0 ** draw.uniform(-0.6, 1.5, 80), draw.choice([-1.0, 1.0], 80)
     expected, last = way_by_small_steps(rho, 1.0 + off, tau)
     b, slope = 2.3, 17.0
-    given = [(s * r / slope, s * (1.0 + off) * b, b, slope, t / (slope * b)) for r, t, s in zip(rho, tau, side)]
+    given = [
+        (s * r / slope, s * (1.0 + off) * b, b, slope, t / (slope * b)) for r, t, s in zip(rho, tau, side, strict=True)
+    ]
     found = side * slope * slope * b * np.array([way(*one, change(*one)) for one in given])
     assert abs((found - expected) / (tau * np.maximum(abs(rho), abs(last)))).max() < within
