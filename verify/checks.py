@@ -34,7 +34,8 @@ def plain(value: Any, field: str = "a value") -> Any:
     What Python takes for a whole number, by `__index__` alone, likewise. Raises InputError for numbers under a mask.
     """
     if hasattr(value, "dtype"):
-        check_unmasked(field, value)
+        if hasattr(value, "mask"):
+            check_unmasked(field, value)
         return value.item() if getattr(value, "shape", None) == () else value
     if isinstance(value, int | float) or not hasattr(type(value), "__index__"):
         return value

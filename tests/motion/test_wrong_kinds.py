@@ -1,5 +1,7 @@
 """What is of another kind than a public verb takes: refused in one sentence that names the field, by no Python error."""
 
+from dataclasses import replace as copied
+
 import numpy as np
 import pytest
 from msgspec.structs import replace
@@ -18,6 +20,9 @@ from verify import (
     segment_model,
     simulate,
 )
+from verify.chain.dynamics import at_rest
+from verify.chain.stepping import simulate as run_chain
+from verify.chain.system import build_system
 from verify.errors import InputError
 
 STRIP = Beam(length=0.31, width=0.015, thickness=0.002, youngs_modulus=110e9, density=4500.0)
@@ -127,6 +132,7 @@ def test_numbers_under_a_mask_are_no_numbers():
             "x = [masked_array(",
         ),
         (lambda: simulate(**ASKED, at=[0.1, np.ma.masked]), "at = [0.1, masked]"),
+        (lambda: simulate(**ASKED, envelope=[(1e-4, np.ma.array([0.0, 1.0], mask=[1, 0]))]), "envelope = [(0.0001, ma"),
     ],
 )
 def test_a_number_under_a_mask_is_none_alone_and_in_a_list(call, begins):
@@ -135,6 +141,18 @@ def test_a_number_under_a_mask_is_none_alone_and_in_a_list(call, begins):
     assert said.startswith(begins)
     assert " has numbers under a mask: leave them out or unmask them" in said
     assert PointForce(position=0.2, amplitude=np.ma.array(3.0)).amplitude == 3.0
+
+
+def test_a_chain_reads_nothing_from_below_a_mask():
+    """Times and angles were taken as if nothing hid them."""
+    system, hidden = build_system(STRIP, 3), np.ma.array([0.01, 0.02, 0.03], mask=[0, 1, 0])
+    for field, call in {
+        "times": lambda: run_chain(system, at_rest(system), hidden),
+        "angles": lambda: at_rest(system, hidden),
+        "state.rates": lambda: run_chain(system, copied(at_rest(system), rates=hidden), [1e-5]),
+        "chain.stiffness": lambda: at_rest(copied(system, stiffness=hidden)),
+    }.items():
+        assert refusal(call).startswith(f"{field} = masked_array(")
 
 
 class Column:
