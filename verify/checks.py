@@ -3,7 +3,7 @@
 from functools import cache
 from math import inf
 from operator import index
-from sys import float_info
+from sys import float_info, modules
 from types import MemberDescriptorType
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeVar
 
@@ -28,17 +28,43 @@ Kind = TypeVar("Kind")
 _SETTLED = (float, int, str, tuple, type(None))
 
 
-def plain(value: Any) -> Any:
+def plain(value: Any, field: str = "a value") -> Any:
     """A scalar of numpy's as Python's own number, whose arithmetic neither rounds to 32 bits nor overflows.
 
-    What Python takes for a whole number, by `__index__` alone, likewise.
+    What Python takes for a whole number, by `__index__` alone, likewise. Raises InputError for numbers under a mask.
     """
     if hasattr(value, "dtype"):
+        if hasattr(value, "mask"):
+            check_unmasked(field, value)
         return value.item() if getattr(value, "shape", None) == () else value
     if isinstance(value, int | float) or not hasattr(type(value), "__index__"):
         return value
     whole = whole_number(value)
     return value if whole is None else whole
+
+
+def check_unmasked(field: str, value: object, unit: str = "") -> None:
+    """Raise InputError for numbers under a numpy mask, in lists too.
+
+    `numpy.ma` is not loaded for it: who holds a masked array has done so.
+    """
+    if (core := modules.get("numpy.ma.core")) is not None and _hides(value, core.MaskedArray):
+        wanted = f"leave them out or unmask them{unit and f' ({unit})'}"
+        raise InputError(f"{field} = {shown(value)} has numbers under a mask: {wanted}")
+
+
+def _hides(value: object, masked: Any) -> bool:
+    """Whether something, or what lists and tuples in it hold, is of the type `masked` with a mask that hides some."""
+    left, seen = [value], set()
+    while left:
+        one: Any = left.pop()
+        if isinstance(one, masked):
+            if any(one.mask.tobytes()):  # of fields too
+                return True
+        elif isinstance(one, list | tuple) and id(one) not in seen:
+            seen.add(id(one))
+            left += [each for each in one if type(each) is not float]
+    return False
 
 
 def check_sizes(field: str, sizes: "Sequence[float]") -> None:
@@ -80,9 +106,17 @@ def settle(value: "msgspec.Struct", where: str = "", **kinds: type) -> None:
         if field in kinds:
             kept = given if type(given) is tuple and not given else several(f"{where}.{field}", given, kinds[field])
         elif type(given) not in _SETTLED:
-            kept = tuple(map(plain, given)) if _in_a_row(given) else plain(given)
+            kept = _settled(given, f"{where}.{field}" if where else field)
         if kept is not given:
             slot.__set__(value, kept)
+
+
+def _settled(given: Any, name: str) -> Any:
+    """Python's numbers for numpy's, alone or in a row. Raises InputError for what is under a mask."""
+    if not _in_a_row(given):
+        return plain(given, name)
+    check_unmasked(name, given)
+    return tuple(map(plain, given))
 
 
 def _in_a_row(given: Any) -> bool:

@@ -360,6 +360,18 @@ def test_a_phase_that_rounding_has_taken_is_refused(hertz, zeta, known, whose):
         simulate(STRIP, FORCES, hertz, 1.1e12 / highest, **given)
 
 
+@pytest.mark.parametrize(("zeta", "known"), [(4e-12, False), (1e-15, False), (1e-18, False), (7e-12, True)])
+def test_a_mode_that_is_damped_out_after_its_phase_is_lost_is_refused(zeta, known):
+    """40 nepers take 6.4 / zeta periods: what is left of a mode at its end is not all that was told of it before."""
+    lowest = float(basis_of(STRIP, "fem", 4, 0).omegas[0])
+    given = {"model": "fem", "count": 4, "modal_damping": zeta, "at": [0.1], "samples": 5}
+    if known:
+        assert abs(free_vibration(STRIP, 1, 50.0 / (zeta * lowest), amplitude=1e-3, **given).deflection[-1]) < 1e-20
+        return
+    with pytest.raises(InputError, match="more than 1e\\+12 periods of the highest mode that is not damped out before"):
+        free_vibration(STRIP, 1, 50.0 / (zeta * lowest), amplitude=1e-3, **given)
+
+
 @pytest.mark.parametrize(("zeta", "soft"), [(0.0, 0.0), (0.02, 1.5)])
 @pytest.mark.parametrize("model", ["segment", "fem"])
 def test_the_books_of_a_driven_beam_close(model, zeta, soft):

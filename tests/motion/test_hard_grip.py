@@ -1,10 +1,13 @@
 """A light slider that friction grips hard: caught in a small part of a step, it goes on with the surface."""
 
+from types import FunctionType
+
 import numpy as np
 import pytest
 
 from verify.beam import Beam, PointForce
 from verify.fem_beam import solve_harmonic
+from verify.motion import friction_kernels, way_kernels
 from verify.motion.simulate import simulate
 from verify.slider import Slider
 
@@ -43,3 +46,40 @@ def test_how_hard_friction_grips_needs_no_finer_step(law, mass, within):
         simulate(STRIP, PUSHES, 700.0, 4.1 / 700.0, slider=slider, step=one, **GIVEN) for one in (None, 1e-7)
     )
     assert coarse.travelled == pytest.approx(fine.travelled, abs=within * abs(fine.travelled).max())
+
+
+def interpreted(module, name):
+    """A kernel as Python runs it, with the parts that it calls: nothing is compiled for it."""
+    known = dict(vars(module))
+    for one, kernel in vars(module).items():
+        if hasattr(kernel, "py_func"):
+            known[one] = FunctionType(kernel.py_func.__code__, known)
+    return known[name]
+
+
+def way_by_small_steps(rho, alpha, tau, n=3000):
+    """The integral of rho over tau under rho' = -(tanh rho + alpha), by Runge and Kutta's rule; all (draws,)."""
+    moved, h = np.zeros_like(rho), tau / n
+    for _ in range(n):
+        first = -(np.tanh(rho) + alpha)
+        second = -(np.tanh(rho + 0.5 * h * first) + alpha)
+        third = -(np.tanh(rho + 0.5 * h * second) + alpha)
+        fourth = -(np.tanh(rho + h * third) + alpha)
+        moved += h * (rho + h * (first + second + third) / 6.0)
+        rho = rho + h * (first + 2.0 * second + 2.0 * third + fourth) / 6.0
+    return moved, rho
+
+
+@pytest.mark.parametrize(("off", "within"), [(0.0, 2e-6), (1e-9, 2e-6), (-9e-8, 2e-6), (1.1e-7, 5e-7), (-1e-3, 1e-10)])
+def test_a_surface_that_accelerates_as_friction_does_leaves_the_slider_by_as_much_as_small_steps_tell(off, within):
+    """Within 1e-7 of mu N / m the closed form parts; forward and back, in shares of the largest relative speed."""
+    change, way = interpreted(friction_kernels, "tanh_speed_change"), interpreted(way_kernels, "relative_way")
+    draw = np.random.default_rng(29)
+    rho, tau, side = draw.uniform(-22.0, 22.0, 80), 10.0 ** draw.uniform(-0.6, 1.5, 80), draw.choice([-1.0, 1.0], 80)
+    expected, last = way_by_small_steps(rho, 1.0 + off, tau)
+    b, slope = 2.3, 17.0
+    given = [
+        (s * r / slope, s * (1.0 + off) * b, b, slope, t / (slope * b)) for r, t, s in zip(rho, tau, side, strict=True)
+    ]
+    found = side * slope * slope * b * np.array([way(*one, change(*one)) for one in given])
+    assert abs((found - expected) / (tau * np.maximum(abs(rho), abs(last)))).max() < within

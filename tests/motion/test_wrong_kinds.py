@@ -1,5 +1,7 @@
 """What is of another kind than a public verb takes: refused in one sentence that names the field, by no Python error."""
 
+from dataclasses import replace as copied
+
 import numpy as np
 import pytest
 from msgspec.structs import replace
@@ -18,6 +20,9 @@ from verify import (
     segment_model,
     simulate,
 )
+from verify.chain.dynamics import at_rest
+from verify.chain.stepping import simulate as run_chain
+from verify.chain.system import build_system
 from verify.errors import InputError
 
 STRIP = Beam(length=0.31, width=0.015, thickness=0.002, youngs_modulus=110e9, density=4500.0)
@@ -113,6 +118,56 @@ def test_numbers_under_a_mask_are_no_numbers():
     assert refusal(lambda: simulate(**ASKED, at=hidden)).startswith("at = masked_array(")
     assert "numbers under a mask" in refusal(lambda: segment_model.solve_modes(STRIP, 3, 9).deflection(hidden))
     assert len(simulate(**ASKED, at=np.ma.array([0.1, 0.2])).points) == 2
+
+
+@pytest.mark.parametrize(
+    ("call", "begins"),
+    [
+        (lambda: PointForce(position=0.2, amplitude=np.ma.array(3.0, mask=True)), "amplitude = "),
+        (lambda: replace(STRIP, foundation=np.ma.masked), "beam.foundation = masked"),
+        (lambda: simulate(**ASKED, modal_damping=np.ma.masked), "modal_damping = masked"),
+        (lambda: fem_beam.solve_modes(STRIP, np.ma.array(3, mask=True), 9), "n_modes = "),
+        (
+            lambda: fem_beam.solve_modes(STRIP, 3, 9).deflection([np.ma.array([0.1, 0.2], mask=[1, 0]), [0.2, 0.3]]),
+            "x = [masked_array(",
+        ),
+        (lambda: simulate(**ASKED, at=[0.1, np.ma.masked]), "at = [0.1, masked]"),
+        (lambda: simulate(**ASKED, envelope=[(1e-4, np.ma.array([0.0, 1.0], mask=[1, 0]))]), "envelope = [(0.0001, ma"),
+    ],
+)
+def test_a_number_under_a_mask_is_none_alone_and_in_a_list(call, begins):
+    """Its value was read from below the mask: an amplitude of 3 N, a foundation of nought."""
+    said = refusal(call)
+    assert said.startswith(begins)
+    assert " has numbers under a mask: leave them out or unmask them" in said
+    assert PointForce(position=0.2, amplitude=np.ma.array(3.0)).amplitude == 3.0
+
+
+def test_a_chain_reads_nothing_from_below_a_mask():
+    """Times and angles were taken as if nothing hid them."""
+    system, hidden = build_system(STRIP, 3), np.ma.array([0.01, 0.02, 0.03], mask=[0, 1, 0])
+    for field, call in {
+        "times": lambda: run_chain(system, at_rest(system), hidden),
+        "angles": lambda: at_rest(system, hidden),
+        "state.rates": lambda: run_chain(system, copied(at_rest(system), rates=hidden), [1e-5]),
+        "chain.stiffness": lambda: at_rest(copied(system, stiffness=hidden)),
+    }.items():
+        assert refusal(call).startswith(f"{field} = masked_array(")
+
+
+class Column:
+    """Numbers with a verb called `mask`, as a column of a table has."""
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array([0.1, 0.2])
+
+    def mask(self, where):
+        raise AssertionError
+
+
+def test_an_array_of_another_library_hides_nothing():
+    """Its `mask` is a verb, which was taken for a mask."""
+    assert simulate(**ASKED, at=Column()).points.tolist() == [0.1, 0.2]
 
 
 class Nine:

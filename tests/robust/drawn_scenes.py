@@ -203,7 +203,7 @@ class Drawn:
                 {"soft_start_periods": (50, draw.one(0.0, 1.0, 30.0))}, {"start": (90, draw.one("rest", "steady"))}
             ),
             modal_damping=(30, lambda: draw.one(0.0, 0.01, 0.7)),
-            steps_per_period=(20, lambda: draw.one(2, 16, 64)),
+            steps_per_period=(20 if "slider" in self.tables else 1, lambda: draw.one(2, 16, 64)),
         )
 
     # ------------------------------------------------------------------------------------------------- what is asked

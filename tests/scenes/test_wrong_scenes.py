@@ -62,6 +62,18 @@ def test_parts_that_do_not_go_together_are_all_named(tmp_path):
     ]
 
 
+def test_steps_of_a_slider_that_is_not_there_are_refused(tmp_path):
+    """They were dropped without a word: a beam alone is known in closed form."""
+    driven = SCENE + "[drive]\nfrequency_hz = 90.0\nforce = [{ position = 0.21 }]\n[motion]\nsteps_per_period = 37\n"
+    assert wrong(tmp_path, driven) == [
+        "motion.steps_per_period = 37 is a slider's and the scene has none: a beam alone takes no steps, leave it out "
+        "or add [slider]"
+    ]
+    ridden = tmp_path / "ridden.toml"
+    ridden.write_text(driven + "[slider]\nmass = 1e-3\nmu = 0.2\n")
+    assert load_scene(ridden).motion.steps_per_period == 37
+
+
 def test_a_gate_without_an_id_is_named_by_its_place(tmp_path):
     found = wrong(tmp_path, SCENE + gate("first") + gate("x").replace('id = "x"\n', ""))
     assert found == ["gate[1].id is missing: give it a value"]

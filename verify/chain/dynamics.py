@@ -15,6 +15,7 @@ from verify.chain import kernels, places, records
 from verify.chain.small_motion import Linearisation, choose_pivots
 from verify.chain.statics import forces_at, gyroscopic, mass_matrix
 from verify.chain.system import ChainState, ChainSystem, circular
+from verify.checks import check_unmasked
 from verify.errors import InputError
 from verify.models.arrays import Array, Indices
 
@@ -57,6 +58,7 @@ def workspace(system: ChainSystem) -> Array:
 
 def at_rest(system: ChainSystem, angles: Array | None = None) -> ChainState:
     """A state without motion, straight unless angles are given, on the held points."""
+    check_unmasked("angles", angles, "radians")
     still = np.zeros(system.n_links)
     return project(system, ChainState(still if angles is None else np.array(angles, dtype=float), still))[0]
 
@@ -72,6 +74,7 @@ def _arrays(system: ChainSystem, state: ChainState) -> tuple[Array, Array]:
     """Copies of angles and rates. Raises InputError for a wrong shape or a value that is not finite."""
     arrays = []
     for name in ("angles", "rates"):
+        check_unmasked(f"state.{name}", getattr(state, name), "SI")
         values = np.array(getattr(state, name), dtype=float)
         if values.shape != (system.n_links,) or not np.isfinite(values).all():
             raise InputError(f"state.{name}: give {system.n_links} finite numbers, one for each joint")

@@ -14,7 +14,7 @@ from verify.chain.result import ChainMotion, ChainStatistics
 from verify.chain.small_motion import choose_pivots
 from verify.chain.system import ChainState, ChainSystem
 from verify.chain.work import fixed_steps, per_evaluation, refuse_work
-from verify.checks import check_number
+from verify.checks import check_number, check_unmasked
 from verify.errors import InputError, near_name
 from verify.models.arrays import Array
 from verify.motion.result import END
@@ -117,6 +117,7 @@ def _check_method(method: str, step: float | None, tolerance: float) -> None:
 
 def checked_times(start: ChainState, times: Any) -> Array:
     """The times as an array. Raises InputError unless they ascend from the start's on."""
+    check_unmasked("times", times, "seconds")
     samples = np.atleast_1d(np.asarray(times, dtype=float))
     if not samples.size or not np.isfinite(samples).all() or (np.diff(samples) <= 0).any() or samples[0] < start.time:
         raise InputError(f"times: give ascending finite times from {start.time!r} s on")

@@ -18,7 +18,7 @@ from verify.chain import stretching_kernels as kernels
 from verify.chain.result import MovedChain
 from verify.chain.system import ChainSystem, circular, link_at
 from verify.chain.work import PER_STRETCHING_STEP, fixed_steps, refuse_work
-from verify.checks import check_number
+from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.motion.result import END, Statistics
@@ -172,6 +172,7 @@ def _checked(system: ChainSystem, axial_stiffness: float | Array, times: Any) ->
         raise InputError(
             f"chain.axial_spring = {system.axial_spring!r}: stretching links take immovable = True instead"
         )
+    check_unmasked("times", times, "seconds")
     samples = np.asarray(times, dtype=float)
     if samples.ndim != 1 or len(samples) < 2 or samples[0] != 0.0 or np.ptp(np.diff(samples)) > 1e-9 * samples[1]:
         raise InputError("times: give two or more, evenly spaced, from 0")

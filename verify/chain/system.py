@@ -11,7 +11,7 @@ from math import isfinite, pi, radians, sin
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_number
+from verify.checks import check_number, check_unmasked
 from verify.errors import InputError
 from verify.models.arrays import Array
 from verify.models.division import divide
@@ -172,6 +172,7 @@ def _check_arrays(system: ChainSystem) -> None:
         "dashpots": "at least 0",
     }
     for field, limit in limits.items():
+        check_unmasked(f"chain.{field}", getattr(system, field), "SI")
         values = np.asarray(getattr(system, field), dtype=float)
         if values.shape != (n,):
             raise InputError(f"chain.{field} has the shape {values.shape}: give one value for each of {n} links")

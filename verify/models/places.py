@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from functools import wraps
+from itertools import chain, repeat
 from typing import Any, ParamSpec, TypeAlias, TypeVar
 
 import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_kind, check_whole, plain, several
+from verify.checks import check_kind, check_unmasked, check_whole, plain, several
 from verify.errors import InputError, shown
 from verify.models.arrays import Array, ComplexArray
 
@@ -29,16 +30,18 @@ def as_typed(verb: Callable[Given, Found]) -> Callable[Given, Found]:
     What is no Beam where a verb begins with one is refused.
     """
     begins = getattr(verb, "__code__", None)
-    on_beam = begins is not None and begins.co_varnames[:1] == ("beam",)
+    fields = begins.co_varnames[: begins.co_argcount + begins.co_kwonlyargcount] if begins is not None else ()
+    on_beam = fields[:1] == ("beam",)
 
-    def settled(value: Any) -> Any:
-        return (value,) if isinstance(value, PointForce) else plain(value)
+    def settled(field: str, value: Any) -> Any:
+        return (value,) if isinstance(value, PointForce) else plain(value, field)
 
     @wraps(verb)
     def called(*args: Given.args, **named: Given.kwargs) -> Found:
         if on_beam and (args or "beam" in named):
             check_kind("beam", args[0] if args else named["beam"], Beam)
-        return verb(*map(settled, args), **{name: settled(value) for name, value in named.items()})
+        given = map(settled, chain(fields, repeat("a value")), args)
+        return verb(*given, **{name: settled(name, value) for name, value in named.items()})
 
     return called
 
@@ -63,8 +66,7 @@ def complex_array(field: str, value: object, unit: str) -> ComplexArray:
 
 def _numbers(field: str, value: object, unit: str, kinds: str) -> Array:
     """What is an array of numbers of some of numpy's kinds, none of which is masked."""
-    if np.any(getattr(value, "mask", False)):
-        raise InputError(f"{field} = {shown(value)} has numbers under a mask: leave them out or unmask them ({unit})")
+    check_unmasked(field, value, unit)
     try:
         given = np.asarray(value)
     except ValueError:  # rows of different lengths

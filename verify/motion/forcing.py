@@ -182,8 +182,8 @@ def check_phase(whose: str, hertz: float, duration: float, since: float = 0.0) -
 
 
 def check_free_phases(basis: TimeBasis, damping: float, duration: float) -> None:
-    """Likewise for every free mode that is not damped out after `duration` seconds."""
-    decayed = (damping * basis.omegas >= GONE / duration) & (basis.omegas < COUNTED / duration)
-    if not decayed.all():
-        hertz = float(basis.omegas[~decayed].max()) / (2.0 * np.pi)
-        check_phase("the highest mode that is not damped out", hertz, duration)
+    """Likewise for every free mode that is not damped out before, after GONE / (2 pi zeta) periods of it."""
+    lasting = (damping * MOST_PERIODS * 2.0 * np.pi < GONE) | (basis.omegas >= COUNTED / duration)
+    if lasting.any():
+        hertz = float(basis.omegas[lasting].max()) / (2.0 * np.pi)
+        check_phase("the highest mode that is not damped out before", hertz, duration)

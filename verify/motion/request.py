@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from verify.beam import Beam, PointForce
-from verify.checks import check_kind, check_number, check_whole
+from verify.checks import check_kind, check_number, check_unmasked, check_whole
 from verify.errors import InputError, shown, written
 from verify.models.arrays import Array
 from verify.models.catalogue import EXACT_MODES, MODELS, kept_modes
@@ -157,6 +157,7 @@ def _grown(started: Started, frequency_hz: float) -> tuple[tuple[float, Array], 
     """The pieces (seconds, coefficients) over which the forces grow."""
     if started.soft:
         return ((started.soft / frequency_hz, SMOOTH_STEP),)
+    check_unmasked("envelope", started.envelope)
     try:
         found = tuple((float(seconds), np.asarray(c, dtype=float)) for seconds, c in started.envelope)
     except (TypeError, ValueError):

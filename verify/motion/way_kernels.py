@@ -89,16 +89,17 @@ def _swept_way(rho: float, end: float, alpha: float) -> float:
 def relative_way(r: float, a: float, b: float, slope: float, dt: float, change: float) -> float:
     """The integral of r over dt while r' = -b tanh(slope r) - a and friction adds `change` to the slider's speed.
 
-    Exact, as `tanh_speed_change` is, to whose `change` it belongs: mirrored likewise, and parted where formulas do.
+    Exact, as `tanh_speed_change` is, to whose `change` it belongs: mirrored likewise, and parted where formulas do. To
+    1e-6 of the largest |r| dt where |a| is b to 1e-7: its logarithms cancel, and the surface is that of `change`.
     """
     side = -1.0 if a < 0.0 else 1.0
     alpha, tau = side * a / b, slope * b * dt
     rho = side * slope * r
+    if abs(alpha - 1.0) < 1e-7:
+        alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)
     end = rho + side * slope * change - alpha * tau
     if (rho > 20.0 and end > 20.0) or (rho < -20.0 and end < -20.0):
         return float(0.5 * (r + side * end / slope) * dt)
-    if abs(alpha - 1.0) < 1e-7:
-        alpha = 1.0 + (1e-7 if alpha >= 1.0 else -1e-7)
     way = _held_way(rho, end, alpha, tau) if alpha < 1.0 else _swept_way(rho, end, alpha)
     return float(side * way / (slope * slope * b))
 

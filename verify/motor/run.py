@@ -140,7 +140,7 @@ def _run(
     for _, speed, stays in put:
         if speed is not None:
             check_number("held_speed", speed, "m/s")
-        check_kind("frozen", plain(stays), bool)
+        check_kind("frozen", plain(stays, "frozen"), bool)
     if model == CHAIN:
         from verify.motor.on_chain import check_links_asked
 

@@ -94,6 +94,10 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             raise InputError(f"drive.kind = {self.kind!r}: beside a drive.device forces drive the beam, give 'force'")
 
 
+STEPS_PER_PERIOD = 128
+"""Of a slider in a scene, unless given."""
+
+
 class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Ask for the driven beam in time: from rest or steady, with the scene's slider if there is one."""
 
@@ -109,8 +113,8 @@ class MotionAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
     """Segments and elements of the figures."""
     counts: Counts = (49, 98, 196)
     """Of the work against error."""
-    steps_per_period: Count = 128
-    """At least; more where the start excites faster modes."""
+    steps_per_period: Count = STEPS_PER_PERIOD
+    """A slider's, at least; more where the start excites faster modes. Another is refused without a slider."""
     samples: Annotated[int, Meta(ge=2, le=100_000)] = 1001
     """Instants that are kept, both ends among them."""
 
@@ -246,10 +250,19 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             check_moved(forces, self.beam)
         if self.slider is not None:
             self.slider.start_on(self.beam)
-        if self.motion is not None and not forces:
-            raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
         if self.motion is not None:
-            self.refuse_devices("motion: a beam in time", "motion")
+            self._check_motion(self.motion)
+
+    def _check_motion(self, asked: MotionAsk) -> None:
+        """Raise InputError for a motion without forces or with devices, and for steps without a slider to take them."""
+        if not self.forces:
+            raise InputError("motion: a beam moves in time under a [drive] with forces, add them")
+        self.refuse_devices("motion: a beam in time", "motion")
+        if self.slider is None and asked.steps_per_period != STEPS_PER_PERIOD:
+            raise InputError(
+                f"motion.steps_per_period = {asked.steps_per_period!r} is a slider's and the scene has none: a beam "
+                "alone takes no steps, leave it out or add [slider]"
+            )
 
     def _section_checks(self) -> Iterator[Callable[[], None]]:
         """What each study's section asks of the rest of the scene."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from verify.stress.kind import Row
-from verify.stress.verges import misplaced, row_of, taken
+from verify.stress.verges import Limit, misplaced, row_of, taken
 
 # --- Judgement --------------------------------------------------------------------------------------------------------
 
@@ -137,59 +137,73 @@ def _paced(evaluations: float) -> Callable[[float], bool]:
     return asked
 
 
-def work_error(number: float) -> float:
-    """How many estimates of time and memory, and the counts that bound them, are not what documents have."""
-    from verify.chain import work
-    from verify.identify.compare import check_patience
-    from verify.models import eigen, sweeps
-    from verify.motion.stepping import slider_seconds
+def _solving() -> tuple[Limit, ...]:
+    """Seconds and bytes of eigenvalue problems."""
+    from verify.models import eigen
+
+    return (
+        (1e-9 * 210**3, False, _above(lambda: eigen.solve_seconds(210, 9))),
+        (1e-9 * 3000**3, False, _above(lambda: eigen.solve_seconds(3000, 751))),
+        (3000 * (1.5e-5 + 9e-7 * 750), False, _above(lambda: eigen.solve_seconds(3000, 750))),
+        (251 * (1.5e-5 + 9e-7), False, _above(lambda: eigen.solve_seconds(251, 1))),
+        (64.0 * 250**2, False, _above(lambda: eigen.required_bytes(250, 1))),
+        (2.5e-4 + 3e-6 * 700, False, _above(lambda: eigen.field_seconds(700))),
+        (5e-4 + 8e-6 * 700, False, _above(lambda: eigen.field_seconds(700, laden=True))),
+        (64.0 * 210**2, False, _above(lambda: eigen.required_bytes(210, 9))),
+        (3000 * (2000.0 + 32 * 1520), False, _above(lambda: eigen.required_bytes(3000, 750))),
+    )
+
+
+def _riding(felt: bool) -> float:
+    """Seconds of 300 steps of a slider on three points."""
     from verify.motor import records
     from verify.motor.stepping import Riding
 
+    points = np.zeros((3, records.OFFSET + 1))
+    points[:, records.OFFSET] = (0.01, -0.02, 0.02)
+    own: Any = SimpleNamespace(feet=SimpleNamespace(points=points), two_way=felt)
+    return Riding.seconds(own, 300, np.zeros((5, 4, 7)), 0.7)
+
+
+def _stepping() -> tuple[Limit, ...]:
+    """Seconds of steps: of a slider on a beam, of a motor, of a chain."""
+    from verify.chain import work
+    from verify.motion.stepping import slider_seconds
+
     near = 2 * 8 + 1 + 5 * 0.04 / 0.7
     ridden = 300 * (8e-6 + 3 * (8e-7 + 4e-9 * 4 * (7 + 2.0 * near))) + 14e-10 * 16 * near**2
-
-    def riding(felt: bool) -> float:
-        points = np.zeros((3, records.OFFSET + 1))
-        points[:, records.OFFSET] = (0.01, -0.02, 0.02)
-        own: Any = SimpleNamespace(feet=SimpleNamespace(points=points), two_way=felt)
-        return Riding.seconds(own, 300, np.zeros((5, 4, 7)), 0.7)
-
-    def links(samples: float) -> bool:
-        return taken(lambda: work.check_kept(samples, 7, "samples"))
-
-    return misplaced(
-        (
-            (1e-9 * 210**3, False, _above(lambda: eigen.solve_seconds(210, 9))),
-            (1e-9 * 3000**3, False, _above(lambda: eigen.solve_seconds(3000, 751))),
-            (3000 * (1.5e-5 + 9e-7 * 750), False, _above(lambda: eigen.solve_seconds(3000, 750))),
-            (251 * (1.5e-5 + 9e-7), False, _above(lambda: eigen.solve_seconds(251, 1))),
-            (64.0 * 250**2, False, _above(lambda: eigen.required_bytes(250, 1))),
-            (2.5e-4 + 3e-6 * 700, False, _above(lambda: eigen.field_seconds(700))),
-            (5e-4 + 8e-6 * 700, False, _above(lambda: eigen.field_seconds(700, laden=True))),
-            (64.0 * 210**2, False, _above(lambda: eigen.required_bytes(210, 9))),
-            (3000 * (2000.0 + 32 * 1520), False, _above(lambda: eigen.required_bytes(3000, 750))),
-            (1e5 * (1.5e-6 + 1.5e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, False))),
-            (1e5 * (8e-6 + 6e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, True))),
-            (300 * (1e-6 + 3e-7), False, _above(lambda: riding(False))),
-            (ridden, False, _above(lambda: riding(True))),
-            (1.2e-3 * 700 * 2.3, False, _begun(lambda: check_patience(23, 700, 5))),
-            (1.2e-3 * 700, False, _begun(lambda: check_patience(7, 700, 5))),
-            (19 * (150.0 + 50.0 / 0.2 * 0.6), False, _paced(150.0)),
-            (19 * (350.0 + 350.0 / 0.4 * 0.6), False, _paced(350.0)),
-            (5 * (0.1 + 0.55 * 1.7 + 0.2 * 1.7**3), False, _begun(lambda: check_patience(170, None, 5))),
-            (5e7 + 0.5, True, lambda n: taken(lambda: sweeps.check_held(round(n), 1, "x"))),
-            (1e5, True, links),
-            (2e7 / 700.0, True, lambda n: taken(lambda: work.check_kept(n, 700, "samples"))),
-            (3e4, True, lambda n: taken(lambda: work.refuse_work(n, 3e4, 0.1))),
-            (
-                1e-3 * 600 * 3 * 40 * (2.0 + 7 / 13.0),
-                False,
-                _above(lambda: 1e-3 * work.modal_work(0.6, 1e-3, 3, 40, 7)),
-            ),
-        ),
-        1e-9,
+    modal = 1e-3 * 600 * 3 * 40 * (2.0 + 7 / 13.0)
+    return (
+        (1e5 * (1.5e-6 + 1.5e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, False))),
+        (1e5 * (8e-6 + 6e-8 * 40), False, _above(lambda: slider_seconds(1e5, 40, True))),
+        (300 * (1e-6 + 3e-7), False, _above(lambda: _riding(False))),
+        (ridden, False, _above(lambda: _riding(True))),
+        (19 * (150.0 + 50.0 / 0.2 * 0.6), False, _paced(150.0)),
+        (19 * (350.0 + 350.0 / 0.4 * 0.6), False, _paced(350.0)),
+        (modal, False, _above(lambda: 1e-3 * work.modal_work(0.6, 1e-3, 3, 40, 7))),
     )
+
+
+def _waited_for() -> tuple[Limit, ...]:
+    """Seconds of comparisons that are begun, and counts beyond which nothing is."""
+    from verify.chain import work
+    from verify.identify.compare import check_patience
+    from verify.models import sweeps
+
+    return (
+        (1.2e-3 * 700 * 2.3, False, _begun(lambda: check_patience(23, 700, 5))),
+        (1.2e-3 * 700, False, _begun(lambda: check_patience(7, 700, 5))),
+        (5 * (0.1 + 0.55 * 1.7 + 0.2 * 1.7**3), False, _begun(lambda: check_patience(170, None, 5))),
+        (5e7 + 0.5, True, lambda n: taken(lambda: sweeps.check_held(round(n), 1, "x"))),
+        (1e5, True, lambda n: taken(lambda: work.check_kept(n, 7, "samples"))),
+        (2e7 / 700.0, True, lambda n: taken(lambda: work.check_kept(n, 700, "samples"))),
+        (3e4, True, lambda n: taken(lambda: work.refuse_work(n, 3e4, 0.1))),
+    )
+
+
+def work_error(number: float) -> float:
+    """How many estimates of time and memory, and the counts that bound them, are not what documents have."""
+    return misplaced((*_solving(), *_stepping(), *_waited_for()), 1e-9)
 
 
 ROWS: tuple[Row, ...] = (

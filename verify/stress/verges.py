@@ -20,6 +20,8 @@ from verify.stress.kind import Floor, Row
 HAIR = 4e-4
 Taken = Callable[[float], object]
 """A value -> whether it is taken, or what raises InputError where it is not."""
+Limit = tuple[float, bool, Callable[[float], bool]]
+"""A limit, whether what is below it is taken, a value -> whether it is taken."""
 
 
 def taken(ask: Callable[[], object]) -> bool:
@@ -31,8 +33,8 @@ def taken(ask: Callable[[], object]) -> bool:
     return True
 
 
-def misplaced(limits: Sequence[tuple[float, bool, Callable[[float], bool]]], hair: float = HAIR) -> float:
-    """How many limits do not part what is below from what is above: (limit, whether below is taken, value -> taken)."""
+def misplaced(limits: Sequence[Limit], hair: float = HAIR) -> float:
+    """How many limits do not part what is below from what is above."""
     wrong = 0
     for limit, below, ask in limits:
         wrong += bool(ask(limit * (1.0 - hair))) is not below

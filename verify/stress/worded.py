@@ -35,22 +35,14 @@ def _said(ask: Callable[[], object]) -> str:
     return ""
 
 
-def judged_error(number: float) -> float:
-    """How often the judge says other words of sizes, brackets and orders than what was found."""
-    from verify.judge.compare import bracket, observed_order, settled_order
+def _sizes_error() -> int:
+    """Likewise of the sizes that keep an accuracy, tried and by the error law."""
     from verify.judge.known import by_law, kept, solved, worst_of
-    from verify.judge.workbench import Workbench, bracketed, check_bracket, no_such_mode
+    from verify.judge.workbench import Workbench
 
     wrong = sum(
         solved(count, {4: False} | dict.fromkeys(does, True), beyond) != said for count, does, beyond, said in KEPT
     )
-    for beam, settings, words in BRACKETS:
-        said = _said(lambda: check_bracket(beam, settings))  # type: ignore[arg-type]  # noqa: B023
-        wrong += said.startswith(f"mode.bracket: {words}") is not bool(words)
-    clamped = held("clamped", "free")
-    wrong += bracketed(clamped, ((), (("wall", "half"),))) != (("wall", "half"),)
-    wrong += "gregory" not in _said(lambda: bracketed(clamped, ((), (("wall", "five-joint"),))))
-    wrong += no_such_mode(9, "fem", 3, 6) != "mode = 9: the fem model at count = 3 has 6 elastic modes, raise count"
     bench, free = Workbench(STRIP), Workbench(held("free", "free"))
     wrong += not by_law(bench, "segment", 2, 30).startswith("every larger N does by the error law, 0.")
     wrong += "2.7% off here; smaller ones" not in by_law(Workbench(held("clamped", "clamped")), "segment", 3, 7)
@@ -58,6 +50,28 @@ def judged_error(number: float) -> float:
     law = "do by the error law, to which those from 30 on keep within a third of its terms"
     wrong += kept(free, "segment", range(2, 3), 30, does) != law or kept(free, "segment", range(2, 3), 40, does) != ""
     wrong += worst_of(bench, "segment", range(1, 4), 12, ()) != 3 or worst_of(bench, "fem", range(2, 3), 12, ()) != 2
+    return wrong
+
+
+def _brackets_error() -> int:
+    """Likewise of beams and models without a bracket, and of modes that a model has not."""
+    from verify.judge.workbench import bracketed, check_bracket, no_such_mode
+
+    wrong = 0
+    for beam, settings, words in BRACKETS:
+        said = _said(lambda: check_bracket(beam, settings))  # type: ignore[arg-type]  # noqa: B023
+        wrong += said.startswith(f"mode.bracket: {words}") is not bool(words)
+    clamped = held("clamped", "free")
+    wrong += bracketed(clamped, ((), (("wall", "half"),))) != (("wall", "half"),)
+    wrong += "gregory" not in _said(lambda: bracketed(clamped, ((), (("wall", "five-joint"),))))
+    wrong += no_such_mode(9, "fem", 3, 6) != "mode = 9: the fem model at count = 3 has 6 elastic modes, raise count"
+    return wrong
+
+
+def _orders_error() -> int:
+    """Likewise of orders that none are, and of the middle of a bracket."""
+    from verify.judge.compare import bracket, observed_order, settled_order
+
     sizes = (10.0, 20.0, 40.0)
     asks: tuple[tuple[Callable[[], object], str], ...] = (
         (lambda: observed_order(sizes[:2], (4.0, 1.0)), "counts = [10.0, 20.0]: an observed order needs three or more"),
@@ -75,10 +89,15 @@ def judged_error(number: float) -> float:
         (lambda: settled_order(sizes, (16.0, 4.0, 5.0)), "no settled order between them (2.00, -0.32)"),
         (lambda: bracket(3.0, 3.0), "thinner than the eigenvalue error (2e-14) allows"),
     )
-    wrong += sum(words not in _said(ask) for ask, words in asks)
+    wrong = sum(words not in _said(ask) for ask, words in asks)
     middle = bracket(2.9, 3.1)
     wrong += abs(middle.mean - 3.0) > 1e-15 or abs(middle.relative_width - 0.2 / 3.0) > 1e-15
-    return float(wrong)
+    return wrong
+
+
+def judged_error(number: float) -> float:
+    """How often the judge says other words of sizes, brackets and orders than what was found."""
+    return float(_sizes_error() + _brackets_error() + _orders_error())
 
 
 def costs_error(order: float) -> float:

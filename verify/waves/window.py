@@ -94,7 +94,7 @@ def stated_wavenumber(field: str, given: object, span: tuple[float, float]) -> c
     Raises InputError for what is none of a wave e^{-ikx} towards +x, and where the span holds less than one of its half
     waves, or too many.
     """
-    k = plain(given)
+    k = plain(given, field)
     number = isinstance(k, int | float | complex) and not isinstance(k, bool) and abs(k) <= LARGEST
     if not number or not 0.0 <= -k.imag <= k.real or not k.real:
         raise InputError(
