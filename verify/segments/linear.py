@@ -21,18 +21,7 @@ from verify.models.pencil import FactoredPencil
 from verify.models.places import Forces, Numbers, as_forces, as_typed
 from verify.models.response import forced_response
 from verify.models.theory import check_theory
-from verify.options import (
-    ATTACHMENTS,
-    LOADS,
-    READINGS,
-    THEORIES,
-    Attachment,
-    Joints,
-    Load,
-    Reading,
-    Theory,
-    Wall,
-)
+from verify.options import ATTACHMENTS, LOADS, READINGS, THEORIES, Attachment, Joints, Load, Reading, Theory, Wall
 from verify.segments.links import FIELD, Chain, build_chain, chain_pencil, check_set_up, elastic_ends, free_joints
 from verify.segments.loads import joint_weights
 from verify.segments.reading import (
