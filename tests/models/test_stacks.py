@@ -247,6 +247,9 @@ def test_ground_gives_a_plain_beam_its_rigid_motions_as_modes_and_no_more(model,
     with pytest.raises(InputError) as swept:
         module.sweep_modes(beams, most + 1, 9)
     assert str(swept.value) == f"beams[0]: {alone.value}"
+    (stepped,) = many(3, 1, ("free", "free"), n_sections=3)
+    with pytest.raises(InputError, match=r"^beams\[0\]: "):  # of several that are refused the first, on ground or not
+        module.sweep_modes([stepped, *beams], most + 1, 9)
 
 
 @pytest.mark.parametrize("model", MODELS)

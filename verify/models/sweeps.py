@@ -223,7 +223,7 @@ def swept_modes(beams: Sequence[Beam], n_modes: int, theory: str, model: Stackin
     leaders = _leaders(beams, theory)
     lifted = [i for i in set(leaders) if beams[i].foundation and _is_plain(beams[i], theory)]
     groups = _groups(sorted(set(leaders) - set(lifted)), beams, model.layout)
-    made = _made([*lifted, *(group[0] for group in groups)], beams, n_modes, model)
+    made = _made(sorted([*lifted, *(group[0] for group in groups)]), beams, n_modes, model)
     rows = _stacks(groups, beams, n_modes, model, made)
     alone = sorted(set(leaders) - set(rows) - set(lifted))
 
