@@ -1,5 +1,7 @@
 """Motion in time by other means: assembled matrices and scipy's DOP853, nothing of the suite's stepping."""
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -35,6 +37,16 @@ def linear_motion(mass, stiffness, damping, loads, times, soft_s=0.0, y0=None, g
     return found.y[:n].T
 
 
+def shapes_at(basis):
+    """Every mode's shape or a derivative of it at one place, (n_modes,), kept for who asks again at that place."""
+
+    @lru_cache(maxsize=64)
+    def shape(x, derivative):
+        return basis.shapes(np.array([x]), derivative)[:, 0]
+
+    return shape
+
+
 def coupled_motion(basis, slider, duration, damping, soft_s=0.0, two_way=True):
     """(distance, speed) of a tanh slider and its impulse on it, beam and slider as one system of equations.
 
@@ -42,10 +54,9 @@ def coupled_motion(basis, slider, duration, damping, soft_s=0.0, two_way=True):
     """
     n, omega, half = len(basis.omegas), 2 * np.pi * FREQUENCY, 0.5 * basis.beam.thickness
     loads = [(f, basis.loads(f.position)) for f in FORCES]
-    start = slider.start_on(basis.beam)
+    start, grip = slider.start_on(basis.beam), slider.mu * slider.normal_force
 
-    def shape(x, derivative):
-        return basis.shapes(np.array([x]), derivative)[:, 0]
+    shape = shapes_at(basis)
 
     def rates(t, y):
         q, qd, (travelled, v, _) = y[:n], y[n : 2 * n], y[2 * n :]
@@ -53,7 +64,7 @@ def coupled_motion(basis, slider, duration, damping, soft_s=0.0, two_way=True):
         x = x + half * float(q @ shape(x, 1))
         rise, turn, slope, bend = qd @ shape(x, 0), qd @ shape(x, 1), q @ shape(x, 1), q @ shape(x, 2)
         along = (slope * shape(x, 0) - half * shape(x, 1)) / np.hypot(1.0, slope)
-        friction = -slider.mu * slider.normal_force * np.tanh(slider.slope * (v - qd @ along))
+        friction = -grip * np.tanh(slider.slope * (v - qd @ along))
         push = sum(f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in loads)
         bent = grown(t, soft_s) * push - 2 * damping * basis.omegas * qd - basis.omegas**2 * q
         pull, drift = 0.0, 0.0
@@ -79,10 +90,10 @@ def held_motion(basis, slider, duration, damping, soft_s=0.0):
     n, omega, half = len(basis.omegas), 2 * np.pi * FREQUENCY, 0.5 * basis.beam.thickness
     loads = [(f, basis.loads(f.position)) for f in FORCES]
     start, follows = slider.start_on(basis.beam), slider.kinematics == "following"
-    tick = 1e-4 / basis.omegas.max()
+    tick, pressed = 1e-4 / basis.omegas.max(), slider.normal_force
+    grip = slider.mu * pressed
 
-    def shape(x, derivative):
-        return basis.shapes(np.array([x]), derivative)[:, 0]
+    shape = shapes_at(basis)
 
     def split(y):
         q, qd, x = y[:n], y[n : 2 * n], start + y[2 * n]
@@ -104,7 +115,7 @@ def held_motion(basis, slider, duration, damping, soft_s=0.0):
         q, qd, x, material, v = split(y)
         rise, slope = qd @ shape(material, 0), q @ shape(material, 1)
         along = (slope * shape(material, 0) - half * shape(material, 1)) / np.hypot(1.0, slope)
-        friction = -slider.mu * slider.normal_force * np.tanh(slider.slope * (v - qd @ along))
+        friction = -grip * np.tanh(slider.slope * (v - qd @ along))
         push = sum(f.amplitude * np.cos(omega * t + np.deg2rad(f.phase_deg)) * p for f, p in loads)
         bent = grown(t, soft_s) * push - 2 * damping * basis.omegas * qd - basis.omegas**2 * q
         pull = rise * (qd @ shape(material, 1) + q @ shape(material, 2) * v) - slider.gravity * slope
@@ -121,11 +132,11 @@ def held_motion(basis, slider, duration, damping, soft_s=0.0):
         for reaction in (0.0, 1.0):
             way = tick * rates(t, y, reaction)
             lifts.append((across(y + way) - across(y - way)) / (2 * tick))
-        found = (slider.normal_force + slider.mass * lifts[0]) / (1 - slider.mass * (lifts[1] - lifts[0]))
+        found = (pressed + slider.mass * lifts[0]) / (1 - slider.mass * (lifts[1] - lifts[0]))
         return rates(t, y, found)
 
     y0 = np.zeros(2 * n + 2)
-    y0[:n], y0[2 * n + 1] = _lying(basis, slider, start, half), slider.speed
+    y0[:n], y0[2 * n + 1] = _lying(basis, shape, slider, start, half), slider.speed
     found = solve_ivp(held, (0, duration), y0, method="DOP853", rtol=1e-10, atol=1e-17, max_step=0.02 / FREQUENCY)
     return found.y[:n, -1], found.y[2 * n, -1], found.y[2 * n + 1, -1]
 
@@ -136,10 +147,10 @@ def _lifted(shape, q, x, half):
     return shape(at, 0) + (q @ shape(at, 1)) * half * shape(x, 1)
 
 
-def _lying(basis, slider, x, half):
+def _lying(basis, shape, slider, x, half):
     """Modes of the beam at rest under the slider, whose reaction is square to its surface; each pass has 1e-3 left."""
     q = np.zeros(len(basis.omegas))
     for _ in range(40):
-        q = -slider.normal_force * _lifted(lambda at, d: basis.shapes(np.array([at]), d)[:, 0], q, x, half)
+        q = -slider.normal_force * _lifted(shape, q, x, half)
         q /= basis.omegas**2
     return q
