@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
+from functools import cache
 from typing import Any, Literal, get_args, get_origin
 
 import msgspec
@@ -581,10 +582,13 @@ class Dead:
     when: Callable[[Asked], bool] = lambda asked: True
 
     def covers(self, asked, name, value):
-        named = matches(name, self.inputs) or matches(f"{name}={value}", self.inputs)
-        return named and matches(asked.quantity, self.quantities) and self.when(asked)
+        if not matches(asked.quantity, self.quantities):
+            return False
+        named = matches(name, self.inputs) or ("=" in self.inputs and matches(f"{name}={value}", self.inputs))
+        return named and self.when(asked)
 
 
+@cache
 def matches(name, patterns):
     return any(fnmatchcase(name, pattern) for pattern in patterns.split())
 
