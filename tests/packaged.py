@@ -25,7 +25,7 @@ Kernel = namedtuple("Kernel", "name types")
 class Ran(msgspec.Struct, frozen=True):
     """One run: figures, the page of its report, steps told, studies, how many motions, solves in words, kernels.
 
-    `called` are kernels that Python called, `planned` those of its plan.
+    `called` are kernels that Python called, `by_gate` those of each gate, `planned` those of its plan.
     """
 
     told: dict
@@ -35,6 +35,7 @@ class Ran(msgspec.Struct, frozen=True):
     motions: int
     solves: list[str]
     called: list[Kernel]
+    by_gate: dict[str, list[Kernel]]
     planned: list[Kernel]
 
 
@@ -52,9 +53,16 @@ def ran(scene):
 
 
 def _run(scene):
-    steps, called = [], []
+    steps, starts, called = [], [], []
+
+    def begin(step):
+        if step.startswith("gate ") and len(called) > max(starts, default=0):
+            forget()  # what one gate called, the next calls for the first time too
+        steps.append(step)
+        starts.append(len(called))
+
     with mock.patch.dict(os.environ, {"VERIFY_JOBS": "1"}), listening(called):  # nobody compiles ahead
-        result = run_scene(scene, steps.append)
+        result = run_scene(scene, begin)
     return Ran(
         told=run_as_plain(result, None),
         html=page(result, f"verify run {scene}"),
@@ -63,6 +71,11 @@ def _run(scene):
         motions=sum(found.motions() for found in result.found.values()),
         solves=[solve_in_words(one) for one in result.solves],
         called=called,
+        by_gate={
+            step.removeprefix("gate "): called[start:end]
+            for step, start, end in zip(steps, starts, [*starts[1:], len(called)], strict=True)
+            if step.startswith("gate ")
+        },
         planned=[named(kernel, map(kernel.typeof_pyval, given)) for kernel, given in kernels_asked(load_scene(scene))],
     )
 
