@@ -1,5 +1,6 @@
 """Independent work on several cores gives what one core gives, and leaves nobody behind."""
 
+import mmap
 import os
 import signal
 import subprocess
@@ -48,6 +49,22 @@ def test_what_is_done_at_once_is_shared_with_here_and_comes_in_order(monkeypatch
     assert len({process for _, process in found}) == min(n_jobs, 7)
     assert at_once(abs, []) == []
     assert children() == "none"
+
+
+def test_who_works_beside_does_not_wait_until_it_is_heard(monkeypatch):
+    monkeypatch.setenv("VERIFY_JOBS", "2")
+    done, here = mmap.mmap(-1, 1), os.getpid()
+
+    def work(item):
+        if os.getpid() == here:
+            until = time.monotonic() + 10.0
+            while not done[0] and time.monotonic() < until:
+                time.sleep(0.001)
+            return done[0]
+        done[0] = item == 7
+        return bytes(50_000)
+
+    assert at_once(work, range(8)) == [1, bytes(50_000)] * 4
 
 
 @pytest.mark.parametrize("share", [at_once, lambda work, items: for_each(work, items, lambda number: None)])

@@ -12,9 +12,10 @@ from typing import Any, NoReturn, TextIO
 import click
 
 from verify import __version__
+from verify.ending import TERMINATED, end_tidily
 from verify.errors import InputError, one_line
 
-BAD_INPUT, INTERRUPTED, NO_READER, TERMINATED = 2, 130, 141, 143
+BAD_INPUT, INTERRUPTED, NO_READER = 2, 130, 141
 NO_ROOM = (ENOSPC, EDQUOT, EFBIG, EIO, EBADF)
 """What a stream says that takes no more."""
 
@@ -184,7 +185,7 @@ def main() -> NoReturn:
     for name in ("stdin", "stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), "r" if name == "stdin" else "w"))
-    _end_tidily()
+    end_tidily()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -213,16 +214,3 @@ def _is_watched() -> bool:
     monitoring = getattr(sys, "monitoring", None)
     tools = () if monitoring is None else map(monitoring.get_tool, range(6))
     return bool(sys.gettrace() or sys.getprofile() or any(tools))
-
-
-def _end_tidily() -> None:
-    """A request to end is an exception like any other, so that nothing half-written is left."""
-    import signal
-
-    def end(number: int, frame: object) -> NoReturn:
-        signal.signal(number, signal.SIG_IGN)
-        sys.exit(TERMINATED)
-
-    for number in {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}:
-        if signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, end)

@@ -5,7 +5,7 @@ import pickle
 import select
 import signal
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import BinaryIO, NoReturn, TypeVar
 
@@ -48,7 +48,10 @@ def for_each(work: Callable[[Item], Result], items: Sequence[Item], tell: Callab
 
 
 def at_once(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """`work` of every item, in their order: a share here, the others in `jobs` - 1 processes, likewise (`for_each`)."""
+    """`work` of every item, in their order: a share here, the others in `jobs` - 1 processes, likewise (`for_each`).
+
+    Who works here does not listen meanwhile, and a pipe holds 64 kB: each process sends what it found when it is done.
+    """
     n = min(jobs(), len(items))
     if n < 2 or sys.platform != "linux":
         return [work(item) for item in items]
@@ -56,7 +59,7 @@ def at_once(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Resul
     children: dict[int, tuple[int, BinaryIO]] = {}
     try:
         for part in range(1, n):
-            _begin(work, items, range(part, len(items), n), children)
+            _begin(work, items, range(part, len(items), n), children, at_end=True)
         for index in range(0, len(items), n):
             try:
                 found[index] = work(items[index])
@@ -132,33 +135,45 @@ def _begin(
     items: Sequence[Item],
     share: Sequence[int],
     children: dict[int, tuple[int, BinaryIO]],
+    *,
+    at_end: bool = False,
 ) -> None:
-    """A process that does its share and writes every result, or its first refusal, among `children` by its pipe."""
+    """A process that does its share and writes every result, or its first refusal, among `children` by its pipe.
+
+    As they come, or all `at_end`.
+    """
     reading, writing = os.pipe()
     others = [reading, *(pipe.fileno() for _, pipe in children.values())]
 
     def done() -> NoReturn:
         for pipe in others:
             os.close(pipe)
-        _work(work, items, share, writing)
+        _write(_results(work, items, share), writing, at_end=at_end)
 
     start(done, lambda child: children.update({reading: (child, os.fdopen(reading, "rb"))}))
     os.close(writing)
 
 
-def _work(work: Callable[[Item], Result], items: Sequence[Item], share: Sequence[int], writing: int) -> NoReturn:
+def _results(
+    work: Callable[[Item], Result], items: Sequence[Item], share: Sequence[int]
+) -> Iterator[tuple[int, Result | Exception]]:
+    """By index, up to the first refusal."""
+    for index in share:
+        try:
+            result = work(items[index])
+        except Exception as error:
+            yield index, error
+            return
+        yield index, result
+
+
+def _write(results: Iterable[tuple[int, Result | Exception]], writing: int, *, at_end: bool) -> NoReturn:
     """In the child: nothing of the parent's is flushed, closed or told at its end."""
     try:
         with os.fdopen(writing, "wb") as pipe:
-            for index in share:
-                try:
-                    result: Result | Exception = work(items[index])
-                except Exception as error:
-                    result = error
-                pickle.dump((index, result), pipe)
+            for result in list(results) if at_end else results:
+                pickle.dump(result, pipe)
                 pipe.flush()
-                if isinstance(result, Exception):
-                    break
     finally:
         os._exit(0)
 

@@ -406,10 +406,14 @@ def test_noise_as_large_as_what_tells_two_theories_apart_leaves_both(told):
     clean = told(links, "paper", count=20)
     assert {one["theory"] for one in clean["certainty"]["alike"]} == {"euler-bernoulli"}
     assert not clean["answer"].startswith("Probably")
+    assert clean["best"]["identified"]
+    assert clean["certainty"]["sure"]
     found = told(links * (1 + 1e-4 * np.random.default_rng(5).standard_normal(10)), "paper", count=20)
     theories = {found["best"]["theory"], *(one["theory"] for one in found["certainty"]["alike"])}
     assert theories == {"euler-bernoulli", "rayleigh"}
     assert found["answer"].startswith("Probably your ")
+    assert found["best"]["identified"]
+    assert not found["certainty"]["sure"]
     assert "this list does not tell it from" in found["answer"]
     assert found["passed"]
 
@@ -428,6 +432,7 @@ def test_a_chain_too_fine_to_see_its_rule_is_said_to_be(told):
         [frequency_hz(PAPER, mode) * (1 + e) for mode, e in ((1, 2e-6), (2, -3e-6), (3, 1e-6))], "paper", count=300
     )
     assert not found["certainty"]["told_apart"]
+    assert not found["certainty"]["sure"]
     assert "do not show how the beam was divided" in found["answer"] or found["best"]["model"] == "analytic"
 
 

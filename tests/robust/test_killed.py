@@ -4,10 +4,12 @@ import json
 import signal
 import sys
 from random import Random
-from time import sleep
+from time import monotonic, sleep
 
 import pytest
 from ended import SCENE, started, whole
+
+from verify.ending import TERMINATED, end_tidily
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals")
 HOW = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
@@ -107,8 +109,8 @@ def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path,
     try:
         for one in before:
             signal.signal(one, signal.SIG_DFL)
-        cli._end_tidily()
-        assert cli.status_of(["run", "mine.toml"]) == cli.TERMINATED
+        end_tidily()
+        assert cli.status_of(["run", "mine.toml"]) == TERMINATED
     finally:
         for one, handler in before.items():
             signal.signal(one, handler)
@@ -117,3 +119,34 @@ def test_a_run_that_is_told_to_end_while_it_writes_takes_its_part_away(tmp_path,
     kept = [sorted(one.name for one in run.iterdir()) for run in (tmp_path / "reports").glob("mine/*")]
     assert kept == [["index.html", "run.json"]] * len(left)
     assert capsys.readouterr().err == "verify: terminated; nothing half-written is left\n"
+
+
+def who_asks_while_llvm_writes(number):
+    """A small module compiled, and time for the request to be heard."""
+    from llvmlite import binding
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    module = binding.parse_assembly("define i64 @seven() { ret i64 7 }")
+    engine = binding.create_mcjit_compiler(module, binding.Target.from_default_triple().create_target_machine())
+    engine.set_object_cache(lambda module, data: signal.raise_signal(number), lambda module: None)
+    engine.finalize_object()
+    until = monotonic() + 10.0
+    while monotonic() < until:
+        sleep(0.001)
+
+
+@pytest.mark.parametrize(("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
+def test_a_request_to_end_while_llvm_writes_down_what_it_compiled_is_not_lost(monkeypatch, number, raised):
+    lost, before = [], {one: signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    monkeypatch.setattr(sys, "unraisablehook", lost.append)
+    try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        end_tidily()
+        with pytest.raises(raised):
+            who_asks_while_llvm_writes(number)
+    finally:
+        for one, handler in before.items():
+            signal.signal(one, handler)
+    assert not lost

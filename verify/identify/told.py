@@ -78,8 +78,11 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
                 f"the nearest is {nearest(best)}"
             )
         answer = best.candidate.answer
-        probably = self.found.doubtful or self._loose() or not self._within()
-        return f"{f'Probably y{answer[1:]}' if probably else answer}{self._parts()}"
+        return f"{f'Probably y{answer[1:]}' if self._doubted() else answer}{self._parts()}"
+
+    def _doubted(self) -> bool:
+        """Whether the answer is a probable one."""
+        return bool(self.found.doubtful) or self._loose() or not self._within()
 
     def _loose(self) -> bool:
         """Whether it is read with a common factor that is told and not claimed."""
@@ -284,6 +287,7 @@ class Compared(Found, frozen=True, eq=False, kw_only=True):
             "answer": self.answer,
             "best": _candidate(self.found.best) | {"identified": self._claimed()},
             "certainty": {
+                "sure": self._claimed() and not self._doubted(),
                 "told_apart": not self.found.alike,
                 "alike": [_candidate(one) for one in self.found.alike],
                 "next_over_best": self.found.odds,

@@ -1,0 +1,56 @@
+"""Requests to end, as exceptions like any other: so nothing half-written is left."""
+
+import signal
+import sys
+from collections.abc import Callable
+from types import FrameType
+from typing import NoReturn
+
+TERMINATED = 143
+"""The status of who was told to end."""
+AGAIN_S = 0.02
+"""After how many seconds one that would be lost is heard again."""
+Answer = Callable[[int, FrameType | None], object]
+
+
+def end_tidily() -> None:
+    """Hear requests to end, unless somebody else does already."""
+    for number in {signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}:
+        if signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, put_off(_end))
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, put_off(signal.default_int_handler))
+
+
+def _end(number: int, frame: FrameType | None) -> NoReturn:
+    signal.signal(number, signal.SIG_IGN)
+    sys.exit(TERMINATED)
+
+
+def put_off(answer: Answer) -> Answer:
+    """The answer to a signal, heard again a little later where what it raises would be printed and lost.
+
+    That is where LLVM has what it compiled written down and where its objects are taken down: Python raises nothing
+    through the C that calls it there, and the run went on as if nobody had asked.
+    """
+
+    def heard(number: int, frame: FrameType | None) -> None:
+        if not _is_called_from_llvm(frame):
+            answer(number, frame)
+            return
+        from threading import Timer
+
+        again = Timer(AGAIN_S, signal.raise_signal, (number,))
+        again.daemon = True
+        again.start()
+
+    return heard
+
+
+def _is_called_from_llvm(frame: FrameType | None) -> bool:
+    """Whether LLVM's binding is at work, here or in who called."""
+    while frame is not None:
+        if frame.f_globals.get("__package__") == "llvmlite.binding":
+            return True
+        frame = frame.f_back
+    return False
