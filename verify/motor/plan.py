@@ -79,7 +79,7 @@ def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[Motor
         contact_rate=rate,
         sag=sag_of(request, placed),
         margins=margins_of(request, stages[-1]),
-        notes=_notes(request, basis, coupling),
+        notes=_notes(request, basis, coupling, len(placed) > 1),
     )
 
 
@@ -126,6 +126,6 @@ def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:
     return min(longest, RESOLVED / rate if rate else longest, SHARP / fastest if fastest else longest)
 
 
-def _notes(request: Request, basis: TimeBasis | None, coupling: Coupling) -> tuple[str, ...]:
+def _notes(request: Request, basis: TimeBasis | None, coupling: Coupling, together: bool) -> tuple[str, ...]:
     modes = f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"
-    return modes, f"coupling: {'two' if coupling.two_way else 'one'}-way; {in_words(coupling)}"
+    return modes, f"coupling: {'two' if coupling.two_way else 'one'}-way; {in_words(coupling, together)}"
