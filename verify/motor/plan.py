@@ -53,8 +53,6 @@ class Plan(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[MotorState]) -> Plan:
     """The stages of a run, its modes, and how the sliders are coupled. Raises InputError."""
-    if before and len(before) != len(placed):
-        raise InputError(f"continue_from has {len(before)} runs for {len(placed)} sliders: give one for each")
     for one in placed:
         check_on_beam(one.slider, request.beam, one.start)
     check_one_ground(request.beam, [one.start for one in placed])
