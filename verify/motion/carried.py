@@ -66,9 +66,7 @@ def yielding(request: Request, x: float, basis: TimeBasis | None) -> tuple[compl
     return complex(lifted[0]), complex(turned[0])
 
 
-def yielding_at(
-    request: Request, x: float, at: Array, basis: TimeBasis | None
-) -> tuple[ComplexArray, ComplexArray]:
+def yielding_at(request: Request, x: float, at: Array, basis: TimeBasis | None) -> tuple[ComplexArray, ComplexArray]:
     """(deflections under a unit force at x, slopes under a unit couple there), both at places `at`, (n,), metres.
 
     Of the modes where there are any, else of the model's steady fields. Raises InputError.

@@ -39,8 +39,8 @@ def modal_turning(basis: TimeBasis, x: float, at: Array, omega: float, damping: 
     """
     here = basis.shapes(np.array([x]), 1)[:, 0]
     shares = here / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
-    found = np.asarray(shares @ basis.shapes(at, 1))
+    found = np.asarray(shares @ basis.shapes(at, 1), dtype=np.complex128)
     if basis.tail is None:
         return found
     frequency = omega / (2.0 * np.pi)
-    return np.asarray(found + basis.tail(couple(basis.beam, x, frequency), frequency, damping)(at, 1))
+    return np.asarray(found + basis.tail(couple(basis.beam, x, frequency), frequency, damping)(at, 1), dtype=np.complex128)

@@ -18,7 +18,7 @@ def check_runs(runs: Sequence[MotorRun], request: Request, placed: Sequence[Plac
     for run, one in zip(runs, placed, strict=bool(runs)):
         check_same_beam(run.state, request.beam, request.model, request.count)
         _check_one_motion(runs[0], run)
-        if run.start != one.start:
+        if run.start is not None and run.start != one.start:
             raise InputError(
                 f"continue_from is of a slider that was put on at {written(run.start)} m, and slider.position = "
                 f"{written(one.start)} m: it goes on from where it is, leave its position as it was"
