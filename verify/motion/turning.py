@@ -43,4 +43,6 @@ def modal_turning(basis: TimeBasis, x: float, at: Array, omega: float, damping: 
     if basis.tail is None:
         return found
     frequency = omega / (2.0 * np.pi)
-    return np.asarray(found + basis.tail(couple(basis.beam, x, frequency), frequency, damping)(at, 1), dtype=np.complex128)
+    return np.asarray(
+        found + basis.tail(couple(basis.beam, x, frequency), frequency, damping)(at, 1), dtype=np.complex128
+    )
