@@ -109,9 +109,9 @@ def run_motors(
 ) -> tuple[MotorRun, ...]:
     """Several sliders on one beam, one run for each: coupled two-way they feel each other through it.
 
-    They rub by one law of one slope and are coupled alike, by size by what all do together; `held_speed` and `frozen` are
-    of all, or one for each. All end where one leaves the beam, and go on (`continue_from`) from one instant of one motion.
-    Otherwise as `run_motor`. Raises InputError.
+    They rub by one law of one slope and are coupled alike, by size by what all do together; `held_speed` and `frozen`
+    are of all, or one for each. All end where one leaves the beam; they go on (`continue_from`) from one instant of one
+    motion. Otherwise as `run_motor`. Raises InputError.
     """
     driven = Driven(beam, as_forces(forces), frequency_hz, duration)
     by = Modelled(model, count, modes, modal_damping, MODES)
