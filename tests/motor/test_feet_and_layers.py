@@ -7,9 +7,11 @@ import motor_references as by
 import numpy as np
 import pytest
 from motor_setups import HALF, MIDDLE, OMEGA, PERIOD, drive, ridden
+from msgspec.structs import replace
 
 from verify.contact import foot as lying
 from verify.contact import layer
+from verify.motor.outcome import layer_epsilon
 from verify.slider import Contact, Foot, Slider
 
 HEIGHT = 1e-8
@@ -203,3 +205,13 @@ def test_a_point_alone_is_not_driven_at_all_while_it_stays_on():
     )
     run = ridden(slider, HEIGHT, periods=2, step=4000, held_speed=0.0, frozen=True, samples=3)
     assert run.friction[-1] / MU == pytest.approx(0.0, abs=2e-3)
+
+
+def test_epsilon_is_that_of_the_foot_which_slips_least_before_it_gives_way():
+    """Each foot has all of one stiffness and a layer's along its length: the short one gives way three times as far."""
+    contact = Contact(stiffness=3.1e5, layer_tangential_stiffness=7.7e6)
+    feet = (Foot(length=0.021, points=3, offset=-0.03), Foot(length=0.007, points=3, offset=0.02))
+    slider = Slider(mass=0.01, mu=0.23, law="coulomb", preload=0.4, contact=contact, foot=feet)
+    expected = 2.0 * 0.23 * 3.1e5 / (7.7e6 * 0.007 * 91.0 * 0.0013)
+    assert layer_epsilon(slider, 91.0, 0.0013) == pytest.approx(expected, rel=1e-14)
+    assert layer_epsilon(replace(slider, foot=feet[::-1]), 91.0, 0.0013) == pytest.approx(expected, rel=1e-14)

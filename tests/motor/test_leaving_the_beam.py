@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.motion.surface import basis_of
-from verify.motor.run import run_motor
+from verify.motor.run import run_motor, run_motors
 from verify.slider import Contact, Foot, Slider
 
 BEAM = Beam(
@@ -117,3 +117,23 @@ def test_a_slider_that_is_kept_at_its_place_goes_up_none_at_any_speed(coupling):
 def test_a_beam_that_nothing_drives_is_told_so_in_place_of_an_infinite_size(coupling):
     run = crossing(replace(SPRUNG, coupling=coupling), duration=1e-4)
     assert run.notes[1] == f"coupling: {coupling}; the drive does not move the surface under the slider"
+
+
+@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
+def test_of_several_sliders_the_one_that_left_is_named_in_every_run(coupling):
+    """The second, which is near the end: the first still stands where it was put."""
+    still, gone = (replace(SPRUNG, coupling=coupling, position=x) for x in (0.031, 0.0829))
+    given = {
+        "model": "fem",
+        "count": 10,
+        "start": "rest",
+        "modal_damping": 0.0,
+        "samples": 3,
+        "held_speed": [0.0, SPEED],
+    }
+    force = [PointForce(position=0.05, amplitude=3.0)]
+    runs = run_motors(BEAM, force, HERTZ, 0.002, sliders=[still, gone], **given)
+    assert [run.statistics.stopped for run in runs] == ["left the beam"] * 2
+    for run in runs:
+        assert "of 2 sliders number 2 left the beam, and the runs of all end there" in run.notes
+    assert not any("sliders number" in note for note in crossing(gone, duration=0.002).notes)

@@ -200,3 +200,34 @@ def test_books_of_every_slider_close_and_what_a_slider_gets_the_beam_has_lost():
         books = found.ledger
         assert abs(books.residual) < 1e-3 * (abs(books.across) + abs(books.along))
         assert books.on_beam == pytest.approx(-(books.across + books.along), rel=1e-9)
+
+
+def pinned_answers(x, at, hertz, ratio):
+    """Deflections of the plain pinned beam at places under 1 N at x, by its sines."""
+    n = np.arange(1, 2001)[:, None] * np.pi / BEAM.length
+    own = n**2 * np.sqrt(BEAM.bending_stiffness / BEAM.mass_per_length)
+    omega = 2.0 * np.pi * hertz
+    share = 2.0 / (BEAM.mass_per_length * BEAM.length) / (own**2 - omega**2 + 2j * ratio * own * omega)
+    return (share * np.sin(n * x) * np.sin(n * at)).sum(axis=0)
+
+
+def test_sliders_that_the_beam_feels_only_together_are_felt():
+    """What all of them move the surface by under each, over what the drive moves: each by itself is under a thousandth."""
+    ratio, hertz = 0.011, 3911.0
+    first = replace(SLIDER, coupling="auto", gravity=0.0, preload=1.3e-3, foot=(), contact=Contact(stiffness=4e5))
+    sliders = [first, replace(first, position=0.331, preload=0.9e-3), replace(first, position=0.268, mu=0.4)]
+    asked = {"model": "analytic", "modal_damping": ratio, "modes": 9, "samples": 2}
+    together = run_motors(BEAM, FORCES, hertz, 2e-5, sliders=sliders, **asked)
+    alone = [run_motor(BEAM, FORCES, hertz, 2e-5, slider=one, **asked) for one in sliders]
+    at = np.array([one.position for one in sliders])
+    driven = [
+        one.amplitude * np.exp(1j * np.radians(one.phase_deg)) * pinned_answers(one.position, at, hertz, ratio)
+        for one in FORCES
+    ]
+    lifted = sum(one.preload * np.abs(pinned_answers(one.position, at, hertz, ratio)) for one in sliders)
+    across = lifted / np.abs(sum(driven))
+    assert not any(run.coupling.two_way for run in alone)
+    for run in together:
+        assert run.coupling.two_way
+        assert run.coupling.normal_size == pytest.approx(across.max(), rel=1e-3)
+        assert "all that presses the sliders on moves the surface under one of them by" in run.notes[1]

@@ -256,7 +256,7 @@ def test_a_margin_that_is_not_small_has_its_sentence(study):
     assert "epsilon" not in doubted(study, k=1e5)
     assert "no wave travels" in doubted(study, epsilon=None, k=None)["epsilon"]
     assert "epsilon" not in doubted(study, k=None)
-    assert "bends the beam by 30 µm, 2.1 times" in doubted(study, sag=30e-6)["sag"]
+    assert "bends the beam by 30 µm, 2.1 times the amplitude under the slider" in doubted(study, sag=30e-6)["sag"]
     assert "push away or turn a beam that nothing holds" in doubted(study, sag=None)["sag"]
     assert "step" in doubted(study, step=0.4)
     assert "chain" not in doubted(study, chain=1e-4)

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from verify.beam import Beam, PointForce
 from verify.errors import InputError, written
-from verify.models.arrays import Array
+from verify.models.arrays import Array, ComplexArray
 from verify.models.catalogue import MODELS, check_count
 from verify.models.time_basis import TimeBasis
 from verify.models.underfoot import standing_at
@@ -19,7 +19,7 @@ from verify.motion.contact import Coupling, coupling_of, law_of
 from verify.motion.going_on import check_goes_on
 from verify.motion.judged_step import Ran, steps_in, until_it_stands
 from verify.motion.margins import margins_of
-from verify.motion.moving_mass import carried_along, receptance, weighed_down
+from verify.motion.moving_mass import carried_along, modal_receptance, weighed_down
 from verify.motion.records import (
     DAMPED,
     DRIVEN,
@@ -44,7 +44,7 @@ from verify.motion.sound_books import check_books, excess_of
 from verify.motion.step_size import gripped_step, longest_step, missed, speeds, stepped
 from verify.motion.stepping import Sliding, fresh_motion, on_beam, run_stages, slider_seconds
 from verify.motion.surface import Stage
-from verify.motion.turning import couple, modal_turning, turned_by
+from verify.motion.turning import couple, modal_turning
 from verify.patience import check_work
 from verify.slider import Slider
 
@@ -61,16 +61,22 @@ def coupling_on(request: Request, slider: Slider, stage: Stage, basis: TimeBasis
 
 
 def yielding(request: Request, x: float, basis: TimeBasis | None) -> tuple[complex, complex]:
-    """(deflection under a unit force, m/N, slope under a unit couple, rad/(N m)), both at x. Raises InputError.
+    """(deflection under a unit force, m/N, slope under a unit couple, rad/(N m)), both at x. Raises InputError."""
+    lifted, turned = yielding_at(request, x, np.array([x]), basis)
+    return complex(lifted[0]), complex(turned[0])
 
-    Of the modes where there are any, else of the model's steady fields.
+
+def yielding_at(request: Request, x: float, at: Array, basis: TimeBasis | None) -> tuple[ComplexArray, ComplexArray]:
+    """(deflections under a unit force at x, slopes under a unit couple there), both at places `at`, (n,), metres.
+
+    Of the modes where there are any, else of the model's steady fields. Raises InputError.
     """
     if basis:
-        given = (basis, x, request.omega, request.damping)
-        return receptance(*given), modal_turning(*given)
+        lifted = basis.shapes(at, 0).T @ modal_receptance(basis, x, request.omega, request.damping)
+        return np.asarray(lifted), modal_turning(basis, x, at, request.omega, request.damping)
     unit = steady_field(request, (PointForce(position=x),))
     turned = steady_field(request, couple(request.beam, x, request.frequency_hz))
-    return complex(unit.deflection([x])[0]), turned_by(turned, x)
+    return np.asarray(unit.deflection(at)), np.asarray(turned.slope(at))
 
 
 def steady_field(request: Request, forces: tuple[PointForce, ...]) -> "HarmonicField":

@@ -17,13 +17,7 @@ def check_goes_on(
 ) -> None:
     """Raise InputError where the n modes of a run are not those of the run before; losses and forces may differ."""
     _check_same_start(before, start)
-    if (before.model, before.count) != (model, count):
-        raise InputError(
-            f"continue_from is of model = {before.model!r}, count = {before.count!r} and this run of "
-            f"model = {model!r}, count = {count!r}: give both the same"
-        )
-    if replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
-        raise InputError("continue_from is of another beam: give the one it was run with, but for loss_factor")
+    check_same_beam(before, beam, model, count)
     if not n:
         raise InputError(
             "start = 'steady' has no free modes where no slider pushes back, and those of continue_from would be lost: "
@@ -31,6 +25,17 @@ def check_goes_on(
         )
     if len(before.q) != n:
         raise InputError(f"continue_from has {len(before.q)} modes and this run {n}: give both the same modes")
+
+
+def check_same_beam(before: "EndState | MotorState", beam: Beam, model: str, count: int | None) -> None:
+    """Raise InputError for a run of another beam, but for its loss factor, or of another model of it."""
+    if (before.model, before.count) != (model, count):
+        raise InputError(
+            f"continue_from is of model = {before.model!r}, count = {before.count!r} and this run of "
+            f"model = {model!r}, count = {count!r}: give both the same"
+        )
+    if replace(before.beam, loss_factor=0.0) != replace(beam, loss_factor=0.0):
+        raise InputError("continue_from is of another beam: give the one it was run with, but for loss_factor")
 
 
 def _check_same_start(before: "EndState | MotorState", start: str) -> None:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.models.arrays import Array, ComplexArray
 from verify.models.fields import HarmonicField
 from verify.models.time_basis import TimeBasis
 
@@ -31,11 +32,17 @@ def turned_by(field: HarmonicField, x: float) -> complex:
     return complex(field.slope([x])[0])
 
 
-def modal_turning(basis: TimeBasis, x: float, omega: float, damping: float) -> complex:
-    """The same of all modes, and of those beyond the last where they were cut off: their sum falls as slowly as 1/n."""
+def modal_turning(basis: TimeBasis, x: float, at: Array, omega: float, damping: float) -> ComplexArray:
+    """Slopes at places `at` under a unit couple at x, (n,), rad/(N m): of all modes, and of those beyond the last.
+
+    Where they were cut off these are kept too: their sum falls as slowly as 1/n.
+    """
     here = basis.shapes(np.array([x]), 1)[:, 0]
-    found = complex(here @ (here / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)))
+    shares = here / (basis.omegas**2 - omega**2 + 2j * damping * basis.omegas * omega)
+    found = np.asarray(shares @ basis.shapes(at, 1), dtype=np.complex128)
     if basis.tail is None:
         return found
     frequency = omega / (2.0 * np.pi)
-    return found + complex(basis.tail(couple(basis.beam, x, frequency), frequency, damping)(np.array([x]), 1)[0])
+    return np.asarray(
+        found + basis.tail(couple(basis.beam, x, frequency), frequency, damping)(at, 1), dtype=np.complex128
+    )

@@ -7,7 +7,7 @@ import numpy as np
 from verify.beam import Beam
 from verify.models.time_basis import TimeBasis
 from verify.models.underfoot import standing_at
-from verify.motion.carried import yielding
+from verify.motion.carried import yielding_at
 from verify.motion.contact import FELT, Coupling, friction_speed
 from verify.motion.request import Request
 from verify.motion.surface import Stage
@@ -25,8 +25,12 @@ def sizes(
     not turn the surface. The surface is that of the beam's own section: give the beam that is `standing_at` there.
     """
     rub = friction_speed(slider, beam, omega, turning)
-    across = slider.load * abs(receptance) / moved if moved else np.inf
-    return float(across), float(rub / (beam.surface_distance * omega * turned)) if turned else None
+    return _over_drive(slider.load * abs(receptance), rub, moved, beam.surface_distance * omega * turned)
+
+
+def _over_drive(across: float, rub: float, moved: float, speed: float) -> tuple[float, float | None]:
+    """Metres across and m/s along, over those of the drive: infinite, and None, where it does not move the surface."""
+    return float(across / moved) if moved else np.inf, float(rub / speed) if speed else None
 
 
 def coupled(slider: Slider, across: float, along: float | None) -> Coupling:
@@ -41,25 +45,37 @@ def coupled(slider: Slider, across: float, along: float | None) -> Coupling:
     )
 
 
-def in_words(coupling: Coupling) -> str:
-    """Both sizes."""
+def in_words(coupling: Coupling, together: bool = False) -> str:
+    """Both sizes; `together` are those of several sliders."""
+    whose, where = ("the sliders", " under one of them") if together else ("the slider", "")
     if np.isinf(coupling.normal_size):
-        return "the drive does not move the surface under the slider"
-    along = "" if coupling.friction_size is None else f", its friction by {coupling.friction_size:.1e} of its speed"
-    return f"all that presses the slider on moves the surface by {coupling.normal_size:.1e} of its motion{along}"
+        return f"the drive does not move the surface under {'one of ' * together}{whose}"
+    rubs = "their" if together else "its"
+    along = "" if coupling.friction_size is None else f", {rubs} friction by {coupling.friction_size:.1e} of its speed"
+    return f"all that presses {whose} on moves the surface{where} by {coupling.normal_size:.1e} of its motion{along}"
 
 
 def coupling_of(request: Request, placed: Sequence[Placed], stage: Stage, basis: TimeBasis | None) -> Coupling:
-    """One-way or two-way by size, unless the sliders say which: what their load moves, over what the drive moves."""
-    found = [_load_sizes(request, one, stage, basis) for one in placed]
-    across = max(size for size, _ in found)
+    """One-way or two-way by size, unless the sliders say which: what all their loads move, over what the drive moves.
+
+    Under the slider where that is most.
+    """
+    found = _sizes_of_all(request, placed, stage, basis)
     along = None if any(size is None for _, size in found) else max(size or 0.0 for _, size in found)
-    return coupled(placed[0].slider, across, along)
+    return coupled(placed[0].slider, max(size for size, _ in found), along)
 
 
-def _load_sizes(request: Request, one: Placed, stage: Stage, basis: TimeBasis | None) -> tuple[float, float | None]:
-    """What all that presses a slider on moves the surface by, over its own motion: (across, by friction along)."""
-    beam, omega = standing_at(request.beam, one.start), request.omega
-    slider, x = one.slider, np.array([one.start])
-    moved, turned = (float(np.hypot(*stage.drive_shapes(x, d)[:2, 0])) for d in (0, 1))
-    return sizes(slider, beam, omega, moved, turned, *yielding(request, one.start, basis))
+def _sizes_of_all(
+    request: Request, placed: Sequence[Placed], stage: Stage, basis: TimeBasis | None
+) -> list[tuple[float, float | None]]:
+    """Under every slider what all that presses all of them on moves the surface by, over its own motion."""
+    beam, omega = standing_at(request.beam, placed[0].start), request.omega
+    places = np.array([one.start for one in placed])
+    across, rub = np.zeros(len(placed)), np.zeros(len(placed))
+    for one in placed:
+        lifted, turned = yielding_at(request, one.start, places, basis)
+        across += one.slider.load * np.abs(lifted)
+        rub += [friction_speed(one.slider, beam, omega, complex(turn)) for turn in turned]
+    moved, turned = (np.hypot(*stage.drive_shapes(places, d)[:2]) for d in (0, 1))
+    speeds = beam.surface_distance * omega * turned
+    return [_over_drive(*each) for each in zip(across, rub, moved, speeds, strict=True)]

@@ -13,7 +13,7 @@ from verify.motor import records
 from verify.motor.feet import Placed
 from verify.motor.plan import Plan
 from verify.motor.result import MotorLedger, MotorMargins, MotorRun, MotorState
-from verify.motor.stepping import Riding
+from verify.motor.stepping import Riding, span_of
 from verify.slider import Slider
 
 
@@ -51,7 +51,7 @@ def outcome(b: int, plan: Plan, riding: Riding, ended: Ended) -> MotorRun:
         **_across(b, n, riding),
         point_offsets=riding.feet.points[riding.feet.owner == b, records.OFFSET] - (one.start - plan.placed[0].start),
         events=events,
-        notes=(*plan.notes, *notes),
+        notes=(*plan.notes, *_who_left(plan, riding, ended), *notes),
         coupling=plan.coupling,
         beam_margins=plan.margins,
         motor_margins=motor_margins(plan, one),
@@ -130,6 +130,16 @@ def _events(riding: Riding, b: int, times: Array) -> tuple[Array, tuple[str, ...
     return found, (*lost, *_lost(push, found, times))
 
 
+def _who_left(plan: Plan, riding: Riding, ended: Ended) -> tuple[str, ...]:
+    """Which of several sliders went where none goes on, at which the runs of all end; empty otherwise."""
+    stage, n = plan.stages[-1], len(plan.placed)
+    spans = [span_of(riding, stage.dt, b) for b in range(n)]
+    gone = [b + 1 for b, (first, last) in enumerate(spans) if first < stage.edges[0] or last > stage.edges[-1]]
+    if n == 1 or not gone or ended.stopped not in stage.ends:
+        return ()
+    return (f"of {n} sliders number {' and '.join(map(str, gone))} {ended.stopped}, and the runs of all end there",)
+
+
 def _lost(push: Array, events: Array, times: Array) -> tuple[str, ...]:
     """Since when nothing has touched, where nothing does at the end; empty otherwise."""
     if not len(push) or push[-1] > 0.0:
@@ -153,17 +163,18 @@ def motor_margins(plan: Plan, one: Placed) -> MotorMargins:
 
 
 def layer_epsilon(slider: Slider, wavenumber: float | None, thickness: float) -> float | None:
-    """2 mu kappa / (kappa_t k h) of the slider's contact; 0 without give along the surface.
+    """2 mu kappa / (kappa_t k h) of the slider's contact, of the foot where it is most.
 
-    None of a hard one, and of one that gives way where no wave travels.
+    0 without give along the surface. None of a hard one, and of one that gives way where no wave travels.
     """
     contact = slider.contact
     if contact is None or contact.hard:
         return None
-    across, along = (max(each(foot.length) for foot in slider.feet) for each in (contact.across, contact.along))
-    if not along:
+    gives = [(contact.across(foot.length), contact.along(foot.length)) for foot in slider.feet]
+    if not all(along for _, along in gives):
         return 0.0
-    return 2.0 * slider.mu * across / (along * wavenumber * thickness) if wavenumber else None
+    most = max(across / along for across, along in gives)
+    return 2.0 * slider.mu * most / (wavenumber * thickness) if wavenumber else None
 
 
 def ledger(riding: Riding, b: int) -> MotorLedger:

@@ -53,8 +53,6 @@ class Plan(msgspec.Struct, frozen=True, eq=False, kw_only=True):
 
 def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[MotorState]) -> Plan:
     """The stages of a run, its modes, and how the sliders are coupled. Raises InputError."""
-    if before and len(before) != len(placed):
-        raise InputError(f"continue_from has {len(before)} runs for {len(placed)} sliders: give one for each")
     for one in placed:
         check_on_beam(one.slider, request.beam, one.start)
     check_one_ground(request.beam, [one.start for one in placed])
@@ -79,7 +77,7 @@ def lay_out(request: Request, placed: tuple[Placed, ...], before: Sequence[Motor
         contact_rate=rate,
         sag=sag_of(request, placed),
         margins=margins_of(request, stages[-1]),
-        notes=_notes(request, basis, coupling),
+        notes=_notes(request, basis, coupling, len(placed) > 1),
     )
 
 
@@ -126,6 +124,6 @@ def _step(request: Request, rate: float, stage: Stage, two_way: bool) -> float:
     return min(longest, RESOLVED / rate if rate else longest, SHARP / fastest if fastest else longest)
 
 
-def _notes(request: Request, basis: TimeBasis | None, coupling: Coupling) -> tuple[str, ...]:
+def _notes(request: Request, basis: TimeBasis | None, coupling: Coupling, together: bool) -> tuple[str, ...]:
     modes = f"modes: {basis.method}" if basis else f"steady field of the {request.model} model, no modes"
-    return modes, f"coupling: {'two' if coupling.two_way else 'one'}-way; {in_words(coupling)}"
+    return modes, f"coupling: {'two' if coupling.two_way else 'one'}-way; {in_words(coupling, together)}"

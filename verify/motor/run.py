@@ -14,8 +14,9 @@ from verify.motion.request import Driven, Modelled, Started, Watched, requested
 from verify.motor.carry import carry_out
 from verify.motor.combine import CHAIN, check_goes_on, check_together
 from verify.motor.feet import Placed
+from verify.motor.going_on import check_runs
 from verify.motor.plan import lay_out
-from verify.motor.result import MotorRun, MotorState
+from verify.motor.result import MotorRun
 from verify.options import Links, Start
 from verify.slider import Slider
 
@@ -78,7 +79,7 @@ def run_motor(
     by = Modelled(model, count, modes, modal_damping, MODES)
     watched = Watched(at, samples, step, steps_per_period, False)
     asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
-    return _run(asked, [(slider, held_speed, frozen)], [] if continue_from is None else [continue_from.state])[0]
+    return _run(asked, [(slider, held_speed, frozen)], [] if continue_from is None else [continue_from])[0]
 
 
 @as_typed
@@ -108,8 +109,9 @@ def run_motors(
 ) -> tuple[MotorRun, ...]:
     """Several sliders on one beam, one run for each: coupled two-way they feel each other through it.
 
-    They rub by one law of one slope and are coupled alike; `held_speed` and `frozen` are of all, or one for each.
-    Otherwise as `run_motor`. Raises InputError.
+    They rub by one law of one slope and are coupled alike, by size by what all do together; `held_speed` and `frozen`
+    are of all, or one for each. All end where one leaves the beam; they go on (`continue_from`) from one instant of one
+    motion. Otherwise as `run_motor`. Raises InputError.
     """
     driven = Driven(beam, as_forces(forces), frequency_hz, duration)
     by = Modelled(model, count, modes, modal_damping, MODES)
@@ -117,7 +119,7 @@ def run_motors(
     asked = Asked(driven, by, Started(start, soft_start_periods, (), None), watched, links, progress, patient)
     put, before = several("sliders", sliders, Slider), several("continue_from", continue_from, MotorRun)
     speeds, stay = _each("held_speed", held_speed, len(put)), _each("frozen", frozen, len(put))
-    return _run(asked, list(zip(put, speeds, stay, strict=True)), [run.state for run in before])
+    return _run(asked, list(zip(put, speeds, stay, strict=True)), before)
 
 
 def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
@@ -130,12 +132,13 @@ def _each(field: str, given: Any, n: int) -> tuple[Any, ...]:
 
 
 def _run(
-    asked: Asked, put: Sequence[tuple[Slider, float | None, bool]], before: Sequence[MotorState]
+    asked: Asked, put: Sequence[tuple[Slider, float | None, bool]], runs: Sequence[MotorRun]
 ) -> tuple[MotorRun, ...]:
     """The runs of sliders, each with its held speed and whether it stays at its place. Raises InputError."""
     began, beam, model, start = perf_counter(), asked.driven.beam, asked.modelled.model, asked.started.start
     check_kind("patient", asked.patient, bool)
     check_together(model, start, [slider for slider, _, _ in put])
+    before = [run.state for run in runs]
     check_goes_on(model, before)
     for _, speed, stays in put:
         if speed is not None:
@@ -148,6 +151,7 @@ def _run(
     linear = msgspec.structs.replace(asked.modelled, model="segment") if model == CHAIN else asked.modelled
     request = requested(asked.driven, linear, asked.started, asked.watched, put[0][0])
     placed = tuple(Placed(slider, slider.start_on(beam), speed, bool(stays)) for slider, speed, stays in put)
+    check_runs(runs, request, placed)
     if model == CHAIN:
         from verify.motor.on_chain import check_chain, run_on_chain
 

@@ -156,9 +156,10 @@ def run_stages(
     return stopped, *state
 
 
-def span_of(riding: Riding, step: float) -> tuple[float, float]:
-    """The least and the largest place of all points after another step, seconds: metres from the left end."""
+def span_of(riding: Riding, step: float, slider: int | None = None) -> tuple[float, float]:
+    """The least and largest place of all points, or of one slider's, after a step, seconds: metres from the left."""
     x = riding.start + _after(riding, step)
+    x = x if slider is None else x[riding.feet.owner == slider]
     return float(x.min()), float(x.max())
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from verify.studies.motor_figures import FieldFound, MotorFound
 
 SAGS = 0.1
-"""Of the wave's amplitude: a static deflection that is felt."""
+"""Of the amplitude under the slider: a static deflection that is felt."""
 COARSE = 1e-3
 """Relative error of a swing on the springs, which steps leave."""
 SETTLED = 0.01
@@ -168,7 +168,7 @@ def doubts(
     elif not margins.sag_taken and margins.sag > SAGS * one.amplitude:
         told.append(
             f"sag: what presses bends the beam by {in_words(margins.sag)}, {margins.sag / one.amplitude:.2g} times "
-            "the wave's amplitude, which a one-way run leaves out"
+            "the amplitude under the slider, which a one-way run leaves out"
         )
     worst = max(field.margins.step**2 / 24.0 for field in fields)
     if worst > COARSE:
