@@ -153,7 +153,7 @@ ROWS: tuple[Row, ...] = (
     ),
     Floor(
         id="forces-that-grow-under-a-motor",
-        title="Energies of a beam under a motor while its forces grow, when they have grown, and as another run goes on",
+        title="Energies of a beam under a motor whose forces grow and have grown, and as another run goes on",
         why="motor/stepping.py: the beam's own motion is closed from stage to stage; exponentials of matrices.",
         along="periods",
         at=(0.4, 2.3),
@@ -163,7 +163,7 @@ ROWS: tuple[Row, ...] = (
     ),
     Floor(
         id="feet-that-leave",
-        title="How far a slider with two feet goes to a step of the surface, and to an end, in halves of a step of time",
+        title="How far a slider with two feet goes to a step of the surface and to an end, in halves of a step",
         why="motor/stepping.py: points are looked for in the middle of a step.",
         along="run",
         at=(0.0, 1.0),

@@ -164,7 +164,7 @@ ROWS: tuple[Row, ...] = (
     Floor(
         id="folds-of-a-load",
         title="The share of a load at which a cantilever of unlike links snaps, as its refusal says it",
-        why="chain/load_path.py: five figures and more are told; against the path from the tip, followed by its length.",
+        why="chain/load_path.py: six figures are told; the path from the tip, followed by its length.",
         along="load",
         at=tuple(float(number) for number in range(len(AGAINST))),
         promise=5e-6,

@@ -157,7 +157,8 @@ def factors_error(unknowns: float) -> float:
     held, heavy = np.array([[3.0], [0.0], [0.4]]), np.array([[0.5], [2.0], [0.0]])
     pencils = Pencils(stiffness=k, mass=m, felt=felt, held=held, heavy=heavy)
     stiff, mass = (
-        _full(band[:, :, 0]) + (felt[:, :, 0] * weight[:, 0]) @ felt[:, :, 0].T for band, weight in ((k, held), (m, heavy))
+        _full(band[:, :, 0]) + (felt[:, :, 0] * weight[:, 0]) @ felt[:, :, 0].T
+        for band, weight in ((k, held), (m, heavy))
     )
     lower = np.linalg.cholesky(mass)
     values = np.linalg.eigvalsh(np.linalg.solve(lower, np.linalg.solve(lower, stiff).T))
@@ -243,9 +244,8 @@ def _levers(stretch: Any, felt: Array, turned: Array) -> Array:
     for place, weights in zip(stretch.places[0] + stretch.origin, felt, strict=True):
         ahead = np.maximum(every - joints[:, None], 0)
         rows.append(joints - place + ahead @ weights)
-    for weights in turned:
-        rows.append(1.0 - np.array([weights[joint:].sum() for joint in joints]))
-    return np.array(rows)
+    after = np.arange(turned.shape[1])[:, None] >= joints
+    return np.vstack([np.array(rows), 1.0 - turned @ after])
 
 
 ROWS: tuple[Row, ...] = (
