@@ -701,6 +701,8 @@ def moments_a_little_off(patch):
 
 FAULTS = {
     "stress": {
+        limitless(resting, "NOTHING", 0.1): {"presses-that-cancel"},
+        limitless(on_chain, "SLACK", 1e-11): {"links-that-are-left"},
         limitless(load_path, "ADDED", inf): {"folds-of-a-load"},
         squares_a_little_faster: {"chains-on-their-heads"},
         limitless(small_motion, "LIFTED", 1e-15): {"hinged-chains"},

@@ -4,6 +4,7 @@ By the statics of matrices written out, and by all equations of beam and feet at
 """
 
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -33,20 +34,21 @@ CLASP = Slider(
     foot=(
         Foot(mass=0.006, offset=-0.011, mirrored=True),
         Foot(mass=0.004, offset=0.017, mirrored=True),
+        Foot(mass=0.003, offset=0.029, mirrored=True),
     ),
 )
-"""Two feet between the beams."""
+"""Three feet between the beams."""
 
 
 def _bent(own: Elements, places: Array, faces: Array) -> Array:
-    """Nodal values of a beam at rest under half of the preload at each point, on the material under it."""
+    """Nodal values of a beam at rest under a third of the preload at each point, on the material under it."""
     lever, found = faces * BAR.surface_distance, np.zeros(len(own.mass))
     for _ in range(9):
         load = np.zeros(len(found))
         for x, face, reach in zip(places.tolist(), faces.tolist(), lever.tolist(), strict=True):
             under = x + reach * float(own.row(x, 1) @ found)
             turned = reach * float(own.row(under, 1) @ found) * own.row(x, 1)
-            load -= face * PRELOAD / 2.0 * (own.row(under, 0) + turned)
+            load -= face * PRELOAD / 3.0 * (own.row(under, 0) + turned)
         found[own.free] = np.linalg.solve(own.kept(own.bent), load[own.free])
     return found
 
@@ -76,11 +78,11 @@ def clasped_error(periods: float) -> float:
         **GIVEN,
     )
     own, places = Elements(BAR, np.linspace(0.0, BAR.length, PARTS + 1)), np.array([one.offset for one in CLASP.feet])
-    bent = own.read(_bent(own, 0.0579 + places, np.ones(2)), np.array(READ), 0)
+    bent = own.read(_bent(own, 0.0579 + places, np.ones(3)), np.array(READ), 0)
     size = float(abs(bent).max())
     start = float(abs(run.deflection[0] - bent).max()) / size + abs(float(run.normal_force[0]) / (2.0 * PRELOAD) - 1.0)
     later = float(abs(run.deflection - bent).max()) / size + float(abs(run.normal_force / (2.0 * PRELOAD) - 1.0).max())
-    pressed = float(abs(run.pressures / (0.5 * PRELOAD) - 1.0).max())
+    pressed = float(abs(run.pressures / (PRELOAD / 3.0) - 1.0).max())
     return max(start, 1e-5 * max(later, pressed), float(abs(run.height).max()) / size)
 
 
@@ -133,6 +135,65 @@ def gone_error(number: float) -> float:
     return float("inf") if odd else off
 
 
+# --- What presses, what is left ---------------------------------------------------------------------------------------
+
+UP, LOW = Foot(offset=0.003), Foot(offset=0.003, face="lower")
+CANCELS: tuple[tuple[tuple[Foot, ...], float, bool], ...] = (
+    ((UP, LOW), 0.0, True),
+    ((UP, replace(LOW, offset=0.0031)), 0.0, False),
+    ((UP, LOW), 9.81, False),
+    ((UP, UP, LOW), 0.0, False),
+    ((replace(UP, offset=-0.02), UP, LOW, replace(LOW, offset=-0.02)), 0.0, True),
+    ((replace(UP, offset=-0.02), replace(UP, offset=0.04), LOW, replace(LOW, offset=0.017)), 0.0, True),
+    ((replace(UP, length=0.01, points=3), LOW), 0.0, True),
+    ((Foot(mirrored=True), UP, LOW), 0.0, False),
+)
+"""Feet, gravity, whether what presses them on leaves neither a force nor a moment."""
+LEFT = "left the links that it was put on"
+GONE: tuple[tuple[float, tuple[float, ...], str], ...] = (
+    (0.047, (0.2, 0.3, 0.35), LEFT),
+    (-0.12, (0.2, 0.3, 0.35), LEFT),
+    (0.047, (0.2, 0.3, 0.41), "came to a step"),
+    (-0.12, (0.12, 0.3, 0.35), LEFT),
+    (0.047, (0.2, 0.3, 0.41 + 3e-13), "came to a step"),
+    (0.047, (0.2, 0.3, 0.41 + 3e-12), LEFT),
+)
+"""How far a slider at 0.3 m has gone, edges of the links that it was put on, what it has done.
+
+Its ground goes from the beam's end at 0.12 m to a step at 0.41 m.
+"""
+
+
+def cancelled_error(number: float) -> float:
+    """How many sliders are told wrongly to push a beam away that nothing holds."""
+    from verify.motor.feet import Placed
+    from verify.motor.resting import _moves
+
+    wrong = 0
+    for feet, gravity, cancels in CANCELS:
+        slider = replace(CLASP, foot=feet, gravity=gravity, coupling="one-way")
+        wrong += _moves(Placed(slider, 0.0579)) is cancels
+    return float(wrong)
+
+
+def left_error(number: float) -> float:
+    """How many sliders that have gone beyond the links under them are told otherwise than where these end."""
+    from verify.models.underfoot import LEFT_BEAM
+    from verify.motor import records
+    from verify.motor.feet import Placed, feet_of
+    from verify.motor.on_chain import _gone
+
+    wrong = 0
+    for travelled, edges, why in GONE:
+        feet = feet_of((Placed(replace(RIDER, foot=()), 0.3, travelled * 10.0),))
+        feet.body[0, records.X] = 0.9 * travelled
+        riding: Any = SimpleNamespace(start=0.3, feet=feet)
+        given: Any = SimpleNamespace(edges=np.array(edges) - 0.3)
+        stage: Any = SimpleNamespace(dt=0.01, ends=(LEFT_BEAM, "came to a step"), edges=np.array([0.12, 0.41]))
+        wrong += _gone(given, stage, riding) != why
+    return float(wrong)
+
+
 def _loops() -> Iterator[Call]:
     from verify.motor import warm
 
@@ -170,5 +231,23 @@ ROWS: tuple[Row, ...] = (
         promise=1.0,
         error=gone_error,
         kernels=_loops,
+    ),
+    Floor(
+        id="presses-that-cancel",
+        title="Feet above and below that press a free beam away, or turn it away, and those that do not",
+        why="motor/resting.py: forces and moments of what presses.",
+        along="1",
+        at=(1.0,),
+        promise=0.5,
+        error=cancelled_error,
+    ),
+    Floor(
+        id="links-that-are-left",
+        title="Sliders beyond the links that they were put on: at a step of the surface, at an end, elsewhere",
+        why="motor/on_chain.py: where those kept end, to rounding.",
+        along="1",
+        at=(1.0,),
+        promise=0.5,
+        error=left_error,
     ),
 )
