@@ -699,8 +699,14 @@ def moments_a_little_off(patch):
     patch.setattr(crowded, "_of_moments", lambda stretch, moments, n: true(stretch, (1.0 + 1e-9) * moments, n))
 
 
+def runs_that_end_whatever_comes(patch):
+    true = splitting._Modal.march
+    patch.setattr(splitting._Modal, "march", lambda self: true(self) and "end")
+
+
 FAULTS = {
     "stress": {
+        runs_that_end_whatever_comes: {"kept-until-it-diverges"},
         limitless(resting, "NOTHING", 0.1): {"presses-that-cancel"},
         limitless(on_chain, "SLACK", 1e-11): {"links-that-are-left"},
         limitless(load_path, "ADDED", inf): {"folds-of-a-load"},

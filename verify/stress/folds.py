@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 
 from verify.beam import Beam, PointForce
+from verify.chain import warm
 from verify.chain.bending import bend
 from verify.chain.departure import Driven, _moves, driven_chain
 from verify.chain.dynamics import at_rest, linearise
 from verify.chain.system import ChainSystem, build_system
 from verify.errors import InputError
 from verify.models.arrays import Array
+from verify.motion.result import END
 from verify.segments.links import link_inertia
 from verify.stress.beams import STEPPED, held
 from verify.stress.bent import LINKS, _at_the_clamp, _chain
@@ -160,6 +162,31 @@ def places_error(number: float) -> float:
     return wrong
 
 
+# --- Runs that break off ----------------------------------------------------------------------------------------------
+
+
+def kept_error(step: float) -> float:
+    """Of what a chain under a load too large for its steps keeps until it diverges, by a run to the last sample kept.
+
+    It says when it does: after so many steps.
+    """
+    from verify.chain.splitting import modal_basis, simulate_modal
+
+    forces = (PointForce(position=0.6, amplitude=300.0),)
+    system = build_system(held("clamped", "free"), LINKS, forces, 37.0)
+    basis, start = modal_basis(system), at_rest(system)
+    run = simulate_modal(basis, start, np.linspace(0.0, 0.4, 81), step=step)
+    n, told = len(run.times), re.fullmatch(r"diverged at t = (\S+) s with a step of (\S+) s", run.statistics.stopped)
+    if told is None or not 2 < n < 81:
+        return float("inf")
+    shorter = simulate_modal(basis, start, run.times, step=step)
+    end, taken_s = float(told[1]), run.statistics.steps * run.statistics.step_s
+    wrong = not run.times[-1] <= end < run.times[-1] + 0.005 + step or float(told[2]) != float(f"{step:.3g}")
+    wrong |= run.angles.shape != (n, LINKS) or not np.isfinite(run.angles).all() or shorter.statistics.stopped != END
+    off = float(abs(run.angles - shorter.angles).max()) / float(abs(shorter.angles).max())
+    return max(off, float(wrong), 1e-9 * abs(taken_s / end - 1.0))
+
+
 ROWS: tuple[Row, ...] = (
     Floor(
         id="folds-of-a-load",
@@ -196,5 +223,15 @@ ROWS: tuple[Row, ...] = (
         at=(1.0,),
         promise=0.5,
         error=places_error,
+    ),
+    Floor(
+        id="kept-until-it-diverges",
+        title="What a run in steps that are too long keeps until it diverges, and when it says it does",
+        why="chain/splitting.py: the same steps of a run that ends earlier; six digits are told.",
+        along="s",
+        at=(2.5e-3,),
+        promise=1e-12,
+        error=kept_error,
+        kernels=warm.modal,
     ),
 )
