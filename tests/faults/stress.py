@@ -8,12 +8,22 @@ from faults.chain import recursion_with_another_inertia_than_the_energy
 from msgspec.structs import replace
 
 from verify import beam, slider
-from verify.chain import bending, departure, load_path, problems, ride, splitting, stepping, stretching
+from verify.chain import (
+    bending,
+    departure,
+    load_path,
+    problems,
+    ride,
+    small_motion,
+    splitting,
+    stepping,
+    stretching,
+)
 from verify.chain import modes as chain_modes
 from verify.chain import system as chain_system
 from verify.chain.result import ChainMotion
 from verify.contact import bouncing, foot
-from verify.elements import cuts
+from verify.elements import added, cuts
 from verify.elements import linear as fem_beam
 from verify.elements import stacks as element_stacks
 from verify.elements import sweeps as element_sweeps
@@ -24,6 +34,7 @@ from verify.identify import matrices, outside, pairing, reading, searching, shap
 from verify.identify import told as compared
 from verify.judge import compare, crossing, sizing
 from verify.models import (
+    band_stack,
     division,
     driven_pencil,
     eigen,
@@ -31,6 +42,7 @@ from verify.models import (
     isolated,
     kind,
     places,
+    polishing,
     response,
     search,
     spline,
@@ -51,7 +63,8 @@ from verify.motion import (
     validity,
 )
 from verify.motion.stepping import Sliding
-from verify.motor import combine, on_chain, on_wave, resting
+from verify.motion.surface import Stage
+from verify.motor import carry, combine, on_chain, on_wave, resting
 from verify.motor import coupling as motor_coupling
 from verify.motor import feet as motor_feet
 from verify.motor import figures as motor_figures
@@ -641,8 +654,74 @@ def joints_that_slip_read_half_as_far_again(patch):
     patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
 
 
+def squares_a_little_faster(patch):
+    true = small_motion._squares
+    patch.setattr(small_motion, "_squares", lambda *given: (1.0 + 1e-10 * (true(*given) < 0.0)) * true(*given))
+
+
+def springs_as_deep_as_on_a_floor(patch):
+    patch.setattr(carry, "press_apart", lambda placed, basis, feet: None)
+
+
+def steps_a_little_steeper(patch):
+    patch.setattr(request, "SMOOTH_STEP", np.array([0.0, 0.0, 3.0 - 1e-6, 1e-6 - 2.0]))
+
+
+def every_edge_taken_for_the_first(patch):
+    patch.setattr(Stage, "beyond", lambda self, first, last: self.ends[0])
+
+
+def ground_that_lifts_a_little_higher(patch):
+    true = added._lifted
+    patch.setattr(added, "_lifted", lambda elements, bending: (1.0 + 1e-9) * true(elements, bending))
+
+
+def bent_a_little_more_off_its_ground(patch):
+    true = sweeps._without_ground
+    patch.setattr(sweeps, "_without_ground", lambda *given: (1.0 + 1e-9) * true(*given))
+
+
+def slow_motions_left_as_they_are(patch):
+    patch.setattr(polishing, "_turned", lambda pencil, vectors, strains: np.eye(vectors.shape[1]))
+
+
+def modes_left_as_they_are(patch):
+    patch.setattr(polishing, "sharpened", lambda pencil, values, vectors: (values, vectors))
+
+
+def bodies_that_weigh_a_little_more(patch):
+    true = band_stack._cornered
+    patch.setattr(band_stack, "_cornered", lambda own, *others: true((1.0 + 1e-6) * own, *others))
+
+
+def moments_a_little_off(patch):
+    true = crowded._of_moments
+    patch.setattr(crowded, "_of_moments", lambda stretch, moments, n: true(stretch, (1.0 + 1e-9) * moments, n))
+
+
+def runs_that_end_whatever_comes(patch):
+    true = splitting._Modal.march
+    patch.setattr(splitting._Modal, "march", lambda self: true(self) and "end")
+
+
 FAULTS = {
     "stress": {
+        runs_that_end_whatever_comes: {"kept-until-it-diverges"},
+        limitless(resting, "NOTHING", 0.1): {"presses-that-cancel"},
+        limitless(on_chain, "SLACK", 1e-11): {"links-that-are-left"},
+        limitless(load_path, "ADDED", inf): {"folds-of-a-load"},
+        squares_a_little_faster: {"chains-on-their-heads"},
+        limitless(small_motion, "LIFTED", 1e-15): {"hinged-chains"},
+        limitless(departure, "STILL", 1.001e-9): {"places-that-stand"},
+        springs_as_deep_as_on_a_floor: {"feet-between-two-beams"},
+        steps_a_little_steeper: {"forces-that-grow-under-a-motor"},
+        every_edge_taken_for_the_first: {"feet-that-leave"},
+        ground_that_lifts_a_little_higher: {"lifted-by-ground"},
+        bent_a_little_more_off_its_ground: {"plain-beams-on-ground"},
+        slow_motions_left_as_they_are: {"slow-motions-told-apart"},
+        modes_left_as_they_are: {"modes-sharpened"},
+        bodies_that_weigh_a_little_more: {"factors-beside-bodies"},
+        moments_a_little_off: {"weights-and-moments"},
         limitless(poles, "_DAMPED", 1.001e-12): {"limits-of-waves"},
         limitless(sound_books, "MOST", 10.01): {"limits-of-motions"},
         limitless(compare, "RESTING", 1.001e-11): {"limits-of-judgements"},

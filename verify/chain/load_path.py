@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 SAFE = 0.9
 """Of the buckling load: how far a load is raised at once."""
+ADDED = 0.5
+"""Of what a growth of the load turns links by at first: what may come to that."""
 LEAST_GROWTH = 1e-12
 """Of the load, relative: where a part as small is not followed, the path ends."""
 
@@ -72,15 +74,18 @@ def _followed(system: "ChainSystem", share: float, said: str, least: float) -> A
 
 
 def _corrected(system: "ChainSystem", start: Array, factor: float) -> Array | None:
-    """The equilibrium next to a start, all stable on the way there; None where Newton's method leaves it."""
-    angles = start
+    """The equilibrium next to a start, all stable on the way there; None where Newton's method leaves it.
+
+    Beyond a fold it finds another path, if any, and by more than its first step: half of that is what it may add.
+    """
+    angles, first = start, None
     for _ in range(30):
         found = forces_at(system, angles, factor)
         turn = _solved(system, found)
         if turn is None or abs(turn).max() > MAX_TURN:
             return None
-        angles = angles + np.diff(turn, prepend=0.0)
-        if abs(np.cumsum(angles - start)).max() > MAX_TURN:
+        angles, first = angles + np.diff(turn, prepend=0.0), turn if first is None else first
+        if abs(np.cumsum(angles - start) - first).max() > ADDED * abs(first).max():
             return None
         scale = abs(found.moments).max() + abs(system.stiffness * angles).max()
         if abs(found.moments + found.springs).max() <= TOLERANCE * scale and abs(turn).max() < SETTLED:

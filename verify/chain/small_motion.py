@@ -9,6 +9,8 @@ from verify.models.arrays import Array, Indices
 
 STRAYED = 1e-6
 """A root of a turning chain is neither oscillation nor growth where both its parts are larger than this share of it."""
+LIFTED = 1e-8
+"""Of the largest square: what a chain is lifted by, at least, in which a motion is rigid."""
 ROUNDING = 1e-13
 """Of the largest root or square: what a dense solver leaves of a small one."""
 
@@ -76,14 +78,17 @@ def refuse_unstable_modes(squares: Array) -> None:
 
 
 def _squares(mass: Array, stiffness: Array) -> Array:
-    """Signed, ascending: by the inverse problem, which keeps the low ones accurate, shifted where it must be."""
+    """Signed, ascending: by the inverse problem, which keeps the low ones accurate, shifted where it must be.
+
+    A shift of `LIFTED` leaves as many digits of the highest as of the lowest of a thousand links.
+    """
     from scipy.linalg import LinAlgError, eigh
 
     try:
         return np.asarray(1.0 / eigh(mass, stiffness, eigvals_only=True)[::-1])
     except LinAlgError:
         lowest = abs(float(eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 0])[0]))
-    shift = max(2.0 * lowest, 1e-15 * float(np.max(abs(np.diag(stiffness)) / np.diag(mass))))
+    shift = max(2.0 * lowest, LIFTED * float(np.max(abs(np.diag(stiffness)) / np.diag(mass))))
     while True:
         try:
             inverse, vectors = eigh(mass, stiffness + shift * mass)

@@ -58,6 +58,7 @@ def rules_error(number: float) -> float:
 def words_error(number: float) -> float:
     """How many names, orders and remarks of variants and settings are other than they should be."""
     wide = Rules(wall=("gregory", "half"), grading=2.0)
+    thick = Rules(theory=("euler-bernoulli", "timoshenko"))
     found = wide.variants(("segment", "fem"))
     labels = ["segment grading=2.0", "segment wall=half grading=2.0", "fem grading=2.0"]
     wrong = int([one.label for one in found] != labels)
@@ -66,6 +67,10 @@ def words_error(number: float) -> float:
     wrong += Variant("fem", THICK).theory != "timoshenko" or Variant("fem").theory != "euler-bernoulli"
     wrong += wide.combinations != ((("grading", 2.0),), (("wall", "half"), ("grading", 2.0)))
     wrong += wide.several != ("wall",) or {one.label for one in wide.beside(CLAMPED)} != {labels[1]}
+    told = [one.settings for one in thick.every_rule(CLAMPED)]
+    plain = [(("wall", wall),) for wall in ("half", "welded", *WALLS[1:])]
+    shearing = [*((("wall", wall), *THICK) for wall in WALLS), (("joints", "tensioned"), *THICK)]
+    wrong += sorted(map(sorted, told)) != sorted(map(sorted, [*plain, *shearing]))
     turned = Rules(wall="half", attachment="lever")
     wrong += set(without_effect(STRIP, turned)) != {"wall", "attachment"}
     wrong += set(without_effect(CLAMPED, turned)) != {"attachment"} or bool(without_effect(STRIP, Rules()))
