@@ -82,6 +82,9 @@ def light():
         "worded",
         "signed",
         "solved",
+        "enough",
+        "yielded",
+        "tried",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
