@@ -661,8 +661,12 @@ def sizes_after_a_failure_left_out(patch):
 
 
 def clamps_a_millionth_stiffer(patch):
-    true = yielding.clamp_of
-    patch.setattr(yielding, "clamp_of", lambda beam, ends, compliance: true(beam, ends, compliance * 0.999999))
+    true = yielding.softened
+    patch.setattr(
+        yielding,
+        "softened",
+        lambda beam, clamp: true(beam, replace(clamp, rotational=1.000001 * clamp.rotational)),
+    )
 
 
 def frequencies_a_thousandth_steeper_over_a_clamp(patch):

@@ -29,7 +29,7 @@ BETTER = {"points": "the links' own inertia m l^2/12", "joints": "the links' own
 def _member(model: str, mass: str, **more: Any) -> Any:
     from verify.identify.family import Candidate
 
-    given = {"joints": "series", "order": 2} if model == "segment" else {}
+    given: dict[str, Any] = {"joints": "series", "order": 2} if model == "segment" else {}
     return Candidate(model=model, mass=mass, **(given | more))
 
 

@@ -88,12 +88,12 @@ def _steps() -> Iterator[bool]:
         yield found is None or found.count != right
     yield closest(lambda size: None, (), (), lambda one: True) is not None
     few: list[int] = []
-    found = closest(
-        lambda size: few.append(size or 0) or _one(size or 0, _uneven(size or 0, 48)),
-        (),
-        (55,),
-        lambda one: one.count == 48,
-    )
+
+    def told(size: int | None) -> Any:
+        few.append(size or 0)
+        return _one(size or 0, _uneven(size or 0, 48))
+
+    found = closest(told, (), (55,), lambda one: one.count == 48)
     yield found is None or found.count != 48 or sorted(few) != sorted({*LOOK, 55})
 
 

@@ -45,8 +45,8 @@ def _others() -> list[Any]:
     """Those that it is not looked for beside."""
     from verify.identify.family import Candidate
 
-    made = {"model": "segment", "joints": "series", "mass": "links"}
-    return [Candidate(**{**made, **one}) for one in ({"wall": "welded"}, {"mass": "points"}, {"attachment": "lever"})]
+    plain = Candidate(model="segment", joints="series", mass="links")
+    return [replace(plain, wall="welded"), replace(plain, mass="points"), replace(plain, attachment="lever")]
 
 
 def _softened(beam: Beam, ends: tuple[str, ...], stiffness: float) -> Beam:
@@ -160,13 +160,9 @@ def _limits() -> Iterator[tuple[float, bool, Callable[[float], bool]]]:
     from verify.identify.fitting import SCALED, likelier, same
 
     chain, exact = _family(None)["half"], _family(None)["analytic"]
-    for stiffness, most in ((3.0, 0.02), (40.0, 0.1 * 2.0 / 40.0)):
-        yield most, True, lambda left, k=stiffness: yielding.borne_out(_fit_of(residual=left, clamp=_clamp(k)))
-        yield (
-            2.0 * most,
-            True,
-            lambda left, k=stiffness: yielding.borne_out(_fit_of(residual=left, clamp=_clamp(k)), 2.0),
-        )
+    yield 0.02, True, lambda left: yielding.borne_out(_fit_of(residual=left, clamp=_clamp(3.0)))
+    yield 0.2 / 40.0, True, lambda left: yielding.borne_out(_fit_of(residual=left, clamp=_clamp(40.0)))
+    yield 0.04, True, lambda left: yielding.borne_out(_fit_of(residual=left, clamp=_clamp(3.0)), 2.0)
     yield 1e-9, True, lambda left: yielding.settled(_fit_of(residual=left), _rounded(1e-12))
     yield 3e-7, True, lambda left: yielding.settled(_fit_of(residual=left), _rounded(3e-7))
     yield 1e-8, True, lambda digits: causes._sharply(_told(_fit_of()), _rounded(digits))
@@ -178,8 +174,8 @@ def _limits() -> Iterator[tuple[float, bool, Callable[[float], bool]]]:
     yield 5e-3, False, lambda by: causes._by_factor(_fit_of(factor=exp(by)))
     yield 5e-3, False, lambda by: causes._by_factor(_fit_of(factor=exp(-by) * 2.0 * pi))
     yield 0.02 * 0.03, True, lambda left: causes._by_factor(_fit_of(factor=exp(-0.03), residual=left))
-    noisy = {"reading": SCALED, "systematic": True}
-    yield 0.02, True, lambda left: causes._credible(_told(_fit_of(factor=0.1, residual=left), **noisy))
+    noisy = _told(_fit_of(), reading=SCALED, systematic=True)
+    yield 0.02, True, lambda left: causes._credible(replace(noisy, fits=(_fit_of(factor=0.1, residual=left),)))
     yield 1e-3, True, lambda left: causes._credible(_told(_fit_of(residual=left), reading=SCALED))
     yield 1e-3 * 0.03, False, lambda left: causes_told.loosely(_fit_of(factor=exp(0.03), residual=left))
     yield 1e-9, False, lambda left: causes_told.loosely(_fit_of(residual=left))
