@@ -32,6 +32,8 @@ from verify.identify import (
     shapes_told,
     yielding,
 )
+from verify.identify import compare as list_compare
+from verify.identify import gates as list_gates
 from verify.identify import sizing as listed_sizing
 from verify.identify import told as compared
 from verify.judge import compare, crossing, sizing
@@ -688,6 +690,11 @@ def changes_told_a_thousandth_larger(patch):
     patch.setattr(causes_told, "_change", lambda ratio: true(1.001 * ratio))
 
 
+def searches_told_a_millionth_longer(patch):
+    true = list_compare._search_seconds
+    patch.setattr(list_compare, "_search_seconds", lambda *given: 1.000001 * true(*given))
+
+
 def feet_beyond_the_crests_not_braked_in_full(patch):
     patch.setattr(foot, "acos", lambda r: 1.001 * acos(r))
 
@@ -713,6 +720,10 @@ FAULTS = {
         limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
         unknowns_the_other_way_round: {"weights-without-themselves"},
         limitless(on_wave, "WARM", 3): {"means-over-a-wave"},
+        limitless(compared, "TOLERANCE", 0.05): {"answers-in-words"},
+        limitless(list_gates, "TOLERANCE", 0.01): {"rows-of-a-list"},
+        searches_told_a_millionth_longer: {"before-it-is-solved"},
+        limitless(list_compare, "CREDIBLE", 0.01): {"supports-that-are-nearest"},
         limitless(listed_sizing, "_IN_A_ROW", 6): {"parts-enough-of-members"},
         sizes_after_a_failure_left_out: {"parts-enough-beside-steps"},
         members_that_are_none_reaching_nothing: {"rules-that-do-with-fewer"},

@@ -85,6 +85,7 @@ def light():
         "enough",
         "yielded",
         "tried",
+        "answered",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}
