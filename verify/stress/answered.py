@@ -196,7 +196,7 @@ def sentences_error(number: float) -> float:
 
 
 def rows_error(factor: float) -> float:
-    """How far rows of a list's entries are off, of a factor and a mode that is missing; gates of them count one each."""
+    """How far rows of a list with a factor and a mode missing are off; gates of them count one each."""
     from verify.identify.alignment import Pairs
     from verify.identify.family import frequencies_hz
     from verify.identify.pairing import Elastic

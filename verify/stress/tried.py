@@ -277,9 +277,26 @@ def _shapes() -> Iterator[float]:
         yield float(observed(Point(0.4, low, 1.0), Point(0.2, high, 3.0), 0.01) is not None)
 
 
+def _points() -> Iterator[float]:
+    """Of an operating point, by how much it changes over half a hertz and half a degree, below a hertz half of it."""
+    from verify.waves.operating_point import Landscape
+
+    def known(frequencies: Array, phases: Array) -> tuple[Array, Array]:
+        f, phase = frequencies[:, None], phases[None, :]
+        return 0.02 * f**2 + 0.003 * phase, 0.4 * f + 0.01 * phase**2
+
+    here: Any = SimpleNamespace(_known=known)
+    for hertz, phase, step in ((0.6, 31.0, 0.3), (7.0, -12.0, 0.5)):
+        point = Landscape.point(here, hertz, phase, "here", "so")
+        rise = [abs(known(np.array([hertz + s]), np.array([phase]))[0][0, 0] - point.reflection) for s in (step, -step)]
+        yield abs(point.reflection - (0.02 * hertz**2 + 0.003 * phase)) + abs(point.per_degree - 0.003)
+        yield abs(point.crest_speed - (0.4 * hertz + 0.01 * phase**2)) + abs(point.per_hertz - sum(rise) / (2.0 * step))
+        yield float((point.frequency_hz, point.phase_deg, point.what, point.note) != (hertz, phase, "here", "so"))
+
+
 def forms_error(number: float) -> float:
-    """Of harmonics' zeros, friction on feet, distances of shapes and orders, the worst."""
-    return float(np.max([*_harmonics(), *_feet(), *_shapes()]))
+    """Of harmonics' zeros, friction on feet, distances of shapes, orders and operating points, the worst."""
+    return float(np.max([*_harmonics(), *_feet(), *_shapes(), *_points()]))
 
 
 ROWS: tuple[Row, ...] = (
@@ -312,8 +329,8 @@ ROWS: tuple[Row, ...] = (
     ),
     Floor(
         id="zeros-feet-and-shapes",
-        title="Zeros of a harmonic, friction on feet faster than the crests, distances of shapes, orders of two sizes",
-        why="waves/best_phase.py, contact/foot.py, judge/compare.py, crossing.py: closed forms.",
+        title="Zeros of a harmonic, friction on feet beyond the crests, distances of shapes, orders, how points change",
+        why="waves/best_phase.py, operating_point.py, contact/foot.py, judge/compare.py, crossing.py: closed forms.",
         along="1",
         at=(1.0,),
         promise=1e-11,
