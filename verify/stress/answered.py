@@ -271,11 +271,11 @@ def _times() -> Iterator[float]:
 
 
 def _periods() -> Iterator[float]:
-    """Of series nearly as long as whole periods: a thousandth less is less, a part in ten thousand million is none."""
+    """Of series nearly as long as whole periods: half a thousandth less is less, a part in 1e10 is none."""
     from verify.waves.series import phasors
 
     hertz, each = 37.0, 40
-    for short, kept in ((1e-10, 3), (1e-3, 2)):
+    for short, kept in ((1e-10, 3), (5e-4, 2)):
         step = (3.0 - 3.0 * short) / (3 * each * hertz)
         times = 0.2 + step * np.arange(3 * each)
         values: Array = np.cos(2.0 * pi * hertz * times + 0.4)[:, None]

@@ -21,6 +21,8 @@ from verify.stress.listed import MEMBERS, turned_rate
 ASKED: tuple[tuple[int, float], ...] = ((1, 0.05), (2, 0.02), (3, 0.013), (4, 0.1), (5, 0.09))
 """A mode and an error, which no mode of as many parts keeps: between pins that is the nodes' turning."""
 MOST = 45
+RARE = 1.5e-6
+"""An error that links without their own inertia keep from more than a thousand parts on alone."""
 BETTER = {"points": "the links' own inertia m l^2/12", "joints": "the links' own inertia m l^2/12"} | dict.fromkeys(
     ("hrz", "lumped-rotary"), "consistent mass"
 )
@@ -87,6 +89,9 @@ def members_error(number: float) -> float:
             continue
         wrong += found.known_by != _known_by(first, fewest)
         wrong += (found.better, found.better_count) != ((BETTER[mass], fewer) if fewer < first else ("", None))
+    if mass == "points":  # of order 2, beyond a thousand
+        rare = enough(STRIP, own, 2, RARE)
+        wrong += (rare.count, rare.better, rare.better_count) != (None, BETTER[mass], _first(model, best, 2, RARE))
     return float(wrong)
 
 

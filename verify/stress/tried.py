@@ -283,14 +283,15 @@ def _points() -> Iterator[float]:
 
     def known(frequencies: Array, phases: Array) -> tuple[Array, Array]:
         f, phase = frequencies[:, None], phases[None, :]
-        return 0.02 * f**2 + 0.003 * phase, 0.4 * f + 0.01 * phase**2
+        return 0.02 * f**3 + 1e-5 * phase**3, 0.4 * f + 0.01 * phase**2
 
     here: Any = SimpleNamespace(_known=known)
     for hertz, phase, step in ((0.6, 31.0, 0.3), (7.0, -12.0, 0.5)):
         point = Landscape.point(here, hertz, phase, "here", "so")
-        rise = [abs(known(np.array([hertz + s]), np.array([phase]))[0][0, 0] - point.reflection) for s in (step, -step)]
-        yield abs(point.reflection - (0.02 * hertz**2 + 0.003 * phase)) + abs(point.per_degree - 0.003)
-        yield abs(point.crest_speed - (0.4 * hertz + 0.01 * phase**2)) + abs(point.per_hertz - sum(rise) / (2.0 * step))
+        turned = 1e-5 * (3.0 * phase**2 + 0.25)
+        yield abs(point.reflection - (0.02 * hertz**3 + 1e-5 * phase**3)) + abs(point.per_degree - turned)
+        yield abs(point.crest_speed - (0.4 * hertz + 0.01 * phase**2))
+        yield abs(point.per_hertz - 0.02 * (3.0 * hertz**2 + step**2))
         yield float((point.frequency_hz, point.phase_deg, point.what, point.note) != (hertz, phase, "here", "so"))
 
 
