@@ -280,7 +280,7 @@ def _gated(best: Any, rows: Any, factor: float) -> Iterator[bool]:
     for n, modes in ((3, "s 1, 2"), (7, "s 1, 2, 4, 5, 6, 7"), (8, "s 1, 2, 4, 5, 6, 7 and more"), (1, " 1")):
         many = tuple(replace(rows[0], mode=i + 1, error=errors[i]) for i in range(n))
         gate, worst = judged(_told(best), (), many, 0.005)[2], "-4" if n > 1 else "+1"
-        yield not gate.reason.startswith(f"beyond it: mode{modes}; the largest error is {worst}") or gate.passed
+        yield not gate.reason.startswith(f"beyond it: mode{modes}; the largest error is {worst}") or bool(gate.passed)
         yield (gate.measured, gate.share, gate.applicable) != (0.04 if n > 1 else 0.01, gate.measured / 0.005, True)
     off = tuple(replace(row, beyond=None if row.beyond is None else 10.0 * row.beyond) for row in rows)
     over = f" over {factor:.6g}" if factor != 1.0 else ""
