@@ -1,7 +1,7 @@
 """Faults that the gates of the scene stress have to find: small ones, for the promises are tight."""
 
 from dataclasses import replace as changed
-from math import inf
+from math import acos, inf
 
 import numpy as np
 from faults.chain import recursion_with_another_inertia_than_the_energy
@@ -30,7 +30,21 @@ from verify.elements import sweeps as element_sweeps
 from verify.errors import InputError
 from verify.exact import closed_forms, error_laws, harmonic
 from verify.exact import modes as exact_modes
-from verify.identify import matrices, outside, pairing, reading, searching, shapes, shapes_told
+from verify.identify import (
+    causes,
+    causes_told,
+    matrices,
+    outside,
+    pairing,
+    reading,
+    searching,
+    shapes,
+    shapes_told,
+    yielding,
+)
+from verify.identify import compare as list_compare
+from verify.identify import gates as list_gates
+from verify.identify import sizing as listed_sizing
 from verify.identify import told as compared
 from verify.judge import compare, crossing, sizing
 from verify.models import (
@@ -649,6 +663,55 @@ def replace_time(start, by):
     return type(start)(start.angles, start.rates, max(start.time - by, 0.0))
 
 
+def members_that_are_none_reaching_nothing(patch):
+    """What a beam has no member of has no better one either."""
+    true = listed_sizing._better
+    patch.setattr(
+        listed_sizing, "_better", lambda beam, own: true(beam, own) if not beam.mass or own.attachment else (None, "")
+    )
+
+
+def sizes_after_a_failure_left_out(patch):
+    patch.setattr(listed_sizing, "walked", lambda reached, low, does: (low, does))
+
+
+def clamps_a_millionth_stiffer(patch):
+    true = yielding.softened
+    patch.setattr(
+        yielding,
+        "softened",
+        lambda beam, clamp: true(beam, replace(clamp, rotational=1.000001 * clamp.rotational)),
+    )
+
+
+def frequencies_a_thousandth_steeper_over_a_clamp(patch):
+    true = yielding._slope
+    patch.setattr(yielding, "_slope", lambda *given: 1.001 * true(*given))
+
+
+def shearing_a_little_stiffer(patch):
+    true = matrices._thickness
+    patch.setattr(
+        matrices,
+        "_thickness",
+        lambda *given, shear: (true(*given, shear=shear)[0], 1.00001 * true(*given, shear=shear)[1]),
+    )
+
+
+def changes_told_a_thousandth_larger(patch):
+    true = causes_told._change
+    patch.setattr(causes_told, "_change", lambda ratio: true(1.001 * ratio))
+
+
+def searches_told_a_millionth_longer(patch):
+    true = list_compare._search_seconds
+    patch.setattr(list_compare, "_search_seconds", lambda *given: 1.000001 * true(*given))
+
+
+def feet_beyond_the_crests_not_braked_in_full(patch):
+    patch.setattr(foot, "acos", lambda r: 1.001 * acos(r))
+
+
 def joints_that_slip_read_half_as_far_again(patch):
     true = loaded.corrections
     patch.setattr(loaded, "corrections", lambda *given: 1.5 * true(*given))
@@ -736,6 +799,22 @@ FAULTS = {
         limitless(pairing, "_TWICE", 1.001e-3): {"entries-that-are-no-modes"},
         unknowns_the_other_way_round: {"weights-without-themselves"},
         limitless(on_wave, "WARM", 3): {"means-over-a-wave"},
+        limitless(compared, "TOLERANCE", 0.05): {"answers-in-words"},
+        limitless(list_gates, "TOLERANCE", 0.01): {"rows-of-a-list"},
+        searches_told_a_millionth_longer: {"before-it-is-solved"},
+        limitless(list_compare, "CREDIBLE", 0.01): {"supports-that-are-nearest"},
+        limitless(listed_sizing, "_IN_A_ROW", 6): {"parts-enough-of-members"},
+        sizes_after_a_failure_left_out: {"parts-enough-beside-steps"},
+        members_that_are_none_reaching_nothing: {"rules-that-do-with-fewer"},
+        limitless(sizing, "_LOWER", 30): {"errors-beside-a-choice"},
+        clamps_a_millionth_stiffer: {"clamps-that-give"},
+        frequencies_a_thousandth_steeper_over_a_clamp: {"weight-of-a-clamp"},
+        limitless(causes, "_SHARE", 0.02002): {"causes-and-their-limits"},
+        limitless(causes, "_WRITTEN", 1e-4): {"causes-of-lists"},
+        limitless(searching, "_GRID", 1.52): {"sizes-in-turn"},
+        shearing_a_little_stiffer: {"rods-that-shear"},
+        changes_told_a_thousandth_larger: {"factors-in-words"},
+        feet_beyond_the_crests_not_braked_in_full: {"zeros-feet-and-shapes"},
         graded_unless_told: {"unless-they-are-told"},
         chains_that_begin_anew: {"linear-chains-that-go-on"},
         limitless(compare, "ASTRAY", 2.0): {"verdicts-in-words"},

@@ -85,6 +85,10 @@ def light():
         "folds",
         "clasped",
         "pencils",
+        "enough",
+        "yielded",
+        "tried",
+        "answered",
     )
     families += ("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs")
     slow = {"segments-parts", "elements-parts"}

@@ -129,7 +129,7 @@ def _search_seconds(n_modes: int, candidates: int) -> float:
     """What all sizes take: about thirty of every candidate are solved, the dense ones by the cube of the modes.
 
     Of lists that nothing fits, 14, 50 and 100 modes of a clamped beam took 0.18, 0.40 and 0.73 s for each candidate,
-    told 0.21, 0.43 and 0.90.
+    told 0.18, 0.40 and 0.85.
     """
     hundreds = n_modes / 100.0
     return candidates * (0.1 + 0.55 * hundreds + 0.2 * hundreds**3)
