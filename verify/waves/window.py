@@ -111,9 +111,7 @@ def stated_wavenumber(field: str, given: object, span: tuple[float, float]) -> c
     return complex(k)
 
 
-def check_halves(
-    beam: Beam, frequency_hz: float, window: tuple[float, float], theory: str = "euler-bernoulli"
-) -> None:
+def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float], theory: str = "euler-bernoulli") -> None:
     """Raise WindowError for a window of a beam that holds too few or too many half wavelengths of a frequency.
 
     Likewise where the waves are not of one length.

@@ -1,0 +1,70 @@
+"""Sliders held at a speed so small that what gives way under them takes long to slip: the force of one that has."""
+
+import numpy as np
+import pytest
+from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, STRIP, drive
+
+from verify.motor import figures
+from verify.motor.case import MotorCase
+from verify.motor.figures import at_speed
+from verify.motor.withheld import not_settled
+from verify.slider import Contact, Slider
+
+MASS, MU, PRELOAD, WAVE = 0.015, 0.23, 0.31, 2.6e-7
+STIFF, DASHPOT, GRIP = 6.1e4, 8.0, 3.3e5
+FORCES, WAVES = drive(WAVE, backward=1.0)
+"""A standing wave: a running one has a mean speed, of second order, where a slider is held."""
+PLACE = MIDDLE + 0.0061
+LIFT, _, RISE, *_ = WAVES.at(PLACE, 0.0)
+"""Deflection and slope where the slider is held, metres and radians; both go as cos(omega t)."""
+CASE = MotorCase(
+    beam=STRIP,
+    forces=FORCES,
+    frequency_hz=HERTZ,
+    slider=Slider(
+        mass=MASS,
+        mu=MU,
+        law="coulomb",
+        position=PLACE,
+        coupling="one-way",
+        gravity=0.0,
+        preload=PRELOAD,
+        contact=Contact(stiffness=STIFF, damping=DASHPOT, tangential_stiffness=GRIP),
+    ),
+    model="analytic",
+    count=None,
+    steps_per_period=244,
+)
+
+
+def played(speed, steps=4000, turns=3):
+    """Mean friction of a point that has slipped: its stretch follows the surface as far as friction lets it, by hand."""
+    theta = 2.0 * np.pi * np.arange(turns * steps) / steps
+    held = STIFF + 1j * OMEGA * DASHPOT
+    pressed = held * (-MASS * OMEGA**2) / (held - MASS * OMEGA**2) * LIFT
+    most = MU * (PRELOAD + (pressed * np.exp(1j * theta)).real) / GRIP
+    assert most.min() > 0.0, "it leaves the surface"
+    along = -HALF * RISE * np.cos(theta) - speed * theta / OMEGA
+    stretch, found = -most[0] * np.sign(speed), np.zeros(len(theta))
+    for i in range(1, len(theta)):
+        found[i] = stretch = np.clip(stretch + along[i] - along[i - 1], -most[i], most[i])
+    return GRIP * found[-steps:].mean()
+
+
+@pytest.mark.parametrize("speed", [1e-9, -1e-8, 2e-7])
+def test_a_slider_that_creeps_is_told_the_force_of_one_that_slips(speed):
+    """At 1e-9 m/s it takes 160 s, or 680 000 periods, to slip: two blocks of them differ by 1e-5 of mu N until then."""
+    found = at_speed(CASE, speed)
+    assert not found.unsettled
+    assert found.taken_up < 1e-4
+    assert found.force == pytest.approx(played(speed), rel=4e-3)
+
+
+def test_what_has_not_slipped_yet_is_no_mean(monkeypatch):
+    monkeypatch.setattr(figures, "dragged_at", lambda slider, speed, seconds: None)
+    found = at_speed(CASE, 1e-9, periods=96)
+    assert found.taken_up == pytest.approx(1.0, rel=1e-3)
+    assert "force" in found.unsettled
+    assert found.spread >= 0.99 * MU * PRELOAD > abs(played(1e-9) - found.force)
+    told = not_settled(CASE, found, ("force",), 96)
+    assert "at 1e-09 m/s what gives way along the surface takes up 100 % of the slider's way" in told
