@@ -125,8 +125,8 @@ def held(
 
     Blocks go on until two agree and carry what presses on, or take longer than is waited for. A motion that does not
     repeat itself so runs on in windows, each as long as all before it, until the spread of its means is small: for
-    `periods` at most, and likewise. A slider that a block at its speed would not make slip is dragged before, until that
-    has settled across the beam: what presses less on its way there would let go more.
+    `periods` at most, and likewise. A slider that a block at its speed would not make slip is dragged before, until
+    that has settled across the beam: what presses less on its way there would let go more.
     """
     most = min(MOST_BLOCKS, periods // BLOCK)
     fast = dragged_at(case.slider, speed, BLOCK * case.period)
