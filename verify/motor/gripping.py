@@ -1,9 +1,9 @@
 """What gives way along the surface under a slider held at a speed: whether it has slipped since it was put down.
 
-A point that sticks takes all of the slider's way up in what gives way under it, until friction there lets go. At a small
-speed that takes any number of periods, in which the mean friction grows so slowly that any two blocks agree. A point
-that has slipped has forgotten how it was put down (play: M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with
-Hysteresis, Springer 1989, ch. 2), so that a slider dragged until all slip comes to the same force, and at once.
+A point that sticks takes all of the slider's way up in what gives way under it, until friction there lets go. At a
+small speed that takes any number of periods, in which the mean friction grows so slowly that any two blocks agree. A
+point that has slipped has forgotten how it was put down (play: M. A. Krasnosel'skii and A. V. Pokrovskii, Systems with
+Hysteresis, Springer 1989, ch. 2), so that a slider dragged until all slips comes to the same force, and at once.
 """
 
 from math import copysign

@@ -267,7 +267,7 @@ def wave_order(
     of: Literal["standing_wave_ratio", "axis_ratio", "deflection"],
     bench: "Workbench",
 ) -> float:
-    """The observed order of a discrete model's figure towards the exact field's by the same theory. Raises InputError."""
+    """The observed order of a discrete model's figure towards the exact field's of its theory. Raises InputError."""
     places = window or middle_half(case.beam)
     check_fields(case.beam, case.model, counts)
 
