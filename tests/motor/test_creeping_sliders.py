@@ -1,14 +1,18 @@
 """Sliders held at a speed so small that what gives way under them takes long to slip: the force of one that has."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, STRIP, drive
+from msgspec.structs import replace
 
 from verify.motor import figures
 from verify.motor.case import MotorCase
 from verify.motor.figures import at_speed
 from verify.motor.withheld import not_settled
 from verify.slider import Contact, Slider
+from verify.studies.motor_words import unsettled
 
 MASS, MU, PRELOAD, WAVE = 0.015, 0.23, 0.31, 2.6e-7
 STIFF, DASHPOT, GRIP = 6.1e4, 8.0, 3.3e5
@@ -69,3 +73,20 @@ def test_what_has_not_slipped_yet_is_no_mean(monkeypatch):
     assert found.spread >= 0.99 * MU * PRELOAD > abs(played(1e-9) - found.force)
     told = not_settled(CASE, found, ("force",), 96)
     assert "at 1e-09 m/s what gives way along the surface takes up 100 % of the slider's way" in told
+
+
+def test_only_what_leaves_the_surface_is_said_to_bounce():
+    settled = at_speed(CASE, 1e-5)
+    creeps = replace(settled, unsettled=("force",), taken_up=0.0)
+    bounces = replace(creeps, contact_share=0.83)
+    assert "stays on the surface, but its means creep and have not settled by then" in not_settled(
+        CASE, creeps, ("force",), 48
+    )
+    assert "the slider bounces and its means have not settled by then" in not_settled(CASE, bounces, ("force",), 48)
+    free = SimpleNamespace(settled=True)
+    field = SimpleNamespace(title="exact beam", curve=(settled, bounces, creeps, bounces), free=free)
+    first, second = unsettled([field], False)
+    assert first.startswith("bouncing: on the exact beam means at 2 of 4 held speeds have not settled")
+    assert second.startswith("creeping, all points on the surface: on the exact beam means at 1 of 4 held speeds")
+    assert "slider.contact.damping" in first
+    assert "slider.contact.damping" not in second

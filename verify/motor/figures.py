@@ -38,6 +38,8 @@ from verify.patience import check_work, waited_for
 Reading: TypeAlias = Literal["force", "normal force", "shares", "powers"]
 """What may settle or not by itself."""
 READINGS: tuple[Reading, ...] = get_args(Reading)
+STAYS = 1.0 - 1e-9
+"""Share of contact from which on nothing leaves, to rounding."""
 MOST_BLOCKS = 60
 FEWER = "give fewer modes, segments or points of contact"
 PERIODS = 46_080
@@ -96,6 +98,11 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     def power(self) -> float:
         """On the slider, W: force times speed."""
         return self.force * self.speed + 0.0  # never a negative nought
+
+    @property
+    def bounces(self) -> bool:
+        """Whether any point leaves the surface."""
+        return self.contact_share < STAYS
 
     @property
     def efficiency(self) -> float | None:

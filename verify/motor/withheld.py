@@ -22,18 +22,20 @@ def not_settled(case: "MotorCase", found: "AtSpeed", readings: "Sequence[Reading
         "shares": f"shares of contact and sticking +- {found.share_spread:.1g}",
         "powers": f"rubbed {found.rubbed:.4g} +- {found.power_spread:.1g} W",
     }
-    longer = "give more periods," if 2 * found.periods > periods else f"set {VARIABLE} to more seconds, or give"
+    longer = "give more periods" if 2 * found.periods > periods else f"set {VARIABLE} to more seconds"
     said = ", ".join(told[one] for one in readings if one in found.unsettled)
     if found.taken_up > SMALL:
-        return (
-            f"periods = {found.periods!r}: at {found.speed:.6g} m/s what gives way along the surface takes up "
-            f"{100.0 * found.taken_up:.3g} % of the slider's way and has not all slipped by then, {said}: {longer} or "
-            "more speed"
+        does = (
+            f"what gives way along the surface takes up {100.0 * found.taken_up:.3g} % of the slider's way and has not "
+            "all slipped"
         )
-    return (
-        f"periods = {found.periods!r}: at {found.speed:.6g} m/s the slider bounces and its means have not settled by "
-        f"then, {said}: {longer} {_loss(slider)} or more slider.preload"
-    )
+        remedy = f"{longer}, or more speed"
+    elif not found.bounces:
+        does, remedy = "the slider stays on the surface, but its means creep and have not settled", longer
+    else:
+        does = "the slider bounces and its means have not settled"
+        remedy = f"{longer}, {'or give ' * longer.startswith('set')}{_loss(slider)} or more slider.preload"
+    return f"periods = {found.periods!r}: at {found.speed:.6g} m/s {does} by then, {said}: {remedy}"
 
 
 def _loss(slider: "Slider") -> str:

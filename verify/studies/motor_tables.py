@@ -109,7 +109,9 @@ def _force_speed(found: "MotorFound") -> Table:
         before="Friction on the slider along +x at speeds up to that of the crests, the way that it pushes; a dash "
         "where the slider drives the surface"
         + (
-            ", or bounces so that its mean has not settled: how far that may be off stands beside it." if shaky else "."
+            ", or bounces or creeps so that its mean has not settled: how far that may be off stands beside it."
+            if shaky
+            else "."
         ),
     )
 
