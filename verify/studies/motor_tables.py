@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.models.catalogue import MODELS
+from verify.motor.settling import SMALL
 from verify.studies.motor_words import unsettled
 from verify.studies.told import Column, Read, Table
 from verify.units import time_in_words
@@ -176,8 +177,10 @@ def _rest_curve(rest: "FromRest") -> Table:
 
 
 def at_speed_as_plain(at: "AtSpeed") -> dict[str, Any]:
-    """With what follows from it."""
+    """With what follows from it; of what gives way, what still takes up a part of the way that shows."""
     plain: dict[str, Any] = msgspec.to_builtins(at)
+    if at.taken_up <= SMALL:
+        del plain["taken_up"]  # rounding
     return plain | {"power": at.power, "efficiency": at.efficiency}
 
 
