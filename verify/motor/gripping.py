@@ -20,25 +20,30 @@ if TYPE_CHECKING:
     from verify.motor.result import MotorRun, MotorState
     from verify.slider import Slider
 
+SOON = 8.0
+"""Times as long as it would be dragged, in which a slider slips of itself before the means of its blocks agree."""
 FURTHER = 4.0
 """Times as far as any one point under all of what presses on would be stretched, a slider is dragged."""
 
 
 def grips(slider: "Slider") -> Array:
-    """Stiffness of every point along the surface, (points,), N/m; 0 where it does not give way."""
+    """Stiffness of every point along the surface, (points,), N/m; none where nothing gives way."""
+    contact = slider.contact
+    if contact is None or not any(contact.along(foot.length) for foot in slider.feet):
+        return np.zeros(0)
     return feet_of((Placed(slider, 0.0),)).points[:, records.GRIP]
 
 
 def dragged_at(slider: "Slider", speed: float, seconds: float) -> float | None:
     """The speed, m/s, at which a slider is dragged for so long before it is held at `speed`; None where it need not be.
 
-    It need where it goes less far in that time than from full stretch one way to full stretch the other.
+    It need where it takes long to go from full stretch one way to full stretch the other.
     """
     grip = grips(slider)
     if not speed or not grip.any():
         return None
     way = 2.0 * slider.mu * slider.normal_force / float(grip.sum())
-    return None if abs(speed) * seconds >= way else copysign(FURTHER * len(grip) * way / seconds, speed)
+    return None if SOON * abs(speed) * seconds >= way else copysign(FURTHER * len(grip) * way / seconds, speed)
 
 
 def taken_up(slider: "Slider", speed: float, before: "MotorState", run: "MotorRun") -> float:
