@@ -611,7 +611,7 @@ PATIENCE = {
     "own_limit": {"commands.stress"},
     "waited_for": {"motor.figures", "motion.judged_step"},
     "PATIENCE_S": {"stress.refused_runs"},
-    "VARIABLE": {"motor.figures"},
+    "VARIABLE": {"motor.withheld"},
 }
 """What is taken of `patience`, by whom where few may: its refusals; a `with` in which minutes are waited for, which the
 stress table opens around whole solves; what is waited for at most, to refuse what takes a little more; and the seconds that the

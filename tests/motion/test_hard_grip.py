@@ -28,6 +28,17 @@ def test_a_light_slider_that_is_gripped_hard_goes_the_way_of_the_surface_at_the_
     assert run.travelled == pytest.approx(-0.5 * STRIP.thickness * turned, abs=2e-4 * STRIP.thickness * abs(slope))
 
 
+@pytest.mark.parametrize("law", ["tanh", "coulomb"])
+def test_so_does_one_that_the_beam_feels(law):
+    """Friction that takes it along gives the beam 1e-7 of what its forces do: in 64 steps a period it was thrown off."""
+    given = {"mass": 1e-7, "mu": 0.3, "preload": 0.2, "law": law, "position": 0.123, "normal": "massless"}
+    felt = Slider(coupling="two-way", **given)
+    run = simulate(STRIP, SOFT, 700.0, 7.3 / 700.0, slider=felt, step=1.0 / (64.0 * 700.0), **GIVEN)
+    slope = solve_harmonic(STRIP, SOFT, 700.0, 13).slope([felt.position])[0]
+    turned = np.real(slope * (np.exp(2j * np.pi * 700.0 * run.times) - 1.0))
+    assert run.travelled == pytest.approx(-0.5 * STRIP.thickness * turned, abs=2e-4 * STRIP.thickness * abs(slope))
+
+
 @pytest.mark.parametrize(
     ("law", "mass", "within"),
     [

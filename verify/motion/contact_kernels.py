@@ -187,8 +187,8 @@ def push_back(
 ) -> tuple[float, float]:
     """Let slider and beam agree on the contact forces of a step and give them to the modes; their work on the beam.
 
-    (Of friction, of the normal reaction), joules. The levers are those of mid-step, so that the forces are off by the
-    square of the step.
+    (Of friction, of the normal reaction), joules; the surface's speeds have what the forces add to them. The levers are
+    those of mid-step, so that the forces are off by the square of the step.
     """
     modes, law, seen = surface.modes, rider.law, space.seen
     half, full, across_half, across = _mobilities(modes)
@@ -206,6 +206,7 @@ def push_back(
         normal -= per_push * force
         _bear(normal, dt, rider)
     _press(-force, -normal, modes)
+    seen[1, SURFACE] -= force * half
     seen[2, SURFACE] -= force * full
     along, up = _given_ways(modes)
     return -force * (way + along), -normal * (climb + up)

@@ -52,7 +52,7 @@ from verify.motion.records import (
     X,
 )
 from verify.motion.surface_kernels import between, climb, find_piece, rotate_half, set_factors, set_local, touch
-from verify.motion.way_kernels import advance, smooth_way, until_caught, way
+from verify.motion.way_kernels import advance, felt_way, until_caught, way
 
 
 @part(forceinline=True)
@@ -177,7 +177,7 @@ def _step(
     give(dt, seen, space.slip)
     if two_way is not None:
         pressed, lifted = _answer((number + 1) * dt, dt, x1, v1, here, surface, rider, books, space)
-        moved = smooth_way(v, rate, dt, law, seen, space.slip)
+        moved = felt_way(v, stuck, rate, dt, law, seen, space.slip)
     else:
         feel(dt, motion, law, seen)
         slip(v, stuck, 0.0, 0.0, 0.0, law.static, law, dt, space)

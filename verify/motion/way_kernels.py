@@ -1,4 +1,4 @@
-"""The compiled way of a slider in a step on a surface that does not feel it, however hard friction grips.
+"""The compiled way of a slider in a step, however hard friction grips.
 
 A hard grip takes a light slider to the surface's speed in a small part of a step, of which its accelerations at both
 ends tell nothing. So its way is that of the surface and what the relative speed r adds to it, the integral of r.
@@ -12,6 +12,7 @@ from verify.motion.friction_kernels import friction
 from verify.motion.records import (
     CHANGE,
     DRIFT,
+    FIRST_EVENT,
     GIVEN_END,
     GIVEN_MIDDLE,
     PULL,
@@ -130,7 +131,7 @@ def smooth_way(v: float, rate: float, dt: float, law: Law, seen: Array, took: Ar
 
 @part()
 def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: Array, took: Array) -> float:
-    """The same on a surface that does not feel the slider, however hard it grips; `took` is what `slip` made of it.
+    """The same however hard friction grips; `took` is what `slip` made of it, `seen` the surface that has felt it.
 
     `slope` is the law's, by itself so that numba drops the branch of the other law.
     """
@@ -142,6 +143,18 @@ def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: A
     rise = s1 - s0  # of the line that `slip` puts in the surface's place
     start = v - (s0 + 4.0 * sm + s1) / 6.0 + 0.5 * rise
     return float(on_surface(dt, seen) + relative_way(start, rise / dt, law.kinetic, slope, dt, took[CHANGE]))
+
+
+@part()
+def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Array, took: Array) -> float:
+    """The same on a surface that feels the slider, which `hold` may have held, till the end or till it let it slip.
+
+    Relative to the surface it speeds up evenly from there on.
+    """
+    if not stuck:
+        return way(v, rate, dt, law.slope, law, seen, took)
+    slips = 0.0 if took[STICKING] > 0.0 else dt - took[FIRST_EVENT]
+    return float(on_surface(dt, seen) + 0.5 * slips * (_ended(v, seen, took) - seen[2, SURFACE]))
 
 
 @part(forceinline=True)

@@ -17,6 +17,7 @@ from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
+from verify.motor.gripping import dragged_at, taken_up, widened
 from verify.motor.repeated import blocks
 from verify.motor.result import MotorRun, uninterrupted
 from verify.motor.settling import (
@@ -31,12 +32,14 @@ from verify.motor.settling import (
     spread_of,
     told_by_balance,
 )
-from verify.patience import VARIABLE, check_work, waited_for
-from verify.slider import Slider
+from verify.motor.withheld import not_settled
+from verify.patience import check_work, waited_for
 
 Reading: TypeAlias = Literal["force", "normal force", "shares", "powers"]
 """What may settle or not by itself."""
 READINGS: tuple[Reading, ...] = get_args(Reading)
+STAYS = 1.0 - 1e-9
+"""Share of contact from which on nothing leaves, to rounding."""
 MOST_BLOCKS = 60
 FEWER = "give fewer modes, segments or points of contact"
 PERIODS = 46_080
@@ -88,11 +91,18 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     """Periods, the last of these, of which these are means."""
     unsettled: tuple[Reading, ...]
     """What has not settled: its spread is more than a hundredth of mu N, of N, of 1, of mu N times the larger speed."""
+    taken_up: float = 0.0
+    """Share of the way that what gives way along the surface still takes up: 1 where nothing has slipped yet."""
 
     @property
     def power(self) -> float:
         """On the slider, W: force times speed."""
         return self.force * self.speed + 0.0  # never a negative nought
+
+    @property
+    def bounces(self) -> bool:
+        """Whether any point leaves the surface."""
+        return self.contact_share < STAYS
 
     @property
     def efficiency(self) -> float | None:
@@ -122,9 +132,13 @@ def held(
 
     Blocks go on until two agree and carry what presses on, or take longer than is waited for. A motion that does not
     repeat itself so runs on in windows, each as long as all before it, until the spread of its means is small: for
-    `periods` at most, and likewise.
+    `periods` at most, and likewise. A slider that a block at its speed would not make slip is dragged before, until
+    that has settled across the beam: what presses less on its way there would let go more.
     """
-    found, run = _in_blocks(case, speed, before, min(MOST_BLOCKS, periods // BLOCK))
+    most = min(MOST_BLOCKS, periods // BLOCK)
+    fast = dragged_at(case.slider, speed, BLOCK * case.period)
+    slipping = before if fast is None else _in_blocks(case, fast, before, most)[1]
+    found, run = _in_blocks(case, speed, slipping, most)
     while found.unsettled and 2 * found.periods <= periods and waited_for(next_seconds(run, found.periods)):
         found, run = _in_window(case, found, run)
     return found, run
@@ -148,7 +162,9 @@ def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int
         earlier, means = means, means_of(run)
         off = missed(case.slider, last.state, run)
         spreads = apart(means, earlier, off, told_by_balance(case.slider))
-        found = _found(case, speed, means, spreads, BLOCK * number, BLOCK)
+        found = _found(
+            case, speed, means, spreads, BLOCK * number, BLOCK, taken_up(case.slider, speed, last.state, run)
+        )
         presses = max(found.normal_force, case.slider.normal_force)
         agree = found.spread <= SETTLED * case.slider.mu * presses and off <= BALANCED * presses
         if agree and not found.unsettled:
@@ -168,7 +184,8 @@ def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpe
     each = rows(run)
     spreads = spread_of(each, missed(case.slider, before.state, run), told_by_balance(case.slider))
     means = Means(*map(float, each.mean(axis=0)))
-    return _found(case, found.speed, means, spreads, 2 * found.periods, found.periods), run
+    taken = taken_up(case.slider, found.speed, before.state, run)
+    return _found(case, found.speed, means, spreads, 2 * found.periods, found.periods, taken), run
 
 
 def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | None], MotorRun]:
@@ -195,8 +212,11 @@ def _whole(run: MotorRun) -> MotorRun:
     return run
 
 
-def _found(case: MotorCase, speed: float, means: Means, spreads: Means, periods: int, window: int) -> AtSpeed:
+def _found(
+    case: MotorCase, speed: float, means: Means, spreads: Means, periods: int, window: int, taken: float = 0.0
+) -> AtSpeed:
     """Means of the last periods, with how far they have settled."""
+    spreads = widened(spreads, taken, case.slider.mu * max(means.normal_force, case.slider.normal_force), speed)
     found = AtSpeed(
         speed=speed,
         **means._asdict(),
@@ -207,6 +227,7 @@ def _found(case: MotorCase, speed: float, means: Means, spreads: Means, periods:
         periods=periods,
         window=window,
         unsettled=(),
+        taken_up=taken,
     )
     return replace(found, unsettled=_unsettled(case, found))
 
@@ -270,30 +291,6 @@ def no_load(
     if "force" in found.unsettled:
         raise InputError(not_settled(case, found, ("force",), periods))
     return found
-
-
-def not_settled(case: MotorCase, found: AtSpeed, readings: Sequence[Reading], periods: int = PERIODS) -> str:
-    """What of these has not settled in at most so many periods, by how much it may be off, and what to do."""
-    slider = case.slider
-    presses = max(found.normal_force, slider.normal_force)
-    told: dict[Reading, str] = {
-        "force": f"mean friction {found.force:.4g} +- {found.spread:.1g} N where mu N = {slider.mu * presses:.4g} N",
-        "normal force": f"mean normal force {found.normal_force:.4g} +- {found.normal_spread:.1g} N",
-        "shares": f"shares of contact and sticking +- {found.share_spread:.1g}",
-        "powers": f"rubbed {found.rubbed:.4g} +- {found.power_spread:.1g} W",
-    }
-    longer = "give more periods," if 2 * found.periods > periods else f"set {VARIABLE} to more seconds, or give"
-    said = ", ".join(told[one] for one in readings if one in found.unsettled)
-    return (
-        f"periods = {found.periods!r}: at {found.speed:.6g} m/s the slider bounces and its means have not settled by "
-        f"then, {said}: {longer} {_loss(slider)} or more slider.preload"
-    )
-
-
-def _loss(slider: Slider) -> str:
-    """What makes a slider bounce less."""
-    hard = slider.contact is not None and slider.contact.hard
-    return "less slider.contact.restitution" if hard else "more slider.contact.damping"
 
 
 def crest_speed(case: MotorCase) -> float:

@@ -56,7 +56,8 @@ def _check_window(a: Driven | Sensitivity, case: "DrivenCase") -> None:
     places = [force.position for force in case.forces]
     places += [device.position for device in case.devices if device.across]
     turning = [device.position for device in case.devices if device.turning]
-    check_window(case.beam, places, case.frequency_hz, given or middle_half(case.beam), turning)
+    theory = dict(case.settings).get("theory", "euler-bernoulli")
+    check_window(case.beam, places, case.frequency_hz, given or middle_half(case.beam), turning, theory)
 
 
 def _at_a_place(a: InWindow) -> bool:

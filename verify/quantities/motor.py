@@ -175,7 +175,7 @@ def _of_held(figure: "Callable[[AtSpeed], float]", *readings: "Reading") -> "Cal
     """A figure that stands on some readings. Raises InputError where one of them has not settled."""
 
     def evaluate(a: Held, scene: "Scene", bench: Workbench) -> float:
-        from verify.motor.figures import not_settled
+        from verify.motor.withheld import not_settled
 
         found = _held(a, scene, bench)
         if not found.settled(*readings):

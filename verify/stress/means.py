@@ -165,7 +165,8 @@ def _said(ask: Callable[[], object]) -> str:
 
 def free_error(speed: float) -> float:
     """How far a motor's free speed is off, over a millionth of what is searched; verdicts and times that are not so."""
-    from verify.motor.figures import force_speed, no_load, not_settled, reversed_way, stall, started, stopped
+    from verify.motor.figures import force_speed, no_load, reversed_way, stall, started, stopped
+    from verify.motor.withheld import not_settled
 
     law = pushed(lambda n, v: np.full(len(n), tanh(9.0 * (speed - v))))
     motor: Any = Motor(law)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.models.catalogue import MODELS
+from verify.motor.settling import SMALL
 from verify.studies.motor_words import unsettled
 from verify.studies.told import Column, Read, Table
 from verify.units import time_in_words
@@ -109,7 +110,9 @@ def _force_speed(found: "MotorFound") -> Table:
         before="Friction on the slider along +x at speeds up to that of the crests, the way that it pushes; a dash "
         "where the slider drives the surface"
         + (
-            ", or bounces so that its mean has not settled: how far that may be off stands beside it." if shaky else "."
+            ", or bounces or creeps so that its mean has not settled: how far that may be off stands beside it."
+            if shaky
+            else "."
         ),
     )
 
@@ -174,8 +177,10 @@ def _rest_curve(rest: "FromRest") -> Table:
 
 
 def at_speed_as_plain(at: "AtSpeed") -> dict[str, Any]:
-    """With what follows from it."""
+    """With what follows from it; of what gives way, what still takes up a part of the way that shows."""
     plain: dict[str, Any] = msgspec.to_builtins(at)
+    if at.taken_up <= SMALL:
+        del plain["taken_up"]  # rounding
     return plain | {"power": at.power, "efficiency": at.efficiency}
 
 

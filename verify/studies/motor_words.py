@@ -39,7 +39,8 @@ def in_short_of(found: "MotorFound") -> str:
             f"is at {100 * speed:+.4g} cm/s at the end of its free run, without force at {100 * held:+.4g} cm/s held,"
         )
     if not one.stall.settled("force"):
-        return f"The motor {runs} and bounces so that its force standing still has not settled, on the {one.title}."
+        does = "bounces" if one.stall.bounces else "creeps where it sticks"
+        return f"The motor {runs} and {does} so that its force standing still has not settled, on the {one.title}."
     return (
         f"The motor {runs} and pushes with {in_words(one.stall.force, 'N', '+.4g')} standing still, on the {one.title}."
     )
@@ -115,17 +116,21 @@ def _held_still(at: "AtSpeed") -> str:
 
 
 def unsettled(fields: "Sequence[FieldFound]", hard: bool) -> Iterator[str]:
-    """What bounces so that its means have not settled, and what to do."""
+    """What bounces, or creeps, so that its means have not settled, and what to do."""
     for one in fields:
         loss = f"{'less slider.contact.restitution' if hard else 'more slider.contact.damping'} "
         loss += "or more slider.preload"
-        shaky = sum(not at.settled() for at in one.curve)
-        if shaky:
-            yield (
-                f"bouncing: on the {one.title} means at {shaky} of {len(one.curve)} held speeds have not settled after "
-                f"{max(at.periods for at in one.curve)} periods; what stands on them is withheld: give {loss}, or ask "
-                "for one figure over more periods (verify measure slider.force_speed)"
-            )
+        shaky = [at for at in one.curve if not at.settled()]
+        more = "ask for one figure over more periods (verify measure slider.force_speed)"
+        for does, of, remedy in (
+            ("bouncing", [at for at in shaky if at.bounces], f"give {loss}, or {more}"),
+            ("creeping, all points on the surface", [at for at in shaky if not at.bounces], more),
+        ):
+            if of:
+                yield (
+                    f"{does}: on the {one.title} means at {len(of)} of {len(one.curve)} held speeds have not settled "
+                    f"after {max(at.periods for at in of)} periods; what stands on them is withheld: {remedy}"
+                )
         if not one.free.settled:
             yield (
                 f"free run: on the {one.title} its last quarter is no steady end, halves differ by {_small(one)} where "

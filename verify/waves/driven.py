@@ -238,7 +238,7 @@ def _swept_reflections(sweep: HarmonicSweep, window: Window) -> Array:
     lowest, highest = (sweep.field(int(end(sweep.frequencies_hz))) for end in (np.argmin, np.argmax))
     for field in (lowest, highest):  # the longest waves and the shortest
         places = [force.position for force in field.forces]
-        check_window(field.beam, places, field.frequency_hz, window, field.turning_held)
+        check_window(field.beam, places, field.frequency_hz, window, field.turning_held, field.theory)
     rule = window_rule(window, highest.wavenumber.real)
     deflections = sweep.deflection(rule.x)
     fields = [sweep.field(index) for index in range(len(sweep))]
@@ -267,7 +267,7 @@ def wave_order(
     of: Literal["standing_wave_ratio", "axis_ratio", "deflection"],
     bench: "Workbench",
 ) -> float:
-    """The observed order of a discrete model's figure towards the exact field's. Raises InputError."""
+    """The observed order of a discrete model's figure towards the exact field's of its theory. Raises InputError."""
     places = window or middle_half(case.beam)
     check_fields(case.beam, case.model, counts)
 
@@ -278,5 +278,7 @@ def wave_order(
         found = operation(field, places)
         return complex(found.standing_wave_ratio if of == "standing_wave_ratio" else found.axis_ratio)
 
-    exact = figure(replace(case, model="analytic", count=None, settings=()))
+    told = MODELS.named("analytic").field_settings
+    by_theory = tuple((name, given) for name, given in case.settings if name in told)
+    exact = figure(replace(case, model="analytic", count=None, settings=by_theory))
     return settled_order(counts, [relative_error(figure(replace(case, count=n)), exact) for n in counts])

@@ -80,7 +80,7 @@ def two_waves(field: HarmonicField, window: tuple[float, float], wave_number: co
     """The two waves alone, fitted in the mean square over the whole window. Raises as `measure` does."""
     check_kind("field", field, HarmonicField)
     places = [force.position for force in field.forces]
-    check_window(field.beam, places, field.frequency_hz, window, field.turning_held)
+    check_window(field.beam, places, field.frequency_hz, window, field.turning_held, field.theory)
     start, span = field.wavenumber, (float(window[0]), float(window[1]))
     stated = None if wave_number is None else stated_wavenumber("wave_number", wave_number, span)
     rule = window_rule(window, start.real)

@@ -81,8 +81,9 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises InputError where the model or the window is none.
         """
-        check_window(self.beam, list(self.places), float(frequencies.max()), self.window)  # or it suits none of them
-        rule = window_rule(self.window, wavenumber(self.beam, float(frequencies.max()), self.theory).real)
+        highest = float(frequencies.max())
+        check_window(self.beam, list(self.places), highest, self.window)  # or it suits none of them
+        rule = window_rule(self.window, wavenumber(self.beam, highest, self.theory).real)
         if (n := len(frequencies) * len(self.places) * len(rule.x)) > MOST_READINGS:
             raise InputError(
                 f"frequency_hz: {len(frequencies)} frequencies read at {len(rule.x)} points each are {n:.1e} figures, "
@@ -102,7 +103,7 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
 
     def _wavenumber(self, frequency: float, steady: bool) -> complex:
         """The model's own. Raises NoFigureError where the frequency has none, or no steady field."""
-        check_halves(self.beam, frequency, self.window)
+        check_halves(self.beam, frequency, self.window, self.theory)
         if not steady:
             raise resonant(self.model, frequency, " held at its actuators" if self.kind == "displacement" else "")
         known = self.theory == EULER and not (self.beam.tension or self.beam.foundation or self.beam.section)

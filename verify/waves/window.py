@@ -43,6 +43,7 @@ def check_window(
     frequency_hz: float,
     window: tuple[float, float],
     turning_held: Sequence[float] = (),
+    theory: str = "euler-bernoulli",
 ) -> None:
     """Raise for a window off the span between two neighbouring forces (at `places`) or too short to measure.
 
@@ -75,7 +76,7 @@ def check_window(
             f"window = {told} leaves the span between two forces (they act at {as_written(places)} m): "
             "two waves alone live there, choose a window inside it"
         )
-    check_halves(beam, frequency_hz, window)
+    check_halves(beam, frequency_hz, window, theory)
 
 
 def check_clear(beam: Beam, span: tuple[float, float], told: str, remedy: str) -> None:
@@ -110,10 +111,14 @@ def stated_wavenumber(field: str, given: object, span: tuple[float, float]) -> c
     return complex(k)
 
 
-def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -> None:
-    """Raise WindowError for a window of a beam that holds too few or too many half wavelengths of a frequency."""
+def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float], theory: str = "euler-bernoulli") -> None:
+    """Raise WindowError for a window of a beam that holds too few or too many half wavelengths of a frequency.
+
+    Likewise where the waves are not of one length.
+    """
     (start, end), told = window, as_written(window)
-    k = wavenumber(beam, frequency_hz)
+    k = wavenumber(beam, frequency_hz, theory)
+    _check_one_length(beam, frequency_hz, theory)
     if beam.foundation and beam.mass_per_length * (2.0 * np.pi * frequency_hz) ** 2 <= beam.foundation:
         least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
         raise WindowError(
@@ -127,4 +132,17 @@ def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float]) -
         raise WindowError(
             f"window = {told} spans {(end - start) / half:.2g} half wavelengths of {half:.4g} m, more than "
             f"{MOST_HALVES}: narrow it or lower frequency_hz"
+        )
+
+
+def _check_one_length(beam: Beam, frequency_hz: float, theory: str) -> None:
+    """Raise WindowError where waves of two lengths run: Timoshenko's, from sqrt(kappa G A / rho I) on."""
+    own = beam.own
+    if theory != "timoshenko" or own.shear_stiffness is None or not own.rotary_inertia:
+        return
+    most = float(np.sqrt(own.shear_stiffness / own.rotary_inertia) / (2.0 * np.pi))
+    if frequency_hz >= most:
+        raise WindowError(
+            f"frequency_hz = {frequency_hz:g}: from {most:.6g} Hz on by theory = 'timoshenko' a second pair of waves "
+            "runs along the beam, in which its sections swing: the two that are told are not all, lower it"
         )

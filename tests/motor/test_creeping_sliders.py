@@ -1,0 +1,92 @@
+"""Sliders held at a speed so small that what gives way under them takes long to slip: the force of one that has."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, STRIP, drive
+from msgspec.structs import replace
+
+from verify.motor import figures
+from verify.motor.case import MotorCase
+from verify.motor.figures import at_speed
+from verify.motor.withheld import not_settled
+from verify.slider import Contact, Slider
+from verify.studies.motor_words import unsettled
+
+MASS, MU, PRELOAD, WAVE = 0.015, 0.23, 0.31, 2.6e-7
+STIFF, DASHPOT, GRIP = 6.1e4, 8.0, 3.3e5
+FORCES, WAVES = drive(WAVE, backward=1.0)
+"""A standing wave: a running one has a mean speed, of second order, where a slider is held."""
+PLACE = MIDDLE + 0.0061
+LIFT, _, RISE, *_ = WAVES.at(PLACE, 0.0)
+"""Deflection and slope where the slider is held, metres and radians; both go as cos(omega t)."""
+CASE = MotorCase(
+    beam=STRIP,
+    forces=FORCES,
+    frequency_hz=HERTZ,
+    slider=Slider(
+        mass=MASS,
+        mu=MU,
+        law="coulomb",
+        position=PLACE,
+        coupling="one-way",
+        gravity=0.0,
+        preload=PRELOAD,
+        contact=Contact(stiffness=STIFF, damping=DASHPOT, tangential_stiffness=GRIP),
+    ),
+    model="analytic",
+    count=None,
+    steps_per_period=244,
+)
+
+
+def played(speed, steps=2000, turns=2):
+    """Mean friction of a point that has slipped: its stretch follows the surface as far as friction lets it, by hand."""
+    theta = 2.0 * np.pi * np.arange(turns * steps) / steps
+    held = STIFF + 1j * OMEGA * DASHPOT
+    pressed = held * (-MASS * OMEGA**2) / (held - MASS * OMEGA**2) * LIFT
+    most = MU * (PRELOAD + (pressed * np.exp(1j * theta)).real) / GRIP
+    assert most.min() > 0.0, "it leaves the surface"
+    along = -HALF * RISE * np.cos(theta) - speed * theta / OMEGA
+    stretch, found = -most[0] * np.sign(speed), []
+    for gone, limit in zip(np.diff(along).tolist(), most[1:].tolist(), strict=True):
+        stretch = max(-limit, min(stretch + gone, limit))
+        found.append(stretch)
+    return GRIP * float(np.mean(found[-steps:]))
+
+
+@pytest.mark.parametrize("speed", [1e-9, -1e-8, 2e-7])
+def test_a_slider_that_creeps_is_told_the_force_of_one_that_slips(speed):
+    """At 1e-9 m/s it takes 160 s, or 680 000 periods, to slip: two blocks of them differ by 1e-5 of mu N until then."""
+    found = at_speed(CASE, speed)
+    assert not found.unsettled
+    assert found.taken_up < 1e-4
+    assert found.force == pytest.approx(played(speed), rel=4e-3)
+
+
+def test_what_has_not_slipped_yet_is_no_mean(monkeypatch):
+    monkeypatch.setattr(figures, "dragged_at", lambda slider, speed, seconds: None)
+    found = at_speed(CASE, 1e-9, periods=96)
+    assert found.taken_up == pytest.approx(1.0, rel=1e-3)
+    assert "force" in found.unsettled
+    assert found.spread >= 0.99 * MU * PRELOAD > abs(played(1e-9) - found.force)
+    told = not_settled(CASE, found, ("force",), 96)
+    assert "at 1e-09 m/s what gives way along the surface takes up 100 % of the slider's way" in told
+
+
+def test_only_what_leaves_the_surface_is_said_to_bounce():
+    settled = at_speed(CASE, 1e-5)
+    creeps = replace(settled, unsettled=("force",), taken_up=0.0)
+    bounces = replace(creeps, contact_share=0.83)
+    assert "stays on the surface, but its means creep and have not settled by then" in not_settled(
+        CASE, creeps, ("force",), 48
+    )
+    assert "the slider bounces and its means have not settled by then" in not_settled(CASE, bounces, ("force",), 48)
+    free = SimpleNamespace(settled=True)
+    field = SimpleNamespace(title="exact beam", curve=(settled, bounces, creeps, bounces), free=free)
+    first, second = unsettled([field], False)
+    assert first.startswith("bouncing: on the exact beam means at 2 of 4 held speeds have not settled")
+    assert second.startswith("creeping, all points on the surface: on the exact beam means at 1 of 4 held speeds")
+    assert "slider.contact.damping" in first
+    assert "slider.contact.damping" not in second
