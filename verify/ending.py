@@ -38,13 +38,21 @@ def put_off(answer: Answer) -> Answer:
         if not _is_called_from_llvm(frame):
             answer(number, frame)
             return
-        from threading import Timer
+        from threading import Timer, get_ident
 
-        again = Timer(AGAIN_S, signal.raise_signal, (number,))
+        again = Timer(AGAIN_S, _ask, (get_ident(), number))
         again.daemon = True
         again.start()
 
     return heard
+
+
+def _ask(thread: int, number: int) -> None:
+    """Send a signal to the thread that hears, which wakes where it waits; raise it here where that cannot be done."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(thread, number)
+    else:
+        signal.raise_signal(number)
 
 
 def _is_called_from_llvm(frame: FrameType | None) -> bool:
