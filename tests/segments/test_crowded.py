@@ -163,3 +163,17 @@ def test_a_chain_too_short_or_unlike_for_a_crowd_keeps_what_it_had():
         assert all((one == other).all() for one, other in zip(together, own, strict=True))
     assert crowded.near(np.array([20, 22]), 60)
     assert not crowded.near(np.array([20, 40]), 60)
+
+
+@pytest.mark.parametrize(("places", "count"), [((30.0, 24.375), 60), ((7.0, 40.25), 61), ((19.0, 25.0, 33.7), 60)])
+def test_what_stands_on_a_joint_is_as_near_seen_from_the_other_end(places, count):
+    """It is on two links, of which one end has the first and the other the second."""
+    bodies = tuple(
+        PointMass(position=L * place / count, mass=0.2 + 0.03 * i, rotary_inertia=1e-3)
+        for i, place in enumerate(places)
+    )
+    beam = replace(STRIP, supports=("pinned", "clamped"), mass=bodies)
+    here, there = (solve_modes(one, 4, count).frequencies_hz for one in (beam, beam.mirrored()))
+    assert there == pytest.approx(here, rel=1e-11)
+    seen = np.array(places)[:, None]
+    assert (crowded.near(seen, count) == crowded.near(count - seen, count)).all()

@@ -20,6 +20,7 @@ No moment reaches a free or a pinned end: there q is s, s^2 or s, s^3 of the dis
 """
 
 from collections.abc import Hashable, Iterator, Sequence
+from math import ceil, floor
 
 import msgspec
 import numpy as np
@@ -127,11 +128,13 @@ def mend_each(chains: Sequence[Chain], places: Array, felt: Array, turned: Array
                     weights[number, same, ::step] = found[which, place]
 
 
-def near(links: Indices, n: int) -> BoolArray:
-    """Whether bodies on `links` (p, ...) of n may stand near an end or each other, (...)."""
-    ordered = np.sort(links, axis=0)
-    ends = (links < _WALL + _BEFORE) | (links >= n - _WALL - _BEFORE)
-    return np.asarray(ends.any(axis=0) | (np.diff(ordered, axis=0) < _BEFORE + _AFTER).any(axis=0))
+def near(places: Array, n: int) -> BoolArray:
+    """Whether bodies at `places` (p, ...) on n links may stand near an end or each other, (...)."""
+    ordered = np.sort(places, axis=0)
+    after, before = np.minimum(np.floor(ordered), n - 1), np.maximum(np.ceil(ordered) - 1, 0)
+    ends = (before < _WALL + _BEFORE) | (after >= n - _WALL - _BEFORE)
+    apart = np.minimum(np.diff(after, axis=0), np.diff(before, axis=0))
+    return np.asarray(ends.any(axis=0) | (apart < _BEFORE + _AFTER).any(axis=0))
 
 
 def _crowds(chain: Chain, places: Array) -> Iterator[_Crowd]:
@@ -146,20 +149,23 @@ def _crowds(chain: Chain, places: Array) -> Iterator[_Crowd]:
 def _groups(chain: Chain, places: Array) -> Iterator[Indices]:
     """Rows of bodies that stand near each other or an end, one of each place; without those at an end it turns with.
 
-    Of a few bodies, which numpy would take ten times as long for.
+    One on a joint is on both its links, so that bodies are as near seen from the other end. Of a few bodies, which
+    numpy would take ten times as long for.
     """
     n, rows, groups = chain.n_segments, dict[float, int](), list[list[int]]()
     ends = {end for end, support in zip((0.0, float(n)), chain.supports, strict=True) if support != "guided"}
     for row, place in enumerate(places.tolist()):
         if place not in ends:
             rows.setdefault(round(place, 9), row)
-    links = {row: min(int(places[row]), n - 1) for _, row in sorted(rows.items())}
+    links = {row: (min(floor(place), n - 1), max(ceil(place) - 1, 0)) for place, row in sorted(rows.items())}
     for row, link in links.items():
-        if not groups or link - links[groups[-1][-1]] >= _BEFORE + _AFTER:
+        last = links[groups[-1][-1]] if groups else link
+        if not groups or min(link[0] - last[0], link[1] - last[1]) >= _BEFORE + _AFTER:
             groups.append([])
         groups[-1].append(row)
     for group in groups:
-        if len(group) > 1 or near(np.array([links[group[0]]]), n):
+        after, before = links[group[0]]
+        if len(group) > 1 or before < _WALL + _BEFORE or after >= n - _WALL - _BEFORE:
             yield np.array(group, dtype=np.intp)
 
 

@@ -179,7 +179,7 @@ def _where_felt(
         )
         for j in map(int, np.flatnonzero(~at_once)):
             (felt[j, body],), (turned[j, body],) = felt_at(_chain_of(beams[j], chains, j), [float(row[j])], attachment)
-    crowded = np.flatnonzero(near(standing, n) & is_mended(attachment, n))
+    crowded = np.flatnonzero(near(standing + on, n) & is_mended(attachment, n))
     some = [replace(_chain_of(beams[j], chains, j), elastic=elastic) for j in map(int, crowded)]
     mended_felt, mended_turned = felt[crowded], turned[crowded]
     mend_each(some, (standing + on).T[crowded], mended_felt, mended_turned)
