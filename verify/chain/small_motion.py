@@ -80,7 +80,9 @@ def refuse_unstable_modes(squares: Array) -> None:
 def _squares(mass: Array, stiffness: Array) -> Array:
     """Signed, ascending: by the inverse problem, which keeps the low ones accurate, shifted where it must be.
 
-    A shift of `LIFTED` leaves as many digits of the highest as of the lowest of a thousand links.
+    Of hinged chains a shift of `LIFTED` leaves the lowest four right to 1e-12. The upper half of 60, 400, 1000 links
+    lies within 5e-9, 3e-7 and 9e-6 of eigh(K, M), which over relative and absolute angles differs from itself by 1e-9,
+    2e-7 and 6e-6.
     """
     from scipy.linalg import LinAlgError, eigh
 
