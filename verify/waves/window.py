@@ -13,9 +13,12 @@ from verify.words import as_written
 
 MOST_HALVES = 10_000
 """Half wavelengths of the longest window: its points are held at once."""
-_OF_WAVES = {"euler-bernoulli": ("bending_stiffness", "mass_per_length", "extreme_fibre")}
-_OF_WAVES["rayleigh"] = (*_OF_WAVES["euler-bernoulli"], "rotary_inertia")
-_OF_WAVES["timoshenko"] = (*_OF_WAVES["rayleigh"], "shear_stiffness")
+_PLAIN = ("bending_stiffness", "mass_per_length", "extreme_fibre")
+_OF_WAVES: dict[str, tuple[str, ...]] = {
+    "euler-bernoulli": _PLAIN,
+    "rayleigh": (*_PLAIN, "rotary_inertia"),
+    "timoshenko": (*_PLAIN, "rotary_inertia", "shear_stiffness"),
+}
 """Of a section: what its waves by a theory and the way of its surface are made of."""
 
 
