@@ -25,7 +25,7 @@ def family_of(count: int | None) -> dict[str, Any]:
 
 
 def data_of(beam: Beam, listed: Array, family: tuple[Any, ...], rounding: float = 0.0, more: int = 0) -> Any:
-    """A list of a beam with so many digits, and members to compare it with by so many modes `more` than it has."""
+    """A list of a beam in Hz, rounded by a share, members to compare it with, and a solver of so many modes `more`."""
     from verify.identify.family import Solver
     from verify.identify.fitting import Data
 
