@@ -44,6 +44,7 @@ from verify.identify import (
 )
 from verify.identify import compare as list_compare
 from verify.identify import gates as list_gates
+from verify.identify import rows as list_rows
 from verify.identify import sizing as listed_sizing
 from verify.identify import told as compared
 from verify.judge import compare, crossing, sizing
@@ -703,6 +704,11 @@ def changes_told_a_thousandth_larger(patch):
     patch.setattr(causes_told, "_change", lambda ratio: true(1.001 * ratio))
 
 
+def entries_read_without_an_error(patch):
+    true = list_rows.rows_of
+    patch.setattr(list_rows, "rows_of", lambda *given: tuple(replace(one, read_error=None) for one in true(*given)))
+
+
 def searches_told_a_millionth_longer(patch):
     true = list_compare._search_seconds
     patch.setattr(list_compare, "_search_seconds", lambda *given: 1.000001 * true(*given))
@@ -801,6 +807,7 @@ FAULTS = {
         limitless(on_wave, "WARM", 3): {"means-over-a-wave"},
         limitless(compared, "TOLERANCE", 0.05): {"answers-in-words"},
         limitless(list_gates, "TOLERANCE", 0.01): {"rows-of-a-list"},
+        entries_read_without_an_error: {"rows-of-a-list"},
         searches_told_a_millionth_longer: {"before-it-is-solved"},
         limitless(list_compare, "CREDIBLE", 0.01): {"supports-that-are-nearest"},
         limitless(listed_sizing, "_IN_A_ROW", 6): {"parts-enough-of-members"},

@@ -4,6 +4,7 @@ from math import pi
 
 from msgspec.structs import replace
 
+from verify.attached import PointMass
 from verify.beam import Beam
 from verify.section import Section
 
@@ -17,6 +18,8 @@ STRIP = Beam(
 )
 """A strip of titanium between pins."""
 STEPPED = replace(STRIP, section=(Section(length=0.4), Section(length=0.33, thickness=0.003)))
+LADEN = replace(STRIP, mass=(PointMass(position=0.29, mass=0.05),))
+"""The strip with a body of 50 g off its middle."""
 PLAIN = Beam(length=0.73, bending_stiffness=3.1, mass_per_length=0.27)
 """Given by figures alone."""
 COUPLE = ((-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))

@@ -27,7 +27,7 @@ FAMILIES = (
     *("carried", "ridden", "mixed", "sought", "edges", "shown"),
     *("verges", "allowed", "verbs", "ways", "damped", "means", "searches"),
     *("layouts", "heard", "shaped", "worded", "signed", "solved"),
-    *("folds", "clasped", "pencils", "enough", "yielded", "tried", "answered"),
+    *("folds", "clasped", "pencils", "enough", "yielded", "tried", "answered", "before"),
     *("refused_verbs", "refused_modes", "refused_waves", "refused_motion", "refused_chain", "refused_runs"),
 )
 """Modules of this room with `ROWS`, in the order of the table."""

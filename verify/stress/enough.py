@@ -9,9 +9,8 @@ from typing import Any
 
 from msgspec.structs import replace
 
-from verify.attached import PointMass
 from verify.beam import Beam
-from verify.stress.beams import STEPPED, STRIP, held
+from verify.stress.beams import LADEN, STEPPED, STRIP, held
 from verify.stress.choices import pinned_error
 from verify.stress.kind import Floor, Row
 from verify.stress.listed import MEMBERS, turned_rate
@@ -133,7 +132,6 @@ def gone_through_error(number: float) -> float:
 
 # --- What does with fewer ---------------------------------------------------------------------------------------------
 
-LADEN = replace(STRIP, mass=(PointMass(position=0.29, mass=0.05),))
 GREGORY = "Gregory's weights 3/8, 7/6, 23/24 at the wall"
 OWN, MENDED = BETTER["points"], "tensioned joints"
 

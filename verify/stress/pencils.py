@@ -45,11 +45,15 @@ def lifted_error(part: float) -> float:
     return max(worst, abs(driven(beam, PARTS, 1.0, "rayleigh")[1].below))
 
 
+def _strains(pencil: Any) -> Array:
+    """What each motion strains, written out."""
+    return np.asarray(pencil.strain_matrix() @ np.eye(pencil.n))
+
+
 def _dense(pencil: Any) -> Array:
     """L^-1 K L^-T of M = L L^T."""
-    strain = np.asarray(pencil.strain_matrix() @ np.eye(pencil.n))
     lower = np.linalg.cholesky(np.asarray(pencil.mass_matrix() @ np.eye(pencil.n)))
-    half = np.linalg.solve(lower, (strain.T * np.sqrt(pencil.stiffness)))
+    half = np.linalg.solve(lower, _strains(pencil).T * np.sqrt(pencil.stiffness))
     return np.asarray(half @ half.T)
 
 
@@ -99,7 +103,7 @@ def apart_error(number: float) -> float:
 
     elements, pencil = driven(SOFT, PARTS, 1.0, "euler-bernoulli")
     mass, stiffness = pencil.mass_matrix() @ np.eye(pencil.n), _stiffness(pencil)
-    strain = np.asarray(pencil.strain_matrix() @ np.eye(pencil.n))
+    strain = _strains(pencil)
     rigid = np.linalg.svd(strain[: own_strains(elements)])[2][-2:].T  # what strains nothing of its own
     strains = strain @ rigid
     slow, shares = eigh(strains.T @ (pencil.stiffness[:, None] * strains), rigid.T @ mass @ rigid)
@@ -113,7 +117,7 @@ def apart_error(number: float) -> float:
 
 
 def _stiffness(pencil: Any) -> Array:
-    strain = np.asarray(pencil.strain_matrix() @ np.eye(pencil.n))
+    strain = _strains(pencil)
     return np.asarray(strain.T @ (pencil.stiffness[:, None] * strain))
 
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from verify.attached import PointMass, PointSpring
+from verify.attached import PointSpring
 from verify.beam import Beam
 from verify.errors import InputError
 from verify.models.arrays import Array
-from verify.stress.beams import PLAIN, STEPPED, STRIP, held
+from verify.stress.beams import LADEN, PLAIN, STEPPED, STRIP, held
 from verify.stress.kind import Floor, Row
 
 # --- Sizes ------------------------------------------------------------------------------------------------------------
@@ -182,7 +182,6 @@ def _unsaid() -> Iterator[bool]:
 # --- In words ---------------------------------------------------------------------------------------------------------
 
 SPRUNG = replace(STRIP, spring=(PointSpring(position=0.2, stiffness=900.0),))
-LADEN = replace(STRIP, mass=(PointMass(position=0.29, mass=0.05),))
 ROUND = Beam(length=0.5, diameter=0.011, shape="round", youngs_modulus=70e9, density=2700.0)
 MADE: tuple[tuple[float, Beam, str, str], ...] = (
     (1.02, STRIP, "euler-bernoulli", "E is +4.04 % or rho -3.88 %, or the thickness +2 %, or the length -0.985 %"),

@@ -23,7 +23,7 @@ from verify.waves.measures import (
     zero_field,
 )
 from verify.waves.medium import Medium
-from verify.waves.window import check_halves, check_window
+from verify.waves.window import check_halves, check_room, check_span
 
 EULER = "euler-bernoulli"
 MOST_READINGS = 50_000_000
@@ -82,7 +82,8 @@ class UnitDrive(msgspec.Struct, frozen=True, kw_only=True):
         Raises InputError where the model or the window is none.
         """
         highest = float(frequencies.max())
-        check_window(self.beam, list(self.places), highest, self.window)  # or it suits none of them
+        check_span(self.beam, list(self.places), self.window, theory=self.theory)
+        check_room(self.beam, highest, self.window, self.theory)  # or it suits none of them
         rule = window_rule(self.window, wavenumber(self.beam, highest, self.theory).real)
         if (n := len(frequencies) * len(self.places) * len(rule.x)) > MOST_READINGS:
             raise InputError(

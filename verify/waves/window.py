@@ -13,28 +13,33 @@ from verify.words import as_written
 
 MOST_HALVES = 10_000
 """Half wavelengths of the longest window: its points are held at once."""
-_OF_WAVES = ("bending_stiffness", "mass_per_length", "extreme_fibre")
-"""Of a section: what its waves and the way of its surface are made of."""
+_PLAIN = ("bending_stiffness", "mass_per_length", "extreme_fibre")
+_OF_WAVES: dict[str, tuple[str, ...]] = {
+    "euler-bernoulli": _PLAIN,
+    "rayleigh": (*_PLAIN, "rotary_inertia"),
+    "timoshenko": (*_PLAIN, "rotary_inertia", "shear_stiffness"),
+}
+"""Of a section: what its waves by a theory and the way of its surface are made of."""
 
 
-def _own_section(beam: Beam, start: float, end: float) -> bool:
-    """Whether a stretch of a beam, from and to metres, has the beam's own section alone."""
+def _own_section(beam: Beam, start: float, end: float, theory: str) -> bool:
+    """Whether a stretch of a beam, from and to metres, has the beam's own section alone, as a theory feels it."""
     own, slack, left = beam.own, 1e-9 * beam.length, 0.0
     for piece in beam.pieces:
         right = left + piece.length
-        alike = all(getattr(piece, of) == getattr(own, of) for of in _OF_WAVES)
+        alike = all(getattr(piece, of) == getattr(own, of) for of in _OF_WAVES[theory])
         if not alike and left < end - slack and right > start + slack:
             return False
         left = right
     return True
 
 
-def _one_section(beam: Beam, start: float, end: float) -> bool:
+def _one_section(beam: Beam, start: float, end: float, theory: str) -> bool:
     """Whether a stretch lies on sections that are alike, whichever is written as the beam's own."""
     slack, ends = 1e-9 * beam.length, list(accumulate(piece.length for piece in beam.pieces))
     spans = zip([0.0, *ends[:-1]], ends, beam.pieces, strict=True)
     there = [piece for left, right, piece in spans if left < end - slack and right > start + slack]
-    return all(getattr(piece, of) == getattr(there[0], of) for piece in there for of in _OF_WAVES)
+    return all(getattr(piece, of) == getattr(there[0], of) for piece in there for of in _OF_WAVES[theory])
 
 
 def check_window(
@@ -50,6 +55,18 @@ def check_window(
     Nor may a device act against turning in it, at `turning_held` (metres). InputError where it is no window of the
     beam at all, WindowError where it does not suit forces or frequency.
     """
+    check_span(beam, places, window, turning_held, theory)
+    check_halves(beam, frequency_hz, window, theory)
+
+
+def check_span(
+    beam: Beam,
+    places: list[float],
+    window: tuple[float, float],
+    turning_held: Sequence[float] = (),
+    theory: str = "euler-bernoulli",
+) -> None:
+    """Raise for a window off the span between two neighbouring forces, whatever the frequency, as `check_window`."""
     try:
         start, end = (float(end) for end in window)
     except (TypeError, ValueError):
@@ -63,8 +80,8 @@ def check_window(
             f"window = {told} holds a device against turning at {as_written(turned)} m: two waves alone live beside "
             "it, choose a window without one"
         )
-    if not _own_section(beam, start, end):
-        remedy = ", or give the beam that section's sizes as its own" if _one_section(beam, start, end) else ""
+    if not _own_section(beam, start, end, theory):
+        remedy = ", or give the beam that section's sizes as its own" if _one_section(beam, start, end, theory) else ""
         raise WindowError(
             f"window = {told} holds a beam.section other than the beam's own: waves of one length run along "
             f"one section, choose a window on the beam's own{remedy}"
@@ -76,7 +93,6 @@ def check_window(
             f"window = {told} leaves the span between two forces (they act at {as_written(places)} m): "
             "two waves alone live there, choose a window inside it"
         )
-    check_halves(beam, frequency_hz, window, theory)
 
 
 def check_clear(beam: Beam, span: tuple[float, float], told: str, remedy: str) -> None:
@@ -116,9 +132,14 @@ def check_halves(beam: Beam, frequency_hz: float, window: tuple[float, float], t
 
     Likewise where the waves are not of one length.
     """
+    _check_one_length(beam, frequency_hz, theory)
+    check_room(beam, frequency_hz, window, theory)
+
+
+def check_room(beam: Beam, frequency_hz: float, window: tuple[float, float], theory: str = "euler-bernoulli") -> None:
+    """Raise WindowError likewise, whether or not a second pair of waves runs beside the one that is counted."""
     (start, end), told = window, as_written(window)
     k = wavenumber(beam, frequency_hz, theory)
-    _check_one_length(beam, frequency_hz, theory)
     if beam.foundation and beam.mass_per_length * (2.0 * np.pi * frequency_hz) ** 2 <= beam.foundation:
         least = float(np.sqrt(beam.foundation / beam.mass_per_length) / (2.0 * np.pi))
         raise WindowError(
