@@ -10,8 +10,9 @@ from msgspec.structs import replace
 from verify.motor import figures
 from verify.motor.case import MotorCase
 from verify.motor.figures import at_speed
+from verify.motor.gripping import dragged_at
 from verify.motor.withheld import not_settled
-from verify.slider import Contact, Slider
+from verify.slider import Contact, Foot, Slider
 from verify.studies.motor_words import unsettled
 
 MASS, MU, PRELOAD, WAVE = 0.015, 0.23, 0.31, 2.6e-7
@@ -63,6 +64,19 @@ def test_a_slider_that_creeps_is_told_the_force_of_one_that_slips(speed):
     assert not found.unsettled
     assert found.taken_up < 1e-4
     assert found.force == pytest.approx(played(speed), rel=4e-3)
+
+
+def test_a_slider_is_dragged_until_the_softest_of_unlike_points_slips_under_all_that_presses():
+    """Under one force a foot of 0.4 mm of a layer is stretched 17 times as far as a third of one of 20 mm."""
+    layer = Contact(layer_stiffness=3.1e6, layer_tangential_stiffness=1.65e7)
+    feet = (Foot(length=0.02, points=3), Foot(length=4e-4, offset=0.017))
+    slider = replace(CASE.slider, contact=layer, foot=feet)
+    seconds = 12.0 / HERTZ
+    full = MU * PRELOAD / (1.65e7 * 4e-4)
+    for speed in (1e-9, -1e-9):
+        assert abs(dragged_at(slider, speed, seconds)) * seconds > 2.0 * full
+        assert dragged_at(slider, speed, seconds) * speed > 0.0
+    assert dragged_at(slider, 2.0 * full / seconds, seconds) is None
 
 
 def test_what_has_not_slipped_yet_is_no_mean(monkeypatch):

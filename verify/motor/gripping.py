@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SOON = 8.0
 """Times as long as it would be dragged, in which a slider slips of itself before the means of its blocks agree."""
 FURTHER = 4.0
-"""Times as far as any one point under all of what presses on would be stretched, a slider is dragged."""
+"""Times as far as the softest point is stretched from one way to the other under all that presses, one is dragged."""
 
 
 def grips(slider: "Slider") -> Array:
@@ -37,13 +37,15 @@ def grips(slider: "Slider") -> Array:
 def dragged_at(slider: "Slider", speed: float, seconds: float) -> float | None:
     """The speed, m/s, at which a slider is dragged for so long before it is held at `speed`; None where it need not be.
 
-    It need where it takes long to go from full stretch one way to full stretch the other.
+    It need where it takes its softest point long to go from full stretch one way, under a like share of what presses,
+    to full stretch the other.
     """
     grip = grips(slider)
     if not speed or not grip.any():
         return None
-    way = 2.0 * slider.mu * slider.normal_force / float(grip.sum())
-    return None if SOON * abs(speed) * seconds >= way else copysign(FURTHER * len(grip) * way / seconds, speed)
+    most = 2.0 * slider.mu * slider.normal_force / float(grip.min())
+    soon = SOON * abs(speed) * seconds >= most / len(grip)
+    return None if soon else copysign(FURTHER * most / seconds, speed)
 
 
 def taken_up(slider: "Slider", speed: float, before: "MotorState", run: "MotorRun") -> float:
