@@ -7,9 +7,10 @@ import pytest
 from motor_setups import HALF, HERTZ, MIDDLE, OMEGA, STRIP, drive
 from msgspec.structs import replace
 
+from verify.errors import InputError
 from verify.motor import figures
 from verify.motor.case import MotorCase
-from verify.motor.figures import at_speed
+from verify.motor.figures import at_speed, no_load
 from verify.motor.gripping import dragged_at
 from verify.motor.withheld import not_settled
 from verify.slider import Contact, Foot, Slider
@@ -77,6 +78,26 @@ def test_a_slider_is_dragged_until_the_softest_of_unlike_points_slips_under_all_
         assert abs(dragged_at(slider, speed, seconds)) * seconds > 2.0 * full
         assert dragged_at(slider, speed, seconds) * speed > 0.0
     assert dragged_at(slider, 2.0 * full / seconds, seconds) is None
+
+
+def test_runs_in_which_a_slider_is_dragged_are_among_the_time_that_a_search_takes(monkeypatch):
+    """A search for the speed without load hears of every run before its first halving: two ends and standing still."""
+    whole, estimated, told = figures._whole, [], []
+
+    def counted(run):
+        estimated.append(run.statistics.estimated_s)
+        return whole(run)
+
+    def heard(field, value, seconds, remedy):
+        if field == "reach":
+            told.append(seconds)
+            raise InputError("enough")
+
+    monkeypatch.setattr(figures, "_whole", counted)
+    monkeypatch.setattr(figures, "check_work", heard)
+    with pytest.raises(InputError, match="enough"):
+        no_load(CASE, 1e-7)
+    assert told == [pytest.approx(sum(estimated), rel=1e-9)]
 
 
 def test_what_has_not_slipped_yet_is_no_mean(monkeypatch):
