@@ -17,7 +17,7 @@ from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
-from verify.motor.gripping import dragged_at, taken_up, widened
+from verify.motor.gripping import creeps, dragged_at, taken_up, widened
 from verify.motor.repeated import blocks
 from verify.motor.result import MotorRun, uninterrupted
 from verify.motor.settling import (
@@ -27,6 +27,7 @@ from verify.motor.settling import (
     SMALL,
     Means,
     apart,
+    means_of,
     missed,
     rows,
     spread_of,
@@ -93,6 +94,8 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     """What has not settled: its spread is more than a hundredth of mu N, of N, of 1, of mu N times the larger speed."""
     taken_up: float = 0.0
     """Share of the way that what gives way along the surface still takes up: 1 where nothing has slipped yet."""
+    crept: bool = False
+    """Whether that share alone is what has not settled."""
 
     @property
     def power(self) -> float:
@@ -181,19 +184,13 @@ def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int
     return replace(found, spread=spread, unsettled=READINGS), run
 
 
-def means_of(run: MotorRun) -> Means:
-    """Over all its periods."""
-    return Means(*map(float, rows(run).mean(axis=0)))
-
-
 def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpeed, MotorRun]:
     """Means over as many periods more as there were."""
     run = _whole(_block(case, found.speed, found.periods)(before))
     each = rows(run)
     spreads = spread_of(each, missed(case.slider, before.state, run), told_by_balance(case.slider))
-    means = Means(*map(float, each.mean(axis=0)))
     taken = taken_up(case.slider, found.speed, before.state, run)
-    return _found(case, found.speed, means, spreads, 2 * found.periods, found.periods, taken), run
+    return _found(case, found.speed, means_of(run), spreads, 2 * found.periods, found.periods, taken), run
 
 
 def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | None], MotorRun]:
@@ -224,7 +221,9 @@ def _found(
     case: MotorCase, speed: float, means: Means, spreads: Means, periods: int, window: int, taken: float = 0.0
 ) -> AtSpeed:
     """Means of the last periods, with how far they have settled."""
-    spreads = widened(spreads, taken, case.slider.mu * max(means.normal_force, case.slider.normal_force), speed)
+    presses = max(means.normal_force, case.slider.normal_force)
+    crept = creeps(spreads, taken, case.slider, presses)
+    spreads = widened(spreads, taken, case.slider.mu * presses, speed)
     found = AtSpeed(
         speed=speed,
         **means._asdict(),
@@ -236,6 +235,7 @@ def _found(
         window=window,
         unsettled=(),
         taken_up=taken,
+        crept=crept,
     )
     return replace(found, unsettled=_unsettled(case, found))
 

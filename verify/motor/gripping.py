@@ -14,7 +14,7 @@ import numpy as np
 from verify.models.arrays import Array
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of
-from verify.motor.settling import Means
+from verify.motor.settling import BALANCED, SMALL, Means
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun, MotorState
@@ -61,6 +61,15 @@ def taken_up(slider: "Slider", speed: float, before: "MotorState", run: "MotorRu
     left = run.events[run.events[:, records.EVENT_KIND] == records.LEAVES, records.EVENT_POINT]
     shares[left.astype(int)] = 0.0
     return float(grip @ shares / grip.sum())
+
+
+def creeps(spreads: Means, share: float, slider: "Slider", presses: float) -> bool:
+    """Whether spreads of means, before they are widened, are less than what is still to come, and that is felt.
+
+    Nothing else may be under way: where the contact swings, more way does not settle it.
+    """
+    felt = share > SMALL and share * slider.mu * presses >= spreads.force
+    return felt and spreads.normal_force <= BALANCED * presses
 
 
 def widened(spreads: Means, share: float, friction: float, speed: float) -> Means:
