@@ -120,20 +120,17 @@ def test_a_beam_that_nothing_drives_is_told_so_in_place_of_an_infinite_size(coup
 
 
 @pytest.mark.parametrize("coupling", ["one-way", "two-way"])
-def test_of_several_sliders_the_one_that_left_is_named_in_every_run(coupling):
-    """The second, which is near the end: the first still stands where it was put."""
+def test_of_several_sliders_those_that_left_are_named_in_every_run(coupling):
+    """The second, which is near the end: the first still stands where it was put. Then both, side by side."""
     still, gone = (replace(SPRUNG, coupling=coupling, position=x) for x in (0.031, 0.0829))
-    given = {
-        "model": "fem",
-        "count": 10,
-        "start": "rest",
-        "modal_damping": 0.0,
-        "samples": 3,
-        "held_speed": [0.0, SPEED],
-    }
+    given = {"model": "fem", "count": 10, "start": "rest", "modal_damping": 0.0, "samples": 3}
     force = [PointForce(position=0.05, amplitude=3.0)]
-    runs = run_motors(BEAM, force, HERTZ, 0.002, sliders=[still, gone], **given)
-    assert [run.statistics.stopped for run in runs] == ["left the beam"] * 2
-    for run in runs:
-        assert "of 2 sliders number 2 left the beam, and the runs of all end there" in run.notes
-    assert not any("sliders number" in note for note in crossing(gone, duration=0.002).notes)
+    for first, speed, said in (
+        (still, 0.0, "of 2 sliders number 2 left the beam, and the runs of all end there"),
+        (gone, SPEED, "all 2 sliders left the beam, and their runs end there"),
+    ):
+        runs = run_motors(BEAM, force, HERTZ, 0.002, sliders=[first, gone], held_speed=[speed, SPEED], **given)
+        assert [run.statistics.stopped for run in runs] == ["left the beam"] * 2
+        for run in runs:
+            assert said in run.notes
+    assert not any("sliders" in note for note in crossing(gone, duration=0.002).notes)

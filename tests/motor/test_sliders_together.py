@@ -230,4 +230,8 @@ def test_sliders_that_the_beam_feels_only_together_are_felt():
     for run in together:
         assert run.coupling.two_way
         assert run.coupling.normal_size == pytest.approx(across.max(), rel=1e-3)
-        assert "all that presses the sliders on moves the surface under one of them by" in run.notes[1]
+        felt = run.coupling
+        assert run.notes[1].endswith(
+            "all that presses the sliders on moves the surface under any of them by at most "
+            f"{felt.normal_size:.1e} of its motion, their friction by at most {felt.friction_size:.1e} of its speed"
+        )

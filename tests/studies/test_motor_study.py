@@ -20,6 +20,7 @@ from verify.studies import motor_figures
 from verify.studies.motor import case_of
 from verify.studies.motor_figures import motor_study
 from verify.studies.motor_rest import FromRest, RestField, RestHeld, what_stands
+from verify.studies.motor_tables import at_speed_as_plain
 from verify.studies.motor_words import doubts, in_short_of
 
 SMALL = (
@@ -283,6 +284,11 @@ def test_a_run_does_what_its_plan_says():
     plain = run_as_plain(result, None)["motor"]
     assert plain["fields"][0]["curve"][0]["force"] == result.found["motor"].fields[0].stall.force
     assert plain["rest"]["fields"][1]["links"] == "rigid"
+
+
+@pytest.mark.parametrize(("taken", "told"), [(0.009, 0.009), (0.41, 0.41), (3e-14, 0.0)])
+def test_what_is_taken_up_of_a_way_is_among_its_figures_however_small(study, taken, told):
+    assert at_speed_as_plain(replace(study.fields[0].stall, taken_up=taken))["taken_up"] == told
 
 
 def test_a_plan_says_that_motion_leaves_such_a_slider_to_the_motor():

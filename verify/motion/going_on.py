@@ -16,8 +16,13 @@ def check_goes_on(
     before: "EndState | MotorState", beam: Beam, model: str, count: int | None, n: int, start: str
 ) -> None:
     """Raise InputError where the n modes of a run are not those of the run before; losses and forces may differ."""
-    _check_same_start(before, start)
     check_same_beam(before, beam, model, count)
+    check_same_modes(before, n, start)
+
+
+def check_same_modes(before: "EndState | MotorState", n: int, start: str) -> None:
+    """Raise InputError where the n modes of a run of the same beam and model are others, or would be lost."""
+    _check_same_start(before, start)
     if not n:
         raise InputError(
             "start = 'steady' has no free modes where no slider pushes back, and those of continue_from would be lost: "

@@ -147,7 +147,7 @@ def way(v: float, rate: float, dt: float, slope: float | None, law: Law, seen: A
 
 @part()
 def felt_way(v: float, stuck: bool, rate: float, dt: float, law: Law, seen: Array, took: Array) -> float:
-    """The same on a surface that feels the slider, which `hold` may have held, till the end or till it let it slip.
+    """The same on a surface that feels the slider, which `hold` may have held till the end or till friction gave way.
 
     Relative to the surface it speeds up evenly from there on.
     """

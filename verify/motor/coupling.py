@@ -47,18 +47,19 @@ def coupled(slider: Slider, across: float, along: float | None) -> Coupling:
 
 def in_words(coupling: Coupling, together: bool = False) -> str:
     """Both sizes; `together` are those of several sliders."""
-    whose, where = ("the sliders", " under one of them") if together else ("the slider", "")
+    whose, where, most = ("the sliders", " under any of them", "at most ") if together else ("the slider", "", "")
     if np.isinf(coupling.normal_size):
         return f"the drive does not move the surface under {'one of ' * together}{whose}"
-    rubs = "their" if together else "its"
-    along = "" if coupling.friction_size is None else f", {rubs} friction by {coupling.friction_size:.1e} of its speed"
-    return f"all that presses {whose} on moves the surface{where} by {coupling.normal_size:.1e} of its motion{along}"
+    across, along = f"{most}{coupling.normal_size:.1e} of its motion", ""
+    if coupling.friction_size is not None:
+        along = f", {'their' if together else 'its'} friction by {most}{coupling.friction_size:.1e} of its speed"
+    return f"all that presses {whose} on moves the surface{where} by {across}{along}"
 
 
 def coupling_of(request: Request, placed: Sequence[Placed], stage: Stage, basis: TimeBasis | None) -> Coupling:
     """One-way or two-way by size, unless the sliders say which: what all their loads move, over what the drive moves.
 
-    Under the slider where that is most.
+    Each of the two sizes under the slider where it is most.
     """
     found = _sizes_of_all(request, placed, stage, basis)
     along = None if any(size is None for _, size in found) else max(size or 0.0 for _, size in found)

@@ -17,7 +17,7 @@ from verify.field_docs import Value
 from verify.models.arrays import Array
 from verify.models.underfoot import standing_at
 from verify.motor.case import MotorCase
-from verify.motor.gripping import dragged_at, taken_up, widened
+from verify.motor.gripping import creeps, dragged_at, taken_up, widened
 from verify.motor.repeated import blocks
 from verify.motor.result import MotorRun, uninterrupted
 from verify.motor.settling import (
@@ -27,6 +27,7 @@ from verify.motor.settling import (
     SMALL,
     Means,
     apart,
+    means_of,
     missed,
     rows,
     spread_of,
@@ -86,13 +87,15 @@ class AtSpeed(Value, frozen=True, kw_only=True):
     power_spread: float
     """Of the two powers, the larger one, W."""
     periods: int
-    """Until then."""
+    """Until then, but for those in which it is dragged."""
     window: int
     """Periods, the last of these, of which these are means."""
     unsettled: tuple[Reading, ...]
     """What has not settled: its spread is more than a hundredth of mu N, of N, of 1, of mu N times the larger speed."""
     taken_up: float = 0.0
     """Share of the way that what gives way along the surface still takes up: 1 where nothing has slipped yet."""
+    crept: bool = False
+    """Whether that share alone is what has not settled."""
 
     @property
     def power(self) -> float:
@@ -133,15 +136,23 @@ def held(
     Blocks go on until two agree and carry what presses on, or take longer than is waited for. A motion that does not
     repeat itself so runs on in windows, each as long as all before it, until the spread of its means is small: for
     `periods` at most, and likewise. A slider that a block at its speed would not make slip is dragged before, until
-    that has settled across the beam: what presses less on its way there would let go more.
+    that has settled across the beam: what presses less on its way there would let go more. Those periods come on top.
     """
+    return _held(case, speed, before, periods)[:2]
+
+
+def _held(case: MotorCase, speed: float, before: MotorRun | None, periods: int) -> tuple[AtSpeed, MotorRun, float]:
+    """The same with the estimated time of all its runs, seconds, those in which it is dragged among them."""
     most = min(MOST_BLOCKS, periods // BLOCK)
     fast = dragged_at(case.slider, speed, BLOCK * case.period)
-    slipping = before if fast is None else _in_blocks(case, fast, before, most)[1]
+    slipping, dragged = before, 0
+    if fast is not None:
+        first, slipping = _in_blocks(case, fast, before, most)
+        dragged = first.periods
     found, run = _in_blocks(case, speed, slipping, most)
     while found.unsettled and 2 * found.periods <= periods and waited_for(next_seconds(run, found.periods)):
         found, run = _in_window(case, found, run)
-    return found, run
+    return found, run, next_seconds(run, dragged + found.periods)
 
 
 def next_seconds(run: MotorRun, periods: int) -> float:
@@ -173,19 +184,13 @@ def _in_blocks(case: MotorCase, speed: float, before: MotorRun | None, most: int
     return replace(found, spread=spread, unsettled=READINGS), run
 
 
-def means_of(run: MotorRun) -> Means:
-    """Over all its periods."""
-    return Means(*map(float, rows(run).mean(axis=0)))
-
-
 def _in_window(case: MotorCase, found: AtSpeed, before: MotorRun) -> tuple[AtSpeed, MotorRun]:
     """Means over as many periods more as there were."""
     run = _whole(_block(case, found.speed, found.periods)(before))
     each = rows(run)
     spreads = spread_of(each, missed(case.slider, before.state, run), told_by_balance(case.slider))
-    means = Means(*map(float, each.mean(axis=0)))
     taken = taken_up(case.slider, found.speed, before.state, run)
-    return _found(case, found.speed, means, spreads, 2 * found.periods, found.periods, taken), run
+    return _found(case, found.speed, means_of(run), spreads, 2 * found.periods, found.periods, taken), run
 
 
 def _block(case: MotorCase, speed: float, periods: int) -> Callable[[MotorRun | None], MotorRun]:
@@ -216,7 +221,9 @@ def _found(
     case: MotorCase, speed: float, means: Means, spreads: Means, periods: int, window: int, taken: float = 0.0
 ) -> AtSpeed:
     """Means of the last periods, with how far they have settled."""
-    spreads = widened(spreads, taken, case.slider.mu * max(means.normal_force, case.slider.normal_force), speed)
+    presses = max(means.normal_force, case.slider.normal_force)
+    crept = creeps(spreads, taken, case.slider, presses)
+    spreads = widened(spreads, taken, case.slider.mu * presses, speed)
     found = AtSpeed(
         speed=speed,
         **means._asdict(),
@@ -228,6 +235,7 @@ def _found(
         window=window,
         unsettled=(),
         taken_up=taken,
+        crept=crept,
     )
     return replace(found, unsettled=_unsettled(case, found))
 
@@ -269,8 +277,8 @@ def no_load(
     wide = 2.0 * crest_speed(case) if reach is None else reach
     low, high, spent = -wide, wide, 0.0
     for end, way in ((low, 1.0), (high, -1.0)):
-        found, run = held(case, end, before, periods)
-        spent += next_seconds(run, found.periods)
+        found, _, took = _held(case, end, before, periods)
+        spent += took
         if not found.way:
             raise InputError(not_settled(case, found, ("force",), periods))
         if found.way != way:
@@ -278,16 +286,16 @@ def no_load(
                 f"reach = {wide!r} m/s: friction does not change its way up to there, so that no speed without load "
                 "is between: press the slider on more, or give a larger reach"
             )
-    found, run = held(case, 0.0, before, periods)
-    spent += next_seconds(run, found.periods)
+    found, _, took = _held(case, 0.0, before, periods)
+    spent += took
     for _ in range(HALVINGS):
         low, high = (found.speed, high) if found.way > 0.0 else (low, found.speed)
         if not found.way or high - low <= 1e-6 * wide:
             break
         between = f"the speed without load lies between {low:.6g} and {high:.6g} m/s, where means settle slowly"
         check_work("reach", wide, spent, between)
-        found, run = held(case, 0.5 * (low + high), before, periods)
-        spent += next_seconds(run, found.periods)
+        found, _, took = _held(case, 0.5 * (low + high), before, periods)
+        spent += took
     if "force" in found.unsettled:
         raise InputError(not_settled(case, found, ("force",), periods))
     return found

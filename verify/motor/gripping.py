@@ -14,7 +14,7 @@ import numpy as np
 from verify.models.arrays import Array
 from verify.motor import records
 from verify.motor.feet import Placed, feet_of
-from verify.motor.settling import Means
+from verify.motor.settling import BALANCED, SMALL, Means
 
 if TYPE_CHECKING:
     from verify.motor.result import MotorRun, MotorState
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SOON = 8.0
 """Times as long as it would be dragged, in which a slider slips of itself before the means of its blocks agree."""
 FURTHER = 4.0
-"""Times as far as any one point under all of what presses on would be stretched, a slider is dragged."""
+"""Times as far as the softest point is stretched from one way to the other under all that presses, one is dragged."""
 
 
 def grips(slider: "Slider") -> Array:
@@ -37,13 +37,15 @@ def grips(slider: "Slider") -> Array:
 def dragged_at(slider: "Slider", speed: float, seconds: float) -> float | None:
     """The speed, m/s, at which a slider is dragged for so long before it is held at `speed`; None where it need not be.
 
-    It need where it takes long to go from full stretch one way to full stretch the other.
+    It need where it takes its softest point long to go from full stretch one way, under a like share of what presses,
+    to full stretch the other.
     """
     grip = grips(slider)
     if not speed or not grip.any():
         return None
-    way = 2.0 * slider.mu * slider.normal_force / float(grip.sum())
-    return None if SOON * abs(speed) * seconds >= way else copysign(FURTHER * len(grip) * way / seconds, speed)
+    most = 2.0 * slider.mu * slider.normal_force / float(grip.min())
+    soon = SOON * abs(speed) * seconds >= most / len(grip)
+    return None if soon else copysign(FURTHER * most / seconds, speed)
 
 
 def taken_up(slider: "Slider", speed: float, before: "MotorState", run: "MotorRun") -> float:
@@ -59,6 +61,15 @@ def taken_up(slider: "Slider", speed: float, before: "MotorState", run: "MotorRu
     left = run.events[run.events[:, records.EVENT_KIND] == records.LEAVES, records.EVENT_POINT]
     shares[left.astype(int)] = 0.0
     return float(grip @ shares / grip.sum())
+
+
+def creeps(spreads: Means, share: float, slider: "Slider", presses: float) -> bool:
+    """Whether spreads of means, before they are widened, are less than what is still to come, and that is felt.
+
+    Nothing else may be under way: where the contact swings, more way does not settle it.
+    """
+    felt = share > SMALL and share * slider.mu * presses >= spreads.force
+    return felt and spreads.normal_force <= BALANCED * presses
 
 
 def widened(spreads: Means, share: float, friction: float, speed: float) -> Means:

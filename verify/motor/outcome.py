@@ -137,7 +137,10 @@ def _who_left(plan: Plan, riding: Riding, ended: Ended) -> tuple[str, ...]:
     gone = [b + 1 for b, (first, last) in enumerate(spans) if first < stage.edges[0] or last > stage.edges[-1]]
     if n == 1 or not gone or ended.stopped not in stage.ends:
         return ()
-    return (f"of {n} sliders number {' and '.join(map(str, gone))} {ended.stopped}, and the runs of all end there",)
+    if len(gone) == n:
+        return (f"all {n} sliders {ended.stopped}, and their runs end there",)
+    which = f"number{'s' * (len(gone) > 1)} {' and '.join(map(str, gone))}"
+    return (f"of {n} sliders {which} {ended.stopped}, and the runs of all end there",)
 
 
 def _lost(push: Array, events: Array, times: Array) -> tuple[str, ...]:

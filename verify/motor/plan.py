@@ -12,7 +12,7 @@ from verify.models.underfoot import check_one_ground, ground_at
 from verify.motion.carried import steady_field
 from verify.motion.contact import Coupling, Margins
 from verify.motion.forcing import check_no_resonance
-from verify.motion.going_on import check_goes_on
+from verify.motion.going_on import check_same_modes
 from verify.motion.margins import margins_of
 from verify.motion.request import Request
 from verify.motion.step_size import stepped
@@ -89,7 +89,7 @@ def _at_start(
     if not before:
         return (weighed(basis, placed) if basis else np.zeros(n)), np.zeros(n)
     if n or len(before[0].q):
-        check_goes_on(before[0], request.beam, request.model, request.count, n, request.start)
+        check_same_modes(before[0], n, request.start)
     return before[0].q, before[0].rates
 
 

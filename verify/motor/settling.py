@@ -52,6 +52,11 @@ def rows(run: "MotorRun") -> Array:
     return np.stack(columns, axis=1)
 
 
+def means_of(run: "MotorRun") -> Means:
+    """Over all its periods."""
+    return Means(*map(float, rows(run).mean(axis=0)))
+
+
 def missed(slider: "Slider", before: "MotorState", run: "MotorRun") -> float:
     """By how much the normal force of a run misses what presses on, newton: of all feet, whichever way."""
     masses = np.array([slider.moved_by(foot) for foot in slider.feet])

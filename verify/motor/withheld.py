@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from verify.motor.settling import SMALL
 from verify.patience import VARIABLE
 
 if TYPE_CHECKING:
@@ -22,23 +21,22 @@ def not_settled(case: "MotorCase", found: "AtSpeed", readings: "Sequence[Reading
         "shares": f"shares of contact and sticking +- {found.share_spread:.1g}",
         "powers": f"rubbed {found.rubbed:.4g} +- {found.power_spread:.1g} W",
     }
-    longer = "give more periods" if 2 * found.periods > periods else f"set {VARIABLE} to more seconds"
+    lacking = 2 * found.periods > periods
+    longer, give = ("give more periods", "") if lacking else (f"set {VARIABLE} to more seconds", "give ")
     said = ", ".join(told[one] for one in readings if one in found.unsettled)
-    if found.taken_up > SMALL:
+    if found.crept:
         does = (
             f"what gives way along the surface takes up {100.0 * found.taken_up:.3g} % of the slider's way and has not "
             "all slipped"
         )
-        remedy = f"{longer}, or more speed"
-    elif not found.bounces:
-        does, remedy = "the slider stays on the surface, but its means creep and have not settled", longer
+        remedy = f"{longer}, or {give}more speed"
     else:
-        does = "the slider bounces and its means have not settled"
-        remedy = f"{longer}, {'or give ' * longer.startswith('set')}{_loss(slider)} or more slider.preload"
+        does = f"the slider {'bounces' if found.bounces else 'stays on the surface,'} and its means have not settled"
+        remedy = f"{longer}, {'or ' * bool(give)}{give}{_loss(slider)} or more slider.preload"
     return f"periods = {found.periods!r}: at {found.speed:.6g} m/s {does} by then, {said}: {remedy}"
 
 
 def _loss(slider: "Slider") -> str:
-    """What makes a slider bounce less."""
+    """What makes a slider bounce and swing less."""
     hard = slider.contact is not None and slider.contact.hard
     return "less slider.contact.restitution" if hard else "more slider.contact.damping"

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from verify.models.catalogue import MODELS
-from verify.motor.settling import SMALL
 from verify.studies.motor_words import unsettled
 from verify.studies.told import Column, Read, Table
 from verify.units import time_in_words
@@ -16,6 +15,9 @@ if TYPE_CHECKING:
     from verify.motor.figures import AtSpeed
     from verify.studies.motor_figures import FieldFound, MotorFound
     from verify.studies.motor_rest import FromRest, RestHeld
+
+ROUNDING = 1e-9
+"""Share of a way that is none."""
 
 
 def motor_tables(found: "MotorFound") -> tuple[Table, ...]:
@@ -109,11 +111,7 @@ def _force_speed(found: "MotorFound") -> Table:
         title="Force over speed",
         before="Friction on the slider along +x at speeds up to that of the crests, the way that it pushes; a dash "
         "where the slider drives the surface"
-        + (
-            ", or bounces or creeps so that its mean has not settled: how far that may be off stands beside it."
-            if shaky
-            else "."
-        ),
+        + (", or where its mean has not settled: how far that may be off stands beside it." if shaky else "."),
     )
 
 
@@ -177,10 +175,10 @@ def _rest_curve(rest: "FromRest") -> Table:
 
 
 def at_speed_as_plain(at: "AtSpeed") -> dict[str, Any]:
-    """With what follows from it; of what gives way, what still takes up a part of the way that shows."""
+    """With what follows from it."""
     plain: dict[str, Any] = msgspec.to_builtins(at)
-    if at.taken_up <= SMALL:
-        del plain["taken_up"]  # rounding
+    if at.taken_up < ROUNDING:
+        plain["taken_up"] = 0.0
     return plain | {"power": at.power, "efficiency": at.efficiency}
 
 

@@ -39,8 +39,8 @@ def in_short_of(found: "MotorFound") -> str:
             f"is at {100 * speed:+.4g} cm/s at the end of its free run, without force at {100 * held:+.4g} cm/s held,"
         )
     if not one.stall.settled("force"):
-        does = "bounces" if one.stall.bounces else "creeps where it sticks"
-        return f"The motor {runs} and {does} so that its force standing still has not settled, on the {one.title}."
+        does = "bounces so that" if one.stall.bounces else "stays on the surface, but"
+        return f"The motor {runs} and {does} its force standing still has not settled, on the {one.title}."
     return (
         f"The motor {runs} and pushes with {in_words(one.stall.force, 'N', '+.4g')} standing still, on the {one.title}."
     )
@@ -116,15 +116,18 @@ def _held_still(at: "AtSpeed") -> str:
 
 
 def unsettled(fields: "Sequence[FieldFound]", hard: bool) -> Iterator[str]:
-    """What bounces, or creeps, so that its means have not settled, and what to do."""
+    """What bounces, creeps or has not come to rest, so that its means have not settled, and what to do."""
     for one in fields:
         loss = f"{'less slider.contact.restitution' if hard else 'more slider.contact.damping'} "
         loss += "or more slider.preload"
         shaky = [at for at in one.curve if not at.settled()]
+        on = [at for at in shaky if not at.bounces]
         more = "ask for one figure over more periods (verify measure slider.force_speed)"
+        calmer, swing = f"give {loss}, or {more}", "not come to rest, all points on the surface"
         for does, of, remedy in (
-            ("bouncing", [at for at in shaky if at.bounces], f"give {loss}, or {more}"),
-            ("creeping, all points on the surface", [at for at in shaky if not at.bounces], more),
+            ("bouncing", [at for at in shaky if at.bounces], calmer),
+            ("creeping, all points on the surface", [at for at in on if at.crept], more),
+            (swing, [at for at in on if not at.crept], calmer),
         ):
             if of:
                 yield (
