@@ -1,5 +1,6 @@
 """A mass on a shaking surface, flown in small steps beside the closed forms."""
 
+from decimal import Decimal, localcontext
 from math import asin, cos, pi, sin, sqrt
 
 import numpy as np
@@ -32,6 +33,19 @@ def test_a_mass_lands_where_it_flies_to(ratio):
 def test_a_flight_lasts_a_period_at_the_root_of_one_and_pi_squared():
     ratio = sqrt(1.0 + pi**2)
     assert landing_phase(ratio) - leaving_phase(ratio) == pytest.approx(2.0 * pi, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [37.3, 2.71e5, 8.9e8])
+def test_a_hard_shake_throws_it_for_as_many_turns_as_it_takes_to_fall(ratio):
+    """It is back at the height of the surface's crest after ratio (1 + cos leaving) - 1 radians, and down in a turn."""
+    start, lands = leaving_phase(ratio), landing_phase(ratio)
+    flown = lands - start
+    assert 0.0 <= flown - (ratio * (1.0 + cos(start)) - 1.0) < 2.0 * pi
+    with localcontext() as digits:
+        digits.prec = 50
+        t, r = Decimal(lands) - Decimal(start), Decimal(ratio)
+        height = 1 / r + (1 - 1 / r**2).sqrt() * t - t * t / (2 * r)
+    assert float(height) == pytest.approx(sin(lands), abs=1e-14 * ratio)
 
 
 def bounces(ratio, restitution, theta, n=3000):
@@ -106,6 +120,7 @@ def test_a_bounce_loses_its_step_where_a_multiplier_leaves_the_unit_circle(resti
         (lambda: bounce_in_step(5.0, 0.3, 0), "periods = 0"),
         (lambda: landing_phase(1.0), "acceleration_ratio = 1.0"),
         (lambda: landing_phase(float("inf")), "acceleration_ratio = inf"),
+        (lambda: landing_phase(2**63), "rounding leaves no phase"),
         (lambda: bouncing_limits(1.0), "restitution = 1.0"),
         (lambda: bouncing_limits(-0.1), "restitution = -0.1"),
     ],

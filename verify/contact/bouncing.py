@@ -25,6 +25,8 @@ class Bounce(NamedTuple):
 
 LOOKS = 720
 """Of a turn, in which a landing is looked for."""
+LONGEST = 1e9
+"""Largest ratio whose landing is told: its flight of twice as many radians leaves the phase six digits."""
 
 
 def leaving_phase(ratio: float) -> float:
@@ -36,14 +38,24 @@ def leaving_phase(ratio: float) -> float:
 
 
 def landing_phase(ratio: float) -> float:
-    """Where it lands after it left for the first time, radians from the surface's own zero. Raises InputError."""
+    """Where it lands after it left for the first time, radians from the surface's own zero. Raises InputError.
+
+    It is above the surface's highest place before a quarter of a turn is over, and is looked for from where it has
+    fallen to that again: for a hard shake that is many turns later.
+    """
     start = leaving_phase(ratio)
+    if ratio > LONGEST:
+        raise InputError(
+            f"acceleration_ratio = {ratio!r}: the mass flies for {2.0 * ratio:.0e} rad, of which rounding leaves no "
+            f"phase of its landing, give at most {LONGEST:g}"
+        )
 
     def above(theta: float) -> float:
         t = theta - start
         return sin(start) + cos(start) * t - 0.5 * t * t / ratio - sin(theta)
 
-    step, after = 2.0 * pi / LOOKS, start + 2.0 * pi / LOOKS
+    step, fallen = 2.0 * pi / LOOKS, ratio * (1.0 + cos(start)) - 1.0
+    after = start + step * max(int(fallen / step), 1)
     while above(after) > 0.0:
         after += step
     low, high = after - step, after
